@@ -1,0 +1,118 @@
+"""Hands and arms. The right arm is the one that picks up."""
+
+from __future__ import annotations
+
+from btlang.actions.joints import CARRYING, FOLDED, HANGING, RAISED, REACHING, STRETCHED, arm, bring
+from btlang.actions.motion import Steps
+from btlang.actions.navigation import travel
+from btlang.engine.leaf import ActionFailed
+from btlang.robots.robot import Hand, Robot
+from btlang.robots.world import said
+
+
+def open_right_hand(robot: Robot) -> None:
+    """Opens the hand; what it held is put down."""
+    robot.release("right")
+
+
+def open_left_hand(robot: Robot) -> None:
+    """Opens the hand; what it held is put down."""
+    robot.release("left")
+
+
+def close_right_hand(robot: Robot) -> None:
+    """Closes the hand on the nearest object. Fails where nothing is within reach or the hand is full."""
+    robot.grasp("right")
+
+
+def close_left_hand(robot: Robot) -> None:
+    """Closes the hand on the nearest object. Fails where nothing is within reach or the hand is full."""
+    robot.grasp("left")
+
+
+def grasp(robot: Robot, object: str | None = None) -> None:
+    """Closes the right hand on the object, or on the nearest one. Fails as `close_right_hand` does."""
+    robot.grasp("right", object)
+
+
+def release(robot: Robot, object: str | None = None) -> None:
+    """Opens the hand that holds the object, or any. Fails where none does."""
+    robot.release(_hand_with(robot, object))
+
+
+def pick_up(robot: Robot, object: str) -> Steps:
+    """Drives up to the object, grasps it with the right hand and lifts it. Fails where one of these fails."""
+    held = robot.holding("right")
+    if held is not None:
+        raise ActionFailed(f"the right hand already holds {said(held)}")
+    yield from travel(robot, object)
+    yield from bring(robot, arm("right", REACHING))
+    robot.grasp("right", object)
+    yield from bring(robot, arm("right", CARRYING))
+
+
+def put_down(robot: Robot, object: str | None = None) -> Steps:
+    """Lowers the arm that holds the object (or anything) and opens its hand. Fails where none does."""
+    hand = _hand_with(robot, object)
+    yield from bring(robot, arm(hand, REACHING))
+    robot.release(hand)
+    yield from bring(robot, arm(hand, HANGING))
+
+
+def _hand_with(robot: Robot, object: str | None) -> Hand:
+    hands: tuple[Hand, Hand] = ("right", "left")
+    for hand in hands:
+        held = robot.holding(hand)
+        if held is not None and object in (None, held):
+            return hand
+    raise ActionFailed(f"the robot does not hold {said(object)}" if object else "the robot holds nothing")
+
+
+def raise_right_arm(robot: Robot) -> Steps:
+    """Brings the arm up."""
+    yield from bring(robot, arm("right", RAISED))
+
+
+def raise_left_arm(robot: Robot) -> Steps:
+    """Brings the arm up."""
+    yield from bring(robot, arm("left", RAISED))
+
+
+def raise_both_arms(robot: Robot) -> Steps:
+    """Brings both arms up together."""
+    yield from bring(robot, arm("left", RAISED) | arm("right", RAISED))
+
+
+def lower_right_arm(robot: Robot) -> Steps:
+    """Lets the arm hang."""
+    yield from bring(robot, arm("right", HANGING))
+
+
+def lower_left_arm(robot: Robot) -> Steps:
+    """Lets the arm hang."""
+    yield from bring(robot, arm("left", HANGING))
+
+
+def lower_both_arms(robot: Robot) -> Steps:
+    """Lets both arms hang."""
+    yield from bring(robot, arm("left", HANGING) | arm("right", HANGING))
+
+
+def stretch_right_arm(robot: Robot) -> Steps:
+    """Stretches the arm out ahead."""
+    yield from bring(robot, arm("right", STRETCHED))
+
+
+def stretch_left_arm(robot: Robot) -> Steps:
+    """Stretches the arm out ahead."""
+    yield from bring(robot, arm("left", STRETCHED))
+
+
+def retract_right_arm(robot: Robot) -> Steps:
+    """Folds the arm to the body."""
+    yield from bring(robot, arm("right", FOLDED))
+
+
+def retract_left_arm(robot: Robot) -> Steps:
+    """Folds the arm to the body."""
+    yield from bring(robot, arm("left", FOLDED))

@@ -1,0 +1,136 @@
+"""Driving and turning by a distance, an angle or a time. All fail when the robot bumps, gets stuck or is stopped."""
+
+from __future__ import annotations
+
+from collections.abc import Generator
+from math import copysign, sqrt
+
+from btlang.actions.watch import Watch
+from btlang.engine.clock import Clock
+from btlang.robots.geometry import wrap
+from btlang.robots.robot import Robot
+
+Steps = Generator[None, None, None]
+
+_DECELERATION = 0.6
+_TURN_DECELERATION = 180.0
+_CLOSE_ENOUGH = 0.004
+_ANGLE_CLOSE_ENOUGH = 0.25
+_STRAIGHTENING = 2.0  # degrees a second for each degree off course
+
+
+def move_forward(robot: Robot, distance: float, speed: float | None = None) -> Steps:
+    """Drives straight ahead by `distance` metres, to the centimetre, at `speed` m/s (or the robot's normal speed)."""
+    yield from drive_straight(robot, distance, speed)
+
+
+def move_backward(robot: Robot, distance: float, speed: float | None = None) -> Steps:
+    """Drives straight back by `distance` metres, to the centimetre, at `speed` m/s (or the robot's normal speed)."""
+    yield from drive_straight(robot, -distance, speed)
+
+
+def move_forward_for(robot: Robot, clock: Clock, duration: float, speed: float | None = None) -> Steps:
+    """Drives straight ahead for `duration` seconds."""
+    yield from _drive_for(robot, clock, duration, speed or robot.normal_speed, 0.0)
+
+
+def move_backward_for(robot: Robot, clock: Clock, duration: float, speed: float | None = None) -> Steps:
+    """Drives straight back for `duration` seconds."""
+    yield from _drive_for(robot, clock, duration, -(speed or robot.normal_speed), 0.0)
+
+
+def turn_left(robot: Robot, angle: float) -> Steps:
+    """Turns on the spot by `angle` degrees counter-clockwise, to the degree."""
+    yield from turn(robot, angle)
+
+
+def turn_right(robot: Robot, angle: float) -> Steps:
+    """Turns on the spot by `angle` degrees clockwise, to the degree."""
+    yield from turn(robot, -angle)
+
+
+def turn_around(robot: Robot) -> Steps:
+    """Turns on the spot to where its back was."""
+    yield from turn(robot, 180.0)
+
+
+def turn_left_for(robot: Robot, clock: Clock, duration: float) -> Steps:
+    """Turns counter-clockwise for `duration` seconds."""
+    yield from _drive_for(robot, clock, duration, 0.0, robot.normal_turn)
+
+
+def turn_right_for(robot: Robot, clock: Clock, duration: float) -> Steps:
+    """Turns clockwise for `duration` seconds."""
+    yield from _drive_for(robot, clock, duration, 0.0, -robot.normal_turn)
+
+
+def stop(robot: Robot) -> Steps:
+    """Brings the base to rest."""
+    robot.drive(0.0, 0.0)
+    while robot.velocity != (0.0, 0.0):
+        yield
+
+
+def face_place(robot: Robot, place: str) -> Steps:
+    """Turns on the spot towards a place."""
+    yield from turn(robot, robot.pose.bearing_to(robot.locate(place)))
+
+
+def face_person(robot: Robot, person: str) -> Steps:
+    """Turns on the spot towards a person."""
+    yield from turn(robot, robot.pose.bearing_to(robot.locate(person)))
+
+
+def face_object(robot: Robot, object: str) -> Steps:
+    """Turns on the spot towards an object."""
+    yield from turn(robot, robot.pose.bearing_to(robot.locate(object)))
+
+
+def drive_straight(robot: Robot, distance: float, speed: float | None = None) -> Steps:
+    """Drives `distance` metres along the heading (negative: backwards), keeps the course, and brakes."""
+    start, watch = robot.pose, Watch(robot)
+    limit = min(robot.normal_speed if speed is None else abs(speed), robot.max_speed)
+    try:
+        while True:
+            gone = start.progress_of(robot.pose)
+            watch.check_base(f"{abs(gone):.2f} m")
+            left = distance - gone
+            if abs(left) <= _CLOSE_ENOUGH:
+                return
+            pace = min(limit, sqrt(2 * _DECELERATION * abs(left)), 3.0 * abs(left))
+            course = wrap(start.heading - robot.pose.heading)
+            robot.drive(copysign(pace, left), _STRAIGHTENING * course)
+            yield
+    finally:
+        robot.drive(0.0, 0.0)
+
+
+def turn(robot: Robot, angle: float) -> Steps:
+    """Turns on the spot by `angle` degrees (left positive; more than a whole turn is fine) and brakes."""
+    heading, turned, watch = robot.pose.heading, 0.0, Watch(robot)
+    try:
+        while True:
+            turned += wrap(robot.pose.heading - heading)
+            heading = robot.pose.heading
+            watch.check_base(f"{abs(turned):.0f} degrees")
+            left = angle - turned
+            if abs(left) <= _ANGLE_CLOSE_ENOUGH:
+                return
+            pace = min(robot.normal_turn, sqrt(2 * _TURN_DECELERATION * abs(left)), 4.0 * abs(left))
+            robot.drive(0.0, copysign(pace, left))
+            yield
+    finally:
+        robot.drive(0.0, 0.0)
+
+
+def _drive_for(robot: Robot, clock: Clock, duration: float, linear: float, angular: float) -> Steps:
+    begin, start, watch = clock.now, robot.pose, Watch(robot)
+    try:
+        while clock.now - begin < duration - 1e-9:
+            watch.check_base(f"{clock.now - begin:.1f} s")
+            course = 0.0 if angular else wrap(start.heading - robot.pose.heading)
+            robot.drive(linear, angular + _STRAIGHTENING * course)
+            yield
+        watch.check_base(f"{clock.now - begin:.1f} s")
+    finally:
+        robot.drive(0.0, 0.0)

@@ -1,0 +1,34 @@
+"""Journeys to what has a name. The reason of a failure is the robot's: no free way, bumped on the way, ..."""
+
+from __future__ import annotations
+
+from btlang.actions.motion import Steps
+from btlang.engine.leaf import ActionFailed
+from btlang.robots.robot import Robot
+
+
+def go_to(robot: Robot, place: str) -> Steps:
+    """Drives to a place and faces as the place says."""
+    yield from travel(robot, place)
+
+
+def go_to_person(robot: Robot, person: str) -> Steps:
+    """Drives to talking distance of a person and faces them."""
+    yield from travel(robot, person)
+
+
+def approach(robot: Robot, object: str) -> Steps:
+    """Drives until an object is within arm's reach, and faces it."""
+    yield from travel(robot, object)
+
+
+def travel(robot: Robot, name: str) -> Steps:
+    """Drives to anything that has a name; halted, it brakes."""
+    journey = robot.navigate_to(name)
+    try:
+        while not journey.done:
+            yield
+    finally:
+        journey.cancel()
+    if journey.failure is not None:
+        raise ActionFailed(journey.failure)

@@ -1,0 +1,36 @@
+"""Docking and charging."""
+
+from __future__ import annotations
+
+from btlang.actions.motion import Steps, drive_straight
+from btlang.actions.navigation import travel
+from btlang.actions.watch import Watch
+from btlang.engine.leaf import ActionFailed
+from btlang.robots.robot import Robot
+
+_CLEAR_OF_DOCK = 0.4
+
+
+def dock(robot: Robot) -> Steps:
+    """Drives to the dock and connects; does nothing when docked."""
+    if not robot.docked:
+        yield from travel(robot, "dock")
+        robot.dock()
+
+
+def undock(robot: Robot) -> Steps:
+    """Disconnects and backs off by 0.4 m; does nothing when not docked."""
+    if robot.docked:
+        robot.undock()
+        yield from drive_straight(robot, -_CLEAR_OF_DOCK)
+
+
+def charge(robot: Robot, percent: float) -> Steps:
+    """Docks if need be and waits until the battery holds `percent`. Fails where the robot leaves the dock before."""
+    yield from dock(robot)
+    watch = Watch(robot)
+    while robot.battery < percent:
+        watch.check_stop()
+        if not robot.docked:
+            raise ActionFailed(f"the robot left the dock at {robot.battery:.0f}%")
+        yield

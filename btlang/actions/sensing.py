@@ -1,0 +1,132 @@
+"""Conditions: what the robot senses. All are instantaneous; those that need a scan fail when the scanner is silent."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from btlang.robots.robot import Robot
+
+NEAR_WALL = 0.8
+NEAR_PERSON = 1.5
+AT_PLACE = 0.5
+LOW_BATTERY = 20.0
+FULL_BATTERY = 99.5
+
+_SIDE_MARGIN = 0.03
+_ANGLES = np.radians(np.arange(360.0))
+
+
+def wall_in_front(robot: Robot) -> bool:
+    """Whether the next 0.5 m ahead (and the robot's own length, and a margin) are not free of walls and things."""
+    return is_blocked(robot, 0.0)
+
+
+def wall_on_left(robot: Robot) -> bool:
+    """Whether a robot turned left would have a wall in front."""
+    return is_blocked(robot, 90.0)
+
+
+def wall_on_right(robot: Robot) -> bool:
+    """Whether a robot turned right would have a wall in front."""
+    return is_blocked(robot, -90.0)
+
+
+def wall_behind(robot: Robot) -> bool:
+    """Whether a robot turned around would have a wall in front."""
+    return is_blocked(robot, 180.0)
+
+
+def path_is_clear(robot: Robot) -> bool:
+    """The opposite of `wall_in_front`."""
+    return not wall_in_front(robot)
+
+
+def is_blocked(robot: Robot, direction: float) -> bool:
+    """Whether a scan point lies in the strip that the robot would sweep in a direction (degrees left of its heading).
+
+    The strip is as wide as the robot and a margin, and NEAR_WALL metres long from its centre: after False, 0.5 m in
+    that direction cannot bump.
+    """
+    along, across = _points(robot, direction)
+    return bool(((along > 0.0) & (along < NEAR_WALL) & (np.abs(across) < robot.radius + _SIDE_MARGIN)).any())
+
+
+def distance_ahead(robot: Robot) -> float:
+    """Metres that the robot can drive straight ahead before it touches something; inf beyond the scanner's range."""
+    along, across = _points(robot, 0.0)
+    touching = (along > 0.0) & (np.abs(across) < robot.radius)
+    bulge = np.sqrt(np.maximum(0.0, robot.radius**2 - across[touching] ** 2))
+    return max(0.0, float(np.min(along[touching] - bulge, initial=np.inf)))
+
+
+def _points(robot: Robot, direction: float) -> tuple[np.ndarray[tuple[int], np.dtype[np.float64]], ...]:
+    """Scan points in metres along and across a direction."""
+    ranges = np.asarray(robot.scan())
+    seen = np.isfinite(ranges)
+    angles = _ANGLES[seen] - np.radians(direction)
+    return ranges[seen] * np.cos(angles), ranges[seen] * np.sin(angles)
+
+
+def bumped(robot: Robot) -> bool:
+    """Whether the robot has run into something and not moved away since."""
+    return robot.bumped
+
+
+def stuck(robot: Robot) -> bool:
+    """Whether the robot is told to move and does not."""
+    return robot.stuck
+
+
+def battery_level(robot: Robot) -> float:
+    """Percent left."""
+    return robot.battery
+
+
+def battery_low(robot: Robot) -> bool:
+    """Whether less than 20% is left."""
+    return robot.battery < LOW_BATTERY
+
+
+def battery_full(robot: Robot) -> bool:
+    """Whether the battery is charged."""
+    return robot.battery >= FULL_BATTERY
+
+
+def docked(robot: Robot) -> bool:
+    """Whether the robot is connected to its dock."""
+    return robot.docked
+
+
+def charging(robot: Robot) -> bool:
+    """Whether the battery is being charged."""
+    return robot.charging
+
+
+def at_place(robot: Robot, place: str) -> bool:
+    """Whether the robot is within half a metre of a place."""
+    return robot.pose.distance_to(robot.locate(place)) <= AT_PLACE
+
+
+def person_near(robot: Robot, person: str) -> bool:
+    """Whether a person is within 1.5 m."""
+    return robot.pose.distance_to(robot.locate(person)) <= NEAR_PERSON
+
+
+def someone_near(robot: Robot) -> bool:
+    """Whether anybody is within 1.5 m."""
+    return bool(robot.nearby_people(NEAR_PERSON))
+
+
+def holding(robot: Robot, object: str) -> bool:
+    """Whether either hand holds the object."""
+    return object in (robot.holding("left"), robot.holding("right"))
+
+
+def holding_something(robot: Robot) -> bool:
+    """Whether either hand holds anything."""
+    return robot.holding("left") is not None or robot.holding("right") is not None
+
+
+def hand_empty(robot: Robot) -> bool:
+    """Whether neither hand holds anything."""
+    return not holding_something(robot)

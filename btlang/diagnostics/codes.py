@@ -1,0 +1,69 @@
+"""Every code that a message can have, with its texts. Codes are a contract: they are never given a new meaning.
+
+BT00x reading, BT01x words, BT02x and BT03x how a sentence is put together, BT04x what it means, BT06x keyword files,
+BT07x worlds, BT08x the Python behind the words.
+"""
+
+from __future__ import annotations
+
+from btlang.record import Record
+
+
+class Code(Record):
+    """The texts of a code; words in braces are filled by the arguments of the diagnostic."""
+
+    code: str
+    message: str
+    hint: str = ""
+    severity: str = "error"
+
+
+_ALL = (
+    Code("BT001", "I cannot read {file}: {reason}."),
+    Code("BT002", "This is not a text: the byte here is not UTF-8.", "Save the mission as plain UTF-8 text."),
+    Code("BT003", "I cannot read '{characters}' in a mission.", "Put it in double quotes if it is a text to say."),
+    Code("BT004", "This quote is not closed.", "Close it with a double quote on the same line."),
+    Code("BT005", "There is no command in this mission.", "Write at least one, such as: {example}"),
+    Code("BT006", "This line is indented, but the line above it opens no block.",
+         "Start it where the line above starts, or end the line above with ':'."),
+    Code("BT007", "This line is indented less than its block, but it fits no line above.",
+         "Start it where one of the lines above starts."),
+    Code("BT010", "I do not know how to '{words}'."),
+    Code("BT011", "'{words}' does not fit here: {wanted}.", "Write for example: {example}"),
+    Code("BT012", "Something is missing after '{words}': {wanted}.", "Write for example: {example}"),
+    Code("BT013", "I know no {type} '{words}'."),
+    Code("BT014", "'{words}' is out of range: {wanted}."),
+    Code("BT015", "A name cannot hold the word '{word}': it joins commands.", "Choose another name, or quote nothing and rephrase it."),
+    Code("BT016", "There is no name before '{word}'.", "A definition reads: patrol {word} go to the lobby"),
+    Code("BT017", "'{name}' is defined again; this definition replaces the one above.", severity="warning"),
+    Code("BT018", "'{name}' hides words that I know already: they now mean this definition.", severity="warning"),
+    Code("BT019", "This is a value, but I do not know what to do with it.", "A command starts with what to do, such as: {example}"),
+    Code("BT020", "A {wanted} must follow '{word}', but {found}."),
+    Code("BT021", "Two commands stand side by side; a word between them must say how they go together.",
+         "Put 'then', 'and' or 'or' before '{word}'."),
+    Code("BT022", "Nothing stands before '{word}', so it has nothing to join or change."),
+    Code("BT023", "This bracket is not closed.", "Add ')' where the group ends; a bracket ends on its own line."),
+    Code("BT024", "This bracket closes nothing.", "Take it away, or add '(' where the group begins."),
+    Code("BT025", "These brackets hold nothing."),
+    Code("BT026", "A ':' has no place here.", "It stands after a form such as 'if ...:', 'repeat:', 'otherwise:' or 'patrol is:'."),
+    Code("BT027", "This line opens a block, but no indented line follows.", "Indent the lines that belong to it."),
+    Code("BT028", "'{words}' is a condition, not a command.", "To make it a step that fails when it does not hold: check {words}"),
+    Code("BT029", "'{words}' is a command, but a condition is needed {place}."),
+    Code("BT031", "Nothing but 'otherwise' can follow a block.", "Start a new line for '{words}'."),
+    Code("BT032", "A comma cannot stand {place}.", "{advice}"),
+    Code("BT033", "A definition stands at the left margin, not inside a block or brackets.", "Move it out."),
+    Code("BT034", "'{word}' joins commands, but what stands before it is a condition."),
+    Code("BT040", "'{name}' is defined by itself: {circle}.", "Repeat with 'repeat' or 'while' instead."),
+    Code("BT041", "Both of these need the {resource} at the same time: '{first}' and '{second}'.",
+         "Do one after the other: {fixed}"),
+    Code("BT042", "This mission grows to more than {limit} nodes when its names are filled in."),
+    Code("BT060", "This keyword file cannot be used: {reason}."),
+    Code("BT061", "This phrase cannot be used: {reason}."),
+    Code("BT062", "'{first}' ({first_id}, {first_file}) and '{second}' ({second_id}, {second_file}) can match the same words.",
+         "Change one of them, or give both the same id."),
+    Code("BT063", "There is no keyword file or pack '{name}'.", "Give the path of a TOML file, or the name of an installed pack."),
+    Code("BT070", "This world file cannot be used: {reason}."),
+    Code("BT080", "The command '{id}' cannot run: {reason}."),
+)  # fmt: skip
+
+CODES = {entry.code: entry for entry in _ALL}

@@ -1,0 +1,65 @@
+"""A message about an input as data: a code, a place and the values that its text needs."""
+
+from __future__ import annotations
+
+from btlang.diagnostics.codes import CODES, Code
+from btlang.record import Record
+from btlang.text.source import Span
+
+
+class Diagnostic(Record):
+    """`arguments` fill the braces of the code's texts; `notes` are further places, each with a line about it."""
+
+    code: str
+    span: Span
+    arguments: tuple[tuple[str, str], ...] = ()
+    notes: tuple[tuple[Span, str], ...] = ()
+
+    @property
+    def kind(self) -> Code:
+        """The entry of the table of codes."""
+        return CODES[self.code]
+
+    @property
+    def is_error(self) -> bool:
+        """Whether the mission cannot run because of it."""
+        return self.kind.severity == "error"
+
+    @property
+    def message(self) -> str:
+        """What is wrong, in one line."""
+        return self.kind.message.format(**dict(self.arguments))
+
+    @property
+    def hint(self) -> str:
+        """What to write instead, "" where nothing more can be said."""
+        arguments = dict(self.arguments)
+        lines = (self.kind.hint.format(**arguments), arguments.get("help", ""))
+        return "\n".join(line for line in lines if line)
+
+
+def diagnostic(code: str, span: Span, notes: tuple[tuple[Span, str], ...] = (), **arguments: str) -> Diagnostic:
+    """A diagnostic with its arguments given by name."""
+    return Diagnostic(code, span, tuple(arguments.items()), notes)
+
+
+class MissionError(Exception):
+    """Everything that is wrong with an input. The one exception that compiling raises.
+
+    `diagnostics` are sorted by place; at least one of them is an error.
+    """
+
+    def __init__(self, diagnostics: list[Diagnostic]) -> None:
+        self.diagnostics = in_order(diagnostics)
+        super().__init__(self.diagnostics)
+
+    def __str__(self) -> str:
+        from btlang.diagnostics.render import render
+
+        return "\n\n".join(render(d) for d in self.diagnostics)
+
+
+def in_order(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
+    """By file, place and code, each once."""
+    unique = dict.fromkeys(diagnostics)
+    return sorted(unique, key=lambda d: (d.span.source.name, d.span.start, d.code, d.span.end))

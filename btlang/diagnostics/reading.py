@@ -1,0 +1,28 @@
+"""Files to sources; everything that can be wrong with a file becomes a diagnostic."""
+
+from __future__ import annotations
+
+import sys
+
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.text.source import Source, Span
+
+
+def read_source(path: str) -> Source:
+    """The text of a file, or of standard input for `-`. Raises MissionError (BT001, BT002)."""
+    try:
+        if path == "-":
+            data = sys.stdin.buffer.read()
+        else:
+            with open(path, "rb") as file:
+                data = file.read()
+    except OSError as error:
+        nowhere = Span(Source("", path), 0, 0)
+        reason = (error.strerror or str(error)).lower()
+        raise MissionError([diagnostic("BT001", nowhere, file=path, reason=reason)]) from None
+    try:
+        return Source(data.decode("utf-8"), path)
+    except UnicodeDecodeError as error:
+        readable = data[: error.start].decode("utf-8")
+        source = Source(readable + data[error.start :].decode("latin-1"), path)
+        raise MissionError([diagnostic("BT002", Span(source, len(readable), len(readable) + 1))]) from None

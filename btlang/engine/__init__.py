@@ -1,0 +1,1 @@
+"""Runs a tree: statuses, clock, blackboard, leaves and compiled nodes. Knows no English and no ROS."""

@@ -1,0 +1,43 @@
+"""Values that leaves share within one mission."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+
+class Blackboard:
+    """One scope of named values. A subtree has its own scope and sees of its parent's only the keys remapped to it."""
+
+    __slots__ = ("_remapped", "_values")
+
+    def __init__(self, remapped: Mapping[str, tuple[Blackboard, str]] | None = None) -> None:
+        self._values: dict[str, Any] = {}
+        self._remapped = dict(remapped or {})
+
+    def _owner(self, key: str) -> tuple[Blackboard, str]:
+        scope = self
+        while key in scope._remapped:
+            scope, key = scope._remapped[key]
+        return scope, key
+
+    def get(self, key: str) -> Any:
+        """Raises KeyError where nothing was set."""
+        scope, key = self._owner(key)
+        return scope._values[key]
+
+    def set(self, key: str, value: Any) -> None:
+        """Sets the value in the scope that owns the key."""
+        scope, key = self._owner(key)
+        scope._values[key] = value
+
+    def __contains__(self, key: str) -> bool:
+        scope, key = self._owner(key)
+        return key in scope._values
+
+    def keys(self) -> list[str]:
+        """The keys that can be read here: own ones, then remapped ones that have a value."""
+        return [*self._values, *(key for key in self._remapped if key in self)]

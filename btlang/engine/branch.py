@@ -1,0 +1,99 @@
+"""Nodes with a condition and branches: if_then_else_node.cpp and while_do_else_node.cpp of BehaviorTree.CPP 4.10.
+
+Where those raise an exception because the condition was SKIPPED, these fail.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from btlang.engine.build import Site, apart
+from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.engine.build import Compiled
+
+_NO_ANSWER = "its condition was skipped"
+
+
+def if_then_else(site: Site, children: Sequence[Compiled]) -> Compiled:
+    """Asks the condition once, then ticks the second child, or the third (without one: FAILURE), until it completes."""
+    ticks, halts = apart(children)
+    position = 0  # 0 the condition, then the branch that was chosen
+
+    def tick() -> int:
+        nonlocal position
+        if position == 0:
+            status = ticks[0]()
+            if status == SUCCESS:
+                position = 1
+            elif status == FAILURE and len(ticks) == 3:
+                position = 2
+            elif status == SKIPPED:
+                halts[0](False)
+                return site.fail(_NO_ANSWER)
+            else:
+                return status
+        status = ticks[position]()
+        if status != RUNNING:
+            if status == SKIPPED:
+                halts[position](False)
+            position = 0
+        return status
+
+    def halt(keep: bool) -> None:
+        nonlocal position
+        halts[position](keep)
+        if not keep:
+            position = 0
+
+    return tick, halt
+
+
+def while_do_else(site: Site, children: Sequence[Compiled]) -> Compiled:
+    """Asks the condition at every tick and ticks the second child, or the third (without one: FAILURE).
+
+    When the answer changes, the other branch is halted first. A condition that is itself RUNNING leaves the branch as
+    it is; one that is an action interrupts it (see reactive.py).
+    """
+    ticks, halts = apart(children)
+    interrupts = site.shared.interrupts
+    branch = 0  # the branch that was RUNNING at the last tick, 0 none
+
+    def interrupt() -> None:
+        nonlocal branch
+        child, branch = branch, 0
+        halts[child](False)
+
+    def tick() -> int:
+        nonlocal branch
+        if branch:
+            interrupts.append(interrupt)
+        status = ticks[0]()
+        if branch:
+            interrupts.pop()
+        if status == RUNNING:
+            return RUNNING
+        chosen = 1 if status == SUCCESS else 2
+        if branch and (branch != chosen or status == SKIPPED):
+            interrupt()
+        if status == SKIPPED:
+            halts[0](False)
+            return site.fail(_NO_ANSWER)
+        if chosen == len(ticks):
+            return FAILURE
+        status = ticks[chosen]()
+        if status == SKIPPED:
+            halts[chosen](False)
+        branch = chosen if status == RUNNING else 0
+        return status
+
+    def halt(keep: bool) -> None:
+        nonlocal branch
+        for stop in halts:
+            stop(keep)
+        if not keep:
+            branch = 0
+
+    return tick, halt

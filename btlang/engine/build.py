@@ -1,0 +1,170 @@
+"""What a node is compiled to, and what its compiler may use.
+
+A compiled node is a pair of closures:
+- `tick()` returns a status. A node that returns SUCCESS or FAILURE has reset itself. One that returns SKIPPED may keep
+  a count (Repeat and RetryUntilSuccessful do, as in BehaviorTree.CPP), so a parent that goes past it halts it.
+- `halt(keep)` stops every leaf that runs below and resets. With `keep` it suspends: positions, counts and timers stay,
+  and the next tick goes on with them. It may be called at any time, also when an exception cut a tick short, and twice.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+from btlang.engine.blackboard import Blackboard
+from btlang.engine.clock import Clock
+from btlang.engine.leaf import ActionFailed, LeafBinding
+from btlang.engine.status import FAILURE
+from btlang.record import Record
+from btlang.tree.node import Node
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any, TypeAlias
+
+    from btlang.engine.watch import Watch
+
+    Tick: TypeAlias = Callable[[], int]
+    Halt: TypeAlias = Callable[[bool], None]
+    Compiled: TypeAlias = tuple[Tick, Halt]
+
+
+class EngineError(Exception):
+    """The tree cannot be compiled; `node` is the node at fault."""
+
+    def __init__(self, message: str, node: Node) -> None:
+        super().__init__(message)
+        self.message = message
+        self.node = node
+
+
+class Fault(Record):
+    """A failure as it is recorded during a tick: index of the node, reason for people ("" where none is known)."""
+
+    index: int
+    reason: str = ""
+    exception: BaseException | None = None
+
+
+class Shared:
+    """What all nodes of one engine share."""
+
+    __slots__ = ("bind", "clock", "fault", "halt_faults", "interrupts", "services")
+
+    def __init__(self, bind: Callable[[str], LeafBinding | None], clock: Clock, services: Mapping[str, Any]) -> None:
+        self.bind = bind
+        self.clock = clock
+        self.services = services
+        self.fault: Fault | None = None  # the latest failure
+        self.halt_faults: list[Fault] = []  # exceptions that leaves raised while they were halted
+        # what reactive nodes that are at another child want stopped before an action starts there
+        self.interrupts: list[Callable[[], None]] = []
+
+
+class Site:
+    """Where a node is compiled: the node, its index in preorder, its blackboard, and what the engine shares."""
+
+    __slots__ = ("_plain", "index", "node", "scope", "shared", "watch")
+
+    def __init__(self, node: Node, index: int, scope: Blackboard, shared: Shared, watch: Watch | None) -> None:
+        self.node = node
+        self.index = index
+        self.scope = scope
+        self.shared = shared
+        self.watch = watch
+        self._plain = Fault(index)
+
+    def fail(self, reason: str = "", exception: BaseException | None = None) -> int:
+        """Records this node as what failed; returns FAILURE."""
+        self.shared.fault = Fault(self.index, reason, exception) if reason else self._plain
+        return FAILURE
+
+    def error(self, message: str) -> EngineError:
+        """An error to raise that blames this node."""
+        return EngineError(message, self.node)
+
+    def number(self, port: str, default: int | None = None, least: int = 0, most: int = 2**31 - 1) -> Callable[[], int]:
+        """A function that gives the whole number in a port; for a `{key}` it may raise ActionFailed.
+
+        Raises EngineError where the port is missing and has no default, or its number is not from `least` to `most`.
+        """
+        text = self.node.port(port)
+        key = blackboard_key(port, text)
+        if key is not None:
+            return lambda: _whole(_stored(self.scope, key), port, least, most)
+        if not text and default is None:
+            raise self.error(f"{self.node.id} needs a port {port}")
+        try:
+            value = _whole(text or default, port, least, most)
+        except ActionFailed as problem:
+            raise self.error(str(problem)) from None
+        return lambda: value
+
+    def arguments(
+        self, ports: Mapping[str, str], converters: Mapping[str, Callable[[str], Any]]
+    ) -> tuple[dict[str, Any], Callable[[], dict[str, Any]] | None]:
+        """Values of leaf ports by name: constants, and a function that reads the others where there are any.
+
+        That function raises ActionFailed where a `{key}` has no value. Constants are converted here, once; raises
+        EngineError where that fails.
+        """
+        constants: dict[str, Any] = {}
+        stored: list[tuple[str, str, Callable[[str], Any]]] = []
+        for port, text in ports.items():
+            convert = converters.get(port, str)
+            key = blackboard_key(port, text)
+            if key is not None:
+                stored.append((port, key, convert))
+                continue
+            try:
+                constants[port] = convert(text)
+            except Exception as problem:
+                raise self.error(f"{port} cannot be {text!r}: {problem}") from problem
+        if not stored:
+            return constants, None
+        return constants, lambda: {port: _convert(self.scope, port, key, convert) for port, key, convert in stored}
+
+
+def blackboard_key(port: str, text: str) -> str | None:
+    """The key that a text `{key}` refers to, None for any other text; `{=}` is the key named as the port."""
+    key = text[1:-1]
+    if text[:1] != "{" or text[-1:] != "}" or not key or "{" in key or "}" in key:
+        return None
+    return port if key == "=" else key
+
+
+def halt_nothing(keep: bool) -> None:
+    """The `halt` of a leaf that never runs for longer than its tick."""
+
+
+def apart(children: Sequence[Compiled]) -> tuple[tuple[Tick, ...], tuple[Halt, ...]]:
+    """The ticks and the halts of compiled children."""
+    return tuple(tick for tick, _ in children), tuple(halt for _, halt in children)
+
+
+def _stored(scope: Blackboard, key: str) -> Any:
+    try:
+        return scope.get(key)
+    except KeyError:
+        raise ActionFailed(f"{{{key}}} has no value") from None
+
+
+def _convert(scope: Blackboard, port: str, key: str, convert: Callable[[str], Any]) -> Any:
+    value = _stored(scope, key)
+    if not isinstance(value, str):
+        return value
+    try:
+        return convert(value)
+    except Exception as problem:
+        raise ActionFailed(f"{port} cannot be {value!r}: {problem}") from problem
+
+
+def _whole(value: Any, port: str, least: int, most: int) -> int:
+    """Raises ActionFailed for anything but a whole number within the limits; the text `1.0` is none, as in C++."""
+    try:
+        number = int(value)
+    except (TypeError, ValueError, OverflowError):
+        number = least - 1
+    if not least <= number <= most or (not isinstance(value, str) and number != value):
+        raise ActionFailed(f"{port} must be a whole number from {least} to {most}, not {str(value)!r}")
+    return number

@@ -1,0 +1,183 @@
+"""Tree to compiled nodes: subtrees are expanded, then each node is compiled by the function that its id names."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from btlang.engine import branch, control, decorators, leaves, reactive, timed
+from btlang.engine.blackboard import Blackboard
+from btlang.engine.build import EngineError, Shared, Site
+from btlang.engine.leaf import ActionFailed
+from btlang.engine.subtree import child_scope, subtree
+from btlang.engine.watch import Watch
+from btlang.record import Record
+from btlang.tree.node import Node, Tree
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.engine.build import Compiled
+    from btlang.engine.watch import Listener
+
+MAX_NODES = 1_000_000
+
+
+class NodeType(Record):
+    """How many children a node has, which ports, and the function that compiles it."""
+
+    compile: Callable[[Site, Sequence[Compiled]], Compiled]
+    least: int
+    most: int
+    ports: tuple[str, ...] = ()
+
+
+_MANY = MAX_NODES
+
+NODE_TYPES = {
+    "Sequence": NodeType(control.sequence, 1, _MANY),
+    "Fallback": NodeType(control.fallback, 1, _MANY),
+    "AsyncSequence": NodeType(control.async_sequence, 1, _MANY),
+    "AsyncFallback": NodeType(control.async_fallback, 1, _MANY),
+    "SequenceWithMemory": NodeType(control.sequence_with_memory, 1, _MANY),
+    "Parallel": NodeType(control.parallel, 1, _MANY, ("success_count", "failure_count")),
+    "ParallelAll": NodeType(control.parallel_all, 1, _MANY, ("max_failures",)),
+    "ReactiveSequence": NodeType(reactive.reactive_sequence, 1, _MANY),
+    "ReactiveFallback": NodeType(reactive.reactive_fallback, 1, _MANY),
+    "IfThenElse": NodeType(branch.if_then_else, 2, 3),
+    "WhileDoElse": NodeType(branch.while_do_else, 2, 3),
+    "Inverter": NodeType(decorators.inverter, 1, 1),
+    "ForceSuccess": NodeType(decorators.force_success, 1, 1),
+    "ForceFailure": NodeType(decorators.force_failure, 1, 1),
+    "Repeat": NodeType(decorators.repeat, 1, 1, ("num_cycles",)),
+    "RetryUntilSuccessful": NodeType(decorators.retry_until_successful, 1, 1, ("num_attempts",)),
+    "Timeout": NodeType(timed.timeout, 1, 1, ("msec",)),
+    "Delay": NodeType(timed.delay, 1, 1, ("delay_msec",)),
+    "Sleep": NodeType(timed.sleep, 0, 0, ("msec",)),
+    "AlwaysSuccess": NodeType(leaves.always_success, 0, 0),
+    "AlwaysFailure": NodeType(leaves.always_failure, 0, 0),
+}
+_SUBTREE = NodeType(subtree, 1, 1)
+
+
+class Place(Record):
+    """A node after expansion: index of its parent in preorder (-1: it is the root), and its position among siblings."""
+
+    node: Node
+    parent: int
+    position: int
+    depth: int
+    scope: Blackboard
+
+
+def expand(tree: Tree, blackboard: Blackboard) -> list[Place]:
+    """All nodes in preorder; a SubTree's only child is the root of its tree."""
+    subtrees = dict(tree.subtrees)
+    places: list[Place] = []
+    within: set[str] = set()  # names of the subtrees around the present node
+    stack: list[Place | str] = [Place(tree.root, -1, 0, 0, blackboard)]  # a str: this subtree ends here
+    while stack:
+        place = stack.pop()
+        if isinstance(place, str):
+            within.remove(place)
+            continue
+        node, scope, index = place.node, place.scope, len(places)
+        if index == MAX_NODES:
+            raise EngineError(f"the tree has more than {MAX_NODES:,} nodes", node)
+        places.append(place)
+        children = node.children
+        if node.id == "SubTree":
+            name = node.port("ID")
+            if children:
+                raise EngineError("SubTree takes no children", node)
+            children = (_root_of(node, name, subtrees),)
+            if name in within:
+                raise EngineError(f"the subtree {name} contains itself", node)
+            within.add(name)
+            stack.append(name)
+            scope = child_scope(node, scope)
+        last = len(children) - 1
+        stack += [Place(child, index, last - i, place.depth + 1, scope) for i, child in enumerate(reversed(children))]
+    return places
+
+
+def _root_of(node: Node, name: str, subtrees: dict[str, Node]) -> Node:
+    if not name:
+        raise EngineError("SubTree needs a port ID", node)
+    if name not in subtrees:
+        raise EngineError(f"there is no subtree {name}", node)
+    return subtrees[name]
+
+
+def compile_places(places: Sequence[Place], shared: Shared, listener: Listener | None) -> Compiled:
+    """Compiles from the last node to the root, so that children are there before their parents."""
+    waiting: dict[int, list[tuple[Compiled, Watch | None]]] = {}  # compiled children by parent, last child first
+    for index in range(len(places) - 1, -1, -1):
+        place = places[index]
+        children = waiting.pop(index, [])[::-1]
+        watch = None
+        if listener is not None:
+            repeated = place.parent >= 0 and places[place.parent].node.id == "Repeat"
+            watch = Watch(index, listener, repeated)
+            watch.below = [child for _, child in children if child is not None]
+        site = Site(place.node, index, place.scope, shared, watch)
+        compiled = _compile(site, [child for child, _ in children])
+        if watch is not None:
+            compiled = watch.wrap(compiled)
+        waiting.setdefault(place.parent, []).append((compiled, watch))
+    [(root, _)] = waiting[-1]
+    return root
+
+
+def _compile(site: Site, children: Sequence[Compiled]) -> Compiled:
+    node = site.node
+    kind = _SUBTREE if node.id == "SubTree" else NODE_TYPES.get(node.id)
+    if kind is None:
+        compiled = _compile_leaf(site, children)
+    else:
+        if not kind.least <= len(children) <= kind.most:
+            raise site.error(f"{node.id} has {len(children)} children instead of {_how_many(kind)}")
+        for port, _ in node.ports:
+            if kind is not _SUBTREE and port not in kind.ports and not port.startswith("_"):
+                raise site.error(f"{node.id} takes no port {port}")
+        compiled = kind.compile(site, children)
+        if any("{" in text for port, text in node.ports if port in kind.ports):
+            compiled = _checked(site, compiled)
+    return leaves.skipped(site, ()) if _is_skipped(site) else compiled
+
+
+def _compile_leaf(site: Site, children: Sequence[Compiled]) -> Compiled:
+    binding = site.shared.bind(site.node.id)
+    if binding is None:
+        raise site.error(f"nothing is bound to {site.node.id}")
+    if children:
+        raise site.error(f"{site.node.id} is a leaf, but has {len(children)} children")
+    return leaves.bound_leaf(site, binding)
+
+
+def _how_many(kind: NodeType) -> str:
+    if kind.most == _MANY:
+        return f"{kind.least} or more"
+    return str(kind.least) if kind.least == kind.most else f"{kind.least} or {kind.most}"
+
+
+def _is_skipped(site: Site) -> bool:
+    """The value of the port _skipIf, the one pre-condition there is."""
+    for port, text in site.node.ports:
+        if port.startswith("_") and not (port == "_skipIf" and text in ("true", "false")):
+            if port == "_autoremap" and site.node.id == "SubTree":
+                continue
+            raise site.error(f'{port}="{text}" is not supported, only _skipIf="true" and "false"')
+    return site.node.port("_skipIf") == "true"
+
+
+def _checked(site: Site, compiled: Compiled) -> Compiled:
+    """A node that reads a number from the blackboard and fails where there is none."""
+    tick, halt = compiled
+
+    def checked() -> int:
+        try:
+            return tick()
+        except ActionFailed as failed:
+            halt(False)
+            return site.fail(str(failed))
+
+    return checked, halt

@@ -1,0 +1,34 @@
+"""What a leaf may be, and how it is bound to the Python object that does its work.
+
+A leaf is one of
+- a function: called once a tick is due; returns True or None (SUCCESS), False (FAILURE) or a status integer;
+- a generator function: each `yield` is RUNNING, its return value counts as a function's; halting closes it, so
+  `try: ... finally: robot.stop()` is the way to stop what it moves;
+- a class with `start(**ports)`, `tick()` and `halt()`: made once for its node; `start` and `tick` return as functions
+  do, and None from `start` or `tick` means RUNNING. `halt` is called only while it runs.
+
+Parameters are filled by name: ports first, then services (`robot`, `clock`, `blackboard`); a class gets the services
+in its constructor and the ports in `start`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from btlang.record import Record
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+
+class ActionFailed(Exception):
+    """A leaf raises it to FAIL with a reason for people: `raise ActionFailed("nothing within reach")`."""
+
+
+class LeafBinding(Record):
+    """The Python side of a leaf id: what to call, how each port's text becomes a value, and values for absent ports."""
+
+    call: Callable[..., Any]
+    converters: Mapping[str, Callable[[str], Any]] = {}
+    defaults: Mapping[str, str] = {}

@@ -1,0 +1,213 @@
+"""Leaves: constants, and the functions, generators and classes described in leaf.py.
+
+An exception becomes a FAILURE with its reason. A class that raises anything but ActionFailed is halted as well: it had
+no chance to stop what it moves. What `halt` itself raises is kept in the engine's `halt_failures`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
+from functools import partial
+
+from btlang.engine.build import Fault, Site, halt_nothing
+from btlang.engine.leaf import ActionFailed, LeafBinding
+from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from inspect import Parameter
+    from typing import Any, TypeAlias
+
+    from btlang.engine.build import Compiled
+
+    Stored: TypeAlias = Callable[[], Mapping[str, Any]] | None  # reads ports from the blackboard
+
+
+def always_success(site: Site, children: Sequence[Compiled]) -> Compiled:
+    """SUCCESS."""
+    return (lambda: SUCCESS), halt_nothing
+
+
+def always_failure(site: Site, children: Sequence[Compiled]) -> Compiled:
+    """FAILURE."""
+    return site.fail, halt_nothing
+
+
+def skipped(site: Site, children: Sequence[Compiled]) -> Compiled:
+    """What a node with _skipIf="true" is: SKIPPED, and nothing below it is ticked."""
+    return (lambda: SKIPPED), halt_nothing
+
+
+def bound_leaf(site: Site, binding: LeafBinding) -> Compiled:
+    """A leaf that is a Python object; raises EngineError where its parameters do not fit its ports."""
+    from inspect import isclass, iscoroutinefunction, isgeneratorfunction
+
+    call = binding.call
+    ports = {**binding.defaults, **{port: text for port, text in site.node.ports if not port.startswith("_")}}
+    services = {"clock": site.shared.clock, "blackboard": site.scope, **site.shared.services}
+    if isclass(call):
+        leaf = _make(site, call, services)
+        _fill(site, leaf.start, ports, {})
+        constants, stored = site.arguments(ports, binding.converters)
+        return _class_leaf(site, leaf, partial(leaf.start, **constants), stored)
+    if iscoroutinefunction(call):
+        raise site.error(f"{site.node.id} is bound to an async function; a generator does what it should do")
+    given = _fill(site, call, ports, services)
+    constants, stored = site.arguments(ports, binding.converters)
+    kind = _generator_leaf if isgeneratorfunction(call) or isgeneratorfunction(type(call).__call__) else _function_leaf
+    if given or constants:
+        call = partial(call, **given, **constants)
+    return kind(site, call, stored)
+
+
+def _function_leaf(site: Site, call: Callable[..., Any], stored: Stored) -> Compiled:
+    def tick() -> int:
+        try:
+            result = call() if stored is None else call(**stored())
+        except ActionFailed as failed:
+            return site.fail(str(failed))
+        except Exception as problem:
+            return _crash(site, problem)
+        if result is True or result is None:
+            return SUCCESS
+        if result is False:
+            return site.fail()
+        return _status(site, result)
+
+    return tick, halt_nothing
+
+
+def _generator_leaf(site: Site, call: Callable[..., Any], stored: Stored) -> Compiled:
+    generator: Any = None
+
+    def tick() -> int:
+        nonlocal generator
+        try:
+            if generator is None:
+                values = {} if stored is None else stored()
+                _begin(site)
+                generator = call(**values)
+            next(generator)
+            return RUNNING
+        except StopIteration as stop:
+            generator = None
+            return SUCCESS if stop.value is None else _status(site, stop.value)
+        except ActionFailed as failed:
+            generator = None
+            return site.fail(str(failed))
+        except Exception as problem:
+            generator = None
+            return _crash(site, problem)
+
+    def halt(keep: bool) -> None:
+        nonlocal generator
+        if generator is not None:
+            running, generator = generator, None
+            _stop(site, running.close)
+
+    return tick, halt
+
+
+def _class_leaf(site: Site, leaf: Any, start: Callable[..., Any], stored: Stored) -> Compiled:
+    running = False
+
+    def tick() -> int:
+        nonlocal running
+        try:
+            if running:
+                result = leaf.tick()
+            else:
+                values = {} if stored is None else stored()
+                _begin(site)
+                running = True
+                result = start(**values)
+        except ActionFailed as failed:
+            running = False
+            return site.fail(str(failed))
+        except Exception as problem:
+            halt(False)
+            return _crash(site, problem)
+        if result is None:
+            return RUNNING
+        status = _status(site, result)
+        running = status == RUNNING
+        return status
+
+    def halt(keep: bool) -> None:
+        nonlocal running
+        if running:
+            running = False
+            _stop(site, leaf.halt)
+
+    return tick, halt
+
+
+def _begin(site: Site) -> None:
+    """To be called before a generator or class leaf starts: running actions that it replaces are halted first."""
+    interrupts = site.shared.interrupts
+    while interrupts:
+        interrupts.pop()()
+    if site.watch is not None:
+        site.watch.change(RUNNING)
+
+
+def _stop(site: Site, halt: Callable[[], object]) -> None:
+    try:
+        halt()
+    except Exception as problem:
+        site.shared.halt_faults.append(Fault(site.index, _describe(problem), problem))
+
+
+def _crash(site: Site, problem: Exception) -> int:
+    return site.fail(_describe(problem), problem)
+
+
+def _describe(problem: Exception) -> str:
+    return f"{type(problem).__name__}: {problem}"
+
+
+def _status(site: Site, result: object) -> int:
+    """The status that a returned value stands for."""
+    if result is True:
+        return SUCCESS
+    if result is False:
+        return site.fail()
+    if isinstance(result, int) and RUNNING <= result <= SKIPPED:
+        return site.fail() if result == FAILURE else int(result)
+    return site.fail(f"it returned {result!r}, which is neither True, False, None nor a status")
+
+
+def _make(site: Site, cls: type, services: Mapping[str, Any]) -> Any:
+    missing = [method for method in ("start", "tick", "halt") if not callable(getattr(cls, method, None))]
+    if missing:
+        raise site.error(f"{cls.__name__} has no {' and no '.join(missing)}, so it is no leaf")
+    given = _fill(site, cls, (), services)
+    try:
+        return cls(**given)
+    except Exception as problem:
+        raise site.error(f"{cls.__name__} cannot be made: {_describe(problem)}") from problem
+
+
+def _fill(site: Site, call: Callable[..., Any], ports: Collection[str], services: Mapping[str, Any]) -> dict[str, Any]:
+    """Checks that ports and services fill the parameters; returns the services that do."""
+    from inspect import signature
+
+    try:
+        parameters: Iterable[Parameter] = signature(call).parameters.values()
+    except (TypeError, ValueError) as problem:
+        raise site.error(f"{site.node.id} cannot be called: {problem}") from problem
+    named = {p.name: p for p in parameters if p.kind in (p.POSITIONAL_OR_KEYWORD, p.KEYWORD_ONLY)}
+    takes_any = any(p.kind == p.VAR_KEYWORD for p in parameters)
+    unknown = [port for port in ports if port not in named]
+    if unknown and not takes_any:
+        raise site.error(f"{site.node.id} takes no port {unknown[0]}" + _known(named, services))
+    for p in parameters:
+        required = p.default is p.empty and p.kind not in (p.VAR_POSITIONAL, p.VAR_KEYWORD)
+        if required and (p.name not in named or (p.name not in ports and p.name not in services)):
+            raise site.error(f"{site.node.id} needs a value for {p.name}")
+    return {name: services[name] for name in named if name in services and name not in ports}
+
+
+def _known(named: Collection[str], services: Collection[str]) -> str:
+    ports = [name for name in named if name not in services]
+    return f"; it takes {', '.join(ports)}" if ports else ""

@@ -1,0 +1,101 @@
+"""Nodes that wait for the clock: timeout_node.cpp, delay_node.cpp and sleep_node.cpp of BehaviorTree.CPP 4.10.
+
+The clock is read when they are ticked; C++ has a timer thread instead. A Timeout whose child is
+SKIPPED starts its time anew; in C++ it goes on, or ends, by chance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from btlang.engine.build import Site
+from btlang.engine.clock import Clock
+from btlang.engine.status import RUNNING, SKIPPED, SUCCESS
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.engine.build import Compiled
+
+_SLACK = 1e-9  # twenty ticks of 0.05 s are 1 s, whatever floating point makes of their sum
+
+
+class _Stopwatch:
+    """Runs from its first reading; `halt(keep)` pauses or resets it."""
+
+    __slots__ = ("clock", "kept", "since")
+
+    def __init__(self, clock: Clock) -> None:
+        self.clock = clock
+        self.kept = 0.0
+        self.since: float | None = None
+
+    def reached(self, msec: int) -> bool:
+        """Whether so much time has passed."""
+        if self.since is None:
+            self.since = self.clock.now
+        return self.kept + self.clock.now - self.since >= msec / 1000 - _SLACK
+
+    def halt(self, keep: bool) -> None:
+        if not keep:
+            self.kept = 0.0
+        elif self.since is not None:
+            self.kept += self.clock.now - self.since
+        self.since = None
+
+
+def sleep(site: Site, children: Sequence[Compiled]) -> Compiled:
+    """RUNNING until msec have passed, then SUCCESS."""
+    msec = site.number("msec")
+    watch = _Stopwatch(site.shared.clock)
+
+    def tick() -> int:
+        if not watch.reached(msec()):
+            return RUNNING
+        watch.halt(False)
+        return SUCCESS
+
+    return tick, watch.halt
+
+
+def delay(site: Site, children: Sequence[Compiled]) -> Compiled:
+    """RUNNING until delay_msec have passed, then its child; a SKIPPED child is ticked again without a delay."""
+    [(child, halt_child)] = children
+    msec = site.number("delay_msec")
+    watch = _Stopwatch(site.shared.clock)
+
+    def tick() -> int:
+        if not watch.reached(msec()):
+            return RUNNING
+        status = child()
+        if status != RUNNING and status != SKIPPED:
+            watch.halt(False)
+        return status
+
+    def halt(keep: bool) -> None:
+        halt_child(keep)
+        watch.halt(keep)
+
+    return tick, halt
+
+
+def timeout(site: Site, children: Sequence[Compiled]) -> Compiled:
+    """Its child; one that is still RUNNING when msec have passed is halted, not ticked again: FAILURE. 0: no limit."""
+    [(child, halt_child)] = children
+    msec = site.number("msec")
+    watch = _Stopwatch(site.shared.clock)
+
+    def tick() -> int:
+        limit = msec()
+        if limit and watch.reached(limit):
+            halt(False)
+            return site.fail(f"took longer than {limit / 1000:g} s")
+        status = child()
+        if status != RUNNING:
+            watch.halt(False)
+        return status
+
+    def halt(keep: bool) -> None:
+        halt_child(keep)
+        watch.halt(keep)
+
+    return tick, halt

@@ -1,0 +1,121 @@
+"""Grouped tokens and parts to AST nodes: what both parsers call, so that only the grouping is theirs to find."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from btlang.frontends.token import Token
+from btlang.text.source import Source, Span
+from btlang.tree.ast import (
+    Ast,
+    Chain,
+    Check,
+    Delay,
+    Every,
+    Fail,
+    For,
+    If,
+    Name,
+    Not,
+    Nothing,
+    Phrase,
+    Provided,
+    Repeat,
+    Retry,
+    Try,
+    Wait,
+    WaitUntil,
+    While,
+    Within,
+)
+
+CHAINS = {
+    "SEMI": "sequence", "OR_ELSE": "fallback", "WIDE_AND": "parallel", "THEN": "sequence", "AFTER": "sequence",
+    "OR": "fallback", "AND": "parallel",
+    "COND_OR_ELSE": "any", "COND_WIDE_AND": "all", "COND_OR": "any", "COND_AND": "all",
+}  # fmt: skip
+"""What each connective makes of its operands."""
+
+
+class Builder:
+    """Makes the nodes of one source."""
+
+    def __init__(self, source: Source) -> None:
+        self.source = source
+
+    def span(self, start: int, end: int) -> Span:
+        return Span(self.source, start, end)
+
+    def leaf(self, token: Token) -> Ast:
+        """COMMAND or CONDITION."""
+        span, value = Span(self.source, token.start, token.end), token.value
+        if type(value) is str:
+            return Name(value, span)
+        kind, amount = value
+        if kind == "wait":
+            return Wait(amount, span)
+        if kind == "nothing":
+            return Nothing(span)
+        if kind == "fail":
+            return Fail(span)
+        return Phrase(kind, amount, span)
+
+    def chain(self, operator: str, items: Sequence[Ast], start: int, end: int) -> Ast:
+        """Operands of one kind of connective, flat: equal chains without brackets melt into it."""
+        if len(items) == 1:
+            return items[0]
+        flat: list[Ast] = []
+        for item in items:
+            if type(item) is Chain and item.operator == operator and not item.bracketed:
+                flat += item.items
+            else:
+                flat.append(item)
+        return Chain(operator, tuple(flat), False, Span(self.source, start, end))
+
+    def group(self, inner: Ast, start: int, end: int) -> Ast:
+        """A bracket or block keeps a chain apart; round anything else it changes nothing."""
+        if type(inner) is Chain and not inner.bracketed:
+            return Chain(inner.operator, inner.items, True, Span(self.source, start, end))
+        return inner
+
+    def negation(self, token: Token, condition: Ast) -> Ast:
+        return Not(condition, Span(self.source, token.start, condition.span.end))
+
+    def postfix(self, body: Ast, token: Token) -> Ast:
+        """POSTFIX."""
+        kind, amount = token.value
+        return self._counted(kind, amount, body, Span(self.source, body.span.start, token.end))
+
+    def loop(self, opener: Token, body: Ast, otherwise: Ast | None, end: int, tried_end: int) -> Ast:
+        """LOOP body [ELSE otherwise] END; `tried_end` is where the part before `otherwise` ends."""
+        kind, amount = opener.value
+        span = Span(self.source, opener.start, end)
+        if kind == "try":
+            return Try(body, otherwise, span)
+        if otherwise is None:
+            return self._counted(kind, amount, body, span)
+        return Try(self._counted(kind, amount, body, Span(self.source, opener.start, tried_end)), otherwise, span)
+
+    def _counted(self, kind: str, amount: str | None, body: Ast, span: Span) -> Ast:
+        if kind in ("repeat", "count"):
+            return Repeat(int(amount or -1), body, span)
+        if kind == "retry":
+            return Retry(int(amount or -1), body, span)
+        if kind == "if_possible":
+            return Try(body, None, span)
+        timed = {"for": For, "within": Within, "every": Every, "delay": Delay}[kind]
+        return timed(str(amount), body, span)
+
+    def form(self, kind: str, condition: Ast, body: Ast, otherwise: Ast | None, start: int, end: int) -> Ast:
+        """if, unless, while, until, provided: before or after a command."""
+        span = Span(self.source, start, end)
+        if kind == "provided":
+            return Provided(condition, body, span)
+        if kind in ("if", "unless"):
+            return If(kind == "unless", condition, body, otherwise, span)
+        return While(kind == "until", condition, body, otherwise, span)
+
+    def test(self, opener: Token, condition: Ast, end: int) -> Ast:
+        """check, wait until."""
+        span = Span(self.source, opener.start, end)
+        return Check(condition, span) if opener.value == "check" else WaitUntil(condition, span)

@@ -1,0 +1,132 @@
+"""Finds the definitions of a text before any line is parsed, so that a name may be used before it is defined."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.record import Record
+from btlang.text.source import Span
+from btlang.text.words import END_OF_STATEMENT, Words
+from btlang.vocabulary.entry import Meaning
+from btlang.vocabulary.trie import TrieNode, add, longest
+from btlang.vocabulary.vocabulary import Vocabulary
+
+# A line that starts with one of these compares; it defines nothing.
+_STARTS_NO_NAME = frozenset(("if", "unless", "while", "until", "otherwise", "then"))
+_NOT_IN_A_NAME = frozenset(("if", "unless", "while", "until", "otherwise", "then", "and", "or", "after", "provided"))
+
+
+class Header(Record):
+    """The head of a definition: its name, the words of it, and the word at which the body starts."""
+
+    name: str
+    span: Span
+    body: int
+
+
+class Definitions:
+    """The definitions of a text: `headers` by the word at which they start, `trie` of their names."""
+
+    def __init__(self) -> None:
+        self.headers: dict[int, Header] = {}
+        self.trie: TrieNode = {}
+        self.problems: list[Diagnostic] = []
+
+
+def find_definitions(text: Words, vocabulary: Vocabulary) -> Definitions:
+    """Every definition of the text. A name defined twice is listed twice; the later one counts."""
+    found = Definitions()
+    defining = {word for role in ("define_strong", "define") for word in vocabulary.roles[role]}
+    if defining.isdisjoint(text.words):
+        return found
+    margin = text.lines[0].indent if text.lines else 0
+    for indent, first, last in _statements(text):
+        if defining.isdisjoint(text.words[first:last]):
+            continue
+        header = _header(text, first, last, vocabulary, found.problems)
+        if header is None:
+            continue
+        if indent > margin:
+            found.problems.append(diagnostic("BT033", header.span))
+        found.headers[first] = header
+        if header.name:
+            _add_name(header, found, vocabulary)
+    return found
+
+
+def _add_name(header: Header, found: Definitions, vocabulary: Vocabulary) -> None:
+    words = tuple(header.name.split())
+    before = add(found.trie, words, {}, Meaning("name", value=0))
+    if before is not None:
+        found.problems.append(diagnostic("BT017", header.span, name=header.name))
+        return
+    node: TrieNode | None = vocabulary.trie
+    for word in words:
+        node = node.get(word) if node is not None else None
+    if node is not None and "\0" in node:
+        found.problems.append(diagnostic("BT018", header.span, name=header.name))
+
+
+def _statements(text: Words) -> Iterator[tuple[int, int, int]]:
+    """(indent, first word, last word) of what stands between line ends, `;` and full stops."""
+    for line in text.lines:
+        first = line.first
+        for at in range(line.first, line.last):
+            if text.words[at] == END_OF_STATEMENT:
+                yield line.indent, first, at
+                first = at + 1
+        yield line.indent, first, line.last
+
+
+def _header(text: Words, first: int, last: int, vocabulary: Vocabulary, problems: list[Diagnostic]) -> Header | None:
+    at = _defining_word(text, first, last, vocabulary)
+    if at is None:
+        return None
+    start = first
+    while start < at:
+        polite = longest(vocabulary.trie, text, start, vocabulary.values)
+        if polite is None or polite.meaning.role != "politeness" or polite.last > at:
+            break
+        start = polite.last
+    if start == at:
+        problems.append(diagnostic("BT016", text.span(at, at + 1), word=text.words[at]))
+        return Header("", text.span(at, at + 1), at + 1)
+    joined = _joining_word(text, start, at, vocabulary)
+    if joined is not None:
+        problems.append(diagnostic("BT015", joined, word=joined.text))
+    return Header(" ".join(text.words[start:at]), text.span(start, at), at + 1)
+
+
+def _defining_word(text: Words, first: int, last: int, vocabulary: Vocabulary) -> int | None:
+    """The first `means`, else the first `is`, unless a condition phrase holds it or the line starts with a form."""
+    for role in ("define_strong", "define"):
+        choices = vocabulary.roles[role]
+        at = first
+        while at < last:
+            if text.words[at] in choices:
+                return at
+            match = longest(vocabulary.trie, text, at, vocabulary.values)
+            if match is None:
+                at += 1
+                continue
+            if match.meaning.role in _STARTS_NO_NAME and at == first:
+                return None
+            # a command phrase inside a name is no reason against it: `go home is ...`
+            at = match.last if match.meaning.role == "condition" else max(at + 1, _stop(text, at, match.last, choices))
+    return None
+
+
+def _stop(text: Words, at: int, last: int, choices: list[str]) -> int:
+    return next((i for i in range(at, last) if text.words[i] in choices), last)
+
+
+def _joining_word(text: Words, start: int, last: int, vocabulary: Vocabulary) -> Span | None:
+    at = start
+    while at < last:
+        match = longest(vocabulary.trie, text, at, vocabulary.values)
+        role = match.meaning.role if match else ""
+        if not text.words[at][0].isalnum() or role in _NOT_IN_A_NAME:
+            return text.span(at, match.last if match else at + 1)
+        at = max(match.last, at + 1) if match and match.meaning.entry is None else at + 1
+    return None

@@ -1,0 +1,174 @@
+"""Words to raw tokens: phrases, connectives, names, brackets, lines and blocks. Collects what is unknown."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.frontends.definitions import Definitions, find_definitions
+from btlang.frontends.token import Token
+from btlang.frontends.unknown import explain_unknown
+from btlang.text.source import Source, Span
+from btlang.text.words import Words, split
+from btlang.vocabulary.trie import Match, longest
+from btlang.vocabulary.vocabulary import Vocabulary
+
+_MARKS = {",": "comma", ";": "semi", ":": "colon", "(": "open", ")": "close"}
+
+
+class Lexer:
+    """Reads one source. `tokens` are raw tokens, `problems` what was unknown; both are complete after construction."""
+
+    def __init__(self, source: Source, vocabulary: Vocabulary) -> None:
+        self.text: Words = split(source, vocabulary.articles)
+        self.vocabulary = vocabulary
+        self.problems: list[Diagnostic] = [diagnostic("BT004", span) for span in self.text.open_quotes]
+        self.problems += [diagnostic("BT003", span, characters=span.text[:20]) for span in self.text.unreadable]
+        self.definitions: Definitions = find_definitions(self.text, vocabulary)
+        self.problems += self.definitions.problems
+        self.tokens: list[Token] = []
+        self._lines()
+        self.conditions: set[str] = self._condition_names()
+        """The defined names that stand for conditions."""
+        for token in self.tokens:
+            if token.kind == "name":
+                token.kind = "condition" if token.value in self.conditions else "command"
+
+    def _lines(self) -> None:
+        """Line ends, indents and dedents around the tokens of each line, as in Python."""
+        lines = self.text.lines
+        indents = [lines[0].indent] if lines else [0]
+        opens_block = False
+        for number, line in enumerate(lines):
+            first = Span(self.text.source, self.text.starts[line.first], self.text.ends[line.first])
+            if line.indent > indents[-1]:
+                if opens_block:
+                    indents.append(line.indent)
+                    self._mark("indent", line.first)
+                else:
+                    self.problems.append(diagnostic("BT006", first))
+            else:
+                if opens_block:
+                    self.problems.append(diagnostic("BT027", self._last_span()))
+                while line.indent < indents[-1]:
+                    indents.pop()
+                    self._mark("dedent", line.first)
+                if line.indent > indents[-1]:
+                    self.problems.append(diagnostic("BT007", first))
+            if number and not opens_block:
+                self._mark("newline", line.first)
+            self._line(line.first, line.last)
+            opens_block = self.text.words[line.last - 1] == ":"
+        if opens_block:
+            self.problems.append(diagnostic("BT027", self._last_span()))
+        for _ in indents[1:]:
+            self._mark("dedent", len(self.text.words) - 1)
+
+    def _line(self, at: int, last: int) -> None:
+        text, names, trie, values = self.text, self.definitions.trie, self.vocabulary.trie, self.vocabulary.values
+        words, starts, ends, tokens = text.words, text.starts, text.ends, self.tokens
+        headers = self.definitions.headers
+        while at < last:
+            word = words[at]
+            if at in headers:
+                header = headers[at]
+                tokens.append(Token("define", header, starts[at], ends[header.body - 1]))
+                at = header.body
+                continue
+            if word in _MARKS:
+                tokens.append(Token(_MARKS[word], None, starts[at], ends[at]))
+                at += 1
+                continue
+            match = longest(trie, text, at, values)
+            if names and word in names:
+                named = longest(names, text, at, values)
+                if named is not None and (match is None or named.last >= match.last):
+                    name = " ".join(words[at : named.last])
+                    tokens.append(Token("name", name, starts[at], ends[named.last - 1]))
+                    at = named.last
+                    continue
+            if match is None:
+                end = self._unknown_end(at, last)
+                self.problems.append(explain_unknown(text, at, end, self.vocabulary, self.definitions, tokens))
+                tokens.append(Token("unknown", None, starts[at], ends[end - 1]))
+                at = end
+            else:
+                if match.meaning.role != "politeness":
+                    tokens.append(self._phrase(match, at))
+                at = match.last
+
+    def _phrase(self, match: Match, at: int) -> Token:
+        text, meaning = self.text, match.meaning
+        start, end = text.starts[at], text.ends[match.last - 1]
+        if match.values and match.values[-1].first == match.last:  # the article was the value: `print a`
+            end = text.articles[match.last][1]
+        if meaning.entry is not None:
+            arguments = tuple((value.name, value.text) for value in match.values)
+            return Token(meaning.role, (meaning.entry, arguments), start, end)
+        if match.values:
+            return Token(meaning.role, match.values[0].text, start, end)
+        return Token(meaning.role, str(meaning.value) if meaning.role == "count" else None, start, end)
+
+    def _unknown_end(self, at: int, last: int) -> int:
+        """Unknown words reach to the next mark or connective, or to a phrase that is more than one word."""
+        text = self.text
+        while True:
+            at += 1
+            if at >= last or text.words[at] in _MARKS:
+                return at
+            match = longest(self.vocabulary.trie, text, at, self.vocabulary.values)
+            if match is not None and (match.meaning.entry is None or match.last > at + 1):
+                return at
+
+    def _mark(self, kind: str, at: int) -> None:
+        start = self.text.starts[at] if at < len(self.text.starts) else len(self.text.source.text)
+        self.tokens.append(Token(kind, None, start, start))
+
+    def _last_span(self) -> Span:
+        last = self.tokens[-1]
+        return Span(self.text.source, last.start, last.end)
+
+    def _condition_names(self) -> set[str]:
+        """A name is a condition where its body holds only conditions, `not`, `and`, `or` and condition names."""
+        needs = {name: _names_in_condition(body) for name, body in _bodies(self.tokens)}
+        users: dict[str, list[str]] = {}
+        for name, needed in needs.items():
+            for other in needed or ():
+                users.setdefault(other, []).append(name)
+        conditions: set[str] = set()
+        ready = [name for name, needed in needs.items() if needed is not None and not needed]
+        while ready:
+            name = ready.pop()
+            conditions.add(name)
+            for user in users.get(name, ()):
+                waiting = needs[user]
+                if waiting is not None:
+                    waiting.discard(name)
+                    if not waiting:
+                        ready.append(user)
+        return conditions
+
+
+def _bodies(tokens: list[Token]) -> Iterator[tuple[str, list[Token]]]:
+    """Each definition's name and the tokens of its body, as far as the line or block goes."""
+    for at, token in enumerate(tokens):
+        if token.kind != "define":
+            continue
+        depth, body = 0, []
+        for i in range(at + 1, len(tokens)):
+            inner = tokens[i]
+            depth += (inner.kind == "indent") - (inner.kind == "dedent")
+            if depth < 0 or (depth == 0 and inner.kind in ("newline", "semi", "define")):
+                break
+            body.append(inner)
+        yield token.value.name, body
+
+
+_IN_CONDITIONS = frozenset(("condition", "not", "and", "or", "comma", "open", "close"))
+
+
+def _names_in_condition(body: list[Token]) -> set[str] | None:
+    """The names that a body needs to be conditions in order to be one itself; None where it cannot be one."""
+    if not body or not all(token.kind in _IN_CONDITIONS or token.kind == "name" for token in body):
+        return None
+    return {token.value for token in body if token.kind == "name"}

@@ -1,0 +1,53 @@
+"""A mission in English to its AST: words, tokens, matching, one of the parsers."""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
+from btlang.frontends.build import Builder
+from btlang.frontends.lexer import Lexer
+from btlang.frontends.matching import Matcher
+from btlang.record import Record
+from btlang.text.source import Source, Span
+from btlang.tree.ast import Definition, Mission
+from btlang.vocabulary.vocabulary import Vocabulary
+
+PARSERS = {
+    "shunting-yard": "btlang.frontends.shunting_yard",
+    "lark": "btlang.frontends.lark_parser",  # imported only when asked for: it costs more than a whole check
+}
+DEFAULT_PARSER = "shunting-yard"
+
+
+class Reading(Record):
+    """What a text says, and the warnings on the way."""
+
+    mission: Mission
+    warnings: tuple[Diagnostic, ...]
+
+
+def read_mission(source: Source, vocabulary: Vocabulary, parser: str = DEFAULT_PARSER) -> Reading:
+    """Raises MissionError with all that is wrong with the text; ValueError for an unknown parser."""
+    if parser not in PARSERS:
+        raise ValueError(f"no parser '{parser}'; there are {', '.join(PARSERS)}")
+    lexer = Lexer(source, vocabulary)
+    matcher = Matcher(source, lexer.tokens, lexer.conditions)
+    problems = lexer.problems + matcher.problems
+    if not lexer.tokens and not problems:
+        problems = [diagnostic("BT005", Span(source, 0, 0), example="move forward 1 m")]
+    if any(problem.is_error for problem in problems):
+        raise MissionError(problems)
+    parse = import_module(PARSERS[parser]).parse
+    build = Builder(source)
+    body, definitions = None, {}
+    for unit in matcher.units:
+        if unit.header is None:
+            body = parse(unit.tokens, build) if unit.tokens else None
+            continue
+        inner = parse(unit.tokens, build)
+        span = Span(source, unit.header.span.start, inner.span.end)
+        definitions.pop(unit.header.name, None)  # a later definition replaces an earlier one
+        definitions[unit.header.name] = Definition(unit.header.name, inner, unit.header.span, span)
+    mission = Mission(body, tuple(definitions.values()), Span(source, 0, len(source.text)))
+    return Reading(mission, tuple(problems))

@@ -1,0 +1,111 @@
+"""The state of the matching stage: what comes in, what goes out, what is open, and what is wrong."""
+
+from __future__ import annotations
+
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.frontends.frames import Frame
+from btlang.frontends.token import Token
+from btlang.text.source import Source, Span
+
+ENDS = frozenset(("newline", "semi", "close", "dedent", "end"))
+_CLOSES_LINE = frozenset(("newline", "indent", "dedent", "end"))
+_FOUND = {"newline": "the line ends", "semi": "the sentence ends", "close": "the bracket closes"}
+
+
+class Scan:
+    """One pass over raw tokens. Every syntax error (BT020 to BT034) is made here, one for each statement."""
+
+    def __init__(self, source: Source, raw: list[Token]) -> None:
+        self.source = source
+        self.problems: list[Diagnostic] = []
+        self._raw = [*raw, Token("end", None, len(source.text), len(source.text))]
+        self._at = 0
+        self._operand_due = True
+        self._last_end = 0
+        self._out: list[Token] = []
+        self._frames = [Frame("top")]
+
+    # -- output
+
+    def _emit(self, kind: str, token: Token, value: object = None) -> Token:
+        made = Token(kind, value, token.start, token.end)
+        self._out.append(made)
+        return made
+
+    def _emit_end(self) -> None:
+        self._out.append(Token("END", None, self._last_end, self._last_end))
+
+    def _next(self, token: Token, operand_due: bool) -> None:
+        """The token is dealt with."""
+        self._at += 1
+        self._last_end = token.end
+        self._operand_due = operand_due
+
+    def _span(self, first: Token, last: Token | None = None) -> Span:
+        return Span(self.source, first.start, (last or first).end)
+
+    def _words(self, token: Token) -> str:
+        return self._span(token).text
+
+    # -- what is wrong
+
+    def _fail(self, code: str, span: Span, **arguments: str) -> None:
+        self.problems.append(diagnostic(code, span, **arguments))
+        self._skip_statement()
+
+    def _skip_statement(self) -> None:
+        """One message a statement: goes on after it, so that all broken statements of a file are told at once."""
+        depth = sum(frame.kind in ("bracket", "condition bracket") for frame in self._frames)
+        while not self._frames[-1].is_group or self._frames[-1].kind == "bracket":
+            self._frames.pop()
+        while True:
+            kind = self._raw[self._at].kind
+            depth += (kind == "open") - (kind == "close")
+            if kind in _CLOSES_LINE or (kind == "semi" and depth <= 0):
+                break
+            self._at += 1
+        self._frames[-1].close_chain()
+        self._operand_due = False
+        if self._raw[self._at].kind == "indent":
+            self._open_block()
+
+    def _no_operand(self, token: Token) -> None:
+        """Something stands where a command or condition must."""
+        frame = self._frames[-1]
+        before = self._raw[self._at - 1] if self._at else None
+        wanted = "condition" if frame.is_condition else "command"
+        starts = before is None or before.kind in ("newline", "semi", "indent", "dedent", "open", "define")
+        if starts and token.kind in ENDS:
+            self._empty(token, before)
+        elif token.kind == "colon":
+            self._fail("BT026", self._span(token))
+        elif starts and token.kind == "comma":
+            self._fail("BT032", self._span(token), place="at the start", advice="Take it away.")
+        elif starts or token.kind not in ENDS | {"then", "and", "or", "after", "otherwise", "comma"}:
+            self._fail("BT022", self._span(token), word=self._words(token))
+        elif before is not None and before.kind == "comma" and token.kind in ENDS:
+            self._fail("BT032", self._span(before), place="at the end", advice="Take it away, or say what follows.")
+        elif before is not None:
+            self._fail("BT020", self._span(before), wanted=wanted, word=self._words(before), found=self._found(token))
+
+    def _found(self, token: Token) -> str:
+        if token.kind in _FOUND:
+            return _FOUND[token.kind]
+        return "the mission ends" if token.kind in ENDS else f"'{self._words(token)}' stands there"
+
+    def _empty(self, token: Token, before: Token | None) -> None:
+        if token.kind == "close" and before is not None and before.kind == "open":
+            self._fail("BT025", self._span(before, token))
+        elif before is not None and before.kind == "define":
+            words = self._words(before)
+            self._fail("BT020", self._span(before), wanted="command", word=words, found="nothing does")
+        else:
+            self._operand_due = False  # an empty line or sentence
+
+    def _open_block(self) -> None:
+        """At an indent: the lines below are statements of a new group."""
+        following = self._raw[self._at + 1]
+        self._out.append(Token("OPEN", None, following.start, following.start))
+        self._frames.append(Frame("block"))
+        self._at += 1
+        self._operand_due = True

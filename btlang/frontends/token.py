@@ -1,0 +1,40 @@
+"""Tokens between the stages of reading English.
+
+Raw tokens (from `lexer`) have the kinds of connective roles and punctuation. The matching stage turns them into
+grouped tokens, which need no look-ahead any more:
+
+    COMMAND CONDITION                      operands
+    SEMI OR_ELSE WIDE_AND THEN AFTER OR AND    between commands, loosest first
+    COND_OR_ELSE COND_WIDE_AND COND_OR COND_AND NOT    between and before conditions
+    OPEN CLOSE COND_OPEN COND_CLOSE        brackets; a block is a bracket too
+    POSTFIX                                after one command: `twice`, `within 10 s`, ...
+    FORM cond DO body [ELSE body] END      if, unless, while, until before a command
+    AFTER_FORM cond [ELSE body] END        the same after one command, and `provided that`
+    WIDE_FORM cond END                     the same after a comma at the end: takes the whole statement
+    LOOP body [STOP cond] END              repeat, every, after 5 s, and try: LOOP body [ELSE body] END
+    TEST cond END                          check, wait until
+"""
+
+from __future__ import annotations
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+
+class Token:
+    """One token: `value` depends on its kind; `start` and `end` are characters of the source.
+
+    Mutable, for the matching stage learns later what a comma means and which count closes a `repeat`.
+    """
+
+    __slots__ = ("end", "kind", "start", "value")
+
+    def __init__(self, kind: str, value: Any, start: int, end: int) -> None:
+        self.kind = kind
+        self.value = value
+        self.start = start
+        self.end = end
+
+    def __repr__(self) -> str:
+        return f"{self.kind}({self.value!r})" if self.value is not None else self.kind

@@ -1,0 +1,134 @@
+"""Why words could not be read: a value that does not fit its slot, a name that nobody knows, or an unknown phrase."""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from collections.abc import Iterator
+
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.frontends.definitions import Definitions
+from btlang.frontends.token import Token
+from btlang.text.spelling import nearest
+from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
+from btlang.vocabulary.trie import SLOTS, TrieNode
+from btlang.vocabulary.values import ValueType
+from btlang.vocabulary.vocabulary import Vocabulary
+
+_NOT_A_VALUE = frozenset((END_OF_TEXT, END_OF_STATEMENT, ",", ":", "(", ")"))
+
+
+def explain_unknown(
+    text: Words, at: int, end: int, vocabulary: Vocabulary, definitions: Definitions, before: list[Token]
+) -> Diagnostic:
+    """The diagnostic (BT010 to BT014, BT019) for words `at` to `end`, which nothing in the vocabulary matches."""
+    misfits = list(_misfits(text, at, vocabulary))
+    if not misfits and before and before[-1].kind not in ("comma", "newline", "indent", "dedent", "open", "semi"):
+        start = bisect_left(text.starts, before[-1].start)  # `move forward 5 s`: read that far, and no further
+        misfits = [found for found in _misfits(text, start, vocabulary) if found[0] == at]
+        if misfits:
+            return _misfit(text, start, end, misfits, vocabulary)
+    if misfits:
+        return _misfit(text, at, end, misfits, vocabulary)
+    if vocabulary.values.number(text, at) or text.words[at][0] == '"':
+        return diagnostic("BT019", text.span(at, end), example='say "hello"')
+    return _unknown_phrase(text, at, end, vocabulary, definitions)
+
+
+def _misfits(text: Words, at: int, vocabulary: Vocabulary) -> Iterator[tuple[int, str]]:
+    """(word, type) of the slots that a phrase would have at the furthest word that its own words reach."""
+    furthest, found = at, []
+    paths: list[tuple[TrieNode, int]] = [(vocabulary.trie, at)]
+    while paths:
+        node, i = paths.pop()
+        for _, kind, child in node.get(SLOTS, ()):
+            value = vocabulary.values.read(kind, text, i)
+            if value is not None:
+                paths.append((child, value[1]))
+            elif i > furthest:
+                furthest, found = i, [kind]
+            elif i == furthest and i > at:
+                found.append(kind)
+        child = node.get(text.words[i])
+        if child is not None:
+            paths.append((child, i + 1))
+    yield from ((furthest, kind) for kind in dict.fromkeys(found))
+
+
+def _misfit(text: Words, first: int, end: int, misfits: list[tuple[int, str]], vocabulary: Vocabulary) -> Diagnostic:
+    at = misfits[0][0]
+    types = [vocabulary.types[kind] for _, kind in misfits]
+    wanted = " or ".join(f"{_article(kind.name)} {kind.name}" for kind in types)
+    head = text.span(first, at).text
+    example = f"{head} {_value_example(types[0], vocabulary)}"
+    if text.words[at] in _NOT_A_VALUE:
+        return diagnostic("BT012", text.span(first, at), words=head, wanted=wanted, example=example)
+    quantity, number = vocabulary.values.quantity(text, at), vocabulary.values.number(text, at)
+    if quantity is not None:
+        span = text.span(at, quantity[2])
+        reason = f"it is {_article(quantity[1])} {quantity[1]}, and {wanted} is needed"
+        return diagnostic("BT011", span, words=span.text, wanted=reason, example=example)
+    if number is not None:
+        return _number_misfit(text, at, number, types, head, example, wanted)
+    named = [kind for kind in types if kind.kind == "names"]
+    span = text.span(at, max(end, at + 1))
+    if named:
+        known = [name for kind in named for name in vocabulary.values.names(kind.name)]
+        kinds = " or ".join(kind.name for kind in named)
+        return diagnostic("BT013", span, type=kinds, words=span.text, help=_near_names(span.text, known))
+    return diagnostic("BT011", span, words=span.text, wanted=f"{wanted} is needed", example=example)
+
+
+def _number_misfit(
+    text: Words, at: int, number: tuple[float, int], types: list[ValueType], head: str, example: str, wanted: str
+) -> Diagnostic:
+    span = text.span(at, number[1])
+    with_unit = next((kind for kind in types if kind.kind == "quantity"), None)
+    if with_unit is not None:
+        written = f"{head} {span.text} {with_unit.units[0].words[0]}".replace(" %", "%")
+        reason = f"{wanted} has a unit"
+        return diagnostic("BT011", span, words=span.text, wanted=reason, example=written)
+    limited = next((kind for kind in types if kind.whole or kind.least is not None), None)
+    if limited is not None:
+        least = f" from {limited.least:g} on" if limited.least is not None else ""
+        reason = f"a {'whole ' if limited.whole else ''}number{least} is needed"
+        return diagnostic("BT014", span, words=span.text, wanted=reason)
+    return diagnostic("BT011", span, words=span.text, wanted=f"{wanted} is needed", example=example)
+
+
+def _unknown_phrase(text: Words, at: int, end: int, vocabulary: Vocabulary, definitions: Definitions) -> Diagnostic:
+    span = text.span(at, end)
+    known = [header.name for header in definitions.headers.values()]
+    known += [phrase for entries in vocabulary.entries.values() for entry in entries for phrase in _plain(entry.phrases)]
+    known += [phrase.split(" {")[0] for phrases in vocabulary.roles.values() for phrase in phrases if "[" not in phrase]
+    near = nearest(span.text.lower(), known)
+    advice = "The nearest that I know: " + ", ".join(near) if near else "'btc words' lists what I know."
+    return diagnostic("BT010", span, words=span.text, help=advice)
+
+
+def _plain(phrases: tuple[str, ...]) -> Iterator[str]:
+    """Phrases as people would write them: optional parts left out."""
+    for phrase in phrases:
+        words = []
+        depth = 0
+        for piece in phrase.replace("[", " [ ").replace("]", " ] ").split():
+            depth += (piece == "[") - (piece == "]")
+            if depth == 0 and piece != "]" and not piece.startswith("("):
+                words.append(piece.split("/")[0].split("(")[0])
+        yield " ".join(words)
+
+
+def _near_names(written: str, known: list[str]) -> str:
+    near = nearest(written.lower(), known)
+    if near:
+        return "The nearest: " + ", ".join(near)
+    return "Known: " + ", ".join(known) if known else "None is known in this world."
+
+
+def _value_example(kind: ValueType, vocabulary: Vocabulary) -> str:
+    names = vocabulary.values.names(kind.name) if kind.kind == "names" else []
+    return names[0] if names else kind.example
+
+
+def _article(word: str) -> str:
+    return "an" if word[0] in "aeiou" else "a"
+

@@ -1,0 +1,132 @@
+"""Frozen value classes with slots: the base of tokens, AST, tree, diagnostics and vocabulary entries.
+
+Why not `dataclasses` or attrs: importing them costs more than the rest of `btc check`, and their comparison
+recurses, which crashes on a tree that is 10,000 deep (both measured). mypy sees a Record as a dataclass.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+TYPE_CHECKING = False  # as typing.TYPE_CHECKING, without importing typing at start-up
+if TYPE_CHECKING:
+    from typing import Any, ClassVar, dataclass_transform
+else:
+
+    def dataclass_transform(**_options: object):
+        return lambda cls: cls
+
+
+_REQUIRED = object()
+
+
+class _RecordMeta(type):
+    """Turns the annotations of a class body into slots and a positional constructor, in the order written."""
+
+    def __new__(
+        mcs, name: str, bases: tuple[type, ...], body: dict[str, Any], uncompared: tuple[str, ...] = ()
+    ) -> _RecordMeta:
+        own = [f for f, kind in body.get("__annotations__", {}).items() if not str(kind).startswith("ClassVar")]
+        inherited = [f for base in bases for f in getattr(base, "fields", ())]
+        defaults = {k: v for base in bases for k, v in getattr(base, "_defaults", {}).items()}
+        defaults |= {f: body.pop(f) for f in own if f in body}
+        cls = super().__new__(mcs, name, bases, body | {"__slots__": tuple(own)})
+        fields = tuple(inherited + own)
+        cls.fields = fields  # type: ignore[attr-defined]
+        cls._defaults = defaults  # type: ignore[attr-defined]
+        cls._compared = tuple(f for f in fields if f not in uncompared)  # type: ignore[attr-defined]
+        if fields:
+            cls.__init__ = _make_init(cls, fields, defaults)  # type: ignore[misc]
+        return cls
+
+
+def _make_init(cls: type, fields: tuple[str, ...], defaults: dict[str, Any]) -> Any:
+    """Slot descriptors write past the frozen `__setattr__`; generated, because a loop is three times slower."""
+    scope: dict[str, Any] = {f"set_{f}": getattr(cls, f).__set__ for f in fields}
+    scope |= {f"default_{f}": value for f, value in defaults.items()}
+    arguments = ", ".join(f"{f}=default_{f}" if f in defaults else f for f in fields)
+    lines = "\n".join(f"    set_{f}(self, {f})" for f in fields)
+    exec(f"def __init__(self, {arguments}):\n{lines}", scope)
+    return scope["__init__"]
+
+
+@dataclass_transform(frozen_default=True)
+class Record(metaclass=_RecordMeta):
+    """Base of frozen values. Equality and hashing are loops, so that depth does not matter.
+
+    `class X(Record, uncompared=("span",))` leaves fields out of comparison. Setting a field raises AttributeError.
+    """
+
+    if TYPE_CHECKING:
+        fields: ClassVar[tuple[str, ...]]
+        _compared: ClassVar[tuple[str, ...]]
+
+    def __setattr__(self, name: str, value: object) -> None:
+        raise AttributeError(f"{type(self).__name__} is frozen: cannot set {name}")
+
+    def __delattr__(self, name: str) -> None:
+        raise AttributeError(f"{type(self).__name__} is frozen: cannot delete {name}")
+
+    def __eq__(self, other: object) -> bool:
+        if self.__class__ is not other.__class__:
+            return NotImplemented
+        return _equal(self, other)
+
+    def __hash__(self) -> int:
+        return hash(tuple(_flat(self)))
+
+    def __repr__(self) -> str:
+        return f"{type(self).__name__}({', '.join(_brief(self, f) for f in self.fields)})"
+
+    def replace(self, **changes: Any) -> Any:
+        """A copy with the named fields changed."""
+        return type(self)(**{f: changes.get(f, getattr(self, f)) for f in self.fields})
+
+    def __reduce__(self) -> tuple[Any, ...]:
+        return type(self), tuple(getattr(self, f) for f in self.fields)
+
+
+def _brief(record: Record, field: str) -> str:
+    value = getattr(record, field)
+    if isinstance(value, tuple) and len(value) > 3 or isinstance(value, Record) and "children" in value.fields:
+        return f"{field}=..."
+    return f"{field}=({len(value)} items)" if _holds_records(value) else f"{field}={value!r}"
+
+
+def _holds_records(value: object) -> bool:
+    return isinstance(value, tuple) and any(isinstance(v, Record) for v in value)
+
+
+def _equal(left: object, right: object) -> bool:
+    """Structural equality with an explicit stack."""
+    stack = [(left, right)]
+    while stack:
+        a, b = stack.pop()
+        if a is b:
+            continue
+        if isinstance(a, Record):
+            if a.__class__ is not b.__class__:
+                return False
+            stack.extend((getattr(a, f), getattr(b, f)) for f in a._compared)
+        elif isinstance(a, tuple):
+            if not isinstance(b, tuple) or len(a) != len(b):
+                return False
+            stack.extend(zip(a, b, strict=True))
+        elif a != b:
+            return False
+    return True
+
+
+def _flat(record: Record) -> Iterator[object]:
+    """Every compared atom in a fixed order, with types and lengths as marks."""
+    stack: list[object] = [record]
+    while stack:
+        item = stack.pop()
+        if isinstance(item, Record):
+            yield type(item).__name__
+            stack.extend(getattr(item, f) for f in item._compared)
+        elif isinstance(item, tuple):
+            yield len(item)
+            stack.extend(item)
+        else:
+            yield item

@@ -1,0 +1,167 @@
+"""The wheels: a round differential drive with limited acceleration that stops at whatever it touches."""
+
+from __future__ import annotations
+
+from math import ceil, copysign, cos, degrees, inf, radians, sin
+
+from btlang.robots.geometry import Pose, wrap
+from btlang.robots.obstacles import Obstacles
+from btlang.robots.world import ROBOT_RADIUS
+
+MAX_SPEED = 1.0
+MAX_TURN = 180.0
+ACCELERATION, BRAKE, HARD_BRAKE = 1.0, 2.0, 4.0
+TURN_ACCELERATION, TURN_BRAKE, TURN_HARD_BRAKE = 240.0, 480.0, 960.0
+
+_SUBSTEP = 0.02
+_WHEEL_GAP = 0.3
+_STUCK_AFTER = 1.0
+_FREE_AGAIN = 0.03
+
+
+class Base:
+    """Metres, degrees and seconds. `bumped_into` names what a contact was with, `bumps` counts contacts."""
+
+    def __init__(self, pose: Pose, obstacles: Obstacles) -> None:
+        self.pose = pose
+        self.velocity = (0.0, 0.0)
+        self.bumps = 0
+        self.bumped_into = ""
+        self.travelled = 0.0
+        self.grips = (1.0, 1.0)
+        self._obstacles = obstacles
+        self._wanted = (0.0, 0.0)
+        self._speeds = (0.0, 0.0)
+        self._hard = False
+        self._contact: Pose | None = None
+        self._pressed = False
+        self._idle = 0.0
+        self._free = 0.0
+        self._near = ""
+        self._version = -1
+
+    @property
+    def bumped(self) -> bool:
+        """True from a contact until the robot has moved away from there."""
+        return self._contact is not None
+
+    @property
+    def stuck(self) -> bool:
+        """True when it was told to move for a second and does not."""
+        return self._idle >= _STUCK_AFTER
+
+    @property
+    def rolling(self) -> bool:
+        """True until it is at rest."""
+        return self._speeds != (0.0, 0.0)
+
+    def drive(self, linear: float, angular: float) -> None:
+        """Sets the wanted velocity, within the limits."""
+        self._wanted = (_clip(linear, MAX_SPEED), _clip(angular, MAX_TURN))
+        self._hard = False
+        if self._wanted == (0.0, 0.0):
+            self._forget_trouble()
+
+    def brake(self) -> None:
+        """Comes to rest as fast as the wheels can."""
+        self._wanted = (0.0, 0.0)
+        self._hard = True
+        self._forget_trouble()
+
+    def step(self, dt: float) -> None:
+        """Moves on by `dt` in equal pieces of at most 0.02 s."""
+        if self._wanted == (0.0, 0.0) and not self.rolling:
+            self.velocity = (0.0, 0.0)
+            return
+        pieces = max(1, ceil(dt / _SUBSTEP - 1e-9))
+        for _ in range(pieces):
+            self._substep(dt / pieces)
+
+    def _forget_trouble(self) -> None:
+        """A new attempt to move is stuck after a second of its own, and counts as a bump of its own."""
+        self._idle, self._pressed = 0.0, False
+
+    def _substep(self, h: float) -> None:
+        linear, angular = self._speeds
+        brake, turn_brake = (HARD_BRAKE, TURN_HARD_BRAKE) if self._hard else (BRAKE, TURN_BRAKE)
+        linear = _towards(linear, self._wanted[0], ACCELERATION * h, brake * h)
+        angular = _towards(angular, self._wanted[1], TURN_ACCELERATION * h, turn_brake * h)
+        self._speeds = linear, angular
+        v, w = self._on_floor(linear, angular)
+        old = self.pose
+        middle = radians(old.heading + w * h / 2)
+        moved = v * h
+        new = Pose(old.x + moved * cos(middle), old.y + moved * sin(middle), wrap(old.heading + w * h))
+        if self._hits(new, abs(moved)):
+            new = self._last_free(old, new)
+            v, self._speeds = 0.0, (0.0, angular)
+            if not self._pressed:
+                self._bump(new)
+            self._pressed = True
+        else:
+            self._pressed = False
+        self.pose = new
+        self.velocity = v, w
+        self.travelled += abs(v) * h
+        if self._contact is not None and self._contact.distance_to((new.x, new.y)) > _FREE_AGAIN:
+            self._contact = None
+        wanted = abs(self._wanted[0]) + ROBOT_RADIUS * radians(abs(self._wanted[1]))
+        real = abs(v) + ROBOT_RADIUS * radians(abs(w))
+        self._idle = self._idle + h if real < 0.05 * wanted else 0.0
+
+    def _on_floor(self, linear: float, angular: float) -> tuple[float, float]:
+        """What is left of the wheels' motion where one slips."""
+        if self.grips == (1.0, 1.0):
+            return linear, angular
+        side = radians(angular) * _WHEEL_GAP / 2
+        left, right = (linear - side) * self.grips[0], (linear + side) * self.grips[1]
+        return (left + right) / 2, degrees((right - left) / _WHEEL_GAP)
+
+    def _hits(self, pose: Pose, moved: float) -> bool:
+        """`_free` is a lower bound of the room left, so that most steps need not look at the obstacles."""
+        if self._version == self._obstacles.version and self._free > moved:
+            self._free -= moved
+            return False
+        if moved == 0.0:
+            return False
+        now = self._gap(pose)
+        self._free, self._version = now, self._obstacles.version
+        if now >= 0.0:
+            return False
+        before = self._gap(self.pose)
+        if now > before:
+            return False  # moving away from something that was put onto the robot
+        self._free = 0.0
+        return True
+
+    def _gap(self, pose: Pose) -> float:
+        distance, self._near = self._obstacles.nearest(pose.x, pose.y)
+        return inf if distance == inf else distance - ROBOT_RADIUS
+
+    def _last_free(self, old: Pose, new: Pose) -> Pose:
+        """Halves the way until the touching point is known to a few micrometres."""
+        low, high = 0.0, 1.0
+        for _ in range(12):
+            middle = (low + high) / 2
+            pose = Pose(old.x + middle * (new.x - old.x), old.y + middle * (new.y - old.y), new.heading)
+            low, high = (middle, high) if self._gap(pose) >= 0.0 else (low, middle)
+        self._gap(new)
+        return Pose(old.x + low * (new.x - old.x), old.y + low * (new.y - old.y), new.heading)
+
+    def _bump(self, pose: Pose) -> None:
+        self.bumps += 1
+        self.bumped_into = self._near
+        self._contact = pose
+
+
+def _clip(value: float, limit: float) -> float:
+    return copysign(min(abs(value), limit), value)
+
+
+def _towards(value: float, target: float, more: float, less: float) -> float:
+    """Steps towards the target: by at most `less` while slowing down, `more` while speeding up."""
+    slowing = abs(target) < abs(value) or target * value < 0.0
+    limit = less if slowing else more
+    goal = 0.0 if target * value < 0.0 else target
+    difference = goal - value
+    return goal if abs(difference) <= limit else value + copysign(limit, difference)

@@ -1,0 +1,182 @@
+"""The robot as actions see it. The simulated robot implements it; so will a ROS 2 robot."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from typing import Any, Literal, Protocol
+
+import numpy as np
+import numpy.typing as npt
+
+from btlang.engine.leaf import ActionFailed
+from btlang.robots.geometry import Point, Pose
+
+Hand = Literal["left", "right"]
+OnEvent = Callable[[str, Mapping[str, Any]], None]
+
+
+class RobotError(ActionFailed):
+    """Why the robot cannot do what it was told, in plain English: a leaf that lets it pass FAILS with it."""
+
+
+class Navigation(Protocol):
+    """A journey under way."""
+
+    @property
+    def done(self) -> bool:
+        """True when it has ended: arrived, failed or cancelled."""
+
+    @property
+    def failure(self) -> str | None:
+        """Why it did not arrive; None while under way and after arrival."""
+
+    def cancel(self) -> None:
+        """Gives up and brakes. Does nothing when done."""
+
+
+class Robot(Protocol):
+    """Metres, degrees (counter-clockwise positive), seconds, percent. Only `stop` may be called from other threads.
+
+    Joints are "left arm lift", "left arm swing", "left arm bend", the same three of the right arm, "head turn" and
+    "head tilt". An arm's lift is 0 hanging, 90 level and 180 straight up; swing and turn are 0 straight ahead.
+
+    `on_event(kind, data)` is told what happens. Kinds: say, print, navigate, arrive, bump, stuck, stop, grasp, release,
+    drop, joint, dock, undock, battery, fault.
+    """
+
+    on_event: OnEvent | None
+
+    @property
+    def radius(self) -> float:
+        """Of the round footprint."""
+
+    @property
+    def normal_speed(self) -> float:
+        """Metres a second where a mission asks for no other speed."""
+
+    @property
+    def max_speed(self) -> float:
+        """`drive` goes no faster."""
+
+    @property
+    def normal_turn(self) -> float:
+        """Degrees a second for turning on the spot."""
+
+    def step(self, dt: float) -> None:
+        """Lets `dt` seconds pass. On a real robot time passes by itself and this only reads the sensors."""
+
+    def stop(self) -> None:
+        """Emergency stop, from any thread: brakes hard, cancels the journey, freezes joints, ends speech.
+
+        Commands given before the next `step` are ignored, so that a tick in flight cannot undo it; `stops` counts it,
+        so that an action under way knows afterwards.
+        """
+
+    @property
+    def stops(self) -> int:
+        """How often `stop` was called."""
+
+    @property
+    def moving(self) -> bool:
+        """True while the base still rolls or a joint moves."""
+
+    # Base
+    @property
+    def pose(self) -> Pose:
+        """Where it is."""
+
+    @property
+    def velocity(self) -> tuple[float, float]:
+        """Metres and degrees a second that the base really moves."""
+
+    def drive(self, linear: float, angular: float) -> None:
+        """Sets the wanted metres and degrees a second until told otherwise; ends a journey under way."""
+
+    @property
+    def bumps(self) -> int:
+        """How often the robot ran into something."""
+
+    @property
+    def bumped(self) -> bool:
+        """True from running into something until it has moved away."""
+
+    @property
+    def stuck(self) -> bool:
+        """True when it has been told to move for a second and does not."""
+
+    def navigate_to(self, name: str) -> Navigation:
+        """Sets out for a place, for an object (within arm's reach) or a person (within talking distance), and faces it.
+
+        Raises RobotError for an unknown name; all else that goes wrong is the journey's `failure`.
+        """
+
+    # Senses
+    def scan(self) -> npt.NDArray[np.float64]:
+        """360 distances from the centre, index = degrees left of the heading, inf where nothing is in range.
+
+        Raises RobotError when the scanner is silent.
+        """
+
+    def locate(self, name: str) -> Point:
+        """Where a place, object or person is. Raises RobotError for an unknown name."""
+
+    def nearby_people(self, within: float) -> list[str]:
+        """Names of the people within so many metres, nearest first."""
+
+    # Power
+    @property
+    def battery(self) -> float:
+        """Percent left."""
+
+    @property
+    def docked(self) -> bool:
+        """True while connected to the dock."""
+
+    @property
+    def charging(self) -> bool:
+        """True while docked and not full."""
+
+    def dock(self) -> None:
+        """Connects to the charger. Raises RobotError where the robot does not stand at the dock."""
+
+    def undock(self) -> None:
+        """Disconnects; moves nothing."""
+
+    # Arms, hands, head
+    def joint(self, name: str) -> float:
+        """The joint's angle. Raises RobotError for an unknown name."""
+
+    def move_joints(self, targets: Mapping[str, float]) -> None:
+        """Sets off joints towards angles, which are clipped to what the joint can do."""
+
+    def joints_at_target(self, *names: str) -> bool:
+        """True when these joints rest where they were told to go."""
+
+    def freeze_joints(self, *names: str) -> None:
+        """These joints stay where they are now."""
+
+    def grasp(self, hand: Hand, name: str | None = None) -> str:
+        """Closes a hand on the named object, else the nearest within reach, and returns its name.
+
+        Raises RobotError when nothing (or not that object) is within reach or the hand is full.
+        """
+
+    def release(self, hand: Hand) -> str | None:
+        """Opens a hand and puts down what it held, whose name it returns."""
+
+    def holding(self, hand: Hand) -> str | None:
+        """The name of what the hand holds."""
+
+    # Voice
+    def say(self, text: str) -> None:
+        """Starts to speak; `speaking` tells when it has finished."""
+
+    @property
+    def speaking(self) -> bool:
+        """True while it speaks."""
+
+    def silence(self) -> None:
+        """Ends speech at once."""
+
+    def print(self, text: str) -> None:
+        """Shows text at once."""

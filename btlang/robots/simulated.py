@@ -1,0 +1,288 @@
+"""A simulated robot in a simulated world: deterministic, and faster than real time by far."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from math import ceil
+from typing import Any
+
+from btlang.robots import base as wheels
+from btlang.robots import navigation
+from btlang.robots.base import Base
+from btlang.robots.faults import Faults, describe
+from btlang.robots.geometry import Point, Pose
+from btlang.robots.hands import Hands
+from btlang.robots.joints import Joints
+from btlang.robots.navigation import Journey, Navigator
+from btlang.robots.obstacles import Array, Obstacles
+from btlang.robots.power import Power
+from btlang.robots.robot import Hand, OnEvent, RobotError
+from btlang.robots.scan import Scanner
+from btlang.robots.world import ROBOT_RADIUS, World, said
+
+_CONTROL_PERIOD = 0.05
+_HANDS: tuple[Hand, Hand] = ("left", "right")
+
+
+class SimulatedRobot:
+    """Implements `btlang.robots.robot.Robot`. Nothing in it is random: the same commands give the same run."""
+
+    radius = ROBOT_RADIUS
+    normal_speed = navigation.SPEED
+    max_speed = wheels.MAX_SPEED
+    normal_turn = navigation.TURN
+
+    def __init__(self, world: World, on_event: OnEvent | None = None) -> None:
+        self.world = world
+        self.on_event = on_event
+        self.time = 0.0
+        self.stops = 0
+        self._obstacles = Obstacles(world)
+        self._base = Base(world.start, self._obstacles)
+        self._faults = Faults(world.faults)
+        self._navigator = Navigator(world, self._base, self._obstacles, self._faults)
+        self._power = Power(world.battery, world.dock)
+        self._scanner = Scanner(self._obstacles)
+        self._joints = Joints()
+        self._hands = Hands(self._obstacles, world.names.objects)
+        self._speech_left = 0.0
+        self._stopping = False
+        self._bumps_told = 0
+        self._stuck_told = False
+        self._begin_faults()
+
+    def step(self, dt: float) -> None:
+        """Lets `dt` (> 0) seconds pass; the scan, the events and all sensors follow."""
+        if self._stopping:
+            self._stopping = False
+            self._rest()  # again: a step under way in this thread may have overwritten what `stop` did in another
+        pieces = max(1, ceil(dt / _CONTROL_PERIOD - 1e-9))
+        for _ in range(pieces):
+            self._move_on(dt / pieces)
+
+    def _move_on(self, dt: float) -> None:
+        self.time += dt
+        self._begin_faults()
+        arrived = self._navigator.control()
+        travelled = self._base.travelled
+        self._base.step(dt)
+        self._joints.step(dt)
+        self._speech_left = max(0.0, self._speech_left - dt)
+        self._drop()
+        self._use_power(dt, self._base.travelled - travelled)
+        self._tell_contacts()
+        if arrived is not None and arrived.failure is None:
+            self._emit("arrive", name=arrived.name)
+
+    def stop(self) -> None:
+        """Brakes hard, cancels the journey, freezes joints and ends speech. Safe from any thread."""
+        self._stopping = True
+        self.stops += 1
+        self._rest()
+        self._emit("stop")
+
+    def _rest(self) -> None:
+        self._navigator.cancel("the robot was told to stop")
+        self._base.brake()
+        self._joints.freeze()
+        self._speech_left = 0.0
+
+    @property
+    def moving(self) -> bool:
+        """True while the base still rolls or a joint moves."""
+        return self._base.rolling or self._joints.moving
+
+    # Base
+    @property
+    def pose(self) -> Pose:
+        """Where it is."""
+        return self._base.pose
+
+    @property
+    def velocity(self) -> tuple[float, float]:
+        """Metres and degrees a second."""
+        return self._base.velocity
+
+    def drive(self, linear: float, angular: float) -> None:
+        """Sets the wanted metres and degrees a second; ends a journey under way."""
+        if self._stopping or self._power.empty:
+            return
+        self._navigator.cancel("the robot was told to drive elsewhere")
+        self._base.drive(linear, angular)
+
+    @property
+    def bumps(self) -> int:
+        """How often it ran into something."""
+        return self._base.bumps
+
+    @property
+    def bumped(self) -> bool:
+        """True from running into something until it has moved away."""
+        return self._base.bumped
+
+    @property
+    def stuck(self) -> bool:
+        """True when it has been told to move for a second and does not."""
+        return self._base.stuck
+
+    def navigate_to(self, name: str) -> Journey:
+        """Sets out for a place, an object or a person. Raises RobotError for an unknown name."""
+        known = self._known(name)
+        journey = self._navigator.start(known)
+        if self._stopping:
+            journey.end("the robot was told to stop")
+        if self._power.empty:
+            journey.end("the battery is empty")
+        self._emit("navigate", name=known)
+        return journey
+
+    # Senses
+    def scan(self) -> Array:
+        """360 distances, computed when first read after a step. Raises RobotError when the scanner is silent."""
+        if self._faults.scanner_silent:
+            raise RobotError("the laser scanner is silent")
+        return self._scanner.read(self.pose)
+
+    def locate(self, name: str) -> Point:
+        """Where a place, object or person is. Raises RobotError for an unknown name."""
+        known = self._known(name)
+        for place in self.world.places:
+            if place.name == known:
+                return place.x, place.y
+        if self._obstacles.is_carried(known):
+            return self.pose.x, self.pose.y
+        thing = self._obstacles.things[known]
+        return thing.x, thing.y
+
+    def nearby_people(self, within: float) -> list[str]:
+        """Names of the people within so many metres, nearest first."""
+        distances = [(self.pose.distance_to(self.locate(name)), name) for name in self.world.names.people]
+        return [name for distance, name in sorted(distances) if distance <= within]
+
+    def move_thing(self, name: str, x: float, y: float) -> None:
+        """Puts an object or a person somewhere else, as somebody in the world would. Raises RobotError."""
+        known = self._known(name)
+        if known not in self._obstacles.things or self._obstacles.is_carried(known):
+            raise RobotError(f"{said(known)} cannot be moved")
+        self._obstacles.move(known, x, y)
+
+    def _known(self, name: str) -> str:
+        names = self.world.names
+        for known in (*names.places, *names.objects, *names.people):
+            if known.lower() == name.lower():
+                return known
+        raise RobotError(f'I do not know where "{name}" is')
+
+    # Power
+    @property
+    def battery(self) -> float:
+        """Percent left."""
+        return self._power.level
+
+    @property
+    def docked(self) -> bool:
+        """True while connected to the dock."""
+        return self._power.docked
+
+    @property
+    def charging(self) -> bool:
+        """True while docked and not full."""
+        return self._power.charging
+
+    def dock(self) -> None:
+        """Connects to the charger. Raises RobotError where the robot does not stand at the dock."""
+        self._power.connect(self.pose)
+        self._emit("dock")
+
+    def undock(self) -> None:
+        """Disconnects; moves nothing."""
+        if self._power.docked:
+            self._power.docked = False
+            self._emit("undock")
+
+    # Arms, hands, head
+    def joint(self, name: str) -> float:
+        """Degrees. Raises RobotError for an unknown name."""
+        return self._joints.angle(name)
+
+    def move_joints(self, targets: Mapping[str, float]) -> None:
+        """Sets off joints towards angles, clipped to their limits. Raises RobotError for an unknown name."""
+        if not self._stopping:
+            self._joints.move(targets)
+            self._emit("joint", targets=dict(targets))
+
+    def joints_at_target(self, *names: str) -> bool:
+        """True when none of them is on its way."""
+        return self._joints.at_target(names)
+
+    def freeze_joints(self, *names: str) -> None:
+        """These joints stay where they are now."""
+        self._joints.freeze(names)
+
+    def grasp(self, hand: Hand, name: str | None = None) -> str:
+        """Closes a hand on the named or the nearest object and returns its name. Raises RobotError."""
+        found = self._hands.grasp(hand, None if name is None else self._known(name), self.pose, self.time)
+        self._emit("grasp", hand=hand, name=found)
+        return found
+
+    def release(self, hand: Hand) -> str | None:
+        """Opens a hand and puts down what it held."""
+        name = self._hands.release(hand, self.pose)
+        self._emit("release", hand=hand, name=name)
+        return name
+
+    def holding(self, hand: Hand) -> str | None:
+        """The name of what the hand holds."""
+        return self._hands.held.get(hand)
+
+    # Voice
+    def say(self, text: str) -> None:
+        """Starts to speak: 0.35 s and 0.06 s a character."""
+        if not self._stopping:
+            self._speech_left = 0.35 + 0.06 * len(text)
+            self._emit("say", text=text)
+
+    @property
+    def speaking(self) -> bool:
+        """True while it speaks."""
+        return self._speech_left > 1e-9
+
+    def silence(self) -> None:
+        """Ends speech at once."""
+        self._speech_left = 0.0
+
+    def print(self, text: str) -> None:
+        """Shows text at once."""
+        self._emit("print", text=text)
+
+    def _begin_faults(self) -> None:
+        for fault in self._faults.advance(self.time):
+            self._emit("fault", kind=fault.kind, text=describe(fault))
+        self._base.grips = self._faults.grips
+
+    def _use_power(self, dt: float, metres: float) -> None:
+        was_empty = self._power.empty
+        if self._power.step(dt, metres, self._base.pose):
+            self._emit("undock")
+        if self._power.empty and not was_empty:
+            self._navigator.cancel("the battery is empty")
+            self._base.brake()
+            self._emit("battery", percent=0.0)
+
+    def _drop(self) -> None:
+        for hand in _HANDS:
+            if hand in self._hands.held and self._hands.held_for(hand, self.time) >= self._faults.holds_for(hand):
+                name = self._hands.release(hand, self.pose)
+                self._emit("drop", hand=hand, name=name)
+
+    def _tell_contacts(self) -> None:
+        if self._base.bumps > self._bumps_told:
+            self._bumps_told = self._base.bumps
+            self._emit("bump", into=self._base.bumped_into)
+        if self._base.stuck and not self._stuck_told:
+            self._emit("stuck")
+        self._stuck_told = self._base.stuck
+
+    def _emit(self, event: str, **data: Any) -> None:
+        if self.on_event is not None:
+            self.on_event(event, data)

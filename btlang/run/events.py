@@ -1,0 +1,61 @@
+"""The one stream of everything that happens while a mission runs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from btlang.record import Record
+from btlang.tree.node import Node
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any, TypeAlias
+
+    Event: TypeAlias = "StatusChanged | RobotEvent"
+    Sink: TypeAlias = Callable[[Event], object]
+
+
+class StatusChanged(Record):
+    """A node has a new status. `index` is its number in preorder, `path` its place; `t` is in seconds of the mission.
+
+    `reason` says why a leaf or decorator failed, "" for any other status and where nothing is known.
+    """
+
+    t: float
+    index: int
+    path: str
+    node: Node
+    status: int
+    reason: str = ""
+
+
+class RobotEvent(Record):
+    """Something that the robot did or met: kind `say`, `print`, `bump`, ... with its data."""
+
+    t: float
+    kind: str
+    data: Mapping[str, Any] = {}
+
+
+class EventStream:
+    """Hands each event to all sinks, in the order they were added.
+
+    A sink that raises is dropped and its exception kept in `errors`: what watches a mission must not stop it.
+    """
+
+    def __init__(self, *sinks: Sink) -> None:
+        self.sinks: list[Sink] = list(sinks)
+        self.errors: list[Exception] = []
+
+    def add(self, sink: Sink) -> None:
+        """Adds a sink, which gets the events from now on."""
+        self.sinks.append(sink)
+
+    def publish(self, event: Event) -> None:
+        """Hands an event to all sinks."""
+        for sink in tuple(self.sinks):
+            try:
+                sink(event)
+            except Exception as problem:
+                self.sinks.remove(sink)
+                self.errors.append(problem)

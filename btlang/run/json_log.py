@@ -1,0 +1,49 @@
+"""A log for programs: one line of JSON for each event."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable, Mapping
+
+from btlang.engine.status import NAMES
+from btlang.run.events import RobotEvent, StatusChanged
+from btlang.tree.node import Node
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any, Protocol
+
+    from btlang.run.events import Event
+
+    class TextOutput(Protocol):
+        """A file, or what can be written to like one."""
+
+        def write(self, text: str, /) -> object: ...
+
+        def flush(self) -> object: ...
+
+
+class JsonLog:
+    """A sink; each line is flushed, so that the log is whole up to the moment of a crash. `label` names a node."""
+
+    def __init__(self, output: TextOutput, label: Callable[[Node], str]) -> None:
+        self._output = output
+        self._label = label
+
+    def __call__(self, event: Event) -> None:
+        line = json.dumps(self._fields(event), ensure_ascii=False, default=str)
+        self._output.write(line + "\n")
+        self._output.flush()
+
+    def _fields(self, event: Event) -> Mapping[str, Any]:
+        t = round(event.t, 6)
+        if isinstance(event, RobotEvent):
+            return {**event.data, "t": t, "event": event.kind}
+        return _status_fields(event, t, self._label(event.node))
+
+
+def _status_fields(event: StatusChanged, t: float, name: str) -> Mapping[str, Any]:
+    node = event.node
+    fields = {"t": t, "path": event.path, "id": node.id, "name": name, "ports": dict(node.ports)}
+    reason = {"reason": event.reason} if event.reason else {}
+    return {**fields, "status": NAMES[event.status], **reason}

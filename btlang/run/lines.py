@@ -1,0 +1,50 @@
+"""Plain lines for people: what the robot does, when it starts and how it ends."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED
+from btlang.run.events import RobotEvent
+from btlang.tree.node import Node
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.run.events import Event, StatusChanged
+
+_WORDS = {IDLE: "halted", RUNNING: "start", FAILURE: "failed", SKIPPED: "skipped"}
+
+
+class Lines:
+    """A sink that writes a line at the start and at the end of each action, and what the robot says or bumps into.
+
+    `label` gives the words for a node, `is_action` whether it is an action; `write` gets lines without an end.
+    """
+
+    def __init__(
+        self, label: Callable[[Node], str], is_action: Callable[[Node], bool], write: Callable[[str], object]
+    ) -> None:
+        self._label = label
+        self._is_action = is_action
+        self._write = write
+
+    def __call__(self, event: Event) -> None:
+        if isinstance(event, RobotEvent):
+            self._robot(event)
+        elif event.node.id == "Sleep" or self._is_action(event.node):
+            self._action(event)
+
+    def _action(self, event: StatusChanged) -> None:
+        reason = f": {event.reason}" if event.reason else ""
+        self._line(event.t, _WORDS.get(event.status, "done"), self._label(event.node) + reason)
+
+    def _robot(self, event: RobotEvent) -> None:
+        if event.kind in ("say", "print"):
+            self._line(event.t, f"{event.kind}s", f'"{event.data.get("text", "")}"')
+        elif event.kind == "bump":
+            self._line(event.t, "bumps", str(event.data.get("into", "")))
+        elif event.kind == "error":
+            self._line(event.t, "error", str(event.data.get("text", "")))
+
+    def _line(self, t: float, word: str, rest: str) -> None:
+        self._write(f"{t:7.2f}  {word:<6} {rest}".rstrip())

@@ -1,0 +1,171 @@
+"""Runs a mission: ticks its tree at a fixed rate, moves the clock and the robot, and leaves the robot at rest."""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+from collections.abc import Callable, Mapping
+
+from btlang.engine.blackboard import Blackboard
+from btlang.engine.clock import Clock
+from btlang.engine.engine import Engine, Failure
+from btlang.engine.leaf import LeafBinding
+from btlang.engine.status import FAILURE, IDLE, RUNNING
+from btlang.record import Record
+from btlang.run.events import EventStream, RobotEvent, StatusChanged
+from btlang.tree.node import Tree
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any, Protocol
+
+    class Robot(Protocol):
+        """What the runner asks of a robot; `moving` (a bool) may be missing."""
+
+        def step(self, dt: float) -> object: ...
+
+        def stop(self) -> object: ...
+
+
+_REST = 2.0  # seconds of the mission that a robot gets to come to rest
+
+
+class Outcome(Record):
+    """How a run ended: `stopped` is "" where the tree completed, else (status IDLE) "time limit" or "interrupted".
+
+    `seconds` are those of the mission, without the time in which the robot came to rest.
+    """
+
+    status: int
+    seconds: float
+    ticks: int
+    failure: Failure | None
+    stopped: str = ""
+
+
+def traced_engine(
+    tree: Tree,
+    bind: Callable[[str], LeafBinding | None],
+    *,
+    clock: Clock,
+    events: EventStream,
+    services: Mapping[str, Any] = {},
+    blackboard: Blackboard | None = None,
+) -> Engine:
+    """An engine whose status changes go into the stream."""
+
+    def changed(index: int, status: int) -> None:
+        reason = engine.reason(index) if status == FAILURE else ""
+        events.publish(StatusChanged(clock.now, index, engine.path(index), engine.node(index), status, reason))
+
+    engine = Engine(tree, bind, clock=clock, services=services, blackboard=blackboard, listener=changed)
+    return engine
+
+
+class Runner:
+    """Ticks an engine `rate` times a second of the mission until the tree completes.
+
+    `speed` is seconds of the mission per second of real time; math.inf does not wait at all. `overruns` counts the
+    periods that took longer than they should have. Time after a late tick is not caught up with.
+    """
+
+    def __init__(
+        self,
+        engine: Engine,
+        *,
+        clock: Clock,
+        robot: Robot | None = None,
+        rate: float = 20.0,
+        speed: float = 1.0,
+        time_limit: float | None = None,
+        events: EventStream | None = None,
+    ) -> None:
+        self._engine = engine
+        self._clock = clock
+        self._robot = robot
+        self._period = 1 / rate
+        self._pause = self._period / speed
+        self._limit = math.inf if time_limit is None else time_limit
+        self._events = EventStream() if events is None else events
+        self._stop = threading.Event()
+        self._began = clock.now
+        self._reported = 0  # how many failures to halt have been published
+        self.ticks = 0
+        self.overruns = 0
+
+    def stop(self) -> None:
+        """Ends the run before its next tick; for another thread or a signal handler."""
+        self._stop.set()
+
+    def step(self) -> int:
+        """One period: ticks the tree, then, unless it completed, moves clock and robot on. Returns the status."""
+        status = self._engine.tick()
+        self.ticks += 1
+        self._report_halts()
+        if status == RUNNING:
+            self._advance()
+        return status
+
+    def run(self) -> Outcome:
+        """Runs to the end, the time limit, stop() or Ctrl-C; then halts the tree and brings the robot to rest.
+
+        An exception other than KeyboardInterrupt does the same and comes through.
+        """
+        self._began, self.ticks = self._clock.now, 0
+        try:
+            status, stopped = self._loop()
+        except KeyboardInterrupt:
+            status, stopped = IDLE, "interrupted"
+        finally:
+            seconds = self._clock.now - self._began
+            self._end()
+        return Outcome(status, seconds, self.ticks, None if stopped else self._engine.failure, stopped)
+
+    def _loop(self) -> tuple[int, str]:
+        due = time.monotonic()
+        while not self._stop.is_set():
+            if self._clock.now - self._began >= self._limit - 1e-9:
+                return IDLE, "time limit"
+            status = self.step()
+            if status != RUNNING:
+                return status, ""
+            due = self._wait(due + self._pause)
+        return IDLE, "interrupted"
+
+    def _wait(self, due: float) -> float:
+        """Sleeps until a point in real time; returns it, or the present where that is later already."""
+        if self._pause == 0:
+            return due
+        left = due - time.monotonic()
+        if left > 0:
+            self._stop.wait(left)
+            return due
+        self.overruns += 1
+        return due - left
+
+    def _advance(self) -> None:
+        self._clock.advance(self._period)
+        if self._robot is not None:
+            self._robot.step(self._period)
+
+    def _end(self) -> None:
+        """Another Ctrl-C cuts short only the wait for the robot, not the halting."""
+        try:
+            self._engine.halt()
+        finally:
+            if self._robot is not None:
+                self._robot.stop()
+        self._report_halts()
+        rest_until = self._clock.now + _REST
+        while getattr(self._robot, "moving", False) and self._clock.now < rest_until - 1e-9:
+            self._advance()
+            if self._pause:
+                time.sleep(self._pause)
+
+    def _report_halts(self) -> None:
+        failures = self._engine.halt_failures
+        for failure in failures[self._reported :]:
+            data = {"text": f"{failure.node.id} did not halt: {failure.reason}", "path": failure.path}
+            self._events.publish(RobotEvent(self._clock.now, "error", data))
+        self._reported = len(failures)

@@ -1,0 +1,1 @@
+"""Source text, places in it, words, and spelling suggestions."""

@@ -1,0 +1,124 @@
+"""Text to words: one pass of one regular expression over the whole text.
+
+A word is kept in lower case; quoted text keeps its case behind a leading `"`; numbers and units part ("2m" is `2`, `m`);
+each punctuation mark is a word of its own. Articles leave no word, only a note of where they stood.
+"""
+
+from __future__ import annotations
+
+import re
+
+from btlang.record import Record
+from btlang.text.source import Source, Span
+
+# Same length on both sides, so that offsets stay those of the text that the user sees.
+_TYPOGRAPHIC = str.maketrans({"“": '"', "”": '"', "„": '"', "«": '"', "»": '"', "’": "'", "‘": "'", "\ufeff": "\r"})  # noqa: RUF001
+
+_WORD = re.compile(
+    r"""(?P<word>[^\W\d_]+/[^\W\d_]+(?!\w)|[^\W\d](?:[\w'-]*\w)?)
+    |(?P<number>-?\d+(?:\.\d+)?(?:[eE][+-]?\d+(?!\w))?)
+    |(?P<mark>[,;:()%°{}]|[.!?]+)
+    |(?P<quote>"[^"\n]*"|(?<!\w)'[^'\n]*'(?!\w))
+    |(?P<line>\n[ \t\r]*)
+    |(?P<comment>\#[^\n]*)
+    |(?P<open>"[^\n]*)
+    |(?P<space>[^\S\n]+)
+    |(?P<other>.)""",
+    re.VERBOSE,
+)
+
+END_OF_STATEMENT = ";"
+END_OF_TEXT = "\n"  # also the word that ends each line
+
+
+class Line(Record):
+    """Words `first` to `last` (exclusive) of one line that is not blank; `indent` counts columns, a tab up to 4."""
+
+    indent: int
+    first: int
+    last: int
+
+
+class Words:
+    """The words of a source as parallel lists, with a `\\n` word at the end of each line that is not blank."""
+
+    __slots__ = ("articles", "ends", "lines", "open_quotes", "source", "starts", "unreadable", "words")
+
+    def __init__(self, source: Source) -> None:
+        self.source = source
+        self.words: list[str] = []
+        self.starts: list[int] = []
+        self.ends: list[int] = []
+        self.lines: list[Line] = []
+        self.articles: dict[int, tuple[int, int]] = {}
+        """Where an article stood: index of the word that follows it -> its characters."""
+        self.open_quotes: list[Span] = []
+        self.unreadable: list[Span] = []
+
+    def span(self, first: int, last: int) -> Span:
+        """The characters of words `first` to `last` (exclusive); never empty where there is a word."""
+        if first >= last:
+            return Span(self.source, self.starts[first], self.ends[first])
+        return Span(self.source, self.starts[first], self.ends[last - 1])
+
+
+def split(source: Source, articles: frozenset[str]) -> Words:
+    """The words of a text. Never raises: unterminated quotes and unreadable characters are listed in the result."""
+    result = Words(source)
+    words, starts, ends = result.words, result.starts, result.ends
+    text = source.text.translate(_TYPOGRAPHIC)
+    first, indent = 0, _indent(re.match(r"[ \t]*", text).group())  # type: ignore[union-attr]
+
+    def end_line(at: int) -> None:
+        nonlocal first
+        if len(words) > first:
+            result.lines.append(Line(indent, first, len(words)))
+            words.append(END_OF_TEXT)
+            starts.append(at)
+            ends.append(at)
+        first = len(words)
+
+    for match in _WORD.finditer(text):
+        kind = match.lastgroup
+        if kind == "space" or kind == "comment":
+            continue
+        start, end = match.span()
+        word = match.group()
+        if kind == "word":
+            word = word.lower()
+            if word in articles:
+                result.articles[len(words)] = (start, end)
+                continue
+        elif kind == "line":
+            end_line(start)
+            indent = _indent(word[1:])
+            continue
+        elif kind == "mark":
+            if word[0] in ".!?;":
+                if len(words) == first or words[-1] == END_OF_STATEMENT:
+                    continue
+                word = END_OF_STATEMENT
+        elif kind == "quote":
+            word = '"' + source.text[start + 1 : end - 1]
+        elif kind == "open":
+            result.open_quotes.append(Span(source, start, end))
+            word = '"' + source.text[start + 1 : end].rstrip()
+        elif kind == "other":
+            bad = result.unreadable
+            if bad and bad[-1].end == start:
+                bad[-1] = Span(source, bad[-1].start, end)
+            else:
+                bad.append(Span(source, start, end))
+            continue
+        words.append(word)
+        starts.append(start)
+        ends.append(end)
+    end_line(len(text))
+    words.append(END_OF_TEXT)  # so that looking one word ahead is always possible
+    starts.append(len(text))
+    ends.append(len(text))
+    return result
+
+
+def _indent(blank: str) -> int:
+    return len(blank.replace("\r", "").expandtabs(4))

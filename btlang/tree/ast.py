@@ -1,0 +1,196 @@
+"""The syntax tree of a mission, as both parsers give it: what was said, with the exact characters of each part.
+
+Commands: Phrase, Name, Chain, If, While, Provided, Repeat, Retry, Try, Within, For, Every, Delay, Wait, WaitUntil,
+Check, Nothing, Fail. Conditions: Phrase, Name, Chain ("all", "any"), Not. `parts` names the fields that hold subtrees.
+Amounts are port texts in base units (seconds); a number of rounds of -1 is without end.
+"""
+
+from __future__ import annotations
+
+from btlang.record import Record
+from btlang.text.source import Span
+from btlang.vocabulary.entry import Entry
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import ClassVar
+
+
+class Ast(Record):
+    """Base of all syntax nodes."""
+
+    if TYPE_CHECKING:
+        span: Span
+    parts: ClassVar[tuple[str, ...]] = ()
+
+
+class Phrase(Ast):
+    """A phrase of a keyword file; `arguments` are (slot, port text) in the order spoken."""
+
+    entry: Entry
+    arguments: tuple[tuple[str, str], ...]
+    span: Span
+
+
+class Name(Ast):
+    """A defined name."""
+
+    name: str
+    span: Span
+
+
+class Chain(Ast):
+    """Operands joined by one connective: "sequence", "fallback" or "parallel" of commands, "all" or "any" of conditions.
+
+    Never directly inside an equal chain unless one of them is `bracketed`.
+    """
+
+    operator: str
+    items: tuple[Ast, ...]
+    bracketed: bool
+    span: Span
+    parts = ("items",)
+
+
+class Not(Ast):
+    condition: Ast
+    span: Span
+    parts = ("condition",)
+
+
+class If(Ast):
+    """`negated` is "unless"."""
+
+    negated: bool
+    condition: Ast
+    body: Ast
+    otherwise: Ast | None
+    span: Span
+    parts = ("condition", "body", "otherwise")
+
+
+class While(Ast):
+    """`negated` is "until"."""
+
+    negated: bool
+    condition: Ast
+    body: Ast
+    otherwise: Ast | None
+    span: Span
+    parts = ("condition", "body", "otherwise")
+
+
+class Provided(Ast):
+    condition: Ast
+    body: Ast
+    span: Span
+    parts = ("condition", "body")
+
+
+class Repeat(Ast):
+    rounds: int
+    body: Ast
+    span: Span
+    parts = ("body",)
+
+
+class Retry(Ast):
+    attempts: int
+    body: Ast
+    span: Span
+    parts = ("body",)
+
+
+class Try(Ast):
+    """Without `otherwise` a failure of the body is ignored."""
+
+    body: Ast
+    otherwise: Ast | None
+    span: Span
+    parts = ("body", "otherwise")
+
+
+class Within(Ast):
+    seconds: str
+    body: Ast
+    span: Span
+    parts = ("body",)
+
+
+class For(Ast):
+    """The body over and over until the time is over."""
+
+    seconds: str
+    body: Ast
+    span: Span
+    parts = ("body",)
+
+
+class Every(Ast):
+    seconds: str
+    body: Ast
+    span: Span
+    parts = ("body",)
+
+
+class Delay(Ast):
+    seconds: str
+    body: Ast
+    span: Span
+    parts = ("body",)
+
+
+class Wait(Ast):
+    seconds: str
+    span: Span
+
+
+class WaitUntil(Ast):
+    condition: Ast
+    span: Span
+    parts = ("condition",)
+
+
+class Check(Ast):
+    condition: Ast
+    span: Span
+    parts = ("condition",)
+
+
+class Nothing(Ast):
+    span: Span
+
+
+class Fail(Ast):
+    span: Span
+
+
+class Definition(Ast):
+    """`name_span` covers the words of the name where it is defined."""
+
+    name: str
+    body: Ast
+    name_span: Span
+    span: Span
+    parts = ("body",)
+
+
+class Mission(Ast):
+    """A whole text: the sequence of its commands (None where it only defines) and its definitions in order."""
+
+    body: Ast | None
+    definitions: tuple[Definition, ...]
+    span: Span
+    parts = ("body", "definitions")
+
+
+def parts(node: Ast) -> list[Ast]:
+    """The subtrees of a node in the order of its fields."""
+    found: list[Ast] = []
+    for field in node.parts:
+        part = getattr(node, field)
+        if type(part) is tuple:
+            found += part
+        elif part is not None:
+            found.append(part)
+    return found

@@ -1,0 +1,50 @@
+"""The tree that every front end makes and every back end reads: BehaviorTree.CPP node names, ports and semantics."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from btlang.record import Record
+from btlang.text.source import Span
+
+
+class Node(Record, uncompared=("span",)):
+    """One node.
+
+    `id` is the registered type (`Sequence`, `GoTo`); `ports` are (name, text) pairs, text as XML would hold it,
+    a text `{key}` refers to the blackboard; `name` is an instance name, "" where none was given;
+    `span` is the sentence that it came from.
+    """
+
+    id: str
+    children: tuple[Node, ...] = ()
+    ports: tuple[tuple[str, str], ...] = ()
+    name: str = ""
+    span: Span | None = None
+
+    def port(self, name: str, default: str = "") -> str:
+        """The text of a port, or the default where it is not set."""
+        for key, text in self.ports:
+            if key == name:
+                return text
+        return default
+
+
+class Tree(Record):
+    """A main tree and the named subtrees that its SubTree nodes (port `ID`) refer to, in the order defined."""
+
+    root: Node
+    subtrees: tuple[tuple[str, Node], ...] = ()
+
+    def subtree(self, name: str) -> Node:
+        """Raises KeyError where no subtree has the name."""
+        return dict(self.subtrees)[name]
+
+    def walk(self) -> Iterator[Node]:
+        """Every node of the main tree, then of each subtree, parents before children; SubTree nodes are not entered."""
+        for root in (self.root, *(node for _, node in self.subtrees)):
+            stack = [root]
+            while stack:
+                node = stack.pop()
+                yield node
+                stack.extend(reversed(node.children))

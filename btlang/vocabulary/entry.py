@@ -1,0 +1,61 @@
+"""What a keyword file declares: actions, conditions and the types of their slots."""
+
+from __future__ import annotations
+
+from btlang.record import Record
+from btlang.text.source import Span
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from typing import Any
+
+
+class SlotSpec(Record):
+    """A slot of an entry: the name of its port, its type, and the port text that an absent value stands for."""
+
+    name: str
+    type: str
+    default: str | None = None
+
+
+class Entry(Record, uncompared=("span",)):
+    """One action or condition.
+
+    `call` is "module:name" or the Python object itself; `phrases` are patterns, the first is the one printed back;
+    `span` is the place of its first phrase in its keyword file.
+    """
+
+    sort: str  # "action" or "condition"
+    id: str
+    phrases: tuple[str, ...]
+    call: str | Callable[..., Any] = ""
+    slots: tuple[SlotSpec, ...] = ()
+    resources: tuple[str, ...] = ()
+    topic: str = ""
+    help: str = ""
+    example: str = ""
+    span: Span | None = None
+
+    def slot(self, name: str) -> SlotSpec:
+        """Raises KeyError where the entry has no such slot."""
+        for slot in self.slots:
+            if slot.name == name:
+                return slot
+        raise KeyError(name)
+
+    @property
+    def file(self) -> str:
+        """Where it was declared."""
+        return self.span.source.name if self.span else "Python"
+
+
+class Meaning(Record):
+    """What a phrase in the trie stands for: a connective or form of the language (`role`), or an entry.
+
+    `value` is the number of rounds of words such as `twice`.
+    """
+
+    role: str
+    entry: Entry | None = None
+    value: int = 0

@@ -1,0 +1,182 @@
+"""One keyword file (TOML) read and checked. Its form is described in docs/keywords.md."""
+
+from __future__ import annotations
+
+import re
+import tomllib
+
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
+from btlang.record import Record
+from btlang.text.source import Source, Span
+from btlang.vocabulary.entry import Entry, SlotSpec
+from btlang.vocabulary.pattern import PatternError, Slot, forms
+from btlang.vocabulary.values import Unit, ValueType
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+_TABLES = {"roles", "counts", "numbers", "multipliers", "fractions"}
+_TOP = {"language", "articles", "politeness", "unit_joiner", "action", "condition", "type", *_TABLES}
+_ENTRY = {"phrase", "id", "call", "ros", "slots", "resources", "topic", "help", "example"}
+_TYPE = {"name", "units", "whole", "least", "open", "values"}
+
+
+class KeywordFile(Record):
+    """What a file declares. `language` holds the tables of a connective file, empty in a pack of phrases.
+
+    `names` are (type, words, name) of the values of enumerated types.
+    """
+
+    source: Source
+    entries: tuple[Entry, ...]
+    types: tuple[ValueType, ...]
+    names: tuple[tuple[str, str, str], ...]
+    language: dict[str, Any]
+
+
+class _Reader:
+    """Reads one file and collects everything that is wrong with it."""
+
+    def __init__(self, source: Source) -> None:
+        self.source = source
+        self.problems: list[Diagnostic] = []
+
+    def wrong(self, reason: str, near: str = "", code: str = "BT060") -> None:
+        self.problems.append(diagnostic(code, self.span(near), reason=reason))
+
+    def span(self, near: str) -> Span:
+        """TOML readers give no places: the first time that the text stands in quotes, else stands at all."""
+        start = self.source.text.find(f'"{near}"') + 1 if near else 0
+        start = start or max(0, self.source.text.find(near))
+        return Span(self.source, start, start + len(near))
+
+    def entry(self, sort: str, table: dict[str, Any]) -> Entry | None:
+        phrases = table.get("phrase", [])
+        phrases = [phrases] if isinstance(phrases, str) else phrases
+        name = table.get("id", "")
+        if not _strings(phrases) or not phrases:
+            self.wrong(f"[[{sort}]] needs phrase = \"...\", or a list of them", str(name) or f"[[{sort}]]")
+            return None
+        near = phrases[0]
+        if not isinstance(name, str) or not re.fullmatch(r"[A-Za-z]\w*", name):
+            self.wrong(f"the {sort} '{near}' needs id = \"...\", one word that starts with a letter", near)
+            return None
+        for key in table.keys() - _ENTRY:
+            self.wrong(f"'{key}' is not known in [[{sort}]]; known are {', '.join(sorted(_ENTRY))}", near)
+        call, resources = table.get("call", ""), table.get("resources", [])
+        if not isinstance(call, str) or (call and not re.fullmatch(r"[\w.]+:[\w.]+", call)):
+            self.wrong(f"call of '{near}' is written \"module:name\"", near)
+        if not _strings(resources):
+            self.wrong(f"resources of '{near}' is a list of names", near)
+            resources = []
+        texts = {key: str(table.get(key, "")) for key in ("topic", "help", "example")}
+        slots = self.slots(phrases, table.get("slots", {}), near)
+        return Entry(sort, name, tuple(phrases), str(call), slots, tuple(resources), span=self.span(near), **texts)
+
+    def slots(self, phrases: list[str], table: Any, near: str) -> tuple[SlotSpec, ...]:
+        if not isinstance(table, dict):
+            self.wrong(f"slots of '{near}' is a table such as {{ distance = {{ type = \"length\" }} }}", near)
+            return ()
+        found: dict[str, SlotSpec] = {}
+        for phrase in phrases:
+            try:
+                parts = [part for form in forms(phrase) for part in form]
+            except PatternError as error:
+                self.wrong(str(error), phrase, "BT061")
+                continue
+            for part in parts:
+                if isinstance(part, Slot) and part.name not in found:
+                    found[part.name] = self.slot(part.name, table.get(part.name, {}), near)
+        for name in table.keys() - found.keys():
+            self.wrong(f"no phrase of '{near}' has a slot {{{name}}}", near)
+        return tuple(found.values())
+
+    def slot(self, name: str, table: Any, near: str) -> SlotSpec:
+        table = {"type": table} if isinstance(table, str) else table
+        if not isinstance(table, dict) or table.keys() - {"type", "default"}:
+            self.wrong(f"the slot {{{name}}} of '{near}' takes type and default", near)
+            table = {}
+        default = table.get("default")
+        return SlotSpec(name, str(table.get("type", name)), None if default is None else str(default))
+
+    def type(self, table: dict[str, Any]) -> tuple[ValueType, list[tuple[str, str, str]]] | None:
+        name = table.get("name")
+        if not isinstance(name, str) or not name.isidentifier():
+            self.wrong('[[type]] needs name = "...", one word', "[[type]]")
+            return None
+        for key in table.keys() - _TYPE:
+            self.wrong(f"'{key}' is not known in [[type]]; known are {', '.join(sorted(_TYPE))}", name)
+        units = []
+        for unit in table.get("units", []):
+            try:
+                over, _, under = unit["factor"].partition("/")
+                units.append(Unit(tuple(w.lower() for w in unit["words"]), float(over), float(under or 1)))
+            except (TypeError, KeyError, ValueError, AttributeError):
+                self.wrong(f'a unit of {name} is {{ words = ["m", "meter"], factor = "1" }}', name)
+        values = [{"name": v} if isinstance(v, str) else v for v in table.get("values", [])]
+        if not all(isinstance(v, dict) and isinstance(v.get("name"), str) for v in values):
+            self.wrong(f'the values of {name} are names, or {{ name = "left", words = ["left", "port"] }}', name)
+            values = []
+        names = [(name, str(word), str(v["name"])) for v in values for word in v.get("words", [v["name"]])]
+        least = table.get("least")
+        whole = bool(table.get("whole", False))
+        kind = _kind(name, bool(units), bool(values) or bool(table.get("open")))
+        listed = tuple(str(v["name"]) for v in values)
+        return ValueType(name, kind, tuple(units), whole, None if least is None else float(least), listed), names
+
+
+def _kind(name: str, has_units: bool, has_names: bool) -> str:
+    if has_units:
+        return "quantity"
+    if has_names:
+        return "names"
+    return "text" if name == "text" else "number"
+
+
+def _strings(value: object) -> bool:
+    return isinstance(value, list) and all(isinstance(item, str) for item in value)
+
+
+def read_keyword_file(source: Source) -> KeywordFile:
+    """Raises MissionError with everything that is wrong with the file (BT060, BT061)."""
+    reader = _Reader(source)
+    try:
+        document = tomllib.loads(source.text)
+    except tomllib.TOMLDecodeError as error:
+        place = re.search(r" \(at (?:line (\d+), column (\d+)|end of document)\)$", str(error))
+        start = len(source.text)
+        if place and place[1]:
+            start = len("".join(source.text.splitlines(True)[: int(place[1]) - 1])) + int(place[2]) - 1
+        reason = "it is not TOML: " + str(error)[: place.start() if place else None]
+        raise MissionError([diagnostic("BT060", Span(source, start, start + 1), reason=reason)]) from None
+    for key in document.keys() - _TOP:
+        reader.wrong(f"'{key}' is not known in a keyword file; known are {', '.join(sorted(_TOP))}", key)
+    entries, types, names = [], [], []
+    for sort in ("action", "condition"):
+        for table in _tables(document, sort, reader):
+            entry = reader.entry(sort, table)
+            if entry is not None:
+                entries.append(entry)
+    for table in _tables(document, "type", reader):
+        declared = reader.type(table)
+        if declared is not None:
+            types.append(declared[0])
+            names += declared[1]
+    language = {k: v for k, v in document.items() if k not in ("action", "condition", "type")}
+    for key, value in language.items():
+        if key in _TABLES and not isinstance(value, dict):
+            reader.wrong(f"{key} is a table: [{key}]", key)
+        if key in ("articles", "politeness", "unit_joiner") and not _strings(value):
+            reader.wrong(f"{key} is a list of words", key)
+    if reader.problems:
+        raise MissionError(reader.problems)
+    return KeywordFile(source, tuple(entries), tuple(types), tuple(names), language)
+
+
+def _tables(document: dict[str, Any], key: str, reader: _Reader) -> list[dict[str, Any]]:
+    value = document.get(key, [])
+    if isinstance(value, list) and all(isinstance(item, dict) for item in value):
+        return value
+    reader.wrong(f"{key} is written [[{key}]]", key)
+    return []

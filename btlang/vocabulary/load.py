@@ -1,0 +1,58 @@
+"""Finds keyword files and packs and loads a vocabulary from them."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterable, Mapping, Sequence
+
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.diagnostics.reading import read_source
+from btlang.text.source import Source, Span
+from btlang.vocabulary.entry import Entry
+from btlang.vocabulary.keyword_file import KeywordFile, read_keyword_file
+from btlang.vocabulary.shipped import keyword_files, shipped
+from btlang.vocabulary.vocabulary import Vocabulary
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+ENTRY_POINTS = "btlang.keywords"
+
+
+def load_vocabulary(
+    keywords: Sequence[str | Entry | Callable[..., Any]] = (), names: Mapping[str, Iterable[str]] | None = None
+) -> Vocabulary:
+    """The shipped words and those of `keywords`: paths of keyword files, names of installed packs, entries, or
+    functions that carry one (see `btlang.action`). `names` adds values of types, such as the places of a world.
+
+    A pack is an entry point of the group `btlang.keywords` whose value is a module beside which, or a function that
+    returns the path at which, its keyword file lies. Raises MissionError (BT001, BT002, BT060 to BT063).
+    """
+    paths = [shipped("keywords", "english.toml"), *keyword_files()]
+    paths += [_path(item) for item in keywords if isinstance(item, str)]
+    files: list[KeywordFile] = []
+    problems = []
+    for path in paths:
+        try:
+            files.append(read_keyword_file(read_source(path)))
+        except MissionError as error:
+            problems += error.diagnostics
+    if problems:
+        raise MissionError(problems)
+    entries = [e if isinstance(e, Entry) else e.btlang_entry for e in keywords if not isinstance(e, str)]  # type: ignore[attr-defined]
+    vocabulary = Vocabulary(files, entries)
+    for kind, values in (names or {}).items():
+        vocabulary.add_names(kind, values)
+    return vocabulary
+
+
+def _path(name: str) -> str:
+    if os.path.exists(name) or name.endswith(".toml"):
+        return name
+    from importlib.metadata import entry_points  # costs more than a whole check: only for named packs
+
+    for entry_point in entry_points(group=ENTRY_POINTS, name=name):
+        pack = entry_point.load()
+        return str(pack() if callable(pack) else os.path.join(os.path.dirname(pack.__file__), f"{name}.toml"))
+    raise MissionError([diagnostic("BT063", Span(Source("", name), 0, 0), name=name)])

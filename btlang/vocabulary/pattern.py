@@ -1,0 +1,84 @@
+"""Phrase patterns: Cucumber Expressions (https://github.com/cucumber/cucumber-expressions) and `[optional {slot}]`.
+
+    move forward [by] [{distance}]     turn/rotate left     item(s)     pick up {object}
+
+Written by us because the `cucumber-expressions` package only matches whole strings and takes no slot in optional text.
+"""
+
+from __future__ import annotations
+
+import re
+from itertools import product
+
+from btlang.record import Record
+
+
+class Slot(Record):
+    """A `{name}` in a pattern."""
+
+    name: str
+
+
+Part = str | Slot
+Form = tuple[Part, ...]
+"""One way to say a phrase: words in lower case and slots."""
+
+MOST_FORMS = 500
+
+
+class PatternError(ValueError):
+    """The pattern cannot be read; the message says what to write instead."""
+
+
+_PIECE = re.compile(r"(?P<slot>\{[^{}]*\})|(?P<open>\[)|(?P<close>\])|(?P<text>(?:\\.|\([^()]*\)|[^\s\[\]{}\\()])+)|(?P<bad>\S)")
+
+
+def forms(pattern: str, articles: frozenset[str] = frozenset()) -> list[Form]:
+    """Every way to say the pattern, without articles, longest first. Raises PatternError."""
+    ways: list[list[Form]] = [[()]]  # a stack: the innermost open `[` is the last
+    for match in _PIECE.finditer(pattern):
+        kind, piece = match.lastgroup, match.group()
+        if kind == "open":
+            ways.append([()])
+        elif kind == "close":
+            if len(ways) == 1:
+                raise PatternError(f"']' without '[' in '{pattern}'")
+            inner = ways.pop()
+            ways[-1] = _joined(ways[-1], [*inner, ()], pattern)
+        elif kind == "slot":
+            name = piece[1:-1].strip()
+            if not name.isidentifier():
+                raise PatternError(f"a slot is one word in braces, such as {{distance}}: '{piece}' in '{pattern}'")
+            ways[-1] = _joined(ways[-1], [(Slot(name),)], pattern)
+        elif kind == "text":
+            choices: list[Form] = [(w,) if w and w not in articles else () for w in _alternatives(piece)]
+            ways[-1] = _joined(ways[-1], choices, pattern)
+        else:
+            raise PatternError(f"'{piece}' is not closed in '{pattern}' (write \\{piece} for the character itself)")
+    if len(ways) > 1:
+        raise PatternError(f"'[' without ']' in '{pattern}'")
+    found = sorted(set(ways[0]) - {()}, key=lambda form: (-len(form), str(form)))
+    if not found or () in ways[0]:
+        raise PatternError(f"the phrase '{pattern}' has no word that must be said")
+    return found
+
+
+def _joined(left: list[Form], right: list[Form], pattern: str) -> list[Form]:
+    joined = list(dict.fromkeys(a + b for a, b in product(left, right)))
+    if len(joined) > MOST_FORMS:
+        raise PatternError(f"'{pattern}' can be said in more than {MOST_FORMS} ways; write several phrases")
+    return joined
+
+
+def _alternatives(piece: str) -> list[str]:
+    """`forward(s)/ahead` -> forwards, forward, ahead."""
+    found = []
+    for choice in re.split(r"(?<!\\)/", piece):
+        if not choice:
+            raise PatternError(f"an alternative is empty in '{piece}'")
+        texts = [""]
+        for optional, plain in re.findall(r"\(([^()]*)\)|((?:\\.|[^()\\])+)", choice):
+            clean = re.sub(r"\\(.)", r"\1", plain)
+            texts = [t + optional for t in texts] + texts if optional else [t + clean for t in texts]
+        found += [t.lower() for t in texts]
+    return found

@@ -1,0 +1,131 @@
+"""The phrase trie: longest match of phrases with slots, and the check that no two phrases match the same words.
+
+A node is a dict: word -> node, `END` -> meaning, `SLOTS` -> list of (slot name, type, node).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from btlang.record import Record
+from btlang.text.words import Words
+from btlang.vocabulary.entry import Meaning
+from btlang.vocabulary.pattern import Form, Slot
+from btlang.vocabulary.values import END, Values, ValueType
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+SLOTS = "\1"
+TrieNode = dict[str, "Any"]
+
+
+class SlotValue(Record):
+    """The value that was read in a slot: its port text and the words `first` to `last` (exclusive)."""
+
+    name: str
+    type: str
+    text: str
+    first: int
+    last: int
+
+
+class Match(Record):
+    """A phrase found in a text, up to word `last` (exclusive)."""
+
+    meaning: Meaning
+    last: int
+    values: tuple[SlotValue, ...] = ()
+
+
+def add(root: TrieNode, form: Form, types: Mapping[str, str], meaning: Meaning) -> Meaning | None:
+    """Adds one form of a phrase; `types` gives the type of each slot. Returns what stood there before, if any."""
+    node = root
+    for part in form:
+        if isinstance(part, Slot):
+            edges = node.setdefault(SLOTS, [])
+            for name, kind, child in edges:
+                if name == part.name and kind == types[part.name]:
+                    node = child
+                    break
+            else:
+                child = {}
+                edges.append((part.name, types[part.name], child))
+                node = child
+        else:
+            node = node.setdefault(part, {})
+    before: Meaning | None = node.get(END)
+    node[END] = meaning
+    return before
+
+
+def longest(root: TrieNode, text: Words, at: int, values: Values) -> Match | None:
+    """The longest phrase at a word; where two are equally long, the one with words in place of slots."""
+    words = text.words
+    node: TrieNode | None = root.get(words[at])
+    if node is None and SLOTS not in root:
+        return None
+    best: Meaning | None = None
+    best_last, best_values = at, ()
+    paths: list[tuple[TrieNode, int, Any]] = [(root, at, ())]
+    while paths:
+        node, i, found = paths.pop()
+        while True:
+            if END in node and (i > best_last or best is None):
+                best, best_last, best_values = node[END], i, found
+            if SLOTS in node:
+                for name, kind, child in node[SLOTS]:
+                    value = values.read(kind, text, i)
+                    if value is not None:
+                        paths.append((child, value[1], (*found, SlotValue(name, kind, value[0], i, value[1]))))
+            node = node.get(words[i])
+            if node is None:
+                break
+            i += 1
+    return Match(best, best_last, best_values) if best is not None else None
+
+
+def shortest_misfits(root: TrieNode, text: Words, at: int) -> Iterator[tuple[int, TrieNode, tuple[str, str] | None]]:
+    """For messages: how far the words of phrases go at a place: (word index, node there, slot that did not fit)."""
+    node: TrieNode | None = root
+    while node is not None:
+        for name, kind, _ in node.get(SLOTS, ()):
+            yield at, node, (name, kind)
+        yield at, node, None
+        node = node.get(text.words[at])
+        at += 1
+
+
+def collisions(root: TrieNode, types: Mapping[str, ValueType]) -> Iterator[tuple[Meaning, Meaning]]:
+    """Pairs of different entries that some words match equally; a slot counts as one value."""
+    pending = [(root, root)]
+    seen: set[tuple[int, int]] = set()
+    while pending:
+        left, right = pending.pop()
+        if (id(left), id(right)) in seen:
+            continue
+        seen |= {(id(left), id(right)), (id(right), id(left))}
+        if left is not right and END in left and END in right:
+            yield left[END], right[END]
+        words = [w for w in left if w not in (END, SLOTS)]
+        pending += [(left[w], right[w]) for w in words if w in right]
+        for one, other in ((left, right), (right, left)):
+            for _, kind, child in one.get(SLOTS, ()):
+                pending += [(child, n) for w, n in other.items() if w not in (END, SLOTS) and _takes(types[kind], w)]
+        for _, kind, child in left.get(SLOTS, ()):
+            for _, other_kind, other_child in right.get(SLOTS, ()):
+                if _overlap(types[kind], types[other_kind]):
+                    pending.append((child, other_child))
+
+
+def _takes(kind: ValueType, word: str) -> bool:
+    return kind.kind == "text" or word in kind.names
+
+
+def _overlap(one: ValueType, other: ValueType) -> bool:
+    if one.name == other.name or "text" in (one.kind, other.kind):
+        return True
+    if one.kind == other.kind == "names":
+        return not {n.lower() for n in one.names}.isdisjoint(n.lower() for n in other.names)
+    return one.kind == other.kind == "number"

@@ -1,0 +1,207 @@
+"""Values in slots: numbers in figures and words, units, and names from a list.
+
+A value becomes the text of a port, in the unit whose factor is 1: `half a meter` is "0.5", `two minutes` is "120".
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from btlang.record import Record
+from btlang.text.words import Words
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+END = "\0"  # key of a word tree's value; no word of a text is this one
+WordTree = dict[str, "Any"]
+
+
+class Unit(Record):
+    """`numerator / denominator` of the base unit; the first word is the one printed."""
+
+    words: tuple[str, ...]
+    numerator: float
+    denominator: float
+
+
+class ValueType(Record):
+    """A type that a slot may have.
+
+    `kind` is "quantity" (a number with one of `units`), "number" (no unit), "text" or "names" (one of a list).
+    """
+
+    name: str
+    kind: str
+    units: tuple[Unit, ...] = ()
+    whole: bool = False
+    least: float | None = None
+    names: tuple[str, ...] = ()
+
+    @property
+    def example(self) -> str:
+        """A value as a user would write it."""
+        if self.kind == "quantity":
+            word = self.units[0].words[0]
+            return "5%" if word == "%" else f"5 {word}"
+        if self.kind == "names":
+            return self.names[0] if self.names else self.name
+        return '"hello"' if self.kind == "text" else "3"
+
+
+def format_number(value: float) -> str:
+    """The shortest text that reads back as the number: 2, 0.5, 1e-07."""
+    whole = int(value)
+    return str(whole) if whole == value and abs(value) < 1e15 else repr(value)
+
+
+def insert(tree: WordTree, words: Sequence[str], value: object) -> None:
+    """Adds a sequence of words to a word tree."""
+    for word in words:
+        tree = tree.setdefault(word, {})
+    tree[END] = value
+
+
+def find(tree: WordTree, words: Sequence[str], at: int) -> tuple[Any, int] | None:
+    """The value of the longest sequence of the tree at a place, and where it ends."""
+    found = None
+    node = tree
+    while True:
+        node = node.get(words[at])  # type: ignore[assignment]
+        if node is None:
+            return found
+        at += 1
+        if END in node:
+            found = node[END], at
+
+
+class Values:
+    """Reads values at a place in a text. `types` by name; word tables as in english.toml."""
+
+    def __init__(
+        self,
+        types: Mapping[str, ValueType],
+        numbers: Mapping[str, float],
+        multipliers: Mapping[str, float],
+        fractions: Mapping[str, float],
+        unit_joiner: frozenset[str],
+    ) -> None:
+        self.types = dict(types)
+        self._numbers = numbers
+        self._multipliers = multipliers
+        self._joiner = unit_joiner
+        self._fractions: WordTree = {}
+        for phrase, value in fractions.items():
+            insert(self._fractions, phrase.split(), value)
+        self._units: WordTree = {}
+        self._names: dict[str, WordTree] = {}
+        for kind in types.values():
+            for unit in kind.units:
+                for word in unit.words:
+                    insert(self._units, word.split(), (kind.name, unit))
+            if kind.kind == "names":
+                self._names[kind.name] = {}
+                for name in kind.names:
+                    self.add_name(kind.name, name, name)
+
+    def add_name(self, kind: str, words: str, name: str) -> None:
+        """Lets the words stand for a name of a type."""
+        insert(self._names[kind], words.lower().split(), name)
+
+    def names(self, kind: str) -> list[str]:
+        """The names that a slot of the type takes, as they are printed."""
+        found: dict[str, None] = {}
+        stack: list[Any] = [self._names[kind]]
+        while stack:
+            node = stack.pop()
+            for key, child in node.items():
+                if key == END:
+                    found[child] = None
+                else:
+                    stack.append(child)
+        return sorted(found)
+
+    def read(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
+        """The port text of a value of the type and where it ends, or None where there is none."""
+        value_type = self.types[kind]
+        if value_type.kind == "quantity":
+            quantity = self.quantity(text, at)
+            if quantity is None or quantity[1] != kind:
+                return None
+            return format_number(quantity[0]), quantity[2]
+        if value_type.kind == "number":
+            return self._plain_number(value_type, text, at)
+        if value_type.kind == "names":
+            return find(self._names[kind], text.words, at) or self._quoted_name(kind, text, at)
+        return _text(text, at)
+
+    def quantity(self, text: Words, at: int) -> tuple[float, str, int] | None:
+        """A number with a unit: its value in the base unit, the name of the type, and where it ends."""
+        number = self.number(text, at)
+        if number is None:
+            if at not in text.articles:
+                return None
+            number = 1.0, at  # "a minute"
+        value, after = number
+        if text.words[after] in self._joiner:
+            after += 1
+        unit = find(self._units, text.words, after)
+        if unit is None:
+            return None
+        (kind, unit_of), end = unit
+        return value * unit_of.numerator / unit_of.denominator, kind, end
+
+    def number(self, text: Words, at: int) -> tuple[float, int] | None:
+        """A number in figures or words, fractions included, and where it ends."""
+        words = text.words
+        value, start = self._whole_number(words, at)
+        fraction = find(self._fractions, words, start)
+        if fraction is not None:
+            value, start = (value or 0) + fraction[0], fraction[1]
+        return None if value is None else (value, start)
+
+    def _whole_number(self, words: Sequence[str], at: int) -> tuple[float | None, int]:
+        word = words[at]
+        if word[0].isdigit() or (word[0] == "-" and word[1:2].isdigit()):
+            return float(word), at + 1
+        total: float | None = None
+        while True:
+            pieces = words[at].split("-")  # "twenty-five"
+            if not all(p in self._numbers or p in self._multipliers for p in pieces):
+                return total, at
+            for piece in pieces:
+                if piece in self._multipliers:
+                    total = (total if total is not None else 1) * self._multipliers[piece]
+                else:
+                    total = (total or 0) + self._numbers[piece]
+            at += 1
+
+    def _plain_number(self, value_type: ValueType, text: Words, at: int) -> tuple[str, int] | None:
+        number = self.number(text, at)
+        if number is None or find(self._units, text.words, number[1]):
+            return None
+        value, end = number
+        if (value_type.whole and value != int(value)) or (value_type.least is not None and value < value_type.least):
+            return None
+        return format_number(value), end
+
+    def _quoted_name(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
+        word = text.words[at]
+        if word[0] != '"':
+            return None
+        words = [*word[1:].lower().split(), END]
+        found = find(self._names[kind], words, 0) if len(words) > 1 else None
+        return (found[0], at + 1) if found and found[1] == len(words) - 1 else None
+
+
+def _text(text: Words, at: int) -> tuple[str, int] | None:
+    word = text.words[at]
+    if word[0] == '"':
+        return word[1:], at + 1
+    if word[0].isalnum() or (word[0] == "-" and len(word) > 1):
+        return text.source.text[text.starts[at] : text.ends[at]], at + 1
+    if at in text.articles:  # the article is all that there is: `print a`
+        start, end = text.articles[at]
+        return text.source.text[start:end], at
+    return None

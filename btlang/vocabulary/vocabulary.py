@@ -1,0 +1,162 @@
+"""All words that a mission may use, from the keyword files that were loaded."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
+from btlang.text.source import Source, Span
+from btlang.vocabulary.entry import Entry, Meaning, SlotSpec
+from btlang.vocabulary.keyword_file import KeywordFile
+from btlang.vocabulary.pattern import PatternError, Slot, forms
+from btlang.vocabulary.trie import TrieNode, add, collisions
+from btlang.vocabulary.values import Values, ValueType
+from btlang.text.words import split
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+
+class Vocabulary:
+    """Phrases, types and connectives of a language and its packs.
+
+    Raises MissionError (BT060 to BT062) where the files do not fit together.
+    """
+
+    def __init__(self, files: Iterable[KeywordFile], entries: Iterable[Entry] = ()) -> None:
+        self._problems: list[Diagnostic] = []
+        self.trie: TrieNode = {}
+        self.entries: dict[str, list[Entry]] = {}
+        files = list(files)
+        language = _merged(files)
+        self.articles = frozenset(language["articles"])
+        self.values = Values(
+            {t.name: t for f in files for t in f.types},
+            language["numbers"],
+            language["multipliers"],
+            language["fractions"],
+            frozenset(language["unit_joiner"]),
+        )
+        for file in files:
+            for kind, words, name in file.names:
+                self.values.add_name(kind, words, name)
+        self.roles: dict[str, list[str]] = {**language["roles"], "politeness": language["politeness"]}
+        self.counts: dict[str, int] = language["counts"]
+        self._add_roles()
+        for entry in (*(e for f in files for e in f.entries), *entries):
+            self._add_entry(entry)
+        self._find_collisions()
+        if self._problems:
+            raise MissionError(self._problems)
+
+    @property
+    def types(self) -> Mapping[str, ValueType]:
+        """Slot types by name."""
+        return self.values.types
+
+    def entry(self, node_id: str) -> Entry | None:
+        """The (first) entry of a node id."""
+        found = self.entries.get(node_id)
+        return found[0] if found else None
+
+    def add_names(self, kind: str, names: Iterable[str]) -> None:
+        """Lets slots of a type take further names: the places, people and objects of a world."""
+        for name in names:
+            self.values.add_name(kind, " ".join(w for w in name.split() if w.lower() not in self.articles), name)
+
+    def word(self, role: str) -> str:
+        """The word of a role that messages and canonical English use: the first in its list."""
+        return self.roles[role][0].split(" {")[0]
+
+    def _add_roles(self) -> None:
+        for role, phrases in self.roles.items():
+            for phrase in phrases:
+                self._add_phrase(phrase, Meaning(role), {})
+        for words, rounds in self.counts.items():
+            self._add_phrase(words, Meaning("count", value=rounds), {})
+
+    def _add_entry(self, entry: Entry) -> None:
+        types = {slot.name: slot.type for slot in entry.slots}
+        unknown = [slot for slot in entry.slots if slot.type not in self.types]
+        for slot in unknown:
+            known = ", ".join(sorted(self.types))
+            self._wrong(entry, "BT061", reason=f"the slot {{{slot.name}}} has no type '{slot.type}'; known are {known}")
+        if unknown:
+            return
+        entry = entry.replace(slots=tuple(self._with_port_default(entry, slot) for slot in entry.slots))
+        self.entries.setdefault(entry.id, []).append(entry)
+        for phrase in entry.phrases:
+            try:
+                self._add_phrase(phrase, Meaning("command" if entry.sort == "action" else "condition", entry), types)
+            except PatternError as error:
+                self._wrong(entry, "BT061", reason=str(error))
+
+    def _with_port_default(self, entry: Entry, slot: SlotSpec) -> SlotSpec:
+        """Defaults are written with units; ports hold them in the base unit."""
+        kind = self.types[slot.type].kind
+        if slot.default is None or kind in ("text", "names"):
+            return slot
+        text = split(Source(slot.default), self.articles)
+        value = self.values.read(slot.type, text, 0) if text.words else None
+        if value is None or value[1] < len(text.words) - 2:
+            wanted = self.types[slot.type].example
+            reason = f"the default '{slot.default}' of {{{slot.name}}} is no {slot.type}, such as {wanted}"
+            self._wrong(entry, "BT061", reason=reason)
+            return slot
+        return SlotSpec(slot.name, slot.type, value[0])
+
+    def _add_phrase(self, phrase: str, meaning: Meaning, types: dict[str, str]) -> None:
+        for form in forms(phrase, self.articles):
+            own = {part.name: types.get(part.name, part.name) for part in form if isinstance(part, Slot)}
+            before = add(self.trie, form, own, meaning)
+            if before is not None:
+                self._collide(before, meaning)
+
+    def _find_collisions(self) -> None:
+        for one, other in collisions(self.trie, self.types):
+            self._collide(one, other)
+
+    def _collide(self, one: Meaning, other: Meaning) -> None:
+        if one is other or (one.entry and other.entry and one.entry.id == other.entry.id):
+            return
+        if one.entry is None and other.entry is None:
+            if one.role == other.role:
+                return
+        entry = other.entry or one.entry
+        first, second = (self._described(m) for m in (one, other))
+        span = entry.span if entry and entry.span else Span(Source("", "english.toml"), 0, 0)
+        self._problems.append(
+            diagnostic(
+                "BT062", span,
+                first=first[0], first_id=first[1], first_file=first[2],
+                second=second[0], second_id=second[1], second_file=second[2],
+            )
+        )  # fmt: skip
+
+    def _described(self, meaning: Meaning) -> tuple[str, str, str]:
+        if meaning.entry is None:
+            return self.roles.get(meaning.role, [meaning.role])[0], f"role {meaning.role}", "connectives"
+        return meaning.entry.phrases[0], meaning.entry.id, meaning.entry.file
+
+    def _wrong(self, entry: Entry, code: str, **arguments: str) -> None:
+        span = entry.span or Span(Source(entry.phrases[0], "Python"), 0, len(entry.phrases[0]))
+        self._problems.append(diagnostic(code, span, **arguments))
+
+
+_LANGUAGE: dict[str, Any] = {
+    "articles": [], "politeness": [], "unit_joiner": [],
+    "roles": {}, "counts": {}, "numbers": {}, "multipliers": {}, "fractions": {},
+}  # fmt: skip
+
+
+def _merged(files: Iterable[KeywordFile]) -> dict[str, Any]:
+    """The language tables of all files; a later file replaces single roles and words of an earlier one."""
+    merged = {key: type(value)(value) for key, value in _LANGUAGE.items()}
+    for file in files:
+        for key, value in file.language.items():
+            if isinstance(value, dict):
+                merged[key] |= value
+            elif isinstance(value, list):
+                merged[key] = value
+    return merged

@@ -1,0 +1,97 @@
+"""Conditions, and the robot that roams on one of them."""
+
+from pathlib import Path
+
+import pytest
+from hypothesis import HealthCheck, assume, given, settings
+from hypothesis import strategies as st
+
+from btlang.actions import motion, sensing
+from btlang.engine.leaf import ActionFailed
+from btlang.robots.geometry import Pose
+from btlang.robots.world import Box, Fault, Place, Thing
+from btlang.robots.world_file import load_world
+
+ROOM = Path(__file__).parents[2] / "examples" / "worlds" / "walled_room.toml"
+
+
+@pytest.mark.parametrize("seconds", [60, 600])
+def test_roams_without_a_bump(bench, seconds):
+    b = bench(load_world(ROOM))
+    seen = set()
+    while b.clock.now < seconds:
+        if sensing.wall_in_front(b.robot):
+            b.run(motion.turn_left, angle=90.0)
+        else:
+            b.run(motion.move_forward, distance=0.5)
+        seen.add((round(b.robot.pose.x), round(b.robot.pose.y)))
+    assert b.robot.bumps == 0
+    assert len(seen) > 8
+
+
+@settings(max_examples=60, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
+@given(x=st.floats(0.21, 5.79), y=st.floats(0.21, 5.79), heading=st.floats(-180, 180))
+def test_half_a_metre_is_free_where_no_wall_is_in_front(bench, x, y, heading):
+    world = load_world(ROOM)
+    b = bench(world, start=Pose(x, y, heading))
+    assume(b.robot._obstacles.nearest(x, y)[0] > 0.201)
+    assume(not any(box.contains((x, y)) for box in world.boxes))
+    free = sensing.distance_ahead(b.robot)
+    if sensing.wall_in_front(b.robot):
+        with pytest.raises(ActionFailed, match="bumped"):
+            b.run(motion.move_forward, distance=free + 0.05)
+    else:
+        assert free > 0.5
+        b.run(motion.move_forward, distance=0.5)
+
+
+def test_each_side(bench):
+    walls = (((0.6, -0.1), (0.6, 0.1)), ((-0.1, -0.7), (0.1, -0.7)))
+    b = bench(walls=walls)
+    assert sensing.wall_in_front(b.robot)
+    assert not sensing.path_is_clear(b.robot)
+    assert sensing.wall_on_right(b.robot)
+    assert not sensing.wall_on_left(b.robot)
+    assert not sensing.wall_behind(b.robot)
+    b = bench(walls=walls, start=Pose(0.0, 0.0, 90.0))
+    assert not sensing.wall_in_front(b.robot)
+    assert sensing.wall_on_right(b.robot)
+    assert sensing.wall_behind(b.robot)
+
+
+def test_passes_doors_that_are_wide_enough(bench):
+    b = bench(boxes=(Box(0.8, 0.6, 0.5, 0.5), Box(0.8, -0.6, 0.5, 0.5)))
+    assert sensing.path_is_clear(b.robot)
+    b = bench(boxes=(Box(0.8, 0.45, 0.5, 0.5),))
+    assert not sensing.path_is_clear(b.robot)
+
+
+def test_distance_ahead(bench):
+    b = bench(walls=(((2.0, -1.0), (2.0, 1.0)),), people=(Thing("A", -2.0, 0.0, 0.25),))
+    assert sensing.distance_ahead(b.robot) == pytest.approx(1.8, abs=0.01)
+    b.run(motion.turn_around)
+    assert sensing.distance_ahead(b.robot) == pytest.approx(1.55, abs=0.02)
+    b.run(motion.turn_left, angle=90.0)
+    assert sensing.distance_ahead(b.robot) == float("inf")
+
+
+def test_a_silent_scanner_fails_the_condition(bench):
+    b = bench(faults=(Fault("silent scanner"),))
+    with pytest.raises(ActionFailed, match=r"^the laser scanner is silent$"):
+        sensing.wall_in_front(b.robot)
+
+
+def test_the_rest(bench, table):
+    b = bench(table, places=(Place("x", 0.4, 0.2), Place("y", 2.0, 2.0)), start=Pose(0.0, 0.0, 180.0))
+    assert sensing.at_place(b.robot, "x")
+    assert not sensing.at_place(b.robot, "y")
+    assert not sensing.person_near(b.robot, "Alice")
+    assert not sensing.someone_near(b.robot)
+    b.robot.move_thing("Alice", 0.0, 1.0)
+    assert sensing.someone_near(b.robot)
+    assert not sensing.bumped(b.robot)
+    assert not sensing.stuck(b.robot)
+    assert sensing.battery_level(b.robot) == 100.0
+    assert not sensing.battery_low(b.robot)
+    assert sensing.hand_empty(b.robot)
+    assert not sensing.holding(b.robot, "cup")

@@ -1,0 +1,217 @@
+"""Journeys, hands, gestures, speech and power."""
+
+import pytest
+
+from btlang.actions import gestures, manipulation, navigation, power, sensing, speech
+from btlang.engine.leaf import ActionFailed
+from btlang.robots.geometry import Pose
+from btlang.robots.world import Fault
+from btlang.robots.world_file import load_world
+
+
+def test_go_to_the_kitchen_then_pick_up_the_cup_and_bring_it(bench):
+    b = bench(load_world())
+    b.run(navigation.go_to, place="kitchen")
+    assert sensing.at_place(b.robot, "kitchen")
+    b.run(manipulation.pick_up, object="cup")
+    assert sensing.holding(b.robot, "cup")
+    b.run(navigation.go_to_person, person="Bob")
+    assert sensing.person_near(b.robot, "Bob")
+    b.run(manipulation.put_down, object="cup")
+    assert sensing.hand_empty(b.robot)
+    assert b.robot.pose.distance_to(b.robot.locate("cup")) < 0.5
+    b.run(manipulation.pick_up, object="cup")
+    b.run(power.dock)
+    assert b.robot.bumps == 0
+
+
+@pytest.mark.parametrize("name", load_world().names.objects)
+def test_every_object_of_the_default_world_can_be_picked_up(bench, name):
+    b = bench(load_world())
+    b.run(manipulation.pick_up, object=name)
+    assert b.robot.holding("right") == name
+
+
+def test_no_way_fails_with_the_reason(bench):
+    b = bench(load_world(), faults=(Fault("blocked", place="lab"),))
+    with pytest.raises(ActionFailed, match=r"^there is no free way to the lab$"):
+        b.run(navigation.go_to, place="lab")
+    with pytest.raises(ActionFailed, match=r'^I do not know where "moon" is$'):
+        b.run(navigation.go_to, place="moon")
+
+
+def test_a_halted_journey_brakes(bench):
+    b = bench(load_world())
+    running = b.begin(navigation.go_to, 3.0, place="office")
+    assert b.robot.moving
+    running.close()
+    b.tick(4)
+    assert not b.robot.moving
+
+
+def test_an_emergency_stop_ends_a_journey(bench):
+    b = bench(load_world())
+    running = b.begin(navigation.go_to, 3.0, place="office")
+    b.robot.stop()
+    with pytest.raises(ActionFailed, match=r"^the robot was told to stop$"):
+        next(running)
+
+
+def test_approach(bench, table):
+    b = bench(table)
+    b.run(navigation.approach, object="ball")
+    assert b.robot.grasp("right", "ball") == "ball"
+
+
+def test_hands(bench, table):
+    b = bench(table)
+    b.run(manipulation.close_right_hand)
+    assert sensing.holding_something(b.robot)
+    with pytest.raises(ActionFailed, match=r"^the right hand already holds the cup$"):
+        b.run(manipulation.grasp)
+    with pytest.raises(ActionFailed, match=r"^the right hand already holds the cup$"):
+        b.run(manipulation.pick_up, object="ball")
+    with pytest.raises(ActionFailed, match=r"^nothing is within reach of the left hand$"):
+        b.run(manipulation.close_left_hand)
+    with pytest.raises(ActionFailed, match=r"^the robot does not hold the ball$"):
+        b.run(manipulation.put_down, object="ball")
+    b.run(manipulation.open_right_hand)
+    b.run(manipulation.open_left_hand)
+    with pytest.raises(ActionFailed, match=r"^the robot holds nothing$"):
+        b.run(manipulation.release)
+    b.run(manipulation.grasp, object="cup")
+    b.run(manipulation.release, object="cup")
+    with pytest.raises(ActionFailed, match=r"^the ball is not within reach of the right hand$"):
+        b.run(manipulation.grasp, object="ball")
+
+
+def test_a_weak_hand_loses_what_it_picked_up(bench, table):
+    b = bench(table, faults=(Fault("weak hand", seconds=4.0),))
+    b.run(manipulation.pick_up, object="cup")
+    b.tick(80)
+    with pytest.raises(ActionFailed, match=r"^the robot holds nothing$"):
+        b.run(manipulation.put_down)
+
+
+def test_arms(bench):
+    b = bench()
+    for leaf, joint, angle in (
+        (manipulation.raise_right_arm, "right arm lift", 150),
+        (manipulation.stretch_right_arm, "right arm lift", 90),
+        (manipulation.lower_right_arm, "right arm lift", 0),
+        (manipulation.raise_left_arm, "left arm lift", 150),
+        (manipulation.retract_left_arm, "left arm bend", 150),
+        (manipulation.stretch_left_arm, "left arm bend", 0),
+        (manipulation.retract_right_arm, "right arm bend", 150),
+        (manipulation.lower_left_arm, "left arm lift", 0),
+        (manipulation.raise_both_arms, "left arm lift", 150),
+        (manipulation.lower_both_arms, "left arm lift", 0),
+    ):
+        b.run(leaf)
+        assert b.robot.joint(joint) == angle
+
+
+@pytest.mark.parametrize(
+    ("leaf", "ports"),
+    [
+        (gestures.wave, {}),
+        (gestures.wave, {"person": "Alice"}),
+        (gestures.nod, {}),
+        (gestures.shake_head, {}),
+        (gestures.look_around, {}),
+        (gestures.look_left, {}),
+        (gestures.look_right, {}),
+        (gestures.look_up, {}),
+        (gestures.look_down, {}),
+        (gestures.look_at_person, {"person": "Alice"}),
+        (gestures.look_at_object, {"object": "ball"}),
+        (gestures.point_at_person, {"person": "Alice"}),
+        (gestures.point_at_object, {"object": "cup"}),
+        (gestures.point_left, {}),
+        (gestures.point_right, {}),
+    ],
+)
+def test_gestures_take_time_and_leave_the_base_alone(bench, table, leaf, ports):
+    b = bench(table)
+    b.robot.drive(-0.2, 0.0)
+    _, seconds = b.run(leaf, **ports)
+    assert 0.2 <= seconds < 10
+    assert not b.robot._joints.moving
+    assert b.robot.velocity[0] == pytest.approx(-0.2)
+    halted = bench(table)
+    halted.robot.drive(-0.2, 0.0)
+    running = halted.begin(leaf, 0.1, **ports)
+    assert halted.robot._joints.moving
+    running.close()
+    assert not halted.robot._joints.moving
+    halted.tick(10)
+    assert halted.robot.velocity[0] == pytest.approx(-0.2)
+
+
+def test_pointing_and_looking_go_the_right_way(bench, table):
+    b = bench(table)
+    b.run(gestures.point_at_person, person="Alice")
+    assert b.robot.joint("right arm swing") == pytest.approx(90)
+    b.run(gestures.look_at_object, object="ball")
+    assert b.robot.joint("head turn") == pytest.approx(18.43, abs=0.01)
+    b.run(gestures.look_ahead)
+    b.run(gestures.point_ahead)
+    assert b.robot.joint("head turn") == b.robot.joint("right arm swing") == 0.0
+
+
+def test_the_head_does_not_turn_to_the_back(bench, table):
+    b = bench(table, start=Pose(0.0, 0.0, 180.0))
+    with pytest.raises(ActionFailed, match=r"^the ball is behind the robot, where its head does not turn$"):
+        b.run(gestures.look_at_object, object="ball")
+
+
+def test_an_emergency_stop_ends_gestures_and_speech(bench):
+    for leaf, ports in ((gestures.wave, {}), (speech.say, {"text": "a long sentence"})):
+        b = bench()
+        running = b.begin(leaf, 0.3, **ports)
+        b.robot.stop()
+        with pytest.raises(ActionFailed, match=r"^the robot was told to stop$"):
+            next(running)
+
+
+def test_speech(bench):
+    b = bench()
+    assert b.run(speech.say, text="hello")[1] == pytest.approx(0.65)
+    b.run(speech.print_text, text="hi")
+    b.begin(speech.say, 0.2, text="never said to the end").close()
+    assert not b.robot.speaking
+    assert [kind for kind, _ in b.events] == ["say", "print", "say"]
+
+
+def test_power(bench):
+    b = bench(load_world(), battery=15.0)
+    assert sensing.battery_low(b.robot)
+    b.run(power.charge, percent=40.0)
+    assert 40 <= b.robot.battery < 41
+    assert sensing.docked(b.robot)
+    assert sensing.charging(b.robot)
+    assert b.run(power.dock) == (None, 0.0)
+    b.run(power.charge, percent=100.0)
+    assert sensing.battery_full(b.robot)
+    b.run(power.undock)
+    assert not sensing.docked(b.robot)
+    assert not sensing.charging(b.robot)
+    assert b.run(power.undock) == (None, 0.0)
+
+
+def test_charging_fails_away_from_the_dock(bench):
+    b = bench(load_world(), battery=15.0)
+    running = b.begin(power.charge, 20.0, percent=100.0)
+    b.robot.undock()
+    with pytest.raises(ActionFailed, match=r"^the robot left the dock at \d+%$"):
+        next(running)
+
+
+def test_there_may_be_no_dock(bench):
+    with pytest.raises(ActionFailed, match="dock"):
+        bench().run(power.dock)
+
+
+def test_docking_needs_the_dock(bench):
+    with pytest.raises(ActionFailed, match=r"^the dock is \d\.\d m away$"):
+        bench(load_world()).robot.dock()

@@ -1,0 +1,323 @@
+"""A plain interpreter of trees with the semantics of BehaviorTree.CPP 4.10, to compare the engine with.
+
+Each node has a status, as in C++; SKIPPED is returned but not kept. Before a class leaf (id `C...`) starts, each node
+above it that asks its children anew and has a running child elsewhere halts that.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from btlang.engine.clock import Clock
+from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
+from btlang.tree.node import Node
+
+from .scripted import STATUS
+
+
+class Reference:
+    """One node and, below it, the others. `scripts` gives each leaf's letters; each call takes the next."""
+
+    def __init__(
+        self, node: Node, scripts: dict[str, str], log: list[str], clock: Clock, parent: Reference | None = None
+    ) -> None:
+        self.node, self.scripts, self.log, self.clock, self.parent = node, scripts, log, clock, parent
+        self.children = [Reference(child, scripts, log, clock, self) for child in node.children]
+        self.status = IDLE
+        self.calls = self.at = self.count = self.skipped = 0
+        self.completed: set[int] = set()
+        self.failures = self.successes = 0
+        self.since: float | None = None
+        self.late = False
+        self.behaviour: Callable[[], int] = getattr(self, node.id, self.leaf)
+
+    def execute(self) -> int:
+        if self.node.port("_skipIf") == "true":
+            return SKIPPED
+        result = self.behaviour()
+        if result != SKIPPED:
+            self.status = result
+        return result
+
+    def halt(self) -> None:
+        if self.node.id.startswith("C") and self.status == RUNNING:
+            self.log.append(f"{self.node.id}.halt")
+        self.reset_children()
+        if self.node.id != "SequenceWithMemory":
+            self.at = 0
+        self.count = self.skipped = self.failures = self.successes = 0
+        self.completed.clear()
+        self.since = None
+        self.late = False
+
+    def reset(self) -> None:
+        if self.status == RUNNING:
+            self.halt()
+        self.status = IDLE
+
+    def reset_children(self) -> None:
+        for child in self.children:
+            child.reset()
+
+    def number(self, port: str) -> int:
+        return int(self.node.port(port))
+
+    # leaves
+
+    def leaf(self) -> int:
+        name = self.node.id
+        if name.startswith("C"):
+            if self.status != RUNNING:
+                self.interrupt()
+            self.log.append(f"{name}.{'tick' if self.status == RUNNING else 'start'}")
+        else:
+            self.log.append(name)
+        script = self.scripts[name]
+        result = STATUS[script[self.calls % len(script)]]
+        self.calls += 1
+        if result == SKIPPED:
+            self.status = IDLE
+        return result
+
+    def interrupt(self) -> None:
+        below, above = self, self.parent
+        while above is not None:
+            if above.node.id in ("ReactiveSequence", "ReactiveFallback", "WhileDoElse"):
+                for child in above.children:
+                    polled = above.node.id == "WhileDoElse" and below is not above.children[0]
+                    if child is not below and child.status == RUNNING and not polled:
+                        child.reset()
+            below, above = above, above.parent
+
+    def Sleep(self) -> int:
+        if self.since is None:
+            self.since = self.clock.now
+        if self.clock.now - self.since < self.number("msec") / 1000:
+            return RUNNING
+        self.since = None
+        return SUCCESS
+
+    # in order
+
+    def Sequence(self) -> int:
+        return self.in_order(SUCCESS, self.node.id)
+
+    Fallback = AsyncSequence = AsyncFallback = SequenceWithMemory = Sequence
+
+    def in_order(self, passes: int, id: str) -> int:
+        if id.endswith("Fallback"):
+            passes = FAILURE
+        if self.status == IDLE:
+            self.skipped = 0
+        self.status = RUNNING
+        while self.at < len(self.children):
+            child = self.children[self.at]
+            before = child.status
+            result = child.execute()
+            if result == RUNNING:
+                return RUNNING
+            if result == passes:
+                self.at += 1
+                if id.startswith("Async") and before == IDLE and self.at < len(self.children):
+                    return RUNNING
+            elif result == SKIPPED:
+                self.at += 1
+                self.skipped += 1
+            else:
+                self.reset_children()
+                self.skipped = 0
+                if id != "SequenceWithMemory":
+                    self.at = 0
+                return result
+        all_skipped = self.skipped == len(self.children)
+        self.reset_children()
+        self.at = self.skipped = 0
+        return SKIPPED if all_skipped else passes
+
+    # side by side
+
+    def Parallel(self) -> int:
+        size = len(self.children)
+        wanted, allowed = self.number("success_count"), self.number("failure_count")
+        required = wanted if wanted >= 0 else size + wanted + 1
+        limit = allowed if allowed >= 0 else size + allowed + 1
+        self.status = RUNNING
+        skipped = 0
+        for index, child in enumerate(self.children):
+            if index not in self.completed:
+                result = child.execute()
+                skipped += result == SKIPPED
+                self.successes += result == SUCCESS
+                self.failures += result == FAILURE
+                if result in (SUCCESS, FAILURE):
+                    self.completed.add(index)
+            end = 0
+            if self.successes >= required or (wanted < 0 and self.successes + skipped >= required):
+                end = SUCCESS
+            elif size - self.failures < required or self.failures == limit:
+                end = FAILURE
+            if end:
+                self.completed.clear()
+                self.successes = self.failures = 0
+                self.reset_children()
+                return end
+        return SKIPPED if skipped == size else RUNNING
+
+    def ParallelAll(self) -> int:
+        self.status = RUNNING
+        skipped = 0
+        for index, child in enumerate(self.children):
+            if index not in self.completed:
+                result = child.execute()
+                skipped += result == SKIPPED
+                self.failures += result == FAILURE
+                if result in (SUCCESS, FAILURE):
+                    self.completed.add(index)
+        if skipped == len(self.children):
+            return SKIPPED
+        if skipped + len(self.completed) < len(self.children):
+            return RUNNING
+        result = FAILURE if self.failures >= self.number("max_failures") else SUCCESS
+        self.reset_children()
+        self.completed.clear()
+        self.failures = 0
+        return result
+
+    # reactive
+
+    def ReactiveSequence(self) -> int:
+        return self.reactive(SUCCESS)
+
+    def ReactiveFallback(self) -> int:
+        return self.reactive(FAILURE)
+
+    def reactive(self, passes: int) -> int:
+        self.status = RUNNING
+        all_skipped = True
+        for child in self.children:
+            result = child.execute()
+            all_skipped &= result == SKIPPED
+            if result == RUNNING:
+                for other in self.children:
+                    if other is not child:
+                        other.reset()
+                return RUNNING
+            if result == SKIPPED:
+                child.reset()
+            elif result != passes:
+                self.reset_children()
+                return result
+        self.reset_children()
+        return SKIPPED if all_skipped else passes
+
+    # branches
+
+    def IfThenElse(self) -> int:
+        self.status = RUNNING
+        if self.at == 0:
+            result = self.children[0].execute()
+            if result == RUNNING or (result == FAILURE and len(self.children) == 2):
+                return result
+            if result == SKIPPED:
+                self.reset_children()
+                return FAILURE
+            self.at = 1 if result == SUCCESS else 2
+        result = self.children[self.at].execute()
+        if result != RUNNING:
+            self.reset_children()
+            self.at = 0
+        return result
+
+    def WhileDoElse(self) -> int:
+        self.status = RUNNING
+        condition = self.children[0].execute()
+        if condition == RUNNING:
+            return RUNNING
+        if condition == SKIPPED:
+            result = FAILURE
+        elif condition == SUCCESS:
+            for other in self.children[2:]:
+                other.reset()
+            result = self.children[1].execute()
+        elif len(self.children) == 3:
+            self.children[1].reset()
+            result = self.children[2].execute()
+        else:
+            result = FAILURE
+        if result != RUNNING:
+            self.reset_children()
+        return result
+
+    # decorators
+
+    def Inverter(self) -> int:
+        return self.turned({SUCCESS: FAILURE, FAILURE: SUCCESS})
+
+    def ForceSuccess(self) -> int:
+        return self.turned({FAILURE: SUCCESS})
+
+    def ForceFailure(self) -> int:
+        return self.turned({SUCCESS: FAILURE})
+
+    def turned(self, table: dict[int, int]) -> int:
+        self.status = RUNNING
+        result = self.children[0].execute()
+        if result in (SUCCESS, FAILURE):
+            self.children[0].reset()
+        return table.get(result, result)
+
+    def Repeat(self) -> int:
+        return self.rounds(self.number("num_cycles"), SUCCESS)
+
+    def RetryUntilSuccessful(self) -> int:
+        return self.rounds(self.number("num_attempts"), FAILURE)
+
+    def rounds(self, limit: int, again: int) -> int:
+        [child] = self.children
+        self.status = RUNNING
+        while self.count < limit or limit == -1:
+            before = child.status
+            result = child.execute()
+            if result == RUNNING:
+                return RUNNING
+            child.reset()
+            if result == SKIPPED:
+                return SKIPPED
+            if result != again:
+                self.count = 0
+                return result
+            self.count += 1
+            if before == IDLE and (self.count < limit or limit == -1):
+                return RUNNING
+        self.count = 0
+        return again
+
+    def Timeout(self) -> int:
+        [child] = self.children
+        self.status = RUNNING
+        if self.since is None:
+            self.since = self.clock.now
+        elif child.status == RUNNING and self.clock.now - self.since >= self.number("msec") / 1000:
+            child.reset()
+            self.since = None
+            return FAILURE
+        result = child.execute()
+        if result != RUNNING:
+            self.since = None
+            child.reset()
+        return result
+
+    def Delay(self) -> int:
+        [child] = self.children
+        self.status = RUNNING
+        if self.since is None:
+            self.since = self.clock.now
+        self.late = self.late or self.clock.now - self.since >= self.number("delay_msec") / 1000
+        if not self.late:
+            return RUNNING
+        result = child.execute()
+        if result in (SUCCESS, FAILURE):
+            self.since = None
+            self.late = False
+            child.reset()
+        return result

@@ -1,0 +1,115 @@
+"""Leaves that return what a script says, and a short way to write trees."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from itertools import cycle
+from typing import Any
+
+from btlang.engine.clock import Clock
+from btlang.engine.engine import Engine
+from btlang.engine.leaf import LeafBinding
+from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
+from btlang.tree.node import Node, Tree
+
+STATUS = {"r": RUNNING, "s": SUCCESS, "f": FAILURE, "k": SKIPPED}
+LETTER = {status: letter for letter, status in STATUS.items()}
+
+
+def n(id: str, *children: Node, **ports: object) -> Node:
+    """A node."""
+    return Node(id, children, tuple((port, str(text)) for port, text in ports.items()))
+
+
+class World:
+    """Binds leaf ids to scripts and logs what the engine does with them.
+
+    `fn(id, "rsf")` is a function that returns RUNNING, SUCCESS, FAILURE and so on in turn, over and over.
+    `cls(id, ...)` is a class whose start and tick do.
+    `gen(id, ...)` is a generator, each run of which ends at the next letter that is not `r`.
+    The log has `id` for a function's call and `id.start`, `id.tick`, `id.halt` for the others.
+    """
+
+    def __init__(self) -> None:
+        self.log: list[str] = []
+        self.bindings: dict[str, LeafBinding] = {}
+        self.clock = Clock()
+        self.changes: list[tuple[int, int]] = []
+
+    def bind(self, id: str, call: Callable[..., Any], **options: Any) -> Node:
+        self.bindings[id] = LeafBinding(call, **options)
+        return Node(id)
+
+    def fn(self, id: str, script: str) -> Node:
+        statuses = cycle(script)
+
+        def call() -> int:
+            self.log.append(id)
+            return STATUS[next(statuses)]
+
+        return self.bind(id, call)
+
+    def cls(self, id: str, script: str) -> Node:
+        statuses, log = cycle(script), self.log
+
+        class Leaf:
+            def start(self) -> int:
+                log.append(f"{id}.start")
+                return STATUS[next(statuses)]
+
+            def tick(self) -> int:
+                log.append(f"{id}.tick")
+                return STATUS[next(statuses)]
+
+            def halt(self) -> None:
+                log.append(f"{id}.halt")
+
+        return self.bind(id, Leaf)
+
+    def gen(self, id: str, script: str) -> Node:
+        statuses = cycle(script)
+
+        def call() -> Any:
+            step = "start"
+            try:
+                while True:
+                    self.log.append(f"{id}.{step}")
+                    status = STATUS[next(statuses)]
+                    if status != RUNNING:
+                        return status
+                    step = "tick"
+                    yield
+            except GeneratorExit:
+                self.log.append(f"{id}.halt")
+
+        return self.bind(id, call)
+
+    def engine(self, root: Node | Tree, watched: bool = False, **options: Any) -> Engine:
+        listener = (lambda index, status: self.changes.append((index, status))) if watched else None
+        tree = root if isinstance(root, Tree) else Tree(root)
+        return Engine(tree, self.bindings.get, clock=self.clock, listener=listener, **options)
+
+    def since(self) -> list[str]:
+        """The log since the last call."""
+        log, self.log[:] = list(self.log), []
+        return log
+
+    def ticks(self, engine: Engine, times: int) -> str:
+        """The letters of so many ticks."""
+        return "".join(LETTER[engine.tick()] for _ in range(times))
+
+
+def results(build: Callable[[World], Node], ticks: int) -> tuple[str, list[str]]:
+    """Letters of a number of ticks, and the log."""
+    world = World()
+    engine = world.engine(build(world))
+    return world.ticks(engine, ticks), world.log
+
+
+def leaves(world: World, scripts: Sequence[str]) -> list[Node]:
+    """Function leaves A, B, C ... with these scripts; in capitals, class leaves."""
+    names = "ABCDEFGH"
+    return [
+        world.cls(name, script.lower()) if script.isupper() else world.fn(name, script)
+        for name, script in zip(names, scripts, strict=False)
+    ]

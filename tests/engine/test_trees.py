@@ -1,0 +1,149 @@
+"""Subtrees, blackboard scopes, paths, what a listener is told, and very deep trees."""
+
+from __future__ import annotations
+
+import pytest
+
+from btlang.engine import compile as compiling
+from btlang.engine.build import EngineError
+from btlang.engine.status import FAILURE, RUNNING, SUCCESS
+from btlang.tree.node import Node, Tree
+
+from .scripted import LETTER, World, n
+
+
+def test_each_use_of_a_subtree_is_an_instance_of_its_own() -> None:
+    world = World()
+    world.fn("A", "s")
+    world.cls("B", "rs")
+    use = n("SubTree", ID="go")
+    tree = Tree(n("Parallel", use, use), (("go", n("Sequence", n("A"), n("B"))),))
+    engine = world.engine(tree)
+    assert [path for path, _ in engine.nodes] == [
+        "/",
+        "/0",
+        "/0/0",
+        "/0/0/0",
+        "/0/0/1",
+        "/1",
+        "/1/0",
+        "/1/0/0",
+        "/1/0/1",
+    ]
+    assert [engine.path(i) for i in range(9)] == [path for path, _ in engine.nodes]
+    assert engine.node(4).id == "B"
+    engine.tick()
+    assert world.log == ["A", "B.start", "A", "B.start"]
+
+
+def test_a_subtree_sees_only_its_ports() -> None:
+    seen: list[object] = []
+    world = World()
+    world.bind("See", lambda who, here: seen.append((who, here)), defaults={"here": "{place}"})
+    world.bind("Put", lambda blackboard, key, value: blackboard.set(key, value))
+    outer = n("SubTree", ID="outer", who="{name}", place="lab")
+    inner = n("SubTree", ID="inner", person="{who}")
+    tree = Tree(
+        n("Sequence", n("Put", key="name", value="Ann"), outer, n("See", who="{back}", here="?")),
+        (
+            ("outer", n("Sequence", n("See", who="{who}"), inner, n("See", who="{who}"))),
+            ("inner", n("Sequence", n("Put", key="person", value="Bob"), n("Put", key="back", value="lost"))),
+        ),
+    )  # fmt: skip
+    engine = world.engine(tree)
+    assert engine.tick() == FAILURE
+    assert seen == [("Ann", "lab"), ("Bob", "lab")]
+    assert engine.failure is not None
+    assert engine.failure.reason == "{back} has no value"
+    assert engine.blackboard.get("name") == "Bob"
+
+
+def test_numbers_may_come_from_the_blackboard() -> None:
+    world = World()
+    body = n("Repeat", world.fn("A", "s"), num_cycles="{times}")
+    for times, letters in (("2", "rs"), ("0", "s"), ("many", "f"), ("-7", "f")):
+        tree = Tree(n("SubTree", ID="go", times=times), (("go", body),))
+        assert world.ticks(world.engine(tree), len(letters)) == letters
+    engine = world.engine(body)
+    engine.tick()
+    assert engine.failure is not None
+    assert engine.failure.reason == "{times} has no value"
+    assert engine.failure.node == body
+
+
+def test_a_subtree_that_contains_itself() -> None:
+    tree = Tree(n("SubTree", ID="a"), (("a", n("Inverter", n("SubTree", ID="b"))), ("b", n("SubTree", ID="a"))))
+    with pytest.raises(EngineError, match="the subtree a contains itself"):
+        World().engine(tree)
+
+
+def test_a_tree_that_grows_too_large(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(compiling, "MAX_NODES", 100)
+    levels = [(f"t{i}", n("Sequence", *[n("SubTree", ID=f"t{i + 1}")] * 2)) for i in range(50)]
+    with pytest.raises(EngineError, match="the tree has more than 100 nodes"):
+        World().engine(Tree(n("SubTree", ID="t0"), (*levels, ("t50", n("AlwaysSuccess")))))
+
+
+def test_autoremap_is_refused() -> None:
+    tree = Tree(n("SubTree", ID="a", _autoremap="true"), (("a", n("AlwaysSuccess")),))
+    with pytest.raises(EngineError, match="_autoremap is not supported"):
+        World().engine(tree)
+
+
+# What a listener is told
+
+
+def told(root: Node, world: World, ticks: int) -> list[str]:
+    """One word for each tick: index and letter of each change, as in `2r0r`."""
+    engine = world.engine(root, watched=True)
+    words = []
+    for _ in range(ticks):
+        engine.tick()
+        words.append("".join(f"{index}{LETTER.get(status, 'i')}" for index, status in world.changes))
+        world.changes.clear()
+    return words
+
+
+def test_polled_conditions_are_told_once() -> None:
+    world = World()
+    root = n("ReactiveSequence", n("Fallback", world.fn("A", "f"), world.fn("B", "sssf")), world.cls("C", "r"))
+    assert told(root, world, 4) == ["2f3s1s4r0r", "", "", "3f1f4i0f"]
+
+
+def test_actions_in_a_loop_are_told_each_time() -> None:
+    world = World()
+    assert told(n("Repeat", world.cls("A", "s"), num_cycles=3), world, 3) == ["1r1s0r", "1r1s", "1r1s0s"]
+    assert told(n("Repeat", world.fn("A", "s"), num_cycles=3), world, 3) == ["1s0r", "1s", "1s0s"]
+    body = n("Sequence", world.fn("A", "s"), world.gen("B", "rs"))
+    assert told(n("Repeat", body, num_cycles=-1), world, 3) == ["2s3r1r0r", "3s1s2s3r1r", "3s1s2s3r1r"]
+
+
+def test_a_condition_that_is_waited_for_is_told_once() -> None:
+    world = World()
+    assert told(n("RetryUntilSuccessful", world.fn("A", "fffs"), num_attempts=-1), world, 4) == ["1f0r", "", "", "1s0s"]
+
+
+def test_an_interrupted_action_is_told_before_the_one_that_replaces_it() -> None:
+    world = World()
+    first = n("Sequence", world.fn("C", "fs"), world.cls("A", "r"))
+    root = n("ReactiveFallback", first, world.cls("B", "r"))
+    assert told(root, world, 2) == ["2f1f4r0r", "2s4i3r1r"]
+
+
+# Depth
+
+
+@pytest.mark.parametrize("watched", [False, True])
+@pytest.mark.parametrize("id", ["Inverter", "Sequence", "ReactiveSequence"])
+def test_ten_thousand_levels(id: str, watched: bool) -> None:
+    world = World()
+    root = world.cls("A", "rrs")
+    for _ in range(10_000):
+        root = n(id, root)
+    engine = world.engine(root, watched)
+    assert engine.tick() == RUNNING
+    engine.halt()
+    assert engine.tick() == RUNNING
+    assert engine.tick() == SUCCESS
+    assert world.log == ["A.start", "A.halt", "A.start", "A.tick"]
+    assert engine.path(10_000) == "/0" * 10_000

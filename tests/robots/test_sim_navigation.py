@@ -1,0 +1,157 @@
+"""Journeys: they arrive, never bump, and say why when there is no way."""
+
+from pathlib import Path
+
+import pytest
+from hypothesis import assume, given, settings
+from hypothesis import strategies as st
+
+from btlang.robots.geometry import Pose, segment_distance
+from btlang.robots.robot import RobotError
+from btlang.robots.simulated import SimulatedRobot
+from btlang.robots.world import Box, Fault, Place, Thing, World
+from btlang.robots.world_file import load_world
+
+WORLDS = Path(__file__).parents[2] / "examples" / "worlds"
+HOUSE = load_world()
+
+
+def travel(robot, name, seconds=120):
+    journey = robot.navigate_to(name)
+    for _ in range(seconds * 20):
+        if journey.done:
+            break
+        robot.step(0.05)
+    return journey
+
+
+@pytest.mark.parametrize("file", [None, "walled_room", "museum", "warehouse"])
+def test_every_name_of_every_world_is_reached_without_a_bump(file):
+    world = load_world(file and WORLDS / f"{file}.toml")
+    robot = SimulatedRobot(world)
+    for name in (*world.names.places, *world.names.objects, *world.names.people, *world.names.places[::-1]):
+        journey = travel(robot, name)
+        assert journey.done
+        assert journey.failure is None
+        away = robot.pose.distance_to(robot.locate(name))
+        assert away < (0.05 if name in world.names.places else 0.9)
+        if name not in world.names.places:
+            assert abs(robot.pose.bearing_to(robot.locate(name))) < 2
+    assert robot.bumps == 0
+
+
+@settings(max_examples=25, deadline=None)
+@given(st.floats(0.3, 11.7), st.floats(0.3, 7.7), st.floats(-180, 180), st.sampled_from(HOUSE.names.places))
+def test_from_anywhere(x, y, heading, place):
+    assume(not any(box.contains((x, y)) for box in HOUSE.boxes))
+    assume(min(segment_distance((x, y), segment) for segment in HOUSE.segments()) > 0.21)
+    assume(all(Pose(t.x, t.y).distance_to((x, y)) > t.radius + 0.21 for t in (*HOUSE.people, *HOUSE.objects)))
+    robot = SimulatedRobot(HOUSE.replace(start=Pose(x, y, heading)))
+    journey = travel(robot, place)
+    assert (journey.done, journey.failure, robot.bumps) == (True, None, 0)
+
+
+def test_faces_as_the_place_says():
+    robot = SimulatedRobot(HOUSE)
+    travel(robot, "kitchen")
+    assert robot.pose.heading == pytest.approx(90, abs=1.5)
+
+
+def test_names_do_not_care_about_case_and_must_be_known():
+    robot = SimulatedRobot(HOUSE)
+    assert robot.locate("ALICE") == (3.3, 7.2)
+    with pytest.raises(RobotError, match='I do not know where "moon" is'):
+        robot.navigate_to("moon")
+
+
+def test_a_walled_in_place_has_no_way():
+    world = World(
+        start=Pose(0, 0),
+        walls=(((3.0, -1.0), (5.0, -1.0), (5.0, 1.0), (3.0, 1.0), (3.0, -1.0)),),
+        places=(Place("cell", 4, 0),),
+    )
+    journey = SimulatedRobot(world).navigate_to("cell")
+    assert (journey.done, journey.failure) == (True, "there is no free way to the cell")
+
+
+def test_a_person_on_the_place_leaves_no_way_until_they_move():
+    robot = SimulatedRobot(World(start=Pose(0, 0), places=(Place("x", 3, 0),), people=(Thing("Bob", 3.0, 0.1, 0.25),)))
+    assert travel(robot, "x").failure == "there is no free way to the x"
+    robot.move_thing("Bob", 3.0, 2.0)
+    assert travel(robot, "x").failure is None
+
+
+def test_plans_anew_when_somebody_steps_in_the_way():
+    world = World(
+        start=Pose(0, 0), places=(Place("end", 6, 0),), people=(Thing("Bob", 3, 3, 0.25),), boxes=(Box(3, -5, 1, 1),)
+    )
+    robot = SimulatedRobot(world)
+    journey = robot.navigate_to("end")
+    for _ in range(40):
+        robot.step(0.05)
+    robot.move_thing("Bob", 3.0, 0.0)
+    for _ in range(600):
+        robot.step(0.05)
+    assert (journey.done, journey.failure, robot.bumps) == (True, None, 0)
+
+
+def test_a_blocked_place_is_free_again_later():
+    robot = SimulatedRobot(load_world(WORLDS / "locked_lab.toml"))
+    assert travel(robot, "lab").failure == "there is no free way to the lab"
+    robot.step(20)
+    assert travel(robot, "lab").failure is None
+
+
+def test_a_way_that_is_blocked_while_driving():
+    robot = SimulatedRobot(HOUSE.replace(faults=(Fault("blocked", start=3.0, place="lab"),)))
+    assert travel(robot, "lab").failure == "there is no free way to the lab"
+    assert robot.time == pytest.approx(3.0, abs=0.1)
+
+
+def test_no_grip_on_the_way():
+    robot = SimulatedRobot(HOUSE.replace(faults=(Fault("slip", start=2.0, grip=0.0),)))
+    assert travel(robot, "lab").failure == "stuck on the way to the lab: the wheels turn but the robot does not move"
+
+
+def test_an_uneven_grip_does_not_matter():
+    robot = SimulatedRobot(HOUSE.replace(faults=(Fault("slip", wheel="left", grip=0.7),)))
+    assert travel(robot, "lab").failure is None
+
+
+def test_an_empty_battery_on_the_way():
+    robot = SimulatedRobot(HOUSE.replace(battery=0.2))
+    assert travel(robot, "lab").failure == "the battery is empty"
+    assert robot.navigate_to("lab").failure == "the battery is empty"
+
+
+def test_cancel_and_stop_brake():
+    for end in ("cancel", "stop", "drive", "elsewhere"):
+        robot = SimulatedRobot(HOUSE)
+        journey = robot.navigate_to("office")
+        robot.step(3)
+        if end == "cancel":
+            journey.cancel()
+        elif end == "stop":
+            robot.stop()
+            assert journey.failure == "the robot was told to stop"
+        elif end == "drive":
+            robot.drive(0.0, 0.0)
+        else:
+            robot.navigate_to("lab").cancel()
+        assert journey.done
+        assert journey.failure is not None
+        robot.step(0.5)
+        assert not robot.moving
+
+
+def test_the_same_journey_twice():
+    def poses():
+        robot = SimulatedRobot(HOUSE)
+        journey = robot.navigate_to("office")
+        found = []
+        while not journey.done:
+            robot.step(0.05)
+            found.append(robot.pose)
+        return found
+
+    assert poses() == poses()

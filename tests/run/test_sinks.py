@@ -1,0 +1,78 @@
+"""The JSON log and the lines for people."""
+
+from __future__ import annotations
+
+import io
+import json
+
+from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
+from btlang.run.events import RobotEvent, StatusChanged
+from btlang.run.json_log import JsonLog
+from btlang.run.lines import Lines
+from btlang.tree.node import Node
+
+GO = Node("GoTo", ports=(("place", "the lab"),))
+SEE = Node("See")
+
+
+def label(node: Node) -> str:
+    return {"GoTo": "go to the lab", "See": "i see a person", "Sleep": "wait 5 s"}.get(node.id, node.name or node.id)
+
+
+class Output(io.StringIO):
+    """Counts flushes."""
+
+    flushes = 0
+
+    def flush(self) -> None:
+        self.flushes += 1
+
+
+def test_json_lines() -> None:
+    output = Output()
+    log = JsonLog(output, label)
+    log(StatusChanged(0.1 + 0.2, 3, "/0/1", GO, RUNNING))
+    log(StatusChanged(9.8, 3, "/0/1", GO, FAILURE, "the way is blocked"))
+    log(RobotEvent(2.0, "say", {"text": "héllo\nyou"}))
+    log(RobotEvent(2.5, "pose", {"where": complex(1, 2)}))
+    where = {"path": "/0/1", "id": "GoTo", "name": "go to the lab", "ports": {"place": "the lab"}}
+    lines = output.getvalue().splitlines()
+    assert [json.loads(line) for line in lines] == [
+        {"t": 0.3, **where, "status": "RUNNING"},
+        {"t": 9.8, **where, "status": "FAILURE", "reason": "the way is blocked"},
+        {"t": 2.0, "event": "say", "text": "héllo\nyou"},
+        {"t": 2.5, "event": "pose", "where": "(1+2j)"},
+    ]
+    assert lines[0].startswith('{"t": 0.3, "path": "/0/1", "id": "GoTo"')
+    assert output.flushes == 4
+
+
+def test_human_lines() -> None:
+    written: list[str] = []
+    sink = Lines(label, lambda node: node.id == "GoTo", written.append)
+    for t, node, status, reason in [
+        (0.0, SEE, SUCCESS, ""),
+        (0.0, Node("Sequence"), RUNNING, ""),
+        (1.35, GO, RUNNING, ""),
+        (9.8, GO, SUCCESS, ""),
+        (10.0, GO, FAILURE, "the way is blocked"),
+        (11.0, GO, IDLE, ""),
+        (12.0, GO, SKIPPED, ""),
+        (1234.5, Node("Sleep"), RUNNING, ""),
+    ]:
+        sink(StatusChanged(t, 0, "/", node, status, reason))
+    sink(RobotEvent(2.0, "say", {"text": "hello"}))
+    sink(RobotEvent(2.0, "print", {"text": "hello"}))
+    sink(RobotEvent(2.1, "bump", {"into": "a wall"}))
+    sink(RobotEvent(2.1, "pose", {"x": 1}))
+    assert written == [
+        "   1.35  start  go to the lab",
+        "   9.80  done   go to the lab",
+        "  10.00  failed go to the lab: the way is blocked",
+        "  11.00  halted go to the lab",
+        "  12.00  skipped go to the lab",
+        "1234.50  start  wait 5 s",
+        '   2.00  says   "hello"',
+        '   2.00  prints "hello"',
+        "   2.10  bumps  a wall",
+    ]
