@@ -1,0 +1,1 @@
+"""What a tree becomes: something that runs, or another notation."""

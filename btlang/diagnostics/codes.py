@@ -28,6 +28,7 @@ _ALL = (
          "Start it where the line above starts, or end the line above with ':'."),
     Code("BT007", "This line is indented less than its block, but it fits no line above.",
          "Start it where one of the lines above starts."),
+    Code("BT009", "I cannot write {file}: {reason}."),
     Code("BT010", "I do not know how to '{words}'."),
     Code("BT011", "'{words}' does not fit here: {wanted}.", "Write for example: {example}"),
     Code("BT012", "Something is missing after '{words}': {wanted}.", "Write for example: {example}"),

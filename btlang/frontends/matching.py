@@ -375,6 +375,14 @@ class Matcher(Scan):
             self._frames.append(Frame("condition", opener, self._frames[-1], after="postfix"))
         self._next(token, True)
 
+    def _repeat_after(self, token: Token) -> None:
+        """`go home repeat until C`: the word belongs to `until`."""
+        following = self._raw[self._at + 1]
+        if following.kind in ("until", "while"):
+            self._at += 1
+        else:
+            self._side_by_side(token)
+
     def _side_by_side(self, token: Token) -> None:
         if token.kind == "unknown":
             self._skip_statement()
@@ -453,6 +461,7 @@ _OPERATOR: dict[str, Callable[[Matcher, Token], None]] = {
     **dict.fromkeys(("if", "unless", "while", "until", "provided"), Matcher._form_after),
     **dict.fromkeys(_STARTS_OPERAND, Matcher._side_by_side),
     **dict.fromkeys(("newline", "semi", "dedent", "end"), Matcher._end_statement),
+    "repeat": Matcher._repeat_after,
     "comma": Matcher._comma,
     "otherwise": Matcher._otherwise,
     "count": Matcher._count,

@@ -1,0 +1,43 @@
+"""AST to tree: names are ordered, each form is lowered, and the tree is checked by one pass after the other."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
+from btlang.passes.lower import lower
+from btlang.passes.names import order_of_use
+from btlang.passes.resources import check_resources
+from btlang.passes.size import check_size
+from btlang.passes.types import check_types
+from btlang.tree.ast import Mission
+from btlang.tree.node import Node, Tree
+from btlang.vocabulary.vocabulary import Vocabulary
+
+PASSES: tuple[Callable[[Tree, Vocabulary], Iterable[Diagnostic]], ...] = (check_types, check_size, check_resources)
+"""Checks of the lowered tree; each gives what is wrong."""
+
+
+def compile_mission(mission: Mission, vocabulary: Vocabulary) -> Tree:
+    """The tree of a mission. Its subtrees come in an order in which used ones precede their users.
+
+    Raises MissionError with everything that the passes find (BT005, BT014, BT040 to BT042).
+    """
+    ordered, problems = order_of_use(mission)
+    if problems:
+        raise MissionError(problems)
+    skipping: set[str] = set()
+    subtrees: list[tuple[str, Node]] = []
+    for definition in ordered:
+        lowered = lower(definition.body, skipping)
+        subtrees.append((definition.name, lowered.node))
+        if lowered.can_skip:
+            skipping.add(definition.name)
+    if mission.body is None:
+        example = mission.definitions[-1].name if mission.definitions else "move forward 1 m"
+        raise MissionError([diagnostic("BT005", mission.span, example=example)])
+    tree = Tree(lower(mission.body, skipping).node, tuple(subtrees))
+    problems = [problem for check in PASSES for problem in check(tree, vocabulary)]
+    if problems:
+        raise MissionError(problems)
+    return tree

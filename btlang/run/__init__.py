@@ -1,0 +1,1 @@
+"""Runs an engine: rate, time limit, stop; the event stream and its sinks."""

@@ -98,6 +98,10 @@ class Runner:
         """Ends the run before its next tick; for another thread or a signal handler."""
         self._stop.set()
 
+    def halt(self) -> None:
+        """Halts the tree and stops the robot, outside of run(); the next step starts the tree anew."""
+        self._end()
+
     def step(self) -> int:
         """One period: ticks the tree, then, unless it completed, moves clock and robot on. Returns the status."""
         status = self._engine.tick()

@@ -65,6 +65,12 @@ class Vocabulary:
         for name in names:
             self.values.add_name(kind, " ".join(w for w in name.split() if w.lower() not in self.articles), name)
 
+    def duration(self, written: str) -> float | None:
+        """The seconds of a text such as `2 min` or `half an hour`, None where it is no duration."""
+        text = split(Source(written), self.articles)
+        found = self.values.read("duration", text, 0) if text.words else None
+        return float(found[0]) if found and found[1] >= len(text.words) - 2 else None
+
     def word(self, role: str) -> str:
         """The word of a role that messages and canonical English use: the first in its list."""
         return self.roles[role][0].split(" {")[0]

@@ -1,0 +1,7 @@
+"""`python -m btlang` is `btc`."""
+
+import sys
+
+from btlang.cli import main
+
+sys.exit(main())

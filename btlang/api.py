@@ -1,0 +1,217 @@
+"""The library: text to a tree that runs."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Sequence
+
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
+from btlang.english.phrase import phrase_of
+from btlang.frontends.mission import DEFAULT_PARSER, read_mission
+from btlang.passes import compile_mission
+from btlang.robots.world_file import WorldError, world_names
+from btlang.text.source import Source, Span
+from btlang.tree.dump import described, outline
+from btlang.tree.node import Node, Tree
+from btlang.vocabulary.entry import Entry, SlotSpec
+from btlang.vocabulary.load import load_vocabulary
+from btlang.vocabulary.vocabulary import Vocabulary
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any, TypeVar
+
+    from btlang.run.events import Sink
+    from btlang.run.runner import Outcome, Runner
+
+    Call = TypeVar("Call", bound=Callable[..., Any])
+
+
+def parse_tree(
+    text: str | Source,
+    *,
+    parser: str = DEFAULT_PARSER,
+    keywords: Sequence[str | Entry | Callable[..., Any]] = (),
+    world: str | None = None,
+) -> RunnableTree:
+    """Compiles a mission in English.
+
+    `parser` is "shunting-yard" or "lark" (both read the same); `keywords` are paths of keyword files, names of
+    installed packs, or functions made words by `action` or `condition`; `world` is the path of a world file, by
+    default the world that ships. Raises MissionError, which holds every diagnostic.
+    """
+    source = Source(text) if isinstance(text, str) else text
+    vocabulary = world_vocabulary(keywords, world)
+    reading = read_mission(source, vocabulary, parser)
+    return RunnableTree(compile_mission(reading.mission, vocabulary), vocabulary, world, reading.warnings)
+
+
+def world_vocabulary(keywords: Sequence[str | Entry | Callable[..., Any]] = (), world: str | None = None) -> Vocabulary:
+    """The words of the keyword files and the names of a world. Raises MissionError."""
+    try:
+        names = world_names(world)
+    except WorldError as error:
+        raise _world_problem(error) from None
+    kinds = {"place": names.places, "person": names.people, "object": names.objects}
+    return load_vocabulary(keywords, kinds)
+
+
+def action(
+    phrase: str | Sequence[str], *, id: str = "", slots: dict[str, str] | None = None, resources: Sequence[str] = ()
+) -> Callable[[Call], Call]:
+    """Makes a function, generator function or class a command: pass it to `parse_tree(keywords=[...])`.
+
+    `phrase` is one pattern or several, `slots` gives types to slots whose name is not a type, `id` is the node's name,
+    by default that of the function in CamelCase. See btlang/engine/leaf.py for what a leaf may be.
+    """
+    return _word("action", phrase, id, slots or {}, resources)
+
+
+def condition(
+    phrase: str | Sequence[str], *, id: str = "", slots: dict[str, str] | None = None
+) -> Callable[[Call], Call]:
+    """Makes a function that returns a bool a condition; as `action`."""
+    return _word("condition", phrase, id, slots or {}, ())
+
+
+def _word(
+    sort: str, phrase: str | Sequence[str], node_id: str, slots: dict[str, str], resources: Sequence[str]
+) -> Callable[[Call], Call]:
+    from btlang.vocabulary.pattern import Slot, forms
+
+    phrases = (phrase,) if isinstance(phrase, str) else tuple(phrase)
+
+    def decorate(call: Call) -> Call:
+        names = dict.fromkeys(p.name for text in phrases for form in forms(text) for p in form if isinstance(p, Slot))
+        specs = tuple(SlotSpec(name, slots.get(name, name)) for name in names)
+        made = node_id or "".join(part.title() for part in call.__name__.split("_"))
+        call.btlang_entry = Entry(sort, made, phrases, call, specs, tuple(resources), help=call.__doc__ or "")  # type: ignore[attr-defined]
+        return call
+
+    return decorate
+
+
+class RunnableTree:
+    """A compiled mission, with the words and the world that it was compiled with.
+
+    `tree` is the tree itself; `warnings` are diagnostics that do not keep it from running.
+    """
+
+    def __init__(
+        self, tree: Tree, vocabulary: Vocabulary, world: str | None = None, warnings: Sequence[Diagnostic] = ()
+    ) -> None:
+        self.tree = tree
+        self.vocabulary = vocabulary
+        self.world = world
+        self.warnings = tuple(warnings)
+        self._runner: Runner | None = None
+        self._robot: Any = None
+
+    def __str__(self) -> str:
+        return outline(self.tree, self._described)
+
+    def print(self) -> None:
+        """Prints the tree with its branches drawn."""
+        print(self)
+
+    def label(self, node: Node) -> str:
+        """The English of a leaf, `Id port=value` of any other node."""
+        return node.name or phrase_of(node, self.vocabulary)
+
+    def is_action(self, node: Node) -> bool:
+        """Whether the node is a command of a keyword file."""
+        entry = self.vocabulary.entry(node.id)
+        return entry is not None and entry.sort == "action"
+
+    @property
+    def robot(self) -> Any:
+        """The robot of the latest run or tick, the simulated one; it is made at the first use."""
+        if self._robot is None:
+            self._start(20.0, 1.0, None, ())
+        return self._robot
+
+    def tick(self) -> int:
+        """Ticks once and moves the simulated world on by 1/20 s; returns the status (see btlang.engine.status)."""
+        if self._runner is None:
+            self._start(20.0, 1.0, None, ())
+        assert self._runner is not None
+        return self._runner.step()
+
+    def halt(self) -> None:
+        """Halts every running leaf and stops the robot; the next tick starts anew."""
+        if self._runner is not None:
+            self._runner.halt()
+
+    def stop(self) -> None:
+        """Ends a run under way, from another thread or a signal handler."""
+        if self._runner is not None:
+            self._runner.stop()
+
+    def run(
+        self,
+        *,
+        speed: float | str = "real",
+        rate: float = 20.0,
+        time_limit: float | None = None,
+        sinks: Iterable[Sink] = (),
+    ) -> Outcome:
+        """Runs the mission from its start in a fresh world until it ends, `time_limit` seconds are over, or Ctrl-C.
+
+        `speed` is "real", "max" or a factor of real time; `rate` is in ticks a second of the mission; `sinks` get every
+        event (see btlang.run.events). Raises MissionError where a command cannot run (BT080).
+        """
+        factor = {"real": 1.0, "max": math.inf}.get(speed) if isinstance(speed, str) else speed
+        if factor is None or not factor > 0:
+            raise ValueError(f'speed is "real", "max" or a number above 0: {speed!r}')
+        if not rate > 0:
+            raise ValueError(f"rate is a number of ticks a second above 0: {rate!r}")
+        self._start(rate, factor, time_limit, sinks)
+        assert self._runner is not None
+        return self._runner.run()
+
+    def _start(self, rate: float, speed: float, time_limit: float | None, sinks: Iterable[Sink]) -> None:
+        """A fresh world, robot, clock and engine."""
+        from btlang.backends.engine import bind_leaf
+        from btlang.engine.clock import Clock
+        from btlang.engine.engine import EngineError
+        from btlang.robots.simulated import SimulatedRobot
+        from btlang.robots.world_file import load_world
+        from btlang.run.events import EventStream, RobotEvent
+        from btlang.run.runner import Runner, traced_engine
+
+        clock, events = Clock(), EventStream(*sinks)
+        try:
+            world = load_world(self.world)
+        except WorldError as error:
+            raise _world_problem(error) from None
+        robot = SimulatedRobot(world, on_event=lambda kind, data: events.publish(RobotEvent(clock.now, kind, data)))
+        try:
+            engine = traced_engine(
+                self.tree, lambda id: bind_leaf(id, self.vocabulary), clock=clock, events=events, services={"robot": robot}
+            )
+        except EngineError as error:
+            span = error.node.span or Span(Source(""), 0, 0)
+            raise MissionError([diagnostic("BT080", span, id=error.node.id, reason=error.message)]) from None
+        self._robot = robot
+        self._runner = Runner(
+            engine, clock=clock, robot=robot, rate=rate, speed=speed, time_limit=time_limit, events=events
+        )
+
+    def _described(self, node: Node) -> str:
+        if node.children or node.id not in self.vocabulary.entries:
+            return described(node)
+        return f"{node.id}: {self.label(node)}"
+
+
+def _world_problem(error: WorldError) -> MissionError:
+    from btlang.diagnostics.reading import read_source
+
+    try:
+        source = read_source(error.path)
+    except MissionError:
+        source = Source("", error.path)
+    lines = source.text.splitlines(keepends=True)
+    number = min(error.line or 1, len(lines))
+    start = len("".join(lines[: number - 1]))
+    end = start + len(lines[number - 1].rstrip()) if error.line and lines else start
+    return MissionError([diagnostic("BT070", Span(source, start, end), reason=error.message)])

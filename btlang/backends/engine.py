@@ -1,0 +1,52 @@
+"""The engine as a target: binds leaf ids to the Python that `call` in a keyword file names, when a mission is about to run."""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+from btlang.engine.build import EngineError
+from btlang.engine.leaf import LeafBinding
+from btlang.tree.node import Node
+from btlang.vocabulary.entry import Entry, SlotSpec
+from btlang.vocabulary.vocabulary import Vocabulary
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from typing import Any
+
+
+def bind_leaf(node_id: str, vocabulary: Vocabulary) -> LeafBinding | None:
+    """None where no keyword entry has the id. Raises EngineError where its `call` leads nowhere."""
+    entry = vocabulary.entry(node_id)
+    if entry is None:
+        return None
+    slots: dict[str, SlotSpec] = {slot.name: slot for other in vocabulary.entries[node_id] for slot in other.slots}
+    converters = {name: _converter(slot, vocabulary) for name, slot in slots.items()}
+    defaults = {name: slot.default for name, slot in slots.items() if slot.default is not None}
+    return LeafBinding(_imported(entry), converters, defaults)
+
+
+def _converter(slot: SlotSpec, vocabulary: Vocabulary) -> Callable[[str], Any]:
+    kind = vocabulary.types[slot.type]
+    if kind.kind == "quantity" or kind.kind == "number":
+        return int if kind.whole else float
+    return str
+
+
+def _imported(entry: Entry) -> Callable[..., Any]:
+    if not isinstance(entry.call, str):
+        return entry.call
+    node = Node(entry.id, span=entry.span)
+    if not entry.call:
+        raise EngineError(f"its keyword entry in {entry.file} has no call = \"module:name\"", node)
+    module, _, name = entry.call.partition(":")
+    try:
+        found: Any = import_module(module)
+        for part in name.split("."):
+            found = getattr(found, part)
+    except Exception as error:  # whatever a user's module raises while it is imported
+        raise EngineError(f"{entry.call} cannot be loaded ({type(error).__name__}: {error})", node) from error
+    if not callable(found):
+        raise EngineError(f"{entry.call} is no function or class", node)
+    return found  # type: ignore[no-any-return]

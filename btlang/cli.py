@@ -1,0 +1,143 @@
+"""The `btc` command: thin verbs over the library."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import sys
+from collections.abc import Sequence
+
+import btlang
+from btlang.api import RunnableTree, parse_tree, world_vocabulary
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.render import render
+from btlang.frontends.mission import DEFAULT_PARSER, PARSERS
+from btlang.text.source import Source
+
+SUCCESS, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Runs one verb; returns the exit code: 0 success or skipped, 1 mission failed, 2 bad input, 130 interrupted."""
+    for stream in (sys.stdout, sys.stderr):
+        if hasattr(stream, "reconfigure"):
+            stream.reconfigure(errors="replace")  # a terminal that cannot show a character still gets the rest
+    options = _parser().parse_args(arguments)
+    try:
+        code = _VERBS[options.verb](options)
+        sys.stdout.flush()
+        return code
+    except MissionError as error:
+        print("\n\n".join(render(problem) for problem in error.diagnostics), file=sys.stderr)
+        return BAD_INPUT
+    except BrokenPipeError:  # the reader of our output has seen enough
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return SUCCESS
+    except KeyboardInterrupt:
+        return INTERRUPTED
+
+
+def _run(options: argparse.Namespace) -> int:
+    from btlang.run.command import run_mission
+
+    tree = _tree(options)
+    return run_mission(
+        tree,
+        speed=options.speed,
+        rate=options.rate,
+        time_limit=options.time_limit,
+        log=options.log,
+        quiet=options.quiet,
+    )
+
+
+def _check(options: argparse.Namespace) -> int:
+    _tree(options)
+    print("The mission is fine.")
+    return SUCCESS
+
+
+def _show_tree(options: argparse.Namespace) -> int:
+    from btlang.tree.dump import plain
+
+    tree = _tree(options)
+    print(plain(tree.tree) if options.plain else tree)
+    return SUCCESS
+
+
+def _words(options: argparse.Namespace) -> int:
+    from btlang.vocabulary.listing import listing
+
+    lines = listing(world_vocabulary(options.keywords, options.world), " ".join(options.search))
+    print("\n".join(lines))
+    return SUCCESS
+
+
+_VERBS = {"run": _run, "check": _check, "tree": _show_tree, "words": _words}
+
+
+def _tree(options: argparse.Namespace) -> RunnableTree:
+    """Compiles what the options name; warnings go to standard error."""
+    source = Source(options.text, "<command line>") if options.text is not None else read_source(options.file)
+    tree = parse_tree(source, parser=options.parser, keywords=options.keywords, world=options.world)
+    for warning in tree.warnings:
+        print(render(warning), file=sys.stderr)
+    return tree
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser("btc", description="Compiles and runs robot missions in plain English.")
+    parser.add_argument("--version", action="version", version=f"btc {btlang.__version__}")
+    verbs = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
+    words = argparse.ArgumentParser(add_help=False)
+    words.add_argument(
+        "--keywords", action="append", default=[], metavar="FILE", help="further keyword file, or name of a pack"
+    )
+    words.add_argument("--world", metavar="FILE", help="world file (default: the world that ships)")
+    mission = argparse.ArgumentParser(add_help=False, parents=[words])
+    text = mission.add_mutually_exclusive_group(required=True)
+    text.add_argument("file", nargs="?", metavar="FILE", help="mission, or - for standard input")
+    text.add_argument("-c", dest="text", metavar="TEXT", help="mission as text")
+    mission.add_argument("--parser", choices=list(PARSERS), default=DEFAULT_PARSER, help="(default: %(default)s)")
+
+    run = verbs.add_parser("run", parents=[mission], help="run a mission on the simulated robot")
+    run.add_argument("--speed", type=_speed, default="real", help="real, max, or a factor of real time")
+    run.add_argument("--rate", type=_positive, default=20.0, metavar="HZ", help="ticks a second (default: 20)")
+    run.add_argument("--for", type=_duration, dest="time_limit", metavar="DURATION", help="stop after e.g. 60s, 2min")
+    run.add_argument("--log", metavar="FILE", help="write every event as a line of JSON")
+    run.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    verbs.add_parser("check", parents=[mission], help="say what is wrong with a mission")
+    tree = verbs.add_parser("tree", parents=[mission], help="print the behavior tree of a mission")
+    tree.add_argument("--plain", action="store_true", help="one line a node: Id port=value")
+    listed = verbs.add_parser("words", parents=[words], help="list what can be said")
+    listed.add_argument("search", nargs="*", metavar="SEARCH", help="only phrases with these words")
+    return parser
+
+
+def _speed(text: str) -> float | str:
+    return text if text in ("real", "max") else _positive(text)
+
+
+def _positive(text: str) -> float:
+    try:
+        value = float(text)
+    except ValueError:
+        value = 0.0
+    if not 0 < value < float("inf"):
+        raise argparse.ArgumentTypeError(f"a number above 0 is needed, not '{text}'")
+    return value
+
+
+def _duration(text: str) -> float:
+    """Seconds; with or without a unit, in the words of the language."""
+    from btlang.vocabulary.load import load_vocabulary
+
+    value = load_vocabulary().duration(text)
+    if value is None:
+        value = _positive(text)
+    return value
+
+
+if __name__ == "__main__":
+    sys.exit(main())

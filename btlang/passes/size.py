@@ -1,0 +1,30 @@
+"""Size: names inside names can make a short mission grow beyond all measure."""
+
+from __future__ import annotations
+
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.tree.node import Node, Tree
+from btlang.vocabulary.vocabulary import Vocabulary
+
+MOST_NODES = 1_000_000
+
+
+def check_size(tree: Tree, _vocabulary: Vocabulary) -> list[Diagnostic]:
+    """BT042 where the tree has more than a million nodes once its names are filled in."""
+    sizes: dict[str, int] = {}
+    for name, root in tree.subtrees:  # used ones come before their users
+        sizes[name] = _size(root, sizes)
+    if _size(tree.root, sizes) <= MOST_NODES:
+        return []
+    assert tree.root.span is not None
+    return [diagnostic("BT042", tree.root.span, limit=f"{MOST_NODES:,}")]
+
+
+def _size(root: Node, sizes: dict[str, int]) -> int:
+    total = 0
+    stack = [root]
+    while stack:
+        node = stack.pop()
+        total += 1 + (sizes[node.port("ID")] if node.id == "SubTree" else 0)
+        stack.extend(node.children)
+    return total
