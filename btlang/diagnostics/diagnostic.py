@@ -7,6 +7,9 @@ from btlang.record import Record
 from btlang.text.source import Span
 
 
+_LONGEST = 160  # characters of an argument in a message
+
+
 class Diagnostic(Record):
     """`arguments` fill the braces of the code's texts; `notes` are further places, each with a line about it."""
 
@@ -39,8 +42,13 @@ class Diagnostic(Record):
 
 
 def diagnostic(code: str, span: Span, notes: tuple[tuple[Span, str], ...] = (), **arguments: str) -> Diagnostic:
-    """A diagnostic with its arguments given by name."""
-    return Diagnostic(code, span, tuple(arguments.items()), notes)
+    """A diagnostic with its arguments given by name; what cannot be shown in a line of text is made so."""
+    return Diagnostic(code, span, tuple((name, _shown(text)) for name, text in arguments.items()), notes)
+
+
+def _shown(text: str) -> str:
+    clean = "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in text)
+    return clean if len(clean) <= _LONGEST else clean[: _LONGEST // 2] + " ... " + clean[-_LONGEST // 2 :]
 
 
 class MissionError(Exception):

@@ -13,7 +13,7 @@ _FOUND = {"newline": "the line ends", "semi": "the sentence ends", "close": "the
 
 
 class Scan:
-    """One pass over raw tokens. Every syntax error (BT020 to BT034) is made here, one for each statement."""
+    """One pass over raw tokens. Every syntax error (BT020 to BT032) is made here, one for each statement."""
 
     def __init__(self, source: Source, raw: list[Token]) -> None:
         self.source = source
@@ -82,7 +82,7 @@ class Scan:
         elif starts and token.kind == "comma":
             self._fail("BT032", self._span(token), place="at the start", advice="Take it away.")
         elif starts or token.kind not in ENDS | {"then", "and", "or", "after", "otherwise", "comma"}:
-            self._fail("BT022", self._span(token), word=self._words(token))
+            self._fail("BT022", self._span(token), word=self._words(token), example="wave")
         elif before is not None and before.kind == "comma" and token.kind in ENDS:
             self._fail("BT032", self._span(before), place="at the end", advice="Take it away, or say what follows.")
         elif before is not None:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Iterator
+from itertools import takewhile
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.definitions import Definitions
 from btlang.frontends.token import Token
-from btlang.text.spelling import nearest
+from btlang.text.spelling import nearest, nearest_start
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
-from btlang.vocabulary.trie import SLOTS, TrieNode
+from btlang.vocabulary.trie import SLOTS, TrieNode, longest
 from btlang.vocabulary.values import ValueType
 from btlang.vocabulary.vocabulary import Vocabulary
 
@@ -26,10 +27,14 @@ def explain_unknown(
         start = bisect_left(text.starts, before[-1].start)  # `move forward 5 s`: read that far, and no further
         misfits = [found for found in _misfits(text, start, vocabulary) if found[0] == at]
         if misfits:
-            return _misfit(text, start, end, misfits, vocabulary)
+            return _misfit(text, start, end, misfits, vocabulary, definitions)
     if misfits:
-        return _misfit(text, at, end, misfits, vocabulary)
-    if vocabulary.values.number(text, at) or text.words[at][0] == '"':
+        return _misfit(text, at, end, misfits, vocabulary, definitions)
+    number = vocabulary.values.number(text, at)
+    for _, kind, child in vocabulary.trie.get(SLOTS, ()):
+        if number is not None and text.words[number[1]] in child:  # `0 times`
+            return _number_misfit(text, at, number, [vocabulary.types[kind]], "", "", kind)
+    if number is not None or text.words[at][0] == '"':
         return diagnostic("BT019", text.span(at, end), example='say "hello"')
     return _unknown_phrase(text, at, end, vocabulary, definitions)
 
@@ -54,17 +59,23 @@ def _misfits(text: Words, at: int, vocabulary: Vocabulary) -> Iterator[tuple[int
     yield from ((furthest, kind) for kind in dict.fromkeys(found))
 
 
-def _misfit(text: Words, first: int, end: int, misfits: list[tuple[int, str]], vocabulary: Vocabulary) -> Diagnostic:
+def _misfit(
+    text: Words, first: int, end: int, misfits: list[tuple[int, str]], vocabulary: Vocabulary, definitions: Definitions
+) -> Diagnostic:
     at = misfits[0][0]
     types = [vocabulary.types[kind] for _, kind in misfits]
     wanted = " or ".join(f"{_article(kind.name)} {kind.name}" for kind in types)
     head = text.span(first, at).text
     example = f"{head} {_value_example(types[0], vocabulary)}"
-    if text.words[at] in _NOT_A_VALUE:
+    if text.words[at] in _NOT_A_VALUE or _is_connective(text, at, vocabulary):
         return diagnostic("BT012", text.span(first, at), words=head, wanted=wanted, example=example)
     quantity, number = vocabulary.values.quantity(text, at), vocabulary.values.number(text, at)
     if quantity is not None:
         span = text.span(at, quantity[2])
+        if quantity[1] in (kind.name for kind in types):
+            least = vocabulary.types[quantity[1]].least or 0
+            wanted = f"{_article(quantity[1])} {quantity[1]} is at least {least:g}"
+            return diagnostic("BT014", span, words=span.text, wanted=wanted)
         reason = f"it is {_article(quantity[1])} {quantity[1]}, and {wanted} is needed"
         return diagnostic("BT011", span, words=span.text, wanted=reason, example=example)
     if number is not None:
@@ -75,7 +86,14 @@ def _misfit(text: Words, first: int, end: int, misfits: list[tuple[int, str]], v
         known = [name for kind in named for name in vocabulary.values.names(kind.name)]
         kinds = " or ".join(kind.name for kind in named)
         return diagnostic("BT013", span, type=kinds, words=span.text, help=_near_names(span.text, known))
+    if text.words[at][0] != '"':  # `turn leftt` lacks no angle
+        return _unknown_phrase(text, first, max(end, at + 1), vocabulary, definitions)
     return diagnostic("BT011", span, words=span.text, wanted=f"{wanted} is needed", example=example)
+
+
+def _is_connective(text: Words, at: int, vocabulary: Vocabulary) -> bool:
+    match = longest(vocabulary.trie, text, at, vocabulary.values)
+    return match is not None and match.meaning.entry is None and not match.values
 
 
 def _number_misfit(
@@ -97,24 +115,28 @@ def _number_misfit(
 
 def _unknown_phrase(text: Words, at: int, end: int, vocabulary: Vocabulary, definitions: Definitions) -> Diagnostic:
     span = text.span(at, end)
-    known = [header.name for header in definitions.headers.values()]
-    known += [phrase for entries in vocabulary.entries.values() for entry in entries for phrase in _plain(entry.phrases)]
-    known += [phrase.split(" {")[0] for phrases in vocabulary.roles.values() for phrase in phrases if "[" not in phrase]
-    near = nearest(span.text.lower(), known)
+    known = {header.name: header.name.split() for header in definitions.headers.values()}
+    for entries in vocabulary.entries.values():
+        known |= {phrase: words for entry in entries for phrase, words in _plain(entry.phrases)}
+    for phrases in vocabulary.roles.values():
+        known |= dict(_plain(tuple(phrases)))
+    near = nearest_start(text.words[at:end], known)
     advice = "The nearest that I know: " + ", ".join(near) if near else "'btc words' lists what I know."
     return diagnostic("BT010", span, words=span.text, help=advice)
 
 
-def _plain(phrases: tuple[str, ...]) -> Iterator[str]:
-    """Phrases as people would write them: optional parts left out."""
+def _plain(phrases: tuple[str, ...]) -> Iterator[tuple[str, list[str]]]:
+    """Each phrase as people would write it, and the words that it starts with, up to its first slot."""
     for phrase in phrases:
-        words = []
+        words: list[str] = []
         depth = 0
         for piece in phrase.replace("[", " [ ").replace("]", " ] ").split():
             depth += (piece == "[") - (piece == "]")
             if depth == 0 and piece != "]" and not piece.startswith("("):
                 words.append(piece.split("/")[0].split("(")[0])
-        yield " ".join(words)
+        start = list(takewhile(lambda word: not word.startswith("{"), words))
+        if start:
+            yield " ".join(words), start
 
 
 def _near_names(written: str, known: list[str]) -> str:

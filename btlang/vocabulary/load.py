@@ -10,7 +10,7 @@ from btlang.diagnostics.reading import read_source
 from btlang.text.source import Source, Span
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.keyword_file import KeywordFile, read_keyword_file
-from btlang.vocabulary.shipped import keyword_files, shipped
+from btlang.vocabulary.shipped import keyword_files
 from btlang.vocabulary.vocabulary import Vocabulary
 
 TYPE_CHECKING = False
@@ -29,13 +29,12 @@ def load_vocabulary(
     A pack is an entry point of the group `btlang.keywords` whose value is a module beside which, or a function that
     returns the path at which, its keyword file lies. Raises MissionError (BT001, BT002, BT060 to BT063).
     """
-    paths = [shipped("keywords", "english.toml"), *keyword_files()]
-    paths += [_path(item) for item in keywords if isinstance(item, str)]
     files: list[KeywordFile] = []
     problems = []
-    for path in paths:
+    shown = {path: "keywords/" + os.path.basename(path) for path in keyword_files()}
+    for path in (*shown, *(_path(item) for item in keywords if isinstance(item, str))):
         try:
-            files.append(read_keyword_file(read_source(path)))
+            files.append(read_keyword_file(Source(read_source(path).text, shown.get(path, path))))
         except MissionError as error:
             problems += error.diagnostics
     if problems:

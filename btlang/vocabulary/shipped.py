@@ -14,6 +14,7 @@ def shipped(*parts: str) -> str:
 
 
 def keyword_files() -> list[str]:
-    """The shipped keyword files, by name, without the connective file."""
+    """The shipped keyword files: the connective file, then the phrases by name."""
     folder = shipped("keywords")
-    return [os.path.join(folder, n) for n in sorted(os.listdir(folder)) if n.endswith(".toml") and n != "english.toml"]
+    names = sorted(os.listdir(folder), key=lambda name: (name != "english.toml", name))
+    return [os.path.join(folder, name) for name in names if name.endswith(".toml")]

@@ -14,6 +14,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+_LARGEST = 1e12  # beyond it no quantity of a robot makes sense, and sums stay exact
 END = "\0"  # key of a word tree's value; no word of a text is this one
 WordTree = dict[str, "Any"]
 
@@ -127,7 +128,7 @@ class Values:
         value_type = self.types[kind]
         if value_type.kind == "quantity":
             quantity = self.quantity(text, at)
-            if quantity is None or quantity[1] != kind:
+            if quantity is None or quantity[1] != kind or _too_small(quantity[0], value_type):
                 return None
             return format_number(quantity[0]), quantity[2]
         if value_type.kind == "number":
@@ -163,8 +164,9 @@ class Values:
 
     def _whole_number(self, words: Sequence[str], at: int) -> tuple[float | None, int]:
         word = words[at]
-        if word[0].isdigit() or (word[0] == "-" and word[1:2].isdigit()):
-            return float(word), at + 1
+        if word[0].isdecimal() or (word[0] == "-" and word[1:2].isdecimal()):
+            value = float(word)
+            return (value, at + 1) if abs(value) <= _LARGEST else (None, at)
         total: float | None = None
         while True:
             pieces = words[at].split("-")  # "twenty-five"
@@ -182,7 +184,7 @@ class Values:
         if number is None or find(self._units, text.words, number[1]):
             return None
         value, end = number
-        if (value_type.whole and value != int(value)) or (value_type.least is not None and value < value_type.least):
+        if (value_type.whole and value != int(value)) or _too_small(value, value_type):
             return None
         return format_number(value), end
 
@@ -193,6 +195,10 @@ class Values:
         words = [*word[1:].lower().split(), END]
         found = find(self._names[kind], words, 0) if len(words) > 1 else None
         return (found[0], at + 1) if found and found[1] == len(words) - 1 else None
+
+
+def _too_small(value: float, value_type: ValueType) -> bool:
+    return value_type.least is not None and value < value_type.least
 
 
 def _text(text: Words, at: int) -> tuple[str, int] | None:

@@ -124,14 +124,14 @@ class Vocabulary:
             self._collide(one, other)
 
     def _collide(self, one: Meaning, other: Meaning) -> None:
-        if one is other or (one.entry and other.entry and one.entry.id == other.entry.id):
+        """Told at the entry that was loaded later; connectives come first."""
+        ids = [meaning.entry.id if meaning.entry else f"role {meaning.role}" for meaning in (one, other)]
+        if ids[0] == ids[1]:
             return
-        if one.entry is None and other.entry is None:
-            if one.role == other.role:
-                return
-        entry = other.entry or one.entry
-        first, second = (self._described(m) for m in (one, other))
-        span = entry.span if entry and entry.span else Span(Source("", "english.toml"), 0, 0)
+        order = list(self.entries)
+        one, other = sorted((one, other), key=lambda m: order.index(m.entry.id) if m.entry else -1)
+        first, second = self._described(other), self._described(one)
+        span = other.entry.span if other.entry and other.entry.span else Span(Source(second[0], second[2]), 0, 0)
         self._problems.append(
             diagnostic(
                 "BT062", span,
@@ -142,7 +142,7 @@ class Vocabulary:
 
     def _described(self, meaning: Meaning) -> tuple[str, str, str]:
         if meaning.entry is None:
-            return self.roles.get(meaning.role, [meaning.role])[0], f"role {meaning.role}", "connectives"
+            return self.roles.get(meaning.role, [meaning.role])[0], f"role {meaning.role}", "connective file"
         return meaning.entry.phrases[0], meaning.entry.id, meaning.entry.file
 
     def _wrong(self, entry: Entry, code: str, **arguments: str) -> None:

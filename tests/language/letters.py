@@ -1,0 +1,52 @@
+"""A vocabulary of letters: u to z are commands, p to s are conditions; and an AST as one readable line."""
+
+from __future__ import annotations
+
+from functools import cache
+
+from btlang.frontends.mission import read_mission
+from btlang.text.source import Source
+from btlang.tree import ast
+from btlang.vocabulary.entry import Entry
+from btlang.vocabulary.load import load_vocabulary
+from btlang.vocabulary.vocabulary import Vocabulary
+
+COMMANDS = "uvwxyz"
+CONDITIONS = "pqrs"
+
+
+@cache
+def letters() -> Vocabulary:
+    entries = [Entry("action", letter.upper(), (letter,)) for letter in COMMANDS]
+    entries += [Entry("condition", letter.upper(), (letter,)) for letter in CONDITIONS]
+    return load_vocabulary(entries)
+
+
+def read(text: str, parser: str = "shunting-yard") -> ast.Mission:
+    return read_mission(Source(text), letters(), parser).mission
+
+
+def shown(node: ast.Ast | None) -> str:
+    """`S(U, P(V, W))`, a bracketed chain with a `~`; S, F, P as in the language's contract, & and | for conditions."""
+    match node:
+        case None:
+            return "-"
+        case ast.Mission():
+            definitions = [f"{d.name} = {shown(d.body)}; " for d in node.definitions]
+            return "".join(definitions) + shown(node.body)
+        case ast.Phrase():
+            return " ".join([node.entry.id, *(f"{name}={text}" for name, text in node.arguments)])
+        case ast.Name():
+            return f"<{node.name}>"
+        case ast.Chain():
+            kinds = {"sequence": "S", "fallback": "F", "parallel": "P", "all": "All", "any": "Any"}
+            inner = ", ".join(map(shown, node.items))
+            return f"{kinds[node.operator]}{'~' if node.bracketed else ''}({inner})"
+        case ast.If() | ast.While():
+            word = type(node).__name__ if not node.negated else {"If": "Unless", "While": "Until"}[type(node).__name__]
+            otherwise = f", {shown(node.otherwise)}" if node.otherwise is not None else ""
+            return f"{word}({shown(node.condition)}, {shown(node.body)}{otherwise})"
+        case ast.Try(otherwise=None):
+            return f"Try({shown(node.body)})"
+    plain = [str(getattr(node, f)) for f in node.fields if f not in (*node.parts, "span")]
+    return f"{type(node).__name__}({', '.join(plain + [shown(part) for part in ast.parts(node)])})"
