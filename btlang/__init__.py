@@ -1,8 +1,8 @@
 """Robot missions in plain English, compiled to behavior trees and run.
 
-    tree = btlang.parse_tree("move forward then twist right and print hello")
-    print(tree)
-    tree.run()
+tree = btlang.parse_tree("move forward then twist right and print hello")
+print(tree)
+tree.run()
 """
 
 from __future__ import annotations

@@ -187,7 +187,11 @@ class RunnableTree:
         robot = SimulatedRobot(world, on_event=lambda kind, data: events.publish(RobotEvent(clock.now, kind, data)))
         try:
             engine = traced_engine(
-                self.tree, lambda id: bind_leaf(id, self.vocabulary), clock=clock, events=events, services={"robot": robot}
+                self.tree,
+                lambda id: bind_leaf(id, self.vocabulary),
+                clock=clock,
+                events=events,
+                services={"robot": robot},
             )
         except EngineError as error:
             span = error.node.span or Span(Source(""), 0, 0)

@@ -88,7 +88,7 @@ class Record(metaclass=_RecordMeta):
 
 def _brief(record: Record, field: str) -> str:
     value = getattr(record, field)
-    if isinstance(value, tuple) and len(value) > 3 or isinstance(value, Record) and "children" in value.fields:
+    if (isinstance(value, tuple) and len(value) > 3) or (isinstance(value, Record) and "children" in value.fields):
         return f"{field}=..."
     return f"{field}=({len(value)} items)" if _holds_records(value) else f"{field}={value!r}"
 

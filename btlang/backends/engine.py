@@ -1,4 +1,4 @@
-"""The engine as a target: binds leaf ids to the Python that `call` in a keyword file names, when a mission is about to run."""
+"""The engine as a target: binds leaf ids to the Python that `call` in a keyword file names, just before a run."""
 
 from __future__ import annotations
 
@@ -39,7 +39,7 @@ def _imported(entry: Entry) -> Callable[..., Any]:
         return entry.call
     node = Node(entry.id, span=entry.span)
     if not entry.call:
-        raise EngineError(f"its keyword entry in {entry.file} has no call = \"module:name\"", node)
+        raise EngineError(f'its keyword entry in {entry.file} has no call = "module:name"', node)
     module, _, name = entry.call.partition(":")
     try:
         found: Any = import_module(module)

@@ -6,7 +6,6 @@ from btlang.diagnostics.codes import CODES, Code
 from btlang.record import Record
 from btlang.text.source import Span
 
-
 _LONGEST = 160  # characters of an argument in a message
 
 

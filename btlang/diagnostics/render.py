@@ -17,7 +17,10 @@ def render(diagnostic: Diagnostic) -> str:
       The nearest is: lab
     """
     severity = diagnostic.kind.severity
-    lines = [f"{diagnostic.span.place}: {severity} {diagnostic.code}: {diagnostic.message}", *underlined(diagnostic.span)]
+    lines = [
+        f"{diagnostic.span.place}: {severity} {diagnostic.code}: {diagnostic.message}",
+        *underlined(diagnostic.span),
+    ]
     lines += [f"  {line}" for line in diagnostic.hint.splitlines()]
     for span, text in diagnostic.notes:
         lines += [f"  {span.place}: {text}", *underlined(span)]

@@ -30,7 +30,7 @@ def parse(tokens: Sequence[Token], build: Builder) -> Ast:
     with _one_at_a_time:
         to_ast.build = build
         try:
-            return lark.parse(tokens)  # type: ignore[arg-type, return-value]
+            return lark.parse(tokens)  # type: ignore[return-value]
         except UnexpectedInput as error:
             raise ParseError(str(error)) from None
 

@@ -11,18 +11,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from btlang.frontends.conditions import STARTS_OPERAND, ConditionScan
 from btlang.frontends.definitions import Header
 from btlang.frontends.frames import Frame
-from btlang.frontends.scan import ENDS, Scan
 from btlang.frontends.token import Token
 from btlang.record import Record
 from btlang.text.source import Source
 
 CONDITION_FORMS = frozenset(("if", "unless", "while", "until", "provided"))
-_STARTS_OPERAND = frozenset((
-    "command", "condition", "unknown", "wait", "nothing", "fail", "not", "open", "repeat", "try", "retry", "check",
-    "wait_until",
-))  # fmt: skip
 
 
 class Unit(Record):
@@ -32,7 +28,7 @@ class Unit(Record):
     tokens: tuple[Token, ...]
 
 
-class Matcher(Scan):
+class Matcher(ConditionScan):
     """Groups the raw tokens of a source; `units` and `problems` are complete after construction.
 
     `conditions` are the defined names that stand for conditions.
@@ -181,78 +177,6 @@ class Matcher(Scan):
         self._header = None
         self._out, self._frames = self._main
 
-    # -- after a condition
-
-    def _after_condition(self, token: Token) -> None:
-        frame = self._frames[-1]
-        joined = self._condition_connective(token)
-        if joined:
-            frame.connective(self._emit(joined, token))
-            self._next(token, True)
-            if joined.startswith("WIDE"):
-                self._at += 1
-        elif frame.kind == "condition bracket":
-            if token.kind != "close":
-                opener = frame.opener or token
-                self._fail("BT023", self._span(opener))
-                return
-            frame.close_chain()
-            self._frames.pop()
-            self._emit("COND_CLOSE", token)
-            self._next(token, False)
-        else:
-            frame.close_chain()
-            self._frames.pop()
-            self._end_condition(frame, token)
-
-    def _condition_connective(self, token: Token) -> str:
-        """The kind of a connective that another condition follows, else ""."""
-        at = self._at
-        if token.kind == "comma":
-            following = self._raw[at + 1].kind
-            if following in ("and", "or"):
-                return "WIDE_" + following.upper() if self._condition_at(at + 2) else ""
-            return "COMMA" if self._condition_at(at + 1) else ""
-        return token.kind.upper() if token.kind in ("and", "or") and self._condition_at(at + 1) else ""
-
-    def _condition_at(self, at: int) -> bool:
-        while self._raw[at].kind == "open":
-            at += 1
-        return self._raw[at].kind in ("condition", "not")
-
-    def _end_condition(self, frame: Frame, token: Token) -> None:
-        if frame.after == "body":
-            self._emit("DO", token)
-            body = Frame("body", frame.opener, self._frames[-1])
-            body.else_owner = body
-            self._frames.append(body)
-            self._operand_due = True
-            if token.kind in ("and", "or"):
-                following = self._raw[self._at + 1]
-                if following.kind in _STARTS_OPERAND:
-                    place = f"after '{self._words(token)}'"
-                    self._fail("BT029", self._span(following), words=self._words(following), place=place)
-                    return
-            self._separator()
-        elif frame.after == "postfix" and self._at_otherwise() and frame.opener and frame.opener.value in ("if", "unless"):
-            self._else()
-        elif frame.after != "definition":
-            self._emit_end()
-
-    def _separator(self) -> None:
-        """What may stand between the head of a form and its body."""
-        token = self._raw[self._at]
-        if token.kind in ("comma", "then", "colon"):
-            self._next(token, True)
-            if token.kind == "colon":
-                block = self._raw[self._at]
-                if block.kind == "indent":
-                    self._open_block()
-                elif block.kind in ("newline", "dedent", "end"):
-                    self._skip_statement()  # the lexer has told that the block is missing
-            elif token.kind == "comma" and self._raw[self._at].kind == "then":
-                self._next(self._raw[self._at], True)
-
     def _block_follows(self) -> bool:
         return self._raw[self._at].kind == "colon" and self._raw[self._at + 1].kind == "indent"
 
@@ -287,25 +211,6 @@ class Matcher(Scan):
             self._frames[-1].connective(self._emit("COMMA", token))
             self._next(token, True)
 
-    def _closes_statement(self, at: int) -> bool:
-        """Whether from here to the end of the statement or bracket there is nothing but a condition."""
-        first, depth = at, 0
-        while True:
-            kind = self._raw[at].kind
-            if kind in ("and", "or", "comma"):
-                after = at + 2 if kind == "comma" and self._raw[at + 1].kind in ("and", "or") else at + 1
-                if not self._condition_at(after):
-                    return False
-                at = after
-                continue
-            if kind == "close" and depth == 0 or kind in ENDS - {"close"}:
-                otherwise = kind == "newline" and self._raw[at + 1].kind == "otherwise"
-                return at > first and not otherwise
-            if kind not in ("condition", "not", "open", "close"):
-                return False
-            depth += (kind == "open") - (kind == "close")
-            at += 1
-
     def _otherwise(self, token: Token) -> None:
         if self._frames[-1].else_owner is not None:
             self._close_forms(self._frames[-1].else_owner)
@@ -314,15 +219,6 @@ class Matcher(Scan):
             return
         opener = self._emit("OR_ELSE", token)
         self._frames[-1].connective(opener)
-        self._next(token, True)
-        self._separator()
-
-    def _else(self) -> None:
-        if self._raw[self._at].kind != "otherwise":
-            self._at += 1  # a comma or the end of the line before it
-        token = self._raw[self._at]
-        opener = self._emit("ELSE", token, self._last_end)
-        self._frames.append(Frame("body", opener, self._frames[-1]))
         self._next(token, True)
         self._separator()
 
@@ -353,12 +249,6 @@ class Matcher(Scan):
         else:
             self._emit_end()
 
-    def _at_otherwise(self) -> bool:
-        token = self._raw[self._at]
-        if token.kind == "comma" or (token.kind == "newline" and all(f.kind != "bracket" for f in self._frames)):
-            token = self._raw[self._at + 1]
-        return token.kind == "otherwise"
-
     def _postfix(self, token: Token) -> None:
         self._emit("POSTFIX", token, (token.kind, token.value))
         self._next(token, False)
@@ -369,7 +259,9 @@ class Matcher(Scan):
             self._close_forms(owner)
             owner.close_chain()
             self._frames.pop()
-            self._frames.append(Frame("condition", self._emit("STOP", token, token.kind), self._frames[-1], after="end"))
+            self._frames.append(
+                Frame("condition", self._emit("STOP", token, token.kind), self._frames[-1], after="end")
+            )
         else:
             opener = self._emit("AFTER_FORM", token, token.kind)
             self._frames.append(Frame("condition", opener, self._frames[-1], after="postfix"))
@@ -459,7 +351,7 @@ _OPERATOR: dict[str, Callable[[Matcher, Token], None]] = {
     **dict.fromkeys(("then", "and", "or", "after"), Matcher._connective),
     **dict.fromkeys(("within", "if_possible", "every", "delay"), Matcher._postfix),
     **dict.fromkeys(("if", "unless", "while", "until", "provided"), Matcher._form_after),
-    **dict.fromkeys(_STARTS_OPERAND, Matcher._side_by_side),
+    **dict.fromkeys(STARTS_OPERAND, Matcher._side_by_side),
     **dict.fromkeys(("newline", "semi", "dedent", "end"), Matcher._end_statement),
     "repeat": Matcher._repeat_after,
     "comma": Matcher._comma,

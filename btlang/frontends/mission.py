@@ -10,7 +10,7 @@ from btlang.frontends.lexer import Lexer
 from btlang.frontends.matching import Matcher
 from btlang.record import Record
 from btlang.text.source import Source, Span
-from btlang.tree.ast import Definition, Mission
+from btlang.tree.ast import Ast, Definition, Mission
 from btlang.vocabulary.vocabulary import Vocabulary
 
 PARSERS = {
@@ -40,7 +40,8 @@ def read_mission(source: Source, vocabulary: Vocabulary, parser: str = DEFAULT_P
         raise MissionError(problems)
     parse = import_module(PARSERS[parser]).parse
     build = Builder(source)
-    body, definitions = None, {}
+    body: Ast | None = None
+    definitions: dict[str, Definition] = {}
     for unit in matcher.units:
         if unit.header is None:
             body = parse(unit.tokens, build) if unit.tokens else None

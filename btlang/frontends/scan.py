@@ -50,7 +50,7 @@ class Scan:
     # -- what is wrong
 
     def _fail(self, code: str, span: Span, **arguments: str) -> None:
-        self.problems.append(diagnostic(code, span, **arguments))
+        self.problems.append(diagnostic(code, span, (), **arguments))
         self._skip_statement()
 
     def _skip_statement(self) -> None:

@@ -1,6 +1,6 @@
 """The shunting-yard parser (Dijkstra 1961): one loop over operator precedences.
 
-A bracket or form opens a level with stacks of its own; DO, ELSE and STOP end one part of a form, END and CLOSE the whole.
+A bracket or form opens a level with stacks of its own; DO, ELSE and STOP end a part of a form, END and CLOSE the whole.
 """
 
 from __future__ import annotations

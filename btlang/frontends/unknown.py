@@ -153,4 +153,3 @@ def _value_example(kind: ValueType, vocabulary: Vocabulary) -> str:
 
 def _article(word: str) -> str:
     return "an" if word[0] in "aeiou" else "a"
-

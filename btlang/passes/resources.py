@@ -23,8 +23,8 @@ def check_resources(tree: Tree, vocabulary: Vocabulary) -> list[Diagnostic]:
         held: Holders = dict.fromkeys(entry.resources, node) if entry else {}
         for child in children:
             if node.id.startswith("Parallel"):
-                for resource in sorted(held.keys() & child.keys()):
-                    problems.append(_conflict(resource, held[resource], child[resource]))
+                both = sorted(held.keys() & child.keys())
+                problems.extend(_conflict(resource, held[resource], child[resource]) for resource in both)
             held = {**child, **held}
         return held
 

@@ -25,9 +25,7 @@ if TYPE_CHECKING:
     class Runnable(Protocol):
         """What can be run from the command line."""
 
-        def run(
-            self, *, speed: float | str, rate: float, time_limit: float | None, sinks: list[Sink]
-        ) -> Outcome: ...
+        def run(self, *, speed: float | str, rate: float, time_limit: float | None, sinks: list[Sink]) -> Outcome: ...
 
         def stop(self) -> None: ...
 
@@ -49,7 +47,9 @@ def run_mission(
                 file = stack.enter_context(open(log, "w", encoding="utf-8"))
             except OSError as error:
                 reason = (error.strerror or str(error)).lower()
-                raise MissionError([diagnostic("BT009", Span(Source("", log), 0, 0), file=log, reason=reason)]) from None
+                raise MissionError(
+                    [diagnostic("BT009", Span(Source("", log), 0, 0), file=log, reason=reason)]
+                ) from None
             sinks.append(JsonLog(file, tree.label))
         before = signal.signal(signal.SIGTERM, lambda _number, _frame: tree.stop())
         stack.callback(signal.signal, signal.SIGTERM, before)

@@ -1,6 +1,7 @@
 """Text to words: one pass of one regular expression over the whole text.
 
-A word is kept in lower case; quoted text keeps its case behind a leading `"`; numbers and units part ("2m" is `2`, `m`);
+A word is kept in lower case; quoted text keeps its case behind a leading `"`; a unit is a word of its own
+("2m" is `2`, `m`);
 each punctuation mark is a word of its own. Articles leave no word, only a note of where they stood.
 """
 

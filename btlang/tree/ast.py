@@ -19,8 +19,11 @@ if TYPE_CHECKING:
 class Ast(Record):
     """Base of all syntax nodes."""
 
-    if TYPE_CHECKING:
-        span: Span
+    if TYPE_CHECKING:  # each class has it as its last field
+
+        @property
+        def span(self) -> Span: ...
+
     parts: ClassVar[tuple[str, ...]] = ()
 
 
@@ -40,7 +43,7 @@ class Name(Ast):
 
 
 class Chain(Ast):
-    """Operands joined by one connective: "sequence", "fallback" or "parallel" of commands, "all" or "any" of conditions.
+    """Operands joined by one connective: a "sequence", "fallback" or "parallel" of commands, "all" or "any" conditions.
 
     Never directly inside an equal chain unless one of them is `bracketed`.
     """

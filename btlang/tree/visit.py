@@ -12,7 +12,9 @@ if TYPE_CHECKING:
     Result = TypeVar("Result")
 
 
-def fold(root: Item, parts: Callable[[Item], Sequence[Item]], combine: Callable[[Item, list[Result]], Result]) -> Result:
+def fold(
+    root: Item, parts: Callable[[Item], Sequence[Item]], combine: Callable[[Item, list[Result]], Result]
+) -> Result:
     """Combines each item with the results of its parts, parts first."""
     results: list[Result] = []
     stack: list[tuple[Item, int]] = [(root, -1)]  # -1: its parts are still to be done

@@ -56,7 +56,7 @@ class _Reader:
         phrases = [phrases] if isinstance(phrases, str) else phrases
         name = table.get("id", "")
         if not _strings(phrases) or not phrases:
-            self.wrong(f"[[{sort}]] needs phrase = \"...\", or a list of them", str(name) or f"[[{sort}]]")
+            self.wrong(f'[[{sort}]] needs phrase = "...", or a list of them', str(name) or f"[[{sort}]]")
             return None
         near = phrases[0]
         if not isinstance(name, str) or not re.fullmatch(r"[A-Za-z]\w*", name):

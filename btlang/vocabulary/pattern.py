@@ -30,7 +30,9 @@ class PatternError(ValueError):
     """The pattern cannot be read; the message says what to write instead."""
 
 
-_PIECE = re.compile(r"(?P<slot>\{[^{}]*\})|(?P<open>\[)|(?P<close>\])|(?P<text>(?:\\.|\([^()]*\)|[^\s\[\]{}\\()])+)|(?P<bad>\S)")
+_PIECE = re.compile(
+    r"(?P<slot>\{[^{}]*\})|(?P<open>\[)|(?P<close>\])|(?P<text>(?:\\.|\([^()]*\)|[^\s\[\]{}\\()])+)|(?P<bad>\S)"
+)
 
 
 def forms(pattern: str, articles: frozenset[str] = frozenset()) -> list[Form]:

@@ -6,12 +6,12 @@ from collections.abc import Iterable, Mapping
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.text.source import Source, Span
+from btlang.text.words import split
 from btlang.vocabulary.entry import Entry, Meaning, SlotSpec
 from btlang.vocabulary.keyword_file import KeywordFile
 from btlang.vocabulary.pattern import PatternError, Slot, forms
 from btlang.vocabulary.trie import TrieNode, add, collisions
 from btlang.vocabulary.values import Values, ValueType
-from btlang.text.words import split
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -87,7 +87,7 @@ class Vocabulary:
         unknown = [slot for slot in entry.slots if slot.type not in self.types]
         for slot in unknown:
             known = ", ".join(sorted(self.types))
-            self._wrong(entry, "BT061", reason=f"the slot {{{slot.name}}} has no type '{slot.type}'; known are {known}")
+            self._wrong(entry, f"the slot {{{slot.name}}} has no type '{slot.type}'; known are {known}")
         if unknown:
             return
         entry = entry.replace(slots=tuple(self._with_port_default(entry, slot) for slot in entry.slots))
@@ -96,7 +96,7 @@ class Vocabulary:
             try:
                 self._add_phrase(phrase, Meaning("command" if entry.sort == "action" else "condition", entry), types)
             except PatternError as error:
-                self._wrong(entry, "BT061", reason=str(error))
+                self._wrong(entry, str(error))
 
     def _with_port_default(self, entry: Entry, slot: SlotSpec) -> SlotSpec:
         """Defaults are written with units; ports hold them in the base unit."""
@@ -108,7 +108,7 @@ class Vocabulary:
         if value is None or value[1] < len(text.words) - 2:
             wanted = self.types[slot.type].example
             reason = f"the default '{slot.default}' of {{{slot.name}}} is no {slot.type}, such as {wanted}"
-            self._wrong(entry, "BT061", reason=reason)
+            self._wrong(entry, reason)
             return slot
         return SlotSpec(slot.name, slot.type, value[0])
 
@@ -145,9 +145,9 @@ class Vocabulary:
             return self.roles.get(meaning.role, [meaning.role])[0], f"role {meaning.role}", "connective file"
         return meaning.entry.phrases[0], meaning.entry.id, meaning.entry.file
 
-    def _wrong(self, entry: Entry, code: str, **arguments: str) -> None:
+    def _wrong(self, entry: Entry, reason: str) -> None:
         span = entry.span or Span(Source(entry.phrases[0], "Python"), 0, len(entry.phrases[0]))
-        self._problems.append(diagnostic(code, span, **arguments))
+        self._problems.append(diagnostic("BT061", span, reason=reason))
 
 
 _LANGUAGE: dict[str, Any] = {

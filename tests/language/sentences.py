@@ -29,11 +29,15 @@ conditions = st.recursive(
 
 
 def _forms(inner: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
-    heads = st.tuples(st.sampled_from(["if", "unless", "while", "until"]), conditions, st.sampled_from([",", "then", ":"]))
+    heads = st.tuples(
+        st.sampled_from(["if", "unless", "while", "until"]), conditions, st.sampled_from([",", "then", ":"])
+    )
     prefix = heads.map(" ".join)
     after = st.one_of(
         st.sampled_from(["3t", "2t", "for5", "within9", "ifposs"]),
-        st.tuples(st.sampled_from(["if", "unless", "until", "while", "provided", ", if", ", until"]), conditions).map(" ".join),
+        st.tuples(st.sampled_from(["if", "unless", "until", "while", "provided", ", if", ", until"]), conditions).map(
+            " ".join
+        ),
     )
     closers = st.sampled_from(["", "3t", "until p", "while q", "for5"])
     return st.one_of(
@@ -42,7 +46,9 @@ def _forms(inner: st.SearchStrategy[str]) -> st.SearchStrategy[str]:
         st.tuples(prefix, inner).map(" ".join),
         st.tuples(prefix, inner, st.sampled_from(["otherwise", ", otherwise"]), inner).map(" ".join),
         st.tuples(inner, conditions, inner).map("{0[0]} if {0[1]} otherwise {0[2]}".format),
-        st.tuples(st.sampled_from(["repeat", "repeat 3t ,", "repeat until p ,", "every5 ,"]), inner, closers).map(" ".join),
+        st.tuples(st.sampled_from(["repeat", "repeat 3t ,", "repeat until p ,", "every5 ,"]), inner, closers).map(
+            " ".join
+        ),
         st.tuples(st.just("try"), inner, st.sampled_from(["", "3t", "otherwise a"])).map(" ".join),
         inner.map("( {} )".format),
         st.tuples(st.sampled_from(["check", "wait until"]), conditions).map(" ".join),

@@ -51,7 +51,9 @@ def _spans(mission: ast.Mission) -> list[tuple[int, int]]:
 _VALUES = {"POSTFIX": ("count", "2"), "LOOP": ("try", None), "ELSE": 0}
 _condition = st.recursive(
     st.just("CONDITION"),
-    lambda c: st.one_of(c.map("NOT {}".format), c.map("COND_OPEN {} COND_CLOSE".format), st.tuples(c, c).map(" COND_AND ".join)),
+    lambda c: st.one_of(
+        c.map("NOT {}".format), c.map("COND_OPEN {} COND_CLOSE".format), st.tuples(c, c).map(" COND_AND ".join)
+    ),
     max_leaves=3,
 )
 _command = st.recursive(
@@ -82,7 +84,9 @@ def test_each_parser_takes_all_that_the_matching_stage_may_write(kinds: str) -> 
     assert shunting_yard.parse(tokens, build) == lark_parser.parse(tokens, build)
 
 
-@pytest.mark.parametrize("kinds", ["COMMAND COMMAND", "THEN", "COMMAND THEN", "OPEN COMMAND", "COMMAND CLOSE", "LOOP END", ""])
+@pytest.mark.parametrize(
+    "kinds", ["COMMAND COMMAND", "THEN", "COMMAND THEN", "OPEN COMMAND", "COMMAND CLOSE", "LOOP END", ""]
+)
 def test_each_parser_rejects_tokens_that_are_no_mission(kinds: str) -> None:
     tokens = [Token(kind, _VALUES.get(kind, "if"), i, i + 1) for i, kind in enumerate(kinds.split())]
     for parser in (shunting_yard, lark_parser):

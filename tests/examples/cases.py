@@ -1,0 +1,175 @@
+"""What each example must do: the world, the exit code, and the facts that matter of its run."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+
+@dataclass(frozen=True)
+class Case:
+    """An example and its run.
+
+    `done` holds the commands that succeeded in their order, as `Id` and values; where it ends in `...` more follow.
+    `failed` the commands that failed, `said` and `printed` all texts in their order, `met` the kinds of the robot's
+    other events that must occur. `at` is the place or person where the robot ends, `put` gives the place or person near
+    which an object ends, `error` a part of what is written to standard error.
+    """
+
+    world: str | None = None
+    options: tuple[str, ...] = ()
+    code: int = 0
+    done: tuple[str, ...] = ()
+    failed: tuple[str, ...] = ()
+    said: tuple[str, ...] = ()
+    printed: tuple[str, ...] = ()
+    met: tuple[str, ...] = ()
+    at: str | None = None
+    put: dict[str, str] = field(default_factory=dict)
+    seconds: tuple[float, float] = (0.0, 600.0)
+    cells: int = 1
+    error: str = ""
+
+
+_ROUND = ("GoTo kitchen", "LookAround", "GoTo lab", "LookAround", "GoTo office", "LookAround", "GoTo lobby")
+_SHELVES = ("GoTo first shelf", "LookAround", "GoTo second shelf", "LookAround", "GoTo third shelf", "LookAround")
+_WATCH = (*_SHELVES, "GoTo gate", "Print nobody at the gate", "Charge")
+_SWING = ("RaiseBothArms", "TurnLeft 45", "LowerBothArms", "TurnRight 45", "TurnLeft 45", "TurnRight 45")
+
+CASES = {
+    "careful_walk": Case(
+        world="walled_room",
+        done=(*["MoveForward 0.3"] * 14, "Say That was close!", "MoveBackward 0.2", "TurnAround"),
+        said=("That was close!",),
+        seconds=(20, 60),
+        cells=4,
+    ),
+    "dance": Case(
+        done=("Say Music, please!", *_SWING, "..."),
+        said=("Music, please!", "Thank you, thank you!"),
+        seconds=(20, 40),
+    ),
+    "find_someone": Case(
+        done=("GoTo kitchen", "GoTo lab", "GoTo office", "Say Hello! Nice to see you.", "Wave", "..."),
+        said=("Hello! Nice to see you.", "I like your desk, Bob."),
+        at="office",
+    ),
+    "first_steps": Case(
+        done=("MoveForward 1", "TurnLeft", "Say Hello! I am ready to work.", "LookAround", "Wave"),
+        said=("Hello! I am ready to work.",),
+        seconds=(10, 15),
+    ),
+    "guard_the_door": Case(
+        done=("GoTo door", "TurnAround", *["LookAround", "Print nobody"] * 3, "RaiseArm", "Say The watch is over."),
+        said=("The watch is over.",),
+        printed=("nobody",) * 3,
+        at="door",
+        seconds=(40, 50),
+    ),
+    "hello": Case(done=("Say hello", "Wave"), said=("hello",), seconds=(1, 10)),
+    "locked_lab": Case(
+        world="locked_lab",
+        done=(
+            *["Say Knock, knock!"] * 4, "GoTo lab", "Say Thank you! Now for the cup.",
+            "PickUp cup", "GoTo lab", "Say Oops! I take the other hand.", "Approach cup", "CloseLeftHand", "GoTo lab",
+            "Say Here I come.", "GoToPerson Alice", "Release cup",
+        ),
+        failed=("GoTo lab",) * 4,
+        said=(*["Knock, knock!"] * 4, "Thank you! Now for the cup.", "Oops! I take the other hand.", "Here I come."),
+        met=("fault blocked", "fault weak hand", "drop cup"),
+        at="Alice",
+        put={"cup": "Alice"},
+    ),
+    "look_before_you_go": Case(
+        world="walled_room",
+        done=(*["MoveForward 0.75"] * 6, "TurnRight", "MoveForward 0.75", "TurnRight", "..."),
+        said=("I can go no further.",),
+        cells=6,
+    ),
+    "museum_tour": Case(
+        world="museum",
+        done=(
+            "TurnAround", "Say Welcome to the museum! Please follow me.", "Wave",
+            "GoTo statue", "PointAtPlace statue", "Say This statue is two thousand years old.",
+            "GoTo mummy", "Say Hush! Do not wake the mummy.",
+            "GoTo skeleton", "LookUp", "Say And this was a very big lizard.",
+            "Say Now I will show you the best place of all.", "GoTo cafe",
+            "Nod", "Say The tour is over. Enjoy your coffee!", "Wave",
+        ),
+        said=(
+            "Welcome to the museum! Please follow me.", "This statue is two thousand years old.",
+            "Hush! Do not wake the mummy.", "And this was a very big lizard.",
+            "Now I will show you the best place of all.", "The tour is over. Enjoy your coffee!",
+        ),
+        at="cafe",
+    ),
+    "night_watch": Case(
+        world="warehouse",
+        done=(*_WATCH, *_WATCH, "Undock", "Say Good morning!"),
+        said=("Good morning!",),
+        printed=("nobody at the gate",) * 2,
+        met=("dock", "undock"),
+        at="dock",
+    ),
+    "obedience": Case(
+        done=(
+            "Stop", "LookAhead", "LowerBothArms", "MoveForwardFor 3 0.3", "TurnAround", "MoveForward 0.6",
+            "TurnLeft 30", "TurnRight 30", "RaiseArm", "LowerArm", "LookAround", "LookAround", "Nod", "Nod",
+            "Say At ease!",
+        ),
+        said=("At ease!",),
+        seconds=(31, 33),
+    ),
+    "oily_floor": Case(
+        world="oily_floor",
+        done=("GoTo far end", "Say It is dark.", "Say Help! My wheels turn, but I do not move."),
+        failed=("Dock", "GoTo far end"),
+        said=("It is dark.", "Help! My wheels turn, but I do not move."),
+        met=("fault slip", "fault silent scanner", "stuck"),
+    ),
+    "parcels": Case(
+        world="warehouse",
+        done=(
+            "Undock", "PickUp small parcel", "Print parcel under way", "GoTo packing table", "Release",
+            "Undock", "PickUp big parcel", "Print parcel under way", "GoTo packing table", "Release",
+            "GoToPerson Gus", "Say Two parcels are on the table, Gus.",
+        ),
+        said=("Two parcels are on the table, Gus.",),
+        printed=("parcel under way",) * 2,
+        at="Gus",
+        put={"small parcel": "packing table", "big parcel": "packing table"},
+    ),
+    "patrol": Case(done=(*_ROUND, *_ROUND, "Say All is quiet."), said=("All is quiet.",), at="lobby", cells=20),
+    "roaming": Case(
+        world="walled_room",
+        options=("--for", "60s"),
+        done=("TurnRight", "TurnLeft", "MoveForward", "..."),
+        seconds=(60, 63),
+        cells=6,
+    ),
+    "tea_service": Case(
+        done=(
+            "GoTo kitchen", "PickUp cup", "GoToPerson Alice", "PutDown cup",
+            "Nod", "Say Your tea, Alice.", "GoTo lobby",
+        ),
+        said=("Your tea, Alice.",),
+        met=("grasp cup", "release cup"),
+        at="lobby",
+        put={"cup": "Alice"},
+    ),
+    "tidy_up": Case(
+        done=(
+            "PickUp red ball", "GoTo hall", "OpenHand", "PickUp book", "GoTo hall", "OpenHand",
+            "PickUp bottle", "GoTo hall", "OpenHand", "GoTo lobby", "Say All tidy!",
+        ),
+        said=("All tidy!",),
+        at="lobby",
+        put={"red ball": "hall", "book": "hall", "bottle": "hall"},
+    ),
+    "waiting": Case(
+        code=1,
+        done=("GoTo door", "Say Nobody came."),
+        said=("Nobody came.",),
+        at="door",
+        error='otherwise say "Nobody came." then fail',
+    ),
+}  # fmt: skip
