@@ -1,6 +1,6 @@
-"""The README is true: its missions compile, its commands and snippets run, and what it shows is what they print.
+"""The README and `docs/` are true: their commands and snippets run, and the output that they show is what is printed.
 
-`UPDATE_README=1` writes the shown output anew.
+A block with a file name is that file. `UPDATE_README=1 pytest -n0` writes the shown output anew.
 """
 
 from __future__ import annotations
@@ -12,69 +12,100 @@ import shutil
 import subprocess
 import sys
 from pathlib import Path
+from typing import NamedTuple
 
 import pytest
 
 ROOT = Path(__file__).parent.parent
 README = ROOT / "README.md"
-_BLOCK = re.compile(r"^```(\w+)(?: ([\w.]+))?\n(.*?)^```$", re.MULTILINE | re.DOTALL)
-BLOCKS = [match.groups() for match in _BLOCK.finditer(README.read_text(encoding="utf-8"))]
+PAGES = [README, *sorted((ROOT / "docs").glob("*.md"))]
 SET_UP = "python3 -m venv "  # what lines start with that only `.ci/run` runs
+_BLOCK = re.compile(r"^```(\w+)(?: ([\w.]+))?\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
 
-def texts(kind: str) -> list[str]:
-    """What stands in the blocks of a kind."""
-    return [text for block, _, text in BLOCKS if block == kind]
+class Block(NamedTuple):
+    """A block of a page: its language, the name of the file that it is ("" where it is none), its text."""
+
+    page: Path
+    language: str
+    file: str
+    text: str
+
+
+BLOCKS = [
+    Block(page, match[1], match[2] or "", match[3])
+    for page in PAGES
+    for match in _BLOCK.finditer(page.read_text(encoding="utf-8"))
+]
+
+
+def blocks(language: str) -> list[Block]:
+    """The blocks of a language that are no files."""
+    return [block for block in BLOCKS if block.language == language and not block.file]
+
+
+def first_line(block: Block) -> str:
+    """What a block is called in the list of tests."""
+    return block.text.partition("\n")[0]
 
 
 def commands() -> list[str]:
     """The lines of shell blocks, without those that set up an environment."""
-    lines = [line for text in texts("sh") for line in text.splitlines()]
+    lines = [line for block in blocks("sh") for line in block.text.splitlines()]
     return [line for line in lines if line.strip() and not line.startswith(SET_UP)]
 
 
-def run(arguments: list[str], folder: Path) -> subprocess.CompletedProcess[str]:
-    """Runs this Python in a folder with the btlang of this checkout; both outputs in one."""
-    environment = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONIOENCODING": "utf-8"}
-    command = [sys.executable, *arguments]
+def run(arguments: list[str], folder: Path, path: str = "") -> subprocess.CompletedProcess[str]:
+    """Runs this Python in a folder, as an installed command would; both outputs in one."""
+    environment = {**os.environ, "PYTHONPATH": f"{ROOT}{os.pathsep}{path}", "PYTHONIOENCODING": "utf-8"}
     return subprocess.run(
-        command, cwd=folder, env=environment, stdin=subprocess.DEVNULL, stdout=subprocess.PIPE,
-        stderr=subprocess.STDOUT, encoding="utf-8", timeout=120, check=False,
-    )  # fmt: skip
+        [sys.executable, "-P", *arguments],
+        cwd=folder,
+        env=environment,
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        encoding="utf-8",
+        timeout=120,
+        check=False,
+    )
 
 
 def btc(line: str, folder: Path) -> subprocess.CompletedProcess[str]:
-    """Runs a line that starts with `btc`."""
-    name, *arguments = shlex.split(line, comments=True)
-    assert name == "btc", line
-    return run(["-m", "btlang", *arguments], folder)
+    """Runs a line `btc ...` or `PYTHONPATH=. btc ...`."""
+    words = shlex.split(line, comments=True)
+    path = words.pop(0).removeprefix("PYTHONPATH=") if words[0].startswith("PYTHONPATH=") else ""
+    assert words[0] == "btc", line
+    return run(["-m", "btlang", *words[1:]], folder, path)
 
 
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
-    """A folder with the examples and the missions of the README."""
+    """A folder with the examples and the files that the pages show."""
     shutil.copytree(ROOT / "examples", tmp_path / "examples")
-    for kind, name, text in BLOCKS:
-        if kind == "mission":
-            (tmp_path / name).write_text(text, encoding="utf-8")
+    for block in BLOCKS:
+        if block.file:
+            (tmp_path / block.file).write_text(block.text, encoding="utf-8")
     return tmp_path
 
 
 @pytest.mark.parametrize("line", commands())
 def test_commands_run(line: str, folder: Path) -> None:
-    done = btc(line, folder)
+    real_time = line.startswith("btc run") and "--speed" not in line
+    done = btc(line.replace("btc run", "btc run --speed max") if real_time else line, folder)
     assert done.returncode == 0, done.stdout
 
 
-@pytest.mark.parametrize("text", texts("console"), ids=lambda text: text.splitlines()[0])
-def test_shown_output_is_real(text: str, folder: Path) -> None:
-    line, _, shown = text.partition("\n")
+@pytest.mark.parametrize("block", blocks("console"), ids=first_line)
+def test_shown_output_is_real(block: Block, folder: Path) -> None:
+    line, _, shown = block.text.partition("\n")
     assert line.startswith("$ ")
     done = btc(line[2:], folder)
     assert "Traceback" not in done.stdout
     if os.environ.get("UPDATE_README"):
-        readme = README.read_text(encoding="utf-8")
-        README.write_text(readme.replace(f"```console\n{text}```", f"```console\n{line}\n{done.stdout}```"), encoding="utf-8")
+        page = block.page.read_text(encoding="utf-8")
+        fresh = page.replace(f"```console\n{block.text}```", f"```console\n{line}\n{done.stdout}```")
+        block.page.write_text(fresh, encoding="utf-8")
     else:
         assert without_times(done.stdout) == without_times(shown)
 
@@ -84,10 +115,10 @@ def without_times(text: str) -> str:
     return re.sub(r" *\b\d+\.\d+\b", " T", text)
 
 
-@pytest.mark.parametrize("text", texts("python"))
-def test_snippets_run(text: str, tmp_path: Path) -> None:
-    (tmp_path / "snippet.py").write_text(text, encoding="utf-8")
-    done = run(["-W", "error", "snippet.py"], tmp_path)
+@pytest.mark.parametrize("block", blocks("python"))
+def test_snippets_run(block: Block, folder: Path) -> None:
+    (folder / "snippet.py").write_text(block.text, encoding="utf-8")
+    done = run(["-W", "error", "snippet.py"], folder)
     assert done.returncode == 0, done.stdout
     assert done.stdout
 
@@ -104,6 +135,10 @@ def test_ci_runs_the_two_set_up_commands() -> None:
     assert 'bash -euo pipefail -c "${commands[1]}"' in script
 
 
-def test_files_that_it_names_exist() -> None:
-    for link in re.findall(r"\]\(([^)#]+)\)", README.read_text(encoding="utf-8")):
-        assert (ROOT / link).exists(), link
+def test_files_of_the_pages_load(folder: Path) -> None:
+    """Keyword files and worlds that are shown without a command."""
+    for block in BLOCKS:
+        if block.language == "toml" and block.file:
+            option = "--world" if block.file.endswith("world.toml") else "--keywords"
+            done = btc(f"btc check {option} {block.file} -c wave", folder)
+            assert done.returncode == 0, done.stdout

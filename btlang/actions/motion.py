@@ -1,4 +1,4 @@
-"""Driving and turning by a distance, an angle or a time. All fail when the robot bumps, gets stuck or is stopped."""
+"""Driving and turning by a distance or an angle. All fail when the robot bumps, gets stuck or is stopped."""
 
 from __future__ import annotations
 
@@ -6,7 +6,6 @@ from collections.abc import Generator
 from math import copysign, sqrt
 
 from btlang.actions.watch import Watch
-from btlang.engine.clock import Clock
 from btlang.robots.geometry import wrap
 from btlang.robots.robot import Robot
 
@@ -29,16 +28,6 @@ def move_backward(robot: Robot, distance: float, speed: float | None = None) -> 
     yield from drive_straight(robot, -distance, speed)
 
 
-def move_forward_for(robot: Robot, clock: Clock, duration: float, speed: float | None = None) -> Steps:
-    """Drives straight ahead for `duration` seconds."""
-    yield from _drive_for(robot, clock, duration, speed or robot.normal_speed, 0.0)
-
-
-def move_backward_for(robot: Robot, clock: Clock, duration: float, speed: float | None = None) -> Steps:
-    """Drives straight back for `duration` seconds."""
-    yield from _drive_for(robot, clock, duration, -(speed or robot.normal_speed), 0.0)
-
-
 def turn_left(robot: Robot, angle: float) -> Steps:
     """Turns on the spot by `angle` degrees counter-clockwise, to the degree."""
     yield from turn(robot, angle)
@@ -52,16 +41,6 @@ def turn_right(robot: Robot, angle: float) -> Steps:
 def turn_around(robot: Robot) -> Steps:
     """Turns on the spot to where its back was."""
     yield from turn(robot, 180.0)
-
-
-def turn_left_for(robot: Robot, clock: Clock, duration: float) -> Steps:
-    """Turns counter-clockwise for `duration` seconds."""
-    yield from _drive_for(robot, clock, duration, 0.0, robot.normal_turn)
-
-
-def turn_right_for(robot: Robot, clock: Clock, duration: float) -> Steps:
-    """Turns clockwise for `duration` seconds."""
-    yield from _drive_for(robot, clock, duration, 0.0, -robot.normal_turn)
 
 
 def stop(robot: Robot) -> Steps:
@@ -119,18 +98,5 @@ def turn(robot: Robot, angle: float) -> Steps:
             pace = min(robot.normal_turn, sqrt(2 * _TURN_DECELERATION * abs(left)), 4.0 * abs(left))
             robot.drive(0.0, copysign(pace, left))
             yield
-    finally:
-        robot.drive(0.0, 0.0)
-
-
-def _drive_for(robot: Robot, clock: Clock, duration: float, linear: float, angular: float) -> Steps:
-    begin, start, watch = clock.now, robot.pose, Watch(robot)
-    try:
-        while clock.now - begin < duration - 1e-9:
-            watch.check_base(f"{clock.now - begin:.1f} s")
-            course = 0.0 if angular else wrap(start.heading - robot.pose.heading)
-            robot.drive(linear, angular + _STRAIGHTENING * course)
-            yield
-        watch.check_base(f"{clock.now - begin:.1f} s")
     finally:
         robot.drive(0.0, 0.0)

@@ -10,7 +10,7 @@ from btlang.text.source import Span
 from btlang.text.words import END_OF_STATEMENT, Words
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.trie import TrieNode, add, longest
-from btlang.vocabulary.vocabulary import Vocabulary
+from btlang.vocabulary.vocabulary import DEFINING, Vocabulary
 
 # A line that starts with one of these compares; it defines nothing.
 _STARTS_NO_NAME = frozenset(("if", "unless", "while", "until", "otherwise", "then"))
@@ -37,7 +37,7 @@ class Definitions:
 def find_definitions(text: Words, vocabulary: Vocabulary) -> Definitions:
     """Every definition of the text. A name defined twice is listed twice; the later one counts."""
     found = Definitions()
-    defining = {word for role in ("define_strong", "define") for word in vocabulary.roles[role]}
+    defining = {word for role in DEFINING for word in vocabulary.roles[role]}
     if defining.isdisjoint(text.words):
         return found
     margin = text.lines[0].indent if text.lines else 0
@@ -100,7 +100,7 @@ def _header(text: Words, first: int, last: int, vocabulary: Vocabulary, problems
 
 def _defining_word(text: Words, first: int, last: int, vocabulary: Vocabulary) -> int | None:
     """The first `means`, else the first `is`, unless a condition phrase holds it or the line starts with a form."""
-    for role in ("define_strong", "define"):
+    for role in DEFINING:
         choices = vocabulary.roles[role]
         at = first
         while at < last:

@@ -103,8 +103,6 @@ class Values:
                     insert(self._units, word.split(), (kind.name, unit))
             if kind.kind == "names":
                 self._names[kind.name] = {}
-                for name in kind.names:
-                    self.add_name(kind.name, name, name)
 
     def add_name(self, kind: str, words: str, name: str) -> None:
         """Lets the words stand for a name of a type."""
@@ -192,7 +190,7 @@ class Values:
         word = text.words[at]
         if word[0] != '"':
             return None
-        words = [*word[1:].lower().split(), END]
+        words = [*word[1:].lower().split(), "\n"]
         found = find(self._names[kind], words, 0) if len(words) > 1 else None
         return (found[0], at + 1) if found and found[1] == len(words) - 1 else None
 

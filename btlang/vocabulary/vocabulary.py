@@ -18,6 +18,10 @@ if TYPE_CHECKING:
     from typing import Any
 
 
+DEFINING = ("define_strong", "define")
+"""Roles whose words define a name where they are found first in a line; elsewhere they are words like any other."""
+
+
 class Vocabulary:
     """Phrases, types and connectives of a language and its packs.
 
@@ -40,7 +44,7 @@ class Vocabulary:
         )
         for file in files:
             for kind, words, name in file.names:
-                self.values.add_name(kind, words, name)
+                self._add_name(kind, words, name)
         self.roles: dict[str, list[str]] = {**language["roles"], "politeness": language["politeness"]}
         self.counts: dict[str, int] = language["counts"]
         self._add_roles()
@@ -63,7 +67,11 @@ class Vocabulary:
     def add_names(self, kind: str, names: Iterable[str]) -> None:
         """Lets slots of a type take further names: the places, people and objects of a world."""
         for name in names:
-            self.values.add_name(kind, " ".join(w for w in name.split() if w.lower() not in self.articles), name)
+            self._add_name(kind, name, name)
+
+    def _add_name(self, kind: str, words: str, name: str) -> None:
+        """Articles do not matter in names either."""
+        self.values.add_name(kind, " ".join(word for word in words.split() if word.lower() not in self.articles), name)
 
     def duration(self, written: str) -> float | None:
         """The seconds of a text such as `2 min` or `half an hour`, None where it is no duration."""
@@ -77,7 +85,7 @@ class Vocabulary:
 
     def _add_roles(self) -> None:
         for role, phrases in self.roles.items():
-            for phrase in phrases:
+            for phrase in phrases if role not in DEFINING else ():
                 self._add_phrase(phrase, Meaning(role), {})
         for words, rounds in self.counts.items():
             self._add_phrase(words, Meaning("count", value=rounds), {})

@@ -55,22 +55,6 @@ def test_speed_and_its_limit(bench):
     assert 3.0 < fast < normal
 
 
-def test_for_a_time(bench):
-    b = bench()
-    _, seconds = b.run(motion.move_forward_for, clock=b.clock, duration=5.0)
-    assert seconds == pytest.approx(5.0)
-    assert b.robot.pose.x == pytest.approx(2.5, abs=0.2)
-    assert b.run(motion.move_backward_for, clock=b.clock, duration=2.0, speed=0.2)[1] == pytest.approx(2.0)
-    b.tick(20)
-    heading = b.robot.pose.heading
-    b.run(motion.turn_left_for, clock=b.clock, duration=1.0)
-    assert 60 < b.robot.pose.heading - heading < 90
-    b.tick(20)
-    b.run(motion.turn_right_for, clock=b.clock, duration=1.0)
-    b.tick(20)
-    assert b.robot.pose.heading == pytest.approx(heading, abs=1)
-
-
 def test_keeps_straight_with_a_slipping_wheel(bench):
     b = bench(faults=(Fault("slip", wheel="left", grip=0.8),))
     b.run(motion.move_forward, distance=3.0)
@@ -87,12 +71,6 @@ def test_bumps_fail(bench):
     with pytest.raises(ActionFailed, match=r"^bumped into something after 0\.00 m$"):
         b.run(motion.move_forward, distance=2.0)
     b.run(motion.move_backward, distance=0.5)
-
-
-def test_bumps_fail_for_a_time_too(bench):
-    b = bench(**WALL)
-    with pytest.raises(ActionFailed, match=r"^bumped into something after \d\.\d s$"):
-        b.run(motion.move_forward_for, clock=b.clock, duration=10.0)
 
 
 @pytest.mark.parametrize(

@@ -112,12 +112,12 @@ CASES = {
     ),
     "obedience": Case(
         done=(
-            "Stop", "LookAhead", "LowerBothArms", "MoveForwardFor 3 0.3", "TurnAround", "MoveForward 0.6",
+            "Stop", "LookAhead", "LowerBothArms", "MoveForward 0.3", "TurnAround", "MoveForward 0.6",
             "TurnLeft 30", "TurnRight 30", "RaiseArm", "LowerArm", "LookAround", "LookAround", "Nod", "Nod",
             "Say At ease!",
         ),
         said=("At ease!",),
-        seconds=(31, 33),
+        seconds=(32, 34),
     ),
     "oily_floor": Case(
         world="oily_floor",
@@ -129,8 +129,8 @@ CASES = {
     "parcels": Case(
         world="warehouse",
         done=(
-            "Undock", "PickUp small parcel", "Print parcel under way", "GoTo packing table", "Release",
-            "Undock", "PickUp big parcel", "Print parcel under way", "GoTo packing table", "Release",
+            "PickUp small parcel", "Print parcel under way", "GoTo packing table", "Release",
+            "PickUp big parcel", "Print parcel under way", "GoTo packing table", "Release",
             "GoToPerson Gus", "Say Two parcels are on the table, Gus.",
         ),
         said=("Two parcels are on the table, Gus.",),

@@ -1,0 +1,137 @@
+"""The library as a program uses it."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Iterator
+
+import pytest
+
+import btlang
+from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
+
+
+def test_the_founding_sentence_moves_the_robot(capsys: pytest.CaptureFixture[str]) -> None:
+    for parser in ("shunting-yard", "lark"):
+        tree = btlang.parse_tree("move forward then twist right and print hello", parser=parser)
+        assert [node.id for node in tree.tree.walk()] == ["Sequence", "MoveForward", "Parallel", "TurnRight", "Print"]
+        start = tree.robot.pose
+        events = []
+        outcome = tree.run(speed="max", sinks=[events.append])
+        assert outcome.status == SUCCESS
+        end = tree.robot.pose
+        assert math.hypot(end.x - start.x, end.y - start.y) == pytest.approx(0.5, abs=0.02)
+        assert end.heading - start.heading == pytest.approx(-90, abs=1)
+        assert [e.data["text"] for e in events if getattr(e, "kind", "") == "print"] == ["hello"]
+    tree.print()
+    assert "TurnRight: turn right" in capsys.readouterr().out
+
+
+def test_ticking_by_hand() -> None:
+    tree = btlang.parse_tree("wait 0.2 s then fail")
+    statuses = [tree.tick() for _ in range(5)]
+    assert statuses == [RUNNING] * 4 + [FAILURE]
+    tree.tick()
+    tree.halt()
+    assert [tree.tick() for _ in range(5)] == statuses
+
+
+def test_halting_stops_the_robot() -> None:
+    tree = btlang.parse_tree("move forward 3 m")
+    for _ in range(20):
+        tree.tick()
+    assert tree.robot.velocity[0] > 0.2
+    tree.halt()
+    assert not tree.robot.moving
+
+
+def test_functions_generators_and_classes_become_words() -> None:
+    said: list[object] = []
+
+    @btlang.action("cheer for {name}", slots={"name": "text"})
+    def cheer(name: str) -> None:
+        said.append(name)
+
+    @btlang.action("count to {number}", resources=["voice"])
+    def count(number: float, clock: object) -> Iterator[None]:
+        for i in range(int(number)):
+            said.append(i)
+            yield
+
+    @btlang.condition("{number} things were said")
+    def said_enough(number: float) -> bool:
+        return len(said) == number
+
+    @btlang.action("hold breath")
+    class HoldBreath:
+        def __init__(self, robot: object) -> None:
+            self.ticks = 0
+
+        def start(self) -> None:
+            said.append("in")
+
+        def tick(self) -> bool | None:
+            self.ticks += 1
+            return True if self.ticks > 1 else None
+
+        def halt(self) -> None:
+            said.append("halt")
+
+    words = [cheer, count, said_enough, HoldBreath]
+    text = "cheer for Alice then count to 2 then hold breath then check 4 things were said"
+    assert btlang.parse_tree(text, keywords=words).run(speed="max").status == SUCCESS
+    assert said == ["Alice", 0, 1, "in"]
+    assert cheer("direct") is None
+
+
+def test_a_leaf_that_raises_fails_with_a_reason() -> None:
+    @btlang.action("stumble")
+    def stumble() -> None:
+        raise ZeroDivisionError("over a stone")
+
+    @btlang.action("refuse")
+    def refuse() -> None:
+        raise btlang.ActionFailed("too tired")
+
+    outcome = btlang.parse_tree("stumble or refuse", keywords=[stumble, refuse]).run(speed="max")
+    assert outcome.status == FAILURE
+    assert outcome.failure is not None
+    assert outcome.failure.reason == "too tired"
+    outcome = btlang.parse_tree("stumble", keywords=[stumble]).run(speed="max")
+    assert outcome.failure is not None
+    assert outcome.failure.reason == "ZeroDivisionError: over a stone"
+    assert isinstance(outcome.failure.exception, ZeroDivisionError)
+
+
+def test_a_mission_whose_commands_are_all_skipped() -> None:
+    assert btlang.parse_tree("if bumped, wave").run(speed="max").status == SKIPPED
+
+
+def test_one_exception_holds_all_diagnostics() -> None:
+    with pytest.raises(btlang.MissionError) as caught:
+        btlang.parse_tree("fly high\nwave and and nod\ngo to the moon")
+    assert [(d.code, d.span.place) for d in caught.value.diagnostics] == [
+        ("BT010", "<text>:1:1"),
+        ("BT020", "<text>:2:6"),
+        ("BT013", "<text>:3:11"),
+    ]
+    assert str(caught.value).count("error") == 3
+
+
+def test_every_run_starts_in_a_fresh_world_and_is_the_same() -> None:
+    tree = btlang.parse_tree("go to the lab then pick up the bottle, then look around")
+    ends = []
+    for _ in range(2):
+        outcome = tree.run(speed="max")
+        ends.append((outcome.status, outcome.seconds, tree.robot.pose))
+    assert ends[0] == ends[1]
+
+
+@pytest.mark.parametrize("wrong", [{"speed": 0}, {"speed": "fast"}, {"rate": 0}])
+def test_wrong_options(wrong: dict[str, object]) -> None:
+    with pytest.raises(ValueError, match=r"^(speed|rate)"):
+        btlang.parse_tree("wave").run(**wrong)  # type: ignore[arg-type]
+    with pytest.raises(ValueError, match="parser"):
+        btlang.parse_tree("wave", parser="earley")
+    with pytest.raises(AttributeError):
+        btlang.nothing  # type: ignore[attr-defined]  # noqa: B018

@@ -1,0 +1,194 @@
+"""The commands as a user types them."""
+
+from __future__ import annotations
+
+import io
+import json
+import signal
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+
+from btlang.cli import main
+
+REPOSITORY = Path(__file__).parent.parent
+
+
+class Screen:
+    """Runs `btc` in this process and keeps what it printed."""
+
+    def __init__(self, capsys: pytest.CaptureFixture[str]) -> None:
+        self._capsys = capsys
+        self.out = self.err = ""
+
+    def __call__(self, *arguments: str) -> int:
+        code = main(arguments)
+        self.out, self.err = self._capsys.readouterr()
+        return code
+
+
+@pytest.fixture
+def btc(capsys: pytest.CaptureFixture[str]) -> Screen:
+    return Screen(capsys)
+
+
+def test_run_tells_each_command(btc: Screen) -> None:
+    assert btc("run", "-c", "move forward then twist right and print hello", "--speed", "max") == 0
+    lines = [line.split(maxsplit=1)[1] for line in btc.out.splitlines()[:-1]]
+    assert lines == [
+        "start  move forward",
+        "done   move forward",
+        "start  turn right",
+        'prints "hello"',
+        "done   print hello",
+        "done   turn right",
+    ]
+    assert btc.out.splitlines()[-1].startswith("The mission succeeded in ")
+
+
+def test_run_tells_what_failed(btc: Screen) -> None:
+    assert btc("run", "-c", "wave then check battery is low", "--speed", "max") == 1
+    assert btc.err.splitlines()[1:] == [
+        "<command line>:1:17: battery is low",
+        "  wave then check battery is low",
+        "                  ^^^^^^^^^^^^^^".replace("  ", "", 1).rjust(32),
+        "  BatteryLow: it does not hold",
+    ]
+
+
+def test_exit_codes(btc: Screen) -> None:
+    assert btc("run", "-c", "if bumped, wave", "--quiet") == 0
+    assert (btc.out, btc.err) == ("", "")
+    assert btc("run", "-c", "fail", "--quiet") == 1
+    assert btc("run", "-c", "fly", "--quiet") == 2
+    assert btc("run", "-c", "repeat turn left", "--for", "3 s", "--speed", "max") == 0
+    assert "Stopped after 3.0 s, as asked; the robot stands still." in btc.out
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        [],
+        ["fly"],
+        ["run"],
+        ["run", "a.txt", "-c", "wave"],
+        ["run", "-c", "wave", "--speed", "0"],
+        ["run", "-c", "wave", "--speed", "nan"],
+        ["run", "-c", "wave", "--rate", "-1"],
+        ["run", "-c", "wave", "--for", "2 m"],
+        ["run", "-c", "wave", "--parser", "earley"],
+    ],
+)
+def test_wrong_options_exit_with_2(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit) as caught:
+        main(arguments)
+    assert caught.value.code == 2
+    assert "usage: btc" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(("duration", "seconds"), [("1", "1.0"), ("2s", "2.0"), ("half a minute", "30.0")])
+def test_time_limits(btc: Screen, duration: str, seconds: str) -> None:
+    assert btc("run", "-c", "wait 2 min", "--for", duration, "--speed", "max") == 0
+    assert f"Stopped after {seconds} s" in btc.out
+
+
+def test_log_has_a_line_for_every_change(btc: Screen, tmp_path: Path) -> None:
+    log = tmp_path / "log.jsonl"
+    text = 'greet is say "hi there"; greet then move forward 20 cm'
+    assert btc("run", "-c", text, "--speed", "max", "--quiet", "--log", str(log)) == 0
+    events = [json.loads(line) for line in log.read_text(encoding="utf-8").splitlines()]
+    changes = [event for event in events if "status" in event]
+    assert all(event.keys() >= {"t", "path", "id", "name", "ports", "status"} for event in changes)
+    leaves = [(e["path"], e["name"], e["ports"], e["status"]) for e in changes if e["id"] in ("Say", "MoveForward")]
+    assert leaves == [
+        ("/0/0", 'say "hi there"', {"text": "hi there"}, "RUNNING"),
+        ("/0/0", 'say "hi there"', {"text": "hi there"}, "SUCCESS"),
+        ("/1", "move forward 0.2 m", {"distance": "0.2"}, "RUNNING"),
+        ("/1", "move forward 0.2 m", {"distance": "0.2"}, "SUCCESS"),
+    ]
+    assert any(event.get("event") == "say" for event in events)
+    assert [event["t"] for event in events] == sorted(event["t"] for event in events)
+
+
+def test_check_and_tree_read_files_and_standard_input(
+    btc: Screen, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    mission = tmp_path / "mission.txt"
+    mission.write_text("wave then nod\n", encoding="utf-8")
+    assert btc("check", str(mission)) == 0
+    assert btc.out == "The mission is fine.\n"
+    assert btc("tree", str(mission), "--plain") == 0
+    assert btc.out == "Sequence\n  Wave\n  Nod\n"
+    monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(b"wave and nod")))
+    assert btc("tree", "-", "--parser", "lark") == 0
+    assert btc.out == "Parallel\n├── Wave: wave\n└── Nod: nod\n"
+
+
+def test_worlds_bring_their_names(btc: Screen) -> None:
+    museum = str(REPOSITORY / "examples" / "worlds" / "museum.toml")
+    assert btc("check", "-c", "go to the kitchen", "--world", museum) == 2
+    assert "I know no place" in btc.err
+    assert btc("check", "-c", "wave", "--world", str(REPOSITORY / "pyproject.toml")) == 2
+    assert "BT070" in btc.err
+    assert btc("check", "-c", "wave", "--world", "no_such_world.toml") == 2
+
+
+def test_words(btc: Screen) -> None:
+    assert btc("words") == 0
+    assert "  move forward [{distance}] [at {speed}]\n" in btc.out
+    assert "motion:" in btc.out
+    assert btc("words", "battery", "low") == 0
+    assert btc.out.splitlines()[1].strip() == "battery is low  (condition)"
+
+
+def test_warnings_do_not_stop_a_run(btc: Screen) -> None:
+    assert btc("run", "-c", "wave is print hi; wave", "--speed", "max") == 0
+    assert "warning BT018" in btc.err
+    assert "Print" not in btc.err
+
+
+def started(*arguments: str) -> subprocess.Popen[str]:
+    command = [sys.executable, "-m", "btlang", *arguments]
+    return subprocess.Popen(command, cwd=REPOSITORY, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE)
+
+
+@pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
+def test_an_interrupted_run_stops_the_robot_and_exits_with_130(number: signal.Signals, tmp_path: Path) -> None:
+    log = tmp_path / "log.jsonl"
+    with started("run", "-c", "move forward 3 m", "--log", str(log)) as process:
+        while not log.exists() or "RUNNING" not in log.read_text(encoding="utf-8"):
+            time.sleep(0.02)
+        time.sleep(0.3)
+        process.send_signal(number)
+        out, err = process.communicate(timeout=20)
+    assert process.returncode == 130, err
+    assert "the robot stands still" in out
+    assert err == ""
+    statuses = [json.loads(line).get("status") for line in log.read_text(encoding="utf-8").splitlines()]
+    assert "IDLE" in statuses
+
+
+def test_a_closed_pipe_is_no_error() -> None:
+    with started("words") as process:
+        assert process.stdout is not None
+        process.stdout.close()
+        assert process.stderr is not None
+        assert process.stderr.read() == ""
+    assert process.returncode == 0
+
+
+def test_version() -> None:
+    with started("--version") as process:
+        assert process.communicate(timeout=20)[0].startswith("btc 0.")
+
+
+def test_check_loads_nothing_heavy() -> None:
+    script = (
+        "import sys; from btlang.cli import main; main(['check', '-c', 'go to the lab then wave']);"
+        "print(sorted({'lark', 'rich', 'asyncio', 'numpy', 'rclpy', 'rapidfuzz', 'dataclasses'} & set(sys.modules)))"
+    )
+    done = subprocess.run([sys.executable, "-c", script], cwd=REPOSITORY, text=True, capture_output=True, check=True)
+    assert done.stdout.splitlines() == ["The mission is fine.", "[]"]

@@ -1,0 +1,111 @@
+"""Rules of the house that no tool checks."""
+
+from __future__ import annotations
+
+import ast
+import os
+import re
+import subprocess
+import sys
+import tomllib
+from importlib.metadata import PackageNotFoundError, version
+from pathlib import Path
+
+import pytest
+
+import btlang
+
+ROOT = Path(__file__).parent.parent
+FOLDERS = ("btlang", "tests", "grammar", "keywords", "examples", "docs", ".ci")
+PROJECT = tomllib.loads((ROOT / "pyproject.toml").read_text(encoding="utf-8"))
+FILES = sorted(
+    path
+    for folder in FOLDERS
+    for path in (ROOT / folder).rglob("*")
+    if path.is_file() and not {"__pycache__", "samples"} & set(path.relative_to(ROOT).parts)
+)
+MODULES = [path for path in FILES if path.suffix == ".py"]
+BORROWED = {ROOT / path for path in PROJECT["tool"]["ruff"]["extend-exclude"]}
+MOST_LINES = 400
+
+
+def name(path: Path) -> str:
+    return path.relative_to(ROOT).as_posix()
+
+
+def text(path: Path) -> str:
+    return path.read_text(encoding="utf-8")
+
+
+def test_no_file_is_long() -> None:
+    long = {name(path): lines for path in FILES if (lines := len(text(path).splitlines())) > MOST_LINES}
+    assert not long
+
+
+def test_no_work_is_left_as_a_note() -> None:
+    note = re.compile(r"\b(?:TO" r"DO|FIX" r"ME|XX" r"X)\b")
+    assert [name(path) for path in FILES if note.search(text(path))] == []
+
+
+def test_every_module_says_what_it_is_for() -> None:
+    silent = [path for path in MODULES if ast.get_docstring(ast.parse(text(path))) is None]
+    packages = {path for path in silent if path.name == "__init__.py" and "tests" in path.parts}
+    assert [name(path) for path in silent if path not in packages | BORROWED] == []
+
+
+def test_every_layer_has_its_paragraph_in_the_architecture() -> None:
+    page = text(ROOT / "ARCHITECTURE.md")
+    folders = [path.name for path in (ROOT / "btlang").iterdir() if (path / "__init__.py").exists()]
+    assert [folder for folder in folders if f"**`btlang/{folder}/`**" not in page] == []
+
+
+@pytest.mark.parametrize("page", [*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")], ids=name)
+def test_files_named_in_documents_exist(page: Path) -> None:
+    """Every `btlang/...` or other path from the root in back quotes, and every link."""
+    roots = "|".join(re.escape(folder) for folder in FOLDERS)
+    named = re.findall(rf"`((?:{roots})/[\w./]*)`", text(page))
+    linked = [link for link in re.findall(r"\]\(([^)#]+)", text(page)) if not link.startswith("https://")]
+    missing = [path for path in named if not (ROOT / path).exists() and "samples/bad/" not in path]
+    missing += [link for link in linked if not (page.parent / link).exists()]
+    assert missing == []
+
+
+def test_one_version() -> None:
+    assert btlang.__version__ == PROJECT["project"]["version"]
+    try:
+        installed = version("btlang")
+    except PackageNotFoundError:
+        pytest.skip("btlang is not installed here; in CI it is")
+    assert installed == btlang.__version__
+
+
+def test_btc_says_its_version() -> None:
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    done = subprocess.run(
+        [sys.executable, "-m", "btlang", "--version"], env=environment, capture_output=True, text=True, check=True
+    )
+    assert done.stdout == f"btc {btlang.__version__}\n"
+
+
+def test_contracts_name_every_part() -> None:
+    """The contract about rclpy has to list its modules, so a new one could be forgotten."""
+    contracts = PROJECT["tool"]["importlinter"]["contracts"]
+    [contract] = [contract for contract in contracts if contract.get("forbidden_modules") == ["rclpy"]]
+    parts = {
+        f"btlang.{path.stem}"
+        for path in (ROOT / "btlang").iterdir()
+        if (path.suffix == ".py" and path.stem != "__init__") or (path / "__init__.py").exists()
+    }
+    assert parts - {"btlang.ros"} == set(contract["source_modules"])
+
+
+def test_light_start() -> None:
+    """What `btc check` must not import: it would double the time of every check."""
+    program = (
+        "import sys; from btlang.cli import main; code = main(['check', '-c', 'move forward 1 m then say done']); "
+        "heavy = {'lark', 'rich', 'asyncio', 'numpy', 'rclpy', 'interegular'} & set(sys.modules); "
+        "sys.exit(f'imports {sorted(heavy)}' if heavy else code)"
+    )
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    done = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr

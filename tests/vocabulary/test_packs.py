@@ -1,0 +1,86 @@
+"""Packs: further keyword files add words, and can change what a connective means."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from btlang.api import parse_tree
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.tree.dump import plain
+from btlang.vocabulary.listing import listing
+from btlang.vocabulary.load import load_vocabulary
+
+
+def test_a_pack_adds_a_phrase_and_a_type(tmp_path: Path) -> None:
+    pack = tmp_path / "band.toml"
+    pack.write_text(
+        """
+        [[type]]
+        name = "song"
+        values = ["la paloma", { name = "hymn", words = ["hymn", "the national anthem"] }]
+        [[action]]
+        phrase = "play/sing {song} [for {person}]"
+        id = "Play"
+        resources = ["voice"]
+        """
+    )
+    tree = parse_tree("sing the national anthem for Alice then play La Paloma", keywords=[str(pack)]).tree
+    assert plain(tree) == 'Sequence\n  Play person=Alice song=hymn\n  Play song="la paloma"'
+    with pytest.raises(MissionError, match=r"I know no song 'yesterday'"):
+        parse_tree("sing yesterday", keywords=[str(pack)])
+
+
+def test_a_pack_sets_what_a_connective_means(tmp_path: Path) -> None:
+    pack = tmp_path / "referee.toml"
+    pack.write_text('[roles]\nand = ["while also"]\nthen = ["then", "and", "and then"]\n')
+    assert plain(parse_tree("wave and nod", keywords=[str(pack)]).tree) == "Sequence\n  Wave\n  Nod"
+    assert plain(parse_tree("wave while also nod", keywords=[str(pack)]).tree) == "Parallel\n  Wave\n  Nod"
+
+
+def test_an_invented_language_is_one_file(tmp_path: Path) -> None:
+    pack = tmp_path / "ka.toml"
+    roles = """
+        [roles]
+        then = ["ka"]
+        and = ["mi"]
+        if = ["su {}"]
+        repeat = ["ro"]
+        otherwise = ["nu"]
+        define = ["wa"]
+        """.replace(" {}", "")
+    pack.write_text("articles = []\n" + roles + '[counts]\n"ni" = 2\n')
+    tree = parse_tree("fest wa wave mi nod\nsu bumped wave nu fest ka ro fest ni", keywords=[str(pack)]).tree
+    expected = ["IfThenElse", "  Bumped", "  Wave", "  Sequence", "    SubTree ID=fest", "    Repeat num_cycles=2"]
+    assert plain(tree).splitlines()[:6] == expected
+
+
+def test_shipped_words_have_what_the_list_shows() -> None:
+    vocabulary = load_vocabulary(names={"place": ["lab"], "person": ["Alice"], "object": ["cup"]})
+    for entries in vocabulary.entries.values():
+        for entry in entries:
+            assert entry.topic, entry.id
+            assert entry.help, entry.id
+            assert entry.example, entry.id
+            assert callable_exists(str(entry.call)), entry.id
+    text = "\n".join(listing(vocabulary, "dock"))
+    assert "undock" in text
+    assert "wave" not in text
+    assert listing(vocabulary, "xyzzy") == ["No phrase has the words: xyzzy"]
+
+
+def callable_exists(call: str) -> bool:
+    from importlib import import_module
+
+    module, name = call.split(":")
+    return callable(getattr(import_module(module), name))
+
+
+@pytest.mark.parametrize("parser", ["shunting-yard", "lark"])
+def test_every_example_of_a_phrase_compiles_to_its_node(parser: str) -> None:
+    vocabulary = load_vocabulary()
+    for entries in vocabulary.entries.values():
+        for entry in entries:
+            text = entry.example if entry.sort == "action" else f"check {entry.example}"
+            assert parse_tree(text, parser=parser).tree.root.id == entry.id, entry.example

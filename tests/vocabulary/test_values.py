@@ -1,0 +1,75 @@
+"""Values in slots: what people write and the port text that it becomes."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from btlang.api import world_vocabulary
+from btlang.text.source import Source
+from btlang.text.words import split
+from btlang.vocabulary.values import format_number
+
+VOCABULARY = world_vocabulary()
+
+
+def value(kind: str, written: str) -> str | None:
+    """The port text where the whole of it is a value."""
+    text = split(Source(written), VOCABULARY.articles)
+    found = VOCABULARY.values.read(kind, text, 0) if text.words else None
+    return found[0] if found and found[1] >= len(text.words) - 2 else None
+
+
+@pytest.mark.parametrize(
+    ("kind", "written", "expected"),
+    [
+        ("length", "2 m", "2"),
+        ("length", "2m", "2"),
+        ("length", "two meters", "2"),
+        ("length", "half a meter", "0.5"),
+        ("length", "a quarter of a meter", "0.25"),
+        ("length", "one and a half metres", "1.5"),
+        ("length", "57 cm", "0.57"),
+        ("length", "a meter", "1"),
+        ("length", "3 km", "3000"),
+        ("angle", "90 degrees", "90"),
+        ("angle", "90°", "90"),
+        ("angle", "half a turn", None),
+        ("angle", "a full turn", "360"),
+        ("duration", "1.5 s", "1.5"),
+        ("duration", "two and a half minutes", "150"),
+        ("duration", "twenty-five seconds", "25"),
+        ("duration", "an hour", "3600"),
+        ("duration", "200 ms", "0.2"),
+        ("duration", "-1 s", None),
+        ("percent", "20%", "20"),
+        ("percent", "twenty percent", "20"),
+        ("number", "-2.5", "-2.5"),
+        ("number", "three hundred", "300"),
+        ("number", "3 m", None),
+        ("count", "3", "3"),
+        ("count", "0", None),
+        ("count", "2.5", None),
+        ("length", "2 s", None),
+        ("length", "2", None),
+        ("length", "1e999 m", None),
+        ("text", "hello", "hello"),
+        ("text", "Hello", "Hello"),
+        ("text", '"Hello, World"', "Hello, World"),
+        ("text", '""', ""),
+        ("text", "a", "a"),
+        ("place", "the LAB", "lab"),
+        ("place", '"living room"', "living room"),
+        ("place", "living room", "living room"),
+        ("place", "living", None),
+        ("person", "alice", "Alice"),
+    ],
+)
+def test_value(kind: str, written: str, expected: str | None) -> None:
+    assert value(kind, written) == expected
+
+
+@given(st.floats(-1e9, 1e9))
+def test_numbers_read_back(number: float) -> None:
+    assert float(format_number(number)) == number
