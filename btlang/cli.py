@@ -135,7 +135,10 @@ def _duration(text: str) -> float:
 
     value = load_vocabulary().duration(text)
     if value is None:
-        value = _positive(text)
+        try:
+            return _positive(text)
+        except argparse.ArgumentTypeError:
+            raise argparse.ArgumentTypeError(f"a duration such as 60s or 2min is needed, not '{text}'") from None
     return value
 
 

@@ -23,10 +23,12 @@ def codes(text: str, parser: str = "shunting-yard") -> list[str]:
     try:
         compile_mission(read_mission(Source(text), VOCABULARY, parser).mission, VOCABULARY)
     except btlang.MissionError as error:
-        assert str(error)
-        assert all(0 <= d.span.start <= d.span.end <= len(text) for d in error.diagnostics)
-        return [problem.code for problem in error.diagnostics]
-    return []
+        found = error
+    else:
+        return []
+    assert str(found)
+    assert all(0 <= d.span.start <= d.span.end <= len(text) for d in found.diagnostics)
+    return [problem.code for problem in found.diagnostics]
 
 
 @settings(max_examples=400)
@@ -64,7 +66,7 @@ def test_any_words(text: str) -> None:
         ("\x00\x01\x02" * 1000, "BT003"),
         ("n0 is wave\n" + "".join(f"n{i} is n{i - 1} then n{i - 1}\n" for i in range(1, 100)) + "n99", "BT042"),
     ],
-    ids=["empty", "blank", "junk", "words", "commas", "open", "close", "only commas", "quote", "numbers", "zeros", "growth"],
+    ids="empty blank junk words commas open close only-commas quote numbers zeros growth".split(),
 )  # fmt: skip
 def test_hostile_texts(text: str, code: str) -> None:
     assert code in codes(text)
@@ -72,11 +74,8 @@ def test_hostile_texts(text: str, code: str) -> None:
 
 @BOTH
 def test_a_mission_of_10_000_lines(parser: str) -> None:
-    lines = [
-        "if wall in front, turn left otherwise move forward 1 m",
-        'go to the lab then wave and say "hi", then wait 2 s',
-    ]
-    tree = parse_tree("\n".join(lines * 5000), parser=parser).tree
+    odd, even = "if wall in front, turn left otherwise wave", 'go to the lab then wave and say "hi", then wait 2 s'
+    tree = parse_tree("\n".join([odd, even] * 5000), parser=parser).tree
     assert len(tree.root.children) == 5000 * 4  # the lines' sequences are one with the mission's
 
 

@@ -14,6 +14,8 @@ from pathlib import Path
 import pytest
 
 import btlang
+from btlang.robots import world_file
+from btlang.vocabulary import keyword_file
 
 ROOT = Path(__file__).parent.parent
 FOLDERS = ("btlang", "tests", "grammar", "keywords", "examples", "docs", ".ci")
@@ -68,6 +70,13 @@ def test_files_named_in_documents_exist(page: Path) -> None:
     missing = [path for path in named if not (ROOT / path).exists() and "samples/bad/" not in path]
     missing += [link for link in linked if not (page.parent / link).exists()]
     assert missing == []
+
+
+def test_documents_name_every_key() -> None:
+    keywords, worlds = (text(ROOT / "docs" / page) for page in ("keywords.md", "worlds.md"))
+    keys = keyword_file._TOP | keyword_file._ENTRY | keyword_file._TYPE
+    assert [key for key in sorted(keys) if not re.search(rf"`\[*{key}\]*`", keywords)] == []
+    assert [kind for kind in world_file._FAULTS if f'`"{kind}"`' not in worlds] == []
 
 
 def test_one_version() -> None:

@@ -1,10 +1,10 @@
-"""Conditions: what the robot senses. All are instantaneous; those that need a scan fail when the scanner is silent."""
+"""Conditions: what the robot senses. All are instantaneous; where the scanner is silent there may be a wall."""
 
 from __future__ import annotations
 
 import numpy as np
 
-from btlang.robots.robot import Robot
+from btlang.robots.robot import Robot, RobotError
 
 NEAR_WALL = 0.8
 NEAR_PERSON = 1.5
@@ -45,9 +45,12 @@ def is_blocked(robot: Robot, direction: float) -> bool:
     """Whether a scan point lies in the strip that the robot would sweep in a direction (degrees left of its heading).
 
     The strip is as wide as the robot and a margin, and NEAR_WALL metres long from its centre: after False, 0.5 m in
-    that direction cannot bump.
+    that direction cannot bump. What a silent scanner does not see counts as blocked.
     """
-    along, across = _points(robot, direction)
+    try:
+        along, across = _points(robot, direction)
+    except RobotError:
+        return True  # a failed condition would read as "no wall" under `not` and `until`, and the robot drive blind
     return bool(((along > 0.0) & (along < NEAR_WALL) & (np.abs(across) < robot.radius + _SIDE_MARGIN)).any())
 
 

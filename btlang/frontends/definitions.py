@@ -93,6 +93,8 @@ def _header(text: Words, first: int, last: int, vocabulary: Vocabulary, problems
         problems.append(diagnostic("BT016", text.span(at, at + 1), word=text.words[at]))
         return Header("", text.span(at, at + 1), at + 1)
     joined = _joining_word(text, start, at, vocabulary)
+    if joined is not None and _starts_with_a_phrase(text, start, joined, vocabulary):
+        return None  # `charge until the battery is green` is a command that says something unknown
     if joined is not None:
         problems.append(diagnostic("BT015", joined, word=joined.text))
     return Header(" ".join(text.words[start:at]), text.span(start, at), at + 1)
@@ -113,12 +115,17 @@ def _defining_word(text: Words, first: int, last: int, vocabulary: Vocabulary) -
             if match.meaning.role in _STARTS_NO_NAME and at == first:
                 return None
             # a command phrase inside a name is no reason against it: `go home is ...`
-            at = match.last if match.meaning.role == "condition" else max(at + 1, _stop(text, at, match.last, choices))
+            at = match.last if match.meaning.role != "command" else max(at + 1, _stop(text, at, match.last, choices))
     return None
 
 
 def _stop(text: Words, at: int, last: int, choices: list[str]) -> int:
     return next((i for i in range(at, last) if text.words[i] in choices), last)
+
+
+def _starts_with_a_phrase(text: Words, start: int, joined: Span, vocabulary: Vocabulary) -> bool:
+    match = longest(vocabulary.trie, text, start, vocabulary.values)
+    return match is not None and match.meaning.entry is not None and text.starts[match.last] >= joined.start
 
 
 def _joining_word(text: Words, start: int, last: int, vocabulary: Vocabulary) -> Span | None:

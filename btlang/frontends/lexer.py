@@ -9,7 +9,7 @@ from btlang.frontends.definitions import Definitions, find_definitions
 from btlang.frontends.token import Token
 from btlang.frontends.unknown import explain_unknown
 from btlang.text.source import Source, Span
-from btlang.text.words import Words, split
+from btlang.text.words import END_OF_TEXT, Words, split
 from btlang.vocabulary.trie import Match, longest
 from btlang.vocabulary.vocabulary import Vocabulary
 
@@ -50,10 +50,10 @@ class Lexer:
             else:
                 if opens_block:
                     self.problems.append(diagnostic("BT027", self._last_span()))
-                while line.indent < indents[-1]:
+                while line.indent < indents[-1] and len(indents) > 1:
                     indents.pop()
                     self._mark("dedent", line.first)
-                if line.indent > indents[-1]:
+                if line.indent != indents[-1]:
                     self.problems.append(diagnostic("BT007", first))
             if number and not opens_block:
                 self._mark("newline", line.first)
@@ -93,9 +93,22 @@ class Lexer:
                 tokens.append(Token("unknown", None, starts[at], ends[end - 1]))
                 at = end
             else:
-                if match.meaning.role != "politeness":
-                    tokens.append(self._phrase(match, at))
+                if match.meaning.role == "politeness":
+                    at = self._politeness(match, at)
+                    continue
+                if match.meaning.role == "negated":
+                    tokens.append(Token("not", None, starts[at], starts[at]))
+                tokens.append(self._phrase(match, at))
                 at = match.last
+
+    def _politeness(self, match: Match, at: int) -> int:
+        """Politeness is left out with the comma beside it: `Robot, go home, please`. Returns where to go on."""
+        words, tokens = self.text.words, self.tokens
+        if tokens and tokens[-1].kind == "comma" and words[match.last] in (",", ";", ")", END_OF_TEXT):
+            tokens.pop()
+        elif words[match.last] == "," and (not tokens or tokens[-1].kind not in ("command", "name", "condition")):
+            return match.last + 1
+        return match.last
 
     def _phrase(self, match: Match, at: int) -> Token:
         text, meaning = self.text, match.meaning
@@ -104,7 +117,8 @@ class Lexer:
             end = text.articles[match.last][1]
         if meaning.entry is not None:
             arguments = tuple((value.name, value.text) for value in match.values)
-            return Token(meaning.role, (meaning.entry, arguments), start, end)
+            kind = "condition" if meaning.role == "negated" else meaning.role
+            return Token(kind, (meaning.entry, arguments), start, end)
         if match.values:
             return Token(meaning.role, match.values[0].text, start, end)
         return Token(meaning.role, str(meaning.value) if meaning.role == "count" else None, start, end)

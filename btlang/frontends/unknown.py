@@ -9,6 +9,7 @@ from itertools import takewhile
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.definitions import Definitions
 from btlang.frontends.token import Token
+from btlang.text.source import Span
 from btlang.text.spelling import nearest, nearest_start
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.trie import SLOTS, TrieNode, longest
@@ -22,21 +23,21 @@ def explain_unknown(
     text: Words, at: int, end: int, vocabulary: Vocabulary, definitions: Definitions, before: list[Token]
 ) -> Diagnostic:
     """The diagnostic (BT010 to BT014, BT019) for words `at` to `end`, which nothing in the vocabulary matches."""
-    misfits = list(_misfits(text, at, vocabulary))
-    if not misfits and before and before[-1].kind not in ("comma", "newline", "indent", "dedent", "open", "semi"):
-        start = bisect_left(text.starts, before[-1].start)  # `move forward 5 s`: read that far, and no further
-        misfits = [found for found in _misfits(text, start, vocabulary) if found[0] == at]
-        if misfits:
-            return _misfit(text, start, end, misfits, vocabulary, definitions)
+    start, misfits = at, list(_misfits(text, at, vocabulary))
+    if before and before[-1].kind not in ("comma", "newline", "indent", "dedent", "open", "semi"):
+        phrase = bisect_left(text.starts, before[-1].start)  # `move forward 5 s`: read that far, and no further
+        longer = [found for found in _misfits(text, phrase, vocabulary) if found[0] >= at]
+        if longer and (not misfits or longer[0][0] >= misfits[0][0]):
+            start, misfits = phrase, longer
     if misfits:
-        return _misfit(text, at, end, misfits, vocabulary, definitions)
+        return _misfit(text, start, end, misfits, vocabulary, definitions)
     number = vocabulary.values.number(text, at)
     for _, kind, child in vocabulary.trie.get(SLOTS, ()):
         if number is not None and text.words[number[1]] in child:  # `0 times`
             return _number_misfit(text, at, number, [vocabulary.types[kind]], "", "", kind)
     if number is not None or text.words[at][0] == '"':
         return diagnostic("BT019", text.span(at, end), example='say "hello"')
-    return _unknown_phrase(text, at, end, vocabulary, definitions)
+    return _unknown_phrase(text, at, end, vocabulary, definitions, before)
 
 
 def _misfits(text: Words, at: int, vocabulary: Vocabulary) -> Iterator[tuple[int, str]]:
@@ -87,7 +88,7 @@ def _misfit(
         kinds = " or ".join(kind.name for kind in named)
         return diagnostic("BT013", span, type=kinds, words=span.text, help=_near_names(span.text, known))
     if text.words[at][0] != '"':  # `turn leftt` lacks no angle
-        return _unknown_phrase(text, first, max(end, at + 1), vocabulary, definitions)
+        return _unknown_phrase(text, first, max(end, at + 1), vocabulary, definitions, [])
     return diagnostic("BT011", span, words=span.text, wanted=f"{wanted} is needed", example=example)
 
 
@@ -113,8 +114,21 @@ def _number_misfit(
     return diagnostic("BT011", span, words=span.text, wanted=f"{wanted} is needed", example=example)
 
 
-def _unknown_phrase(text: Words, at: int, end: int, vocabulary: Vocabulary, definitions: Definitions) -> Diagnostic:
+def _ends_in_a_bare_text(command: Token) -> bool:
+    if type(command.value) is not tuple or not command.value[1]:
+        return False
+    entry, arguments = command.value
+    return bool(entry.slot(arguments[-1][0]).type == "text")
+
+
+def _unknown_phrase(
+    text: Words, at: int, end: int, vocabulary: Vocabulary, definitions: Definitions, before: list[Token]
+) -> Diagnostic:
     span = text.span(at, end)
+    if before and before[-1].kind == "command" and _ends_in_a_bare_text(before[-1]):
+        start = Span(text.source, before[-1].start, before[-1].end)
+        quoted = f'{start.text.rsplit(maxsplit=1)[0]} "{start.text.rsplit(maxsplit=1)[-1]} {span.text}"'
+        return diagnostic("BT010", span, words=span.text, help=f"A text of more than one word needs quotes: {quoted}")
     known = {header.name: header.name.split() for header in definitions.headers.values()}
     for entries in vocabulary.entries.values():
         known |= {phrase: words for entry in entries for phrase, words in _plain(entry.phrases)}

@@ -112,18 +112,23 @@ def msec(seconds: str) -> str:
     return str(round(float(seconds) * 1000))
 
 
+def _timer(seconds: str) -> Node:
+    """The Sleep inside `for` and `every`: no sentence of its own, so that no log tells of it as a command."""
+    return Node("Sleep", (), (("msec", msec(seconds)),))
+
+
 def _within(item: ast.Within, done: list[Lowered]) -> Lowered:
     return Lowered(_node("Timeout", [_round(done[0])], item.span, msec=msec(item.seconds)))
 
 
 def _for(item: ast.For, done: list[Lowered]) -> Lowered:
-    sleep = _node("Sleep", (), item.span, msec=msec(item.seconds))
+    sleep = _timer(item.seconds)
     again = _node("Repeat", [_round(done[0])], item.span, num_cycles="-1")
     return Lowered(_node("Parallel", (sleep, again), item.span, success_count="1", failure_count="1"))
 
 
 def _every(item: ast.Every, done: list[Lowered]) -> Lowered:
-    sleep = _node("Sleep", (), item.span, msec=msec(item.seconds))
+    sleep = _timer(item.seconds)
     together = _node("Parallel", (_round(done[0]), sleep), item.span)
     return Lowered(_node("Repeat", [together], item.span, num_cycles="-1"))
 

@@ -12,7 +12,7 @@ Holders = dict[str, Node]
 
 
 def check_resources(tree: Tree, vocabulary: Vocabulary) -> list[Diagnostic]:
-    """BT041 for each pair of children of a parallel that need the same resource."""
+    """BT041 once for each parallel and resource that two of its children need."""
     problems: list[Diagnostic] = []
     held_by_name: dict[str, Holders] = {}
 
@@ -21,10 +21,12 @@ def check_resources(tree: Tree, vocabulary: Vocabulary) -> list[Diagnostic]:
             return dict.fromkeys(held_by_name.get(node.port("ID"), ()), node)
         entry = vocabulary.entry(node.id)
         held: Holders = dict.fromkeys(entry.resources, node) if entry else {}
+        told: set[str] = set()
         for child in children:
             if node.id.startswith("Parallel"):
-                both = sorted(held.keys() & child.keys())
+                both = sorted(held.keys() & child.keys() - told)
                 problems.extend(_conflict(resource, held[resource], child[resource]) for resource in both)
+                told.update(both)
             held = {**child, **held}
         return held
 

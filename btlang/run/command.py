@@ -69,8 +69,10 @@ def failure_report(outcome: Outcome, label: Callable[[Node], str]) -> str:
     if failure is not None:
         span = failure.node.span
         if span is not None:
-            lines += [f"{span.place}: {label(failure.node)}", *underlined(span)]
-        lines.append(f"  {failure.node.id}: {failure.reason or 'it does not hold'}")
+            sentence = span.text.splitlines()[0] if failure.node.children else label(failure.node)
+            lines += [f"{span.place}: {sentence}", *underlined(span)]
+        asked = "the mission says so" if failure.node.id == "AlwaysFailure" else "it does not hold"
+        lines.append(f"  {failure.node.id}: {failure.reason or asked}")
     return "\n".join(lines)
 
 

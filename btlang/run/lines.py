@@ -31,7 +31,7 @@ class Lines:
     def __call__(self, event: Event) -> None:
         if isinstance(event, RobotEvent):
             self._robot(event)
-        elif event.node.id == "Sleep" or self._is_action(event.node):
+        elif (event.node.id == "Sleep" and event.node.span) or self._is_action(event.node):
             self._action(event)
 
     def _action(self, event: StatusChanged) -> None:
@@ -43,6 +43,12 @@ class Lines:
             self._line(event.t, f"{event.kind}s", f'"{event.data.get("text", "")}"')
         elif event.kind == "bump":
             self._line(event.t, "bumps", str(event.data.get("into", "")))
+        elif event.kind == "drop":
+            self._line(event.t, "drops", str(event.data.get("name", "")))
+        elif event.kind == "stuck":
+            self._line(event.t, "stuck", "")
+        elif event.kind == "fault":
+            self._line(event.t, "fault", str(event.data.get("text", "")))
         elif event.kind == "error":
             self._line(event.t, "error", str(event.data.get("text", "")))
 

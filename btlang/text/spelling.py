@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
 
-_NEAR = 60  # of 100; below it a suggestion is noise (tried on misspelt missions)
+_NEAR = 70  # of 100; below it a suggestion is noise (tried on misspelt missions)
 
 
 def nearest(written: str, known: Iterable[str], limit: int = 3) -> list[str]:

@@ -53,6 +53,8 @@ class Entry(Record, uncompared=("span",)):
 class Meaning(Record):
     """What a phrase in the trie stands for: a connective or form of the language (`role`), or an entry.
 
+    The role of an entry is "command" or "condition", or "negated" where the phrase says that a condition is not so.
+
     `value` is the number of rounds of words such as `twice`.
     """
 

@@ -16,7 +16,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-_TABLES = {"roles", "counts", "numbers", "multipliers", "fractions"}
+_TABLES = {"roles", "counts", "negations", "numbers", "multipliers", "fractions"}
 _TOP = {"language", "articles", "politeness", "unit_joiner", "action", "condition", "type", *_TABLES}
 _ENTRY = {"phrase", "id", "call", "ros", "slots", "resources", "topic", "help", "example"}
 _TYPE = {"name", "units", "whole", "least", "open", "values"}

@@ -9,7 +9,7 @@ from btlang.text.source import Source, Span
 from btlang.text.words import split
 from btlang.vocabulary.entry import Entry, Meaning, SlotSpec
 from btlang.vocabulary.keyword_file import KeywordFile
-from btlang.vocabulary.pattern import PatternError, Slot, forms
+from btlang.vocabulary.pattern import Form, PatternError, Slot, forms
 from btlang.vocabulary.trie import TrieNode, add, collisions
 from btlang.vocabulary.values import Values, ValueType
 
@@ -47,6 +47,7 @@ class Vocabulary:
                 self._add_name(kind, words, name)
         self.roles: dict[str, list[str]] = {**language["roles"], "politeness": language["politeness"]}
         self.counts: dict[str, int] = language["counts"]
+        self._negations: dict[str, list[str]] = language["negations"]
         self._add_roles()
         for entry in (*(e for f in files for e in f.entries), *entries):
             self._add_entry(entry)
@@ -81,7 +82,8 @@ class Vocabulary:
 
     def word(self, role: str) -> str:
         """The word of a role that messages and canonical English use: the first in its list."""
-        return self.roles[role][0].split(" {")[0]
+        words = forms(self.roles[role][0])[-1]
+        return " ".join(word for word in words if isinstance(word, str))
 
     def _add_roles(self) -> None:
         for role, phrases in self.roles.items():
@@ -103,6 +105,8 @@ class Vocabulary:
         for phrase in entry.phrases:
             try:
                 self._add_phrase(phrase, Meaning("command" if entry.sort == "action" else "condition", entry), types)
+                if entry.sort == "condition":
+                    self._add_negations(phrase, Meaning("negated", entry), types)
             except PatternError as error:
                 self._wrong(entry, str(error))
 
@@ -122,10 +126,20 @@ class Vocabulary:
 
     def _add_phrase(self, phrase: str, meaning: Meaning, types: dict[str, str]) -> None:
         for form in forms(phrase, self.articles):
-            own = {part.name: types.get(part.name, part.name) for part in form if isinstance(part, Slot)}
-            before = add(self.trie, form, own, meaning)
-            if before is not None:
-                self._collide(before, meaning)
+            self._add_form(form, meaning, types)
+
+    def _add_form(self, form: Form, meaning: Meaning, types: dict[str, str]) -> None:
+        own = {part.name: types.get(part.name, part.name) for part in form if isinstance(part, Slot)}
+        before = add(self.trie, form, own, meaning)
+        if before is not None:
+            self._collide(before, meaning)
+
+    def _add_negations(self, phrase: str, meaning: Meaning, types: dict[str, str]) -> None:
+        """`battery is low` is also said `battery is not low`."""
+        for form in forms(phrase, self.articles):
+            for at, part in enumerate(form):
+                for words in self._negations.get(part, ()) if isinstance(part, str) else ():
+                    self._add_form((*form[:at], *words.split(), *form[at + 1 :]), meaning, types)
 
     def _find_collisions(self) -> None:
         for one, other in collisions(self.trie, self.types):
@@ -133,7 +147,7 @@ class Vocabulary:
 
     def _collide(self, one: Meaning, other: Meaning) -> None:
         """Told at the entry that was loaded later; connectives come first."""
-        ids = [meaning.entry.id if meaning.entry else f"role {meaning.role}" for meaning in (one, other)]
+        ids = [(meaning.entry.id if meaning.entry else "", meaning.role) for meaning in (one, other)]
         if ids[0] == ids[1]:
             return
         order = list(self.entries)
@@ -160,7 +174,7 @@ class Vocabulary:
 
 _LANGUAGE: dict[str, Any] = {
     "articles": [], "politeness": [], "unit_joiner": [],
-    "roles": {}, "counts": {}, "numbers": {}, "multipliers": {}, "fractions": {},
+    "roles": {}, "counts": {}, "negations": {}, "numbers": {}, "multipliers": {}, "fractions": {},
 }  # fmt: skip
 
 

@@ -75,10 +75,13 @@ def test_distance_ahead(bench):
     assert sensing.distance_ahead(b.robot) == float("inf")
 
 
-def test_a_silent_scanner_fails_the_condition(bench):
+def test_what_a_silent_scanner_does_not_see_counts_as_blocked(bench):
     b = bench(faults=(Fault("silent scanner"),))
+    assert sensing.wall_in_front(b.robot)
+    assert sensing.wall_behind(b.robot)
+    assert not sensing.path_is_clear(b.robot)
     with pytest.raises(ActionFailed, match=r"^the laser scanner is silent$"):
-        sensing.wall_in_front(b.robot)
+        sensing.distance_ahead(b.robot)
 
 
 def test_the_rest(bench, table):

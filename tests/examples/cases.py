@@ -121,9 +121,9 @@ CASES = {
     ),
     "oily_floor": Case(
         world="oily_floor",
-        done=("GoTo far end", "Say It is dark.", "Say Help! My wheels turn, but I do not move."),
+        done=("GoTo far end", "Say I cannot see the way.", "Say Help! My wheels turn, but I do not move."),
         failed=("Dock", "GoTo far end"),
-        said=("It is dark.", "Help! My wheels turn, but I do not move."),
+        said=("I cannot see the way.", "Help! My wheels turn, but I do not move."),
         met=("fault slip", "fault silent scanner", "stuck"),
     ),
     "parcels": Case(

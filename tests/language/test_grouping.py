@@ -119,6 +119,7 @@ RULES = [
     ("  PLEASE   u ,\tthen the V .  # comment\r\n\r\n", "S(U, V)"),
     ("\ufeffu\r\ncould you v please\r\n", "S(U, V)"),
     ("I want you to u and then the robot should v", "S(U, V)"),
+    ("Robot, u, please, and v, please.", "P(U, V)"),
 ]  # fmt: skip
 
 

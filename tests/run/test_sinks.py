@@ -9,6 +9,7 @@ from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 from btlang.run.events import RobotEvent, StatusChanged
 from btlang.run.json_log import JsonLog
 from btlang.run.lines import Lines
+from btlang.text.source import Source, Span
 from btlang.tree.node import Node
 
 GO = Node("GoTo", ports=(("place", "the lab"),))
@@ -58,13 +59,17 @@ def test_human_lines() -> None:
         (10.0, GO, FAILURE, "the way is blocked"),
         (11.0, GO, IDLE, ""),
         (12.0, GO, SKIPPED, ""),
-        (1234.5, Node("Sleep"), RUNNING, ""),
+        (1234.5, Node("Sleep", span=Span(Source("wait 5 s"), 0, 8)), RUNNING, ""),
+        (1235.0, Node("Sleep"), RUNNING, ""),  # the timer of a form
     ]:
         sink(StatusChanged(t, 0, "/", node, status, reason))
     sink(RobotEvent(2.0, "say", {"text": "hello"}))
     sink(RobotEvent(2.0, "print", {"text": "hello"}))
     sink(RobotEvent(2.1, "bump", {"into": "a wall"}))
     sink(RobotEvent(2.1, "pose", {"x": 1}))
+    sink(RobotEvent(2.2, "drop", {"hand": "right", "name": "cup"}))
+    sink(RobotEvent(2.3, "stuck", {}))
+    sink(RobotEvent(2.4, "fault", {"text": "the laser scanner is silent"}))
     assert written == [
         "   1.35  start  go to the lab",
         "   9.80  done   go to the lab",
@@ -75,4 +80,7 @@ def test_human_lines() -> None:
         '   2.00  says   "hello"',
         '   2.00  prints "hello"',
         "   2.10  bumps  a wall",
+        "   2.20  drops  cup",
+        "   2.30  stuck",
+        "   2.40  fault  the laser scanner is silent",
     ]

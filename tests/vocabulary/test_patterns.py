@@ -31,8 +31,7 @@ def test_forms(pattern: str, expected: set[str]) -> None:
 
 
 def test_articles_are_left_out() -> None:
-    assert ways("go to {place}") == {" ".join(str(p.name if isinstance(p, Slot) else p) for p in f).replace("place", "{place}")
-                                     for f in forms("go to the {place}", frozenset(["the"]))}  # fmt: skip
+    assert forms("go to the {place}", frozenset(["the"])) == forms("go to {place}")
 
 
 @pytest.mark.parametrize(
