@@ -205,7 +205,7 @@ class Matcher(ConditionScan):
             self._next(following, True)
         elif following.kind in ("count", "for", "within", "if_possible", "provided"):
             words = self._words(following)
-            advice = f"Put what it is about in brackets, without a comma: ( ... ) {words}"
+            advice = f"Take it away; for more than the command before it use brackets: ( ... ) {words}"
             self._fail("BT032", self._span(token), place=f"before '{words}'", advice=advice)
         else:
             self._frames[-1].connective(self._emit("COMMA", token))
@@ -222,16 +222,10 @@ class Matcher(ConditionScan):
         self._next(token, True)
         self._separator()
 
-    def _count(self, token: Token) -> None:
-        owner = self._frames[-1].count_owner
-        if owner is None or owner.opener is None:
-            self._postfix(token)
-            return
-        self._set_amount(owner.opener, token)
-        self._close_loop(owner, token)
-
-    def _for(self, token: Token) -> None:
-        owner = self._frames[-1].stop_owner
+    def _amount(self, token: Token) -> None:
+        """A count or `for 5 s`: closes the form that waits for one, else belongs to the command before it."""
+        frame = self._frames[-1]
+        owner = frame.count_owner if token.kind == "count" else frame.stop_owner
         if owner is None or owner.opener is None:
             self._postfix(token)
             return
@@ -356,8 +350,8 @@ _OPERATOR: dict[str, Callable[[Matcher, Token], None]] = {
     "repeat": Matcher._repeat_after,
     "comma": Matcher._comma,
     "otherwise": Matcher._otherwise,
-    "count": Matcher._count,
-    "for": Matcher._for,
+    "count": Matcher._amount,
+    "for": Matcher._amount,
     "close": Matcher._close,
     "colon": Matcher._colon,
 }

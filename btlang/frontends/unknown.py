@@ -134,7 +134,9 @@ def _unknown_phrase(
         known |= {phrase: words for entry in entries for phrase, words in _plain(entry.phrases)}
     for phrases in vocabulary.roles.values():
         known |= dict(_plain(tuple(phrases)))
-    near = nearest_start(text.words[at:end], known)
+    written = f" {' '.join(text.words[at:end])} "
+    inside = [header.name for header in definitions.headers.values() if f" {header.name} " in written]
+    near = list(dict.fromkeys([*inside, *nearest_start(text.words[at:end], known)]))
     advice = "The nearest that I know: " + ", ".join(near) if near else "'btc words' lists what I know."
     return diagnostic("BT010", span, words=span.text, help=advice)
 

@@ -59,7 +59,10 @@ def forms(pattern: str, articles: frozenset[str] = frozenset()) -> list[Form]:
             raise PatternError(f"'{piece}' is not closed in '{pattern}' (write \\{piece} for the character itself)")
     if len(ways) > 1:
         raise PatternError(f"'[' without ']' in '{pattern}'")
-    found = sorted(set(ways[0]) - {()}, key=lambda form: (-len(form), str(form)))
+    found = sorted(
+        set(ways[0]) - {()},
+        key=lambda form: (-len(form), [part if isinstance(part, str) else f"{{{part.name}" for part in form]),
+    )
     if not found or () in ways[0]:
         raise PatternError(f"the phrase '{pattern}' has no word that must be said")
     return found
