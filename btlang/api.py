@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
+from functools import cache
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.english.phrase import phrase_of
@@ -188,7 +189,7 @@ class RunnableTree:
         try:
             engine = traced_engine(
                 self.tree,
-                lambda id: bind_leaf(id, self.vocabulary),
+                cache(lambda id: bind_leaf(id, self.vocabulary)),
                 clock=clock,
                 events=events,
                 services={"robot": robot},

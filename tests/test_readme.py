@@ -55,9 +55,9 @@ def commands() -> list[str]:
     return [line for line in lines if line.strip() and not line.startswith(SET_UP)]
 
 
-def run(arguments: list[str], folder: Path, path: str = "") -> subprocess.CompletedProcess[str]:
+def run(arguments: list[str], folder: Path) -> subprocess.CompletedProcess[str]:
     """Runs this Python in a folder, as an installed command would; both outputs in one."""
-    environment = {**os.environ, "PYTHONPATH": f"{ROOT}{os.pathsep}{path}", "PYTHONIOENCODING": "utf-8"}
+    environment = {**os.environ, "PYTHONPATH": str(ROOT), "PYTHONIOENCODING": "utf-8"}
     return subprocess.run(
         [sys.executable, "-P", *arguments],
         cwd=folder,
@@ -72,11 +72,10 @@ def run(arguments: list[str], folder: Path, path: str = "") -> subprocess.Comple
 
 
 def btc(line: str, folder: Path) -> subprocess.CompletedProcess[str]:
-    """Runs a line `btc ...` or `PYTHONPATH=. btc ...`."""
+    """Runs a line `btc ...`."""
     words = shlex.split(line, comments=True)
-    path = words.pop(0).removeprefix("PYTHONPATH=") if words[0].startswith("PYTHONPATH=") else ""
     assert words[0] == "btc", line
-    return run(["-m", "btlang", *words[1:]], folder, path)
+    return run(["-m", "btlang", *words[1:]], folder)
 
 
 @pytest.fixture

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import os
+import sys
 from importlib import import_module
 
 from btlang.engine.build import EngineError
@@ -34,6 +36,15 @@ def _converter(slot: SlotSpec, vocabulary: Vocabulary) -> Callable[[str], Any]:
     return str
 
 
+def _search_beside(entry: Entry) -> None:
+    """The folder of a keyword file is searched for its modules, last, so that it hides no installed one."""
+    if entry.span is None or not os.path.isfile(entry.span.source.name):
+        return
+    folder = os.path.dirname(os.path.abspath(entry.span.source.name))
+    if folder not in sys.path:
+        sys.path.append(folder)
+
+
 def _imported(entry: Entry) -> Callable[..., Any]:
     if not isinstance(entry.call, str):
         return entry.call
@@ -41,6 +52,7 @@ def _imported(entry: Entry) -> Callable[..., Any]:
     if not entry.call:
         raise EngineError(f'its keyword entry in {entry.file} has no call = "module:name"', node)
     module, _, name = entry.call.partition(":")
+    _search_beside(entry)
     try:
         found: Any = import_module(module)
         for part in name.split("."):

@@ -6,8 +6,8 @@ no chance to stop what it moves. What `halt` itself raises is kept in the engine
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable, Mapping, Sequence
-from functools import partial
+from collections.abc import Callable, Collection, Mapping, Sequence
+from functools import lru_cache, partial
 
 from btlang.engine.build import Fault, Site, halt_nothing
 from btlang.engine.leaf import ActionFailed, LeafBinding
@@ -190,10 +190,8 @@ def _make(site: Site, cls: type, services: Mapping[str, Any]) -> Any:
 
 def _fill(site: Site, call: Callable[..., Any], ports: Collection[str], services: Mapping[str, Any]) -> dict[str, Any]:
     """Checks that ports and services fill the parameters; returns the services that do."""
-    from inspect import signature
-
     try:
-        parameters: Iterable[Parameter] = signature(call).parameters.values()
+        parameters = _parameters(call)
     except (TypeError, ValueError) as problem:
         raise site.error(f"{site.node.id} cannot be called: {problem}") from problem
     named = {p.name: p for p in parameters if p.kind in (p.POSITIONAL_OR_KEYWORD, p.KEYWORD_ONLY)}
@@ -206,6 +204,19 @@ def _fill(site: Site, call: Callable[..., Any], ports: Collection[str], services
         if required and (p.name not in named or (p.name not in ports and p.name not in services)):
             raise site.error(f"{site.node.id} needs a value for {p.name}")
     return {name: services[name] for name in named if name in services and name not in ports}
+
+
+def _parameters(call: Callable[..., Any]) -> tuple[Parameter, ...]:
+    from inspect import isfunction, signature
+
+    return _function_parameters(call) if isfunction(call) else tuple(signature(call).parameters.values())
+
+
+@lru_cache(maxsize=256)  # a signature costs more than the rest of a leaf, and a mission uses few functions
+def _function_parameters(call: Callable[..., Any]) -> tuple[Parameter, ...]:
+    from inspect import signature
+
+    return tuple(signature(call).parameters.values())
 
 
 def _known(named: Collection[str], services: Collection[str]) -> str:

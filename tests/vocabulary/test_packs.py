@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import pytest
 
 from btlang.api import parse_tree
 from btlang.diagnostics.diagnostic import MissionError
+from btlang.engine.status import SUCCESS
 from btlang.tree.dump import plain
 from btlang.vocabulary.listing import listing
 from btlang.vocabulary.load import load_vocabulary
@@ -84,3 +86,25 @@ def test_every_example_of_a_phrase_compiles_to_its_node(parser: str) -> None:
         for entry in entries:
             text = entry.example if entry.sort == "action" else f"check {entry.example}"
             assert parse_tree(text, parser=parser).tree.root.id == entry.id, entry.example
+
+
+def test_a_module_beside_its_keyword_file_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "band_moves.py").write_text("def bow(robot):\n    robot.print('bows')\n")
+    pack = tmp_path / "band.toml"
+    pack.write_text('[[action]]\nphrase = "bow deeply"\nid = "BowDeeply"\ncall = "band_moves:bow"\n')
+    monkeypatch.setattr("sys.path", list(sys.path))
+    assert parse_tree("bow deeply", keywords=[str(pack)]).run(speed="max").status == SUCCESS
+
+
+def test_an_installed_pack_is_named_by_its_entry_point(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "gym_words").mkdir()
+    (tmp_path / "gym_words" / "__init__.py").write_text("")
+    (tmp_path / "gym_words" / "gym.toml").write_text('[[action]]\nphrase = "do press-ups"\nid = "PressUp"\n')
+    information = tmp_path / "gym_words-1.0.dist-info"
+    information.mkdir()
+    (information / "METADATA").write_text("Metadata-Version: 2.1\nName: gym-words\nVersion: 1.0\n")
+    (information / "entry_points.txt").write_text("[btlang.keywords]\ngym = gym_words\n")
+    monkeypatch.syspath_prepend(str(tmp_path))
+    assert plain(parse_tree("do press-ups twice", keywords=["gym"]).tree) == "Repeat num_cycles=2\n  PressUp"
+    with pytest.raises(MissionError, match=r"its keyword entry in .* has no call"):
+        parse_tree("do press-ups", keywords=["gym"]).run()
