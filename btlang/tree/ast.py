@@ -61,8 +61,8 @@ class Not(Ast):
     parts = ("condition",)
 
 
-class If(Ast):
-    """`negated` is "unless"."""
+class _Branching(Ast):
+    """`negated` is "unless" or "until"."""
 
     negated: bool
     condition: Ast
@@ -72,15 +72,12 @@ class If(Ast):
     parts = ("condition", "body", "otherwise")
 
 
-class While(Ast):
-    """`negated` is "until"."""
+class If(_Branching):
+    """if, unless."""
 
-    negated: bool
-    condition: Ast
-    body: Ast
-    otherwise: Ast | None
-    span: Span
-    parts = ("condition", "body", "otherwise")
+
+class While(_Branching):
+    """while, until."""
 
 
 class Provided(Ast):
@@ -113,34 +110,27 @@ class Try(Ast):
     parts = ("body", "otherwise")
 
 
-class Within(Ast):
+class _Timed(Ast):
     seconds: str
     body: Ast
     span: Span
     parts = ("body",)
 
 
-class For(Ast):
+class Within(_Timed):
+    """The body, which fails when it takes longer."""
+
+
+class For(_Timed):
     """The body over and over until the time is over."""
 
-    seconds: str
-    body: Ast
-    span: Span
-    parts = ("body",)
+
+class Every(_Timed):
+    """The body once in each period."""
 
 
-class Every(Ast):
-    seconds: str
-    body: Ast
-    span: Span
-    parts = ("body",)
-
-
-class Delay(Ast):
-    seconds: str
-    body: Ast
-    span: Span
-    parts = ("body",)
+class Delay(_Timed):
+    """The body after the time."""
 
 
 class Wait(Ast):

@@ -1,4 +1,4 @@
-"""What each form of the language does in time: commands of known length on a driven clock, and when they start and end."""
+"""What each form of the language does in time: commands of known length on a driven clock, when they start and end."""
 
 from __future__ import annotations
 
@@ -105,9 +105,9 @@ def test_form(text: str, log: Log, status: int, seconds: float) -> None:
         ("every 2 s, work", ["0 work", "1 work ended", "2 work", "3 work ended", "4 work", "4.5 work halted"]),
         ("work forever", ["0 work", "1 work ended", "1 work", "2 work ended", "2 work", "3 work ended", "3 work",
                           "4 work ended", "4 work", "4.5 work halted"]),
-        ("repeat slip or (work then fail or work)", ["0 slip", "0.5 slip ended", "0.5 work", "1.5 work ended", "1.5 work",
-                                                     "2.5 work ended", "2.5 slip", "3 slip ended", "3 work",
-                                                     "4 work ended", "4 work", "4.5 work halted"]),
+        ("repeat slip or (work then fail or work)", ["0 slip", "0.5 slip ended", "0.5 work", "1.5 work ended",
+                                                     "1.5 work", "2.5 work ended", "2.5 slip", "3 slip ended",
+                                                     "3 work", "4 work ended", "4 work", "4.5 work halted"]),
     ],
 )  # fmt: skip
 def test_what_never_ends_is_halted_by_the_limit(text: str, log: Log) -> None:
