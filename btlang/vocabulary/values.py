@@ -87,7 +87,9 @@ class Values:
         multipliers: Mapping[str, float],
         fractions: Mapping[str, float],
         unit_joiner: frozenset[str],
+        articles: frozenset[str] = frozenset(),
     ) -> None:
+        self._articles = articles
         self.types = dict(types)
         self._numbers = numbers
         self._multipliers = multipliers
@@ -190,7 +192,7 @@ class Values:
         word = text.words[at]
         if word[0] != '"':
             return None
-        words = [*word[1:].lower().split(), "\n"]
+        words = [*(w for w in word[1:].lower().split() if w not in self._articles), "\n"]
         found = find(self._names[kind], words, 0) if len(words) > 1 else None
         return (found[0], at + 1) if found and found[1] == len(words) - 1 else None
 

@@ -41,6 +41,7 @@ class Vocabulary:
             language["multipliers"],
             language["fractions"],
             frozenset(language["unit_joiner"]),
+            self.articles,
         )
         for file in files:
             for kind, words, name in file.names:

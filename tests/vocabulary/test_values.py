@@ -63,6 +63,7 @@ def value(kind: str, written: str) -> str | None:
         ("place", '"living room"', "living room"),
         ("place", "living room", "living room"),
         ("place", "living", None),
+        ("place", "'the lab'", "lab"),
         ("person", "alice", "Alice"),
     ],
 )
