@@ -83,9 +83,9 @@ class Matcher(ConditionScan):
 
     def _not(self, token: Token) -> None:
         if not self._frames[-1].is_condition:
-            following = self._raw[self._at + 1]
-            span = self._span(token, following)
-            if following.kind == "condition":
+            if self._condition_at(self._at + 1):
+                last = self._raw[self._at + 1]
+                span = self._span(token, last if last.kind == "condition" else token)
                 self._fail("BT028", span, words=span.text)
                 return
             self._frames.append(Frame("condition"))  # for the message: what follows `not` is no condition

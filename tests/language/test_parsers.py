@@ -31,6 +31,8 @@ def reading(text: str, parser: str) -> ast.Mission | tuple[str, ...]:
 @settings(max_examples=3000)
 @given(st.one_of(missions, broken_missions()))
 @example("a repeat until p NL")
+@example("not ( p ) NL")
+@example("a and not ( p or q ) NL")
 def test_parsers_agree(words: str) -> None:
     shunted, larked = (reading(english(words), parser) for parser in BOTH)
     assert shunted == larked
