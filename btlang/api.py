@@ -28,6 +28,10 @@ if TYPE_CHECKING:
     Call = TypeVar("Call", bound=Callable[..., Any])
 
 
+SLOWEST = 0.001  # seconds of the mission per second; slower than that is a mistake
+RATES = (1.0, 1000.0)  # ticks a second; below, a robot drives blind for too long between two
+
+
 def parse_tree(
     text: str | Source,
     *,
@@ -105,6 +109,8 @@ class RunnableTree:
         self.vocabulary = vocabulary
         self.world = world
         self.warnings = tuple(warnings)
+        self.sink_errors: list[Exception] = []
+        """What sinks of the latest run raised; such a sink gets no more events, and the mission goes on."""
         self._runner: Runner | None = None
         self._robot: Any = None
 
@@ -162,10 +168,10 @@ class RunnableTree:
         event (see btlang.run.events). Raises MissionError where a command cannot run (BT080).
         """
         factor = {"real": 1.0, "max": math.inf}.get(speed) if isinstance(speed, str) else speed
-        if factor is None or not factor > 0:
-            raise ValueError(f'speed is "real", "max" or a number above 0: {speed!r}')
-        if not rate > 0:
-            raise ValueError(f"rate is a number of ticks a second above 0: {rate!r}")
+        if factor is None or not factor >= SLOWEST:
+            raise ValueError(f'speed is "real", "max" or a number from {SLOWEST} on: {speed!r}')
+        if not RATES[0] <= rate <= RATES[1]:
+            raise ValueError(f"rate is from {RATES[0]:g} to {RATES[1]:g} ticks a second: {rate!r}")
         self._start(rate, factor, time_limit, sinks)
         assert self._runner is not None
         return self._runner.run()
@@ -198,6 +204,7 @@ class RunnableTree:
             span = error.node.span or Span(Source(""), 0, 0)
             raise MissionError([diagnostic("BT080", span, id=error.node.id, reason=error.message)]) from None
         self._robot = robot
+        self.sink_errors = events.errors
         self._runner = Runner(
             engine, clock=clock, robot=robot, rate=rate, speed=speed, time_limit=time_limit, events=events
         )

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import argparse
+import math
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import btlang
-from btlang.api import RunnableTree, parse_tree, world_vocabulary
+from btlang.api import RATES, SLOWEST, RunnableTree, parse_tree, world_vocabulary
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.reading import read_source
 from btlang.diagnostics.render import render
@@ -23,10 +24,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="replace")  # a terminal that cannot show a character still gets the rest
-    options = _parser().parse_args(arguments)
     try:
+        options = _parser().parse_args(arguments)
         code = _VERBS[options.verb](options)
-        sys.stdout.flush()
+        if sys.stdout is not None:
+            sys.stdout.flush()
         return code
     except MissionError as error:
         print("\n\n".join(render(problem) for problem in error.diagnostics), file=sys.stderr)
@@ -103,8 +105,8 @@ def _parser() -> argparse.ArgumentParser:
 
     run = verbs.add_parser("run", parents=[mission], help="run a mission on the simulated robot")
     run.add_argument("--speed", type=_speed, default="real", help="real, max, or a factor of real time")
-    run.add_argument("--rate", type=_positive, default=20.0, metavar="HZ", help="ticks a second (default: 20)")
-    run.add_argument("--for", type=_duration, dest="time_limit", metavar="DURATION", help="stop after e.g. 60s, 2min")
+    run.add_argument("--rate", type=_between(*RATES), default=20.0, metavar="HZ", help="ticks a second (default: 20)")
+    run.add_argument("--for", type=_seconds, dest="time_limit", metavar="DURATION", help="stop after e.g. 60s, 2min")
     run.add_argument("--log", metavar="FILE", help="write every event as a line of JSON")
     run.add_argument("--quiet", action="store_true", help="print nothing but errors")
     verbs.add_parser("check", parents=[mission], help="say what is wrong with a mission")
@@ -116,29 +118,32 @@ def _parser() -> argparse.ArgumentParser:
 
 
 def _speed(text: str) -> float | str:
-    return text if text in ("real", "max") else _positive(text)
+    return text if text in ("real", "max") else _between(SLOWEST, 1e6)(text)
 
 
-def _positive(text: str) -> float:
-    try:
-        value = float(text)
-    except ValueError:
-        value = 0.0
-    if not 0 < value < float("inf"):
-        raise argparse.ArgumentTypeError(f"a number above 0 is needed, not '{text}'")
-    return value
+def _between(least: float, most: float) -> Callable[[str], float]:
+    def number(text: str) -> float:
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        if not least <= value <= most:
+            raise argparse.ArgumentTypeError(f"a number from {least:g} to {most:g} is needed, not '{text}'")
+        return value
+
+    return number
 
 
-def _duration(text: str) -> float:
-    """Seconds; with or without a unit, in the words of the language."""
+def _seconds(text: str) -> float:
+    """Seconds, as a number or in the words of the language. Raises ArgumentTypeError."""
     from btlang.vocabulary.load import load_vocabulary
 
-    value = load_vocabulary().duration(text)
-    if value is None:
-        try:
-            return _positive(text)
-        except argparse.ArgumentTypeError:
-            raise argparse.ArgumentTypeError(f"a duration such as 60s or 2min is needed, not '{text}'") from None
+    try:
+        value = load_vocabulary().duration(text) or float(text)
+    except ValueError:
+        value = math.nan
+    if not 0 < value < math.inf:
+        raise argparse.ArgumentTypeError(f"a duration such as 60s or 2min is needed, not '{text}'")
     return value
 
 

@@ -77,7 +77,10 @@ def test_exit_codes(btc: Screen) -> None:
         ["run", "a.txt", "-c", "wave"],
         ["run", "-c", "wave", "--speed", "0"],
         ["run", "-c", "wave", "--speed", "nan"],
+        ["run", "-c", "wave", "--speed", "1e-12"],
         ["run", "-c", "wave", "--rate", "-1"],
+        ["run", "-c", "wave", "--rate", "0.1"],
+        ["run", "-c", "wave", "--for", "abc"],
         ["run", "-c", "wave", "--for", "2 m"],
         ["run", "-c", "wave", "--parser", "earley"],
     ],
@@ -192,3 +195,35 @@ def test_check_loads_nothing_heavy() -> None:
     )
     done = subprocess.run([sys.executable, "-c", script], cwd=REPOSITORY, text=True, capture_output=True, check=True)
     assert done.stdout.splitlines() == ["The mission is fine.", "[]"]
+
+
+def test_a_log_that_cannot_be_written_is_told(btc: Screen) -> None:
+    assert btc("run", "-c", "wave", "--speed", "max", "--quiet", "--log", "/dev/full") == 2
+    assert "BT009" in btc.err
+
+
+def test_a_log_holds_what_utf_8_does_not(btc: Screen, tmp_path: Path) -> None:
+    log = tmp_path / "log.jsonl"
+    assert btc("run", "-c", "print '\udcff' then wave", "--speed", "max", "--log", str(log)) == 0
+    assert '"Wave"' in log.read_text(encoding="utf-8")
+
+
+def test_a_time_limit_is_kept_at_any_rate(btc: Screen) -> None:
+    assert btc("run", "-c", "move forward 5 m", "--rate", "1", "--for", "1.3", "--speed", "max") == 0
+    assert "Stopped after 1.3 s" in btc.out
+
+
+def test_a_signal_before_the_first_tick_ends_the_run(tmp_path: Path) -> None:
+    (tmp_path / "early.py").write_text("import os, signal\nos.kill(os.getpid(), signal.SIGTERM)\ndef hop(): pass\n")
+    words = tmp_path / "early.toml"
+    words.write_text('[[action]]\nphrase = "hop"\nid = "Hop"\ncall = "early:hop"\n')
+    with started("run", "-c", "hop then move forward", "--keywords", str(words)) as process:
+        out, err = process.communicate(timeout=20)
+    assert (process.returncode, "succeeded" in out) == (130, False), err
+
+
+def test_closed_standard_input() -> None:
+    command = f"{sys.executable} -m btlang check - <&-"
+    done = subprocess.run(command, shell=True, cwd=REPOSITORY, text=True, capture_output=True, check=False)
+    assert done.returncode == 2
+    assert "Traceback" not in done.stderr

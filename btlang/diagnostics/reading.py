@@ -12,7 +12,7 @@ def read_source(path: str) -> Source:
     """The text of a file, or of standard input for `-`. Raises MissionError (BT001, BT002)."""
     try:
         if path == "-":
-            data = sys.stdin.buffer.read()
+            data = sys.stdin.buffer.read() if sys.stdin is not None else b""
         else:
             with open(path, "rb") as file:
                 data = file.read()
@@ -21,7 +21,7 @@ def read_source(path: str) -> Source:
         reason = (error.strerror or str(error)).lower()
         raise MissionError([diagnostic("BT001", nowhere, file=path, reason=reason)]) from None
     try:
-        return Source(data.decode("utf-8"), path)
+        return Source(data.decode("utf-8-sig"), path)
     except UnicodeDecodeError as error:
         readable = data[: error.start].decode("utf-8")
         source = Source(readable + data[error.start :].decode("latin-1"), path)

@@ -32,7 +32,7 @@ def underlined(span: Span) -> list[str]:
     if not span.source.text:
         return []
     number, column = span.source.position(span.start)
-    line = "".join(c if c.isprintable() else " " for c in span.source.line(number))
+    line = span.source.line(number)
     first = column - 1
     last = min(max(first + span.end - span.start, first + 1), max(len(line), first + 1))
     if len(line) > _WIDEST:
@@ -40,4 +40,5 @@ def underlined(span: Span) -> list[str]:
         before, after = ("..." if cut else ""), ("..." if cut + _WIDEST < len(line) else "")
         line = before + line[cut : cut + _WIDEST] + after
         first, last = first - cut + len(before), min(last - cut + len(before), len(line))
+    line = "".join(c if c.isprintable() else " " for c in line)
     return [f"  {line}".rstrip(), "  " + " " * first + "^" * max(1, last - first)]

@@ -97,10 +97,14 @@ class Engine:
         finally:
             self._busy = False
 
-    @property
-    def halt_failures(self) -> list[Failure]:
-        """What leaves raised while they were halted, oldest first."""
-        return [self._failure(fault) for fault in self._shared.halt_faults]
+    def take_halt_failures(self) -> list[Failure]:
+        """What leaves raised while they were halted since it was last asked, oldest first."""
+        faults = self._shared.halt_faults
+        if not faults:
+            return []
+        failures = [self._failure(fault) for fault in faults]
+        faults.clear()
+        return failures
 
     @property
     def nodes(self) -> list[tuple[str, Node]]:

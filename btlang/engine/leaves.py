@@ -1,7 +1,7 @@
 """Leaves: constants, and the functions, generators and classes described in leaf.py.
 
 An exception becomes a FAILURE with its reason. A class that raises anything but ActionFailed is halted as well: it had
-no chance to stop what it moves. What `halt` itself raises is kept in the engine's `halt_failures`.
+no chance to stop what it moves. What `halt` itself raises is kept in the engine's `take_halt_failures`.
 """
 
 from __future__ import annotations

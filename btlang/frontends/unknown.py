@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from bisect import bisect_left
 from collections.abc import Iterator
+from functools import lru_cache
 from itertools import takewhile
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
@@ -129,16 +130,22 @@ def _unknown_phrase(
         start = Span(text.source, before[-1].start, before[-1].end)
         quoted = f'{start.text.rsplit(maxsplit=1)[0]} "{start.text.rsplit(maxsplit=1)[-1]} {span.text}"'
         return diagnostic("BT010", span, words=span.text, help=f"A text of more than one word needs quotes: {quoted}")
-    known = {header.name: header.name.split() for header in definitions.headers.values()}
-    for entries in vocabulary.entries.values():
-        known |= {phrase: words for entry in entries for phrase, words in _plain(entry.phrases)}
-    for phrases in vocabulary.roles.values():
-        known |= dict(_plain(tuple(phrases)))
+    known = {header.name: header.name.split() for header in definitions.headers.values()} | _phrases(vocabulary)
     written = f" {' '.join(text.words[at:end])} "
     inside = [header.name for header in definitions.headers.values() if f" {header.name} " in written]
     near = list(dict.fromkeys([*inside, *nearest_start(text.words[at:end], known)]))
     advice = "The nearest that I know: " + ", ".join(near) if near else "'btc words' lists what I know."
     return diagnostic("BT010", span, words=span.text, help=advice)
+
+
+@lru_cache(maxsize=4)  # a text full of unknown words asks for them at each
+def _phrases(vocabulary: Vocabulary) -> dict[str, list[str]]:
+    known: dict[str, list[str]] = {}
+    for entries in vocabulary.entries.values():
+        known |= {phrase: words for entry in entries for phrase, words in _plain(entry.phrases)}
+    for phrases in vocabulary.roles.values():
+        known |= dict(_plain(tuple(phrases)))
+    return known
 
 
 def _plain(phrases: tuple[str, ...]) -> Iterator[tuple[str, list[str]]]:

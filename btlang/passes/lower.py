@@ -104,7 +104,10 @@ def _retry(item: ast.Retry, done: list[Lowered]) -> Lowered:
 def _try(item: ast.Try, done: list[Lowered]) -> Lowered:
     if item.otherwise is None:
         return Lowered(_node("ForceSuccess", [done[0].node], item.span), done[0].can_skip)
-    return Lowered(_node("Fallback", [part.node for part in done], item.span), all(part.can_skip for part in done))
+    tried, otherwise = done[0].node, [done[1].node]
+    if isinstance(item.otherwise, ast.Chain) and item.otherwise.operator == "fallback" and not item.otherwise.bracketed:
+        otherwise = list(done[1].node.children)  # equal nodes without brackets are one
+    return Lowered(_node("Fallback", [tried, *otherwise], item.span), all(part.can_skip for part in done))
 
 
 def msec(seconds: str) -> str:

@@ -31,6 +31,8 @@ def _out_of_range(node: Node) -> str:
     """What would be in range, "" where it is."""
     if node.id in _TIMES and int(node.port(_TIMES[node.id])) > _LONGEST:
         return "a time is at most 49 days"
+    if node.id == "Timeout" and int(node.port("msec")) == 0:
+        return "a time limit is at least 0.001 s"  # 0 would mean no limit
     if node.id in _COUNTS and int(node.port(_COUNTS[node.id])) > _MOST:
         return f"a number of rounds is at most {_MOST:,}"
     return ""

@@ -5,7 +5,6 @@ from __future__ import annotations
 import signal
 import sys
 from collections.abc import Callable
-from contextlib import ExitStack
 
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.diagnostics.render import underlined
@@ -27,7 +26,8 @@ if TYPE_CHECKING:
 
         def run(self, *, speed: float | str, rate: float, time_limit: float | None, sinks: list[Sink]) -> Outcome: ...
 
-        def stop(self) -> None: ...
+        @property
+        def sink_errors(self) -> list[Exception]: ...
 
         def label(self, node: Node) -> str: ...
 
@@ -37,23 +37,28 @@ if TYPE_CHECKING:
 def run_mission(
     tree: Runnable, *, speed: float | str, rate: float, time_limit: float | None, log: str | None, quiet: bool
 ) -> int:
-    """Runs and reports; returns the exit code. Raises MissionError where the log cannot be written (BT001)."""
-    with ExitStack() as stack:
-        sinks: list[Sink] = []
-        if not quiet:
-            sinks.append(Lines(tree.label, tree.is_action, _print))
-        if log is not None:
-            try:
-                file = stack.enter_context(open(log, "w", encoding="utf-8"))
-            except OSError as error:
-                reason = (error.strerror or str(error)).lower()
-                raise MissionError(
-                    [diagnostic("BT009", Span(Source("", log), 0, 0), file=log, reason=reason)]
-                ) from None
-            sinks.append(JsonLog(file, tree.label))
-        before = signal.signal(signal.SIGTERM, lambda _number, _frame: tree.stop())
-        stack.callback(signal.signal, signal.SIGTERM, before)
-        outcome = tree.run(speed=speed, rate=rate, time_limit=time_limit, sinks=sinks)
+    """Runs and reports; returns the exit code. Raises MissionError where the log cannot be written (BT009)."""
+    sinks: list[Sink] = [] if quiet else [Lines(tree.label, tree.is_action, _print)]
+    before = signal.signal(signal.SIGTERM, signal.default_int_handler)  # as Ctrl-C, from the first moment on
+    try:
+        if log is None:
+            outcome = tree.run(speed=speed, rate=rate, time_limit=time_limit, sinks=sinks)
+        else:
+            # text of the mission may hold what UTF-8 does not
+            with open(log, "w", encoding="utf-8", errors="backslashreplace") as file:
+                sinks.append(JsonLog(file, tree.label))
+                outcome = tree.run(speed=speed, rate=rate, time_limit=time_limit, sinks=sinks)
+            for error in tree.sink_errors:
+                if isinstance(error, OSError):
+                    raise error
+    except BrokenPipeError:
+        raise
+    except OSError as error:
+        reason = (error.strerror or str(error)).lower()
+        name = log or "the output"
+        raise MissionError([diagnostic("BT009", Span(Source("", name), 0, 0), file=name, reason=reason)]) from None
+    finally:
+        signal.signal(signal.SIGTERM, before)
     if outcome.status == FAILURE:
         print(failure_report(outcome, tree.label), file=sys.stderr)
         return 1

@@ -90,7 +90,6 @@ class Runner:
         self._events = EventStream() if events is None else events
         self._stop = threading.Event()
         self._began = clock.now
-        self._reported = 0  # how many failures to halt have been published
         self.ticks = 0
         self.overruns = 0
 
@@ -108,7 +107,8 @@ class Runner:
         self.ticks += 1
         self._report_halts()
         if status == RUNNING:
-            self._advance()
+            left = self._began + self._limit - self._clock.now  # the last period ends with the time limit
+            self._advance(left if left > 0 else math.inf)
         return status
 
     def run(self) -> Outcome:
@@ -148,10 +148,11 @@ class Runner:
         self.overruns += 1
         return due - left
 
-    def _advance(self) -> None:
-        self._clock.advance(self._period)
+    def _advance(self, most: float = math.inf) -> None:
+        seconds = min(self._period, most)
+        self._clock.advance(seconds)
         if self._robot is not None:
-            self._robot.step(self._period)
+            self._robot.step(seconds)
 
     def _end(self) -> None:
         """Another Ctrl-C cuts short only the wait for the robot, not the halting."""
@@ -168,8 +169,6 @@ class Runner:
                 time.sleep(self._pause)
 
     def _report_halts(self) -> None:
-        failures = self._engine.halt_failures
-        for failure in failures[self._reported :]:
+        for failure in self._engine.take_halt_failures():
             data = {"text": f"{failure.node.id} did not halt: {failure.reason}", "path": failure.path}
             self._events.publish(RobotEvent(self._clock.now, "error", data))
-        self._reported = len(failures)

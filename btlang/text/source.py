@@ -54,7 +54,3 @@ class Span(Record, uncompared=("source",)):
         """`file:line:column`, as compilers print it."""
         line, column = self.source.position(self.start)
         return f"{self.source.name}:{line}:{column}"
-
-    def to(self, other: Span) -> Span:
-        """From the start of this one to the end of the other."""
-        return Span(self.source, self.start, other.end)

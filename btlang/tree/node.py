@@ -36,10 +36,6 @@ class Tree(Record):
     root: Node
     subtrees: tuple[tuple[str, Node], ...] = ()
 
-    def subtree(self, name: str) -> Node:
-        """Raises KeyError where no subtree has the name."""
-        return dict(self.subtrees)[name]
-
     def walk(self) -> Iterator[Node]:
         """Every node of the main tree, then of each subtree, parents before children; SubTree nodes are not entered."""
         for root in (self.root, *(node for _, node in self.subtrees)):

@@ -9,6 +9,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.record import Record
 from btlang.text.source import Source, Span
 from btlang.vocabulary.entry import Entry, SlotSpec
+from btlang.vocabulary.language_tables import TABLES, WORD_LISTS, problems
 from btlang.vocabulary.pattern import PatternError, Slot, forms
 from btlang.vocabulary.values import Unit, ValueType
 
@@ -16,8 +17,13 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-_TABLES = {"roles", "counts", "negations", "numbers", "multipliers", "fractions"}
-_TOP = {"language", "articles", "politeness", "unit_joiner", "action", "condition", "type", *_TABLES}
+_TOP = {"language", "action", "condition", "type", *WORD_LISTS, *TABLES}
+NODE_IDS = frozenset((
+    "Sequence", "Fallback", "AsyncSequence", "AsyncFallback", "SequenceWithMemory", "Parallel", "ParallelAll",
+    "ReactiveSequence", "ReactiveFallback", "IfThenElse", "WhileDoElse", "Inverter", "ForceSuccess", "ForceFailure",
+    "Repeat", "RetryUntilSuccessful", "Timeout", "Delay", "Sleep", "AlwaysSuccess", "AlwaysFailure", "SubTree",
+))  # fmt: skip
+"""Ids that are not free: those of the engine."""
 _ENTRY = {"phrase", "id", "call", "ros", "slots", "resources", "topic", "help", "example"}
 _TYPE = {"name", "units", "whole", "least", "open", "values"}
 
@@ -62,8 +68,10 @@ class _Reader:
         if not isinstance(name, str) or not re.fullmatch(r"[A-Za-z]\w*", name):
             self.wrong(f"the {sort} '{near}' needs id = \"...\", one word that starts with a letter", near)
             return None
-        for key in table.keys() - _ENTRY:
+        for key in [key for key in table if key not in _ENTRY]:
             self.wrong(f"'{key}' is not known in [[{sort}]]; known are {', '.join(sorted(_ENTRY))}", near)
+        if name in NODE_IDS:
+            self.wrong(f"'{name}' is a node of the tree itself; the {sort} '{near}' needs another id", near)
         call, resources = table.get("call", ""), table.get("resources", [])
         if not isinstance(call, str) or (call and not re.fullmatch(r"[\w.]+:[\w.]+", call)):
             self.wrong(f"call of '{near}' is written \"module:name\"", near)
@@ -88,7 +96,7 @@ class _Reader:
             for part in parts:
                 if isinstance(part, Slot) and part.name not in found:
                     found[part.name] = self.slot(part.name, table.get(part.name, {}), near)
-        for name in table.keys() - found.keys():
+        for name in [name for name in table if name not in found]:
             self.wrong(f"no phrase of '{near}' has a slot {{{name}}}", near)
         return tuple(found.values())
 
@@ -105,25 +113,43 @@ class _Reader:
         if not isinstance(name, str) or not name.isidentifier():
             self.wrong('[[type]] needs name = "...", one word', "[[type]]")
             return None
-        for key in table.keys() - _TYPE:
+        for key in [key for key in table if key not in _TYPE]:
             self.wrong(f"'{key}' is not known in [[type]]; known are {', '.join(sorted(_TYPE))}", name)
+        listed = {key: table.get(key, []) for key in ("units", "values")}
+        if not all(isinstance(value, list) for value in listed.values()):
+            self.wrong(f"units and values of {name} are lists", name)
+            return None
         units = []
-        for unit in table.get("units", []):
+        for unit in listed["units"]:
             try:
                 over, _, under = unit["factor"].partition("/")
-                units.append(Unit(tuple(w.lower() for w in unit["words"]), float(over), float(under or 1)))
+                made = Unit(tuple(w.lower() for w in unit["words"]), float(over), float(under or 1))
             except (TypeError, KeyError, ValueError, AttributeError):
+                made = None
+            if (
+                made is None
+                or not made.words
+                or isinstance(unit["words"], str)
+                or made.numerator * made.denominator <= 0
+            ):
                 self.wrong(f'a unit of {name} is {{ words = ["m", "meter"], factor = "1" }}', name)
-        values = [{"name": v} if isinstance(v, str) else v for v in table.get("values", [])]
-        if not all(isinstance(v, dict) and isinstance(v.get("name"), str) for v in values):
+            else:
+                units.append(made)
+        values = [{"name": v} if isinstance(v, str) else v for v in listed["values"]]
+        if not all(
+            isinstance(v, dict) and isinstance(v.get("name"), str) and _strings(v.get("words", [])) for v in values
+        ):
             self.wrong(f'the values of {name} are names, or {{ name = "left", words = ["left", "port"] }}', name)
             values = []
         names = [(name, str(word), str(v["name"])) for v in values for word in v.get("words", [v["name"]])]
         least = table.get("least")
+        if least is not None and (isinstance(least, bool) or not isinstance(least, int | float)):
+            self.wrong(f"least of {name} is a number", name)
+            least = None
         whole = bool(table.get("whole", False))
         kind = _kind(name, bool(units), bool(values) or bool(table.get("open")))
-        listed = tuple(str(v["name"]) for v in values)
-        return ValueType(name, kind, tuple(units), whole, None if least is None else float(least), listed), names
+        given = tuple(str(v["name"]) for v in values)
+        return ValueType(name, kind, tuple(units), whole, None if least is None else float(least), given), names
 
 
 def _kind(name: str, has_units: bool, has_names: bool) -> str:
@@ -150,7 +176,7 @@ def read_keyword_file(source: Source) -> KeywordFile:
             start = len("".join(source.text.splitlines(True)[: int(place[1]) - 1])) + int(place[2]) - 1
         reason = "it is not TOML: " + str(error)[: place.start() if place else None]
         raise MissionError([diagnostic("BT060", Span(source, start, start + 1), reason=reason)]) from None
-    for key in document.keys() - _TOP:
+    for key in [key for key in document if key not in _TOP]:
         reader.wrong(f"'{key}' is not known in a keyword file; known are {', '.join(sorted(_TOP))}", key)
     entries, types, names = [], [], []
     for sort in ("action", "condition"):
@@ -165,10 +191,9 @@ def read_keyword_file(source: Source) -> KeywordFile:
             names += declared[1]
     language = {k: v for k, v in document.items() if k not in ("action", "condition", "type")}
     for key, value in language.items():
-        if key in _TABLES and not isinstance(value, dict):
-            reader.wrong(f"{key} is a table: [{key}]", key)
-        if key in ("articles", "politeness", "unit_joiner") and not _strings(value):
-            reader.wrong(f"{key} is a list of words", key)
+        if key in TABLES or key in WORD_LISTS:
+            for reason, near in problems(key, value):
+                reader.wrong(reason, near)
     if reader.problems:
         raise MissionError(reader.problems)
     return KeywordFile(source, tuple(entries), tuple(types), tuple(names), language)

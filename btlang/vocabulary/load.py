@@ -39,11 +39,18 @@ def load_vocabulary(
             problems += error.diagnostics
     if problems:
         raise MissionError(problems)
-    entries = [e if isinstance(e, Entry) else e.btlang_entry for e in keywords if not isinstance(e, str)]  # type: ignore[attr-defined]
+    entries = [_entry(item) for item in keywords if not isinstance(item, str)]
     vocabulary = Vocabulary(files, entries)
     for kind, values in (names or {}).items():
         vocabulary.add_names(kind, values)
     return vocabulary
+
+
+def _entry(word: Entry | Callable[..., Any]) -> Entry:
+    entry = word if isinstance(word, Entry) else getattr(word, "btlang_entry", None)
+    if not isinstance(entry, Entry):
+        raise TypeError(f"{word!r} is no word: make it one with btlang.action or btlang.condition")
+    return entry
 
 
 def _path(name: str) -> str:

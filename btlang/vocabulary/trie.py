@@ -86,17 +86,6 @@ def longest(root: TrieNode, text: Words, at: int, values: Values) -> Match | Non
     return Match(best, best_last, best_values) if best is not None else None
 
 
-def shortest_misfits(root: TrieNode, text: Words, at: int) -> Iterator[tuple[int, TrieNode, tuple[str, str] | None]]:
-    """For messages: how far the words of phrases go at a place: (word index, node there, slot that did not fit)."""
-    node: TrieNode | None = root
-    while node is not None:
-        for name, kind, _ in node.get(SLOTS, ()):
-            yield at, node, (name, kind)
-        yield at, node, None
-        node = node.get(text.words[at])
-        at += 1
-
-
 def collisions(root: TrieNode, types: Mapping[str, ValueType]) -> Iterator[tuple[Meaning, Meaning]]:
     """Pairs of different entries that some words match equally; a slot counts as one value."""
     pending = [(root, root)]

@@ -15,6 +15,7 @@ if TYPE_CHECKING:
     from typing import Any
 
 _LARGEST = 1e12  # beyond it no quantity of a robot makes sense, and sums stay exact
+_MOST_NUMBER_WORDS = 12
 END = "\0"  # key of a word tree's value; no word of a text is this one
 WordTree = dict[str, "Any"]
 
@@ -90,6 +91,8 @@ class Values:
         articles: frozenset[str] = frozenset(),
     ) -> None:
         self._articles = articles
+        self.connectives: frozenset[str] = frozenset()
+        """Words that an article before them makes no text: `print a then wave`."""
         self.types = dict(types)
         self._numbers = numbers
         self._multipliers = multipliers
@@ -135,7 +138,7 @@ class Values:
             return self._plain_number(value_type, text, at)
         if value_type.kind == "names":
             return find(self._names[kind], text.words, at) or self._quoted_name(kind, text, at)
-        return _text(text, at)
+        return self._text(text, at)
 
     def quantity(self, text: Words, at: int) -> tuple[float, str, int] | None:
         """A number with a unit: its value in the base unit, the name of the type, and where it ends."""
@@ -151,7 +154,8 @@ class Values:
         if unit is None:
             return None
         (kind, unit_of), end = unit
-        return value * unit_of.numerator / unit_of.denominator, kind, end
+        amount = value * unit_of.numerator / unit_of.denominator
+        return (amount, kind, end) if abs(amount) <= _LARGEST else None
 
     def number(self, text: Words, at: int) -> tuple[float, int] | None:
         """A number in figures or words, fractions included, and where it ends."""
@@ -160,7 +164,7 @@ class Values:
         fraction = find(self._fractions, words, start)
         if fraction is not None:
             value, start = (value or 0) + fraction[0], fraction[1]
-        return None if value is None else (value, start)
+        return None if value is None or abs(value) > _LARGEST else (value, start)
 
     def _whole_number(self, words: Sequence[str], at: int) -> tuple[float | None, int]:
         word = words[at]
@@ -168,9 +172,10 @@ class Values:
             value = float(word)
             return (value, at + 1) if abs(value) <= _LARGEST else (None, at)
         total: float | None = None
+        last = at + _MOST_NUMBER_WORDS
         while True:
             pieces = words[at].split("-")  # "twenty-five"
-            if not all(p in self._numbers or p in self._multipliers for p in pieces):
+            if at == last or not all(p in self._numbers or p in self._multipliers for p in pieces):
                 return total, at
             for piece in pieces:
                 if piece in self._multipliers:
@@ -188,6 +193,18 @@ class Values:
             return None
         return format_number(value), end
 
+    def _text(self, text: Words, at: int) -> tuple[str, int] | None:
+        word = text.words[at]
+        if word[0] == '"':
+            return word[1:], at + 1
+        bare = word[0].isalnum() or (word[0] == "-" and len(word) > 1)
+        if at in text.articles and (
+            not bare or word in self.connectives
+        ):  # the article is all that there is: `print a`
+            start, end = text.articles[at]
+            return text.source.text[start:end], at
+        return (text.source.text[text.starts[at] : text.ends[at]], at + 1) if bare else None
+
     def _quoted_name(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
         word = text.words[at]
         if word[0] != '"':
@@ -199,15 +216,3 @@ class Values:
 
 def _too_small(value: float, value_type: ValueType) -> bool:
     return value_type.least is not None and value < value_type.least
-
-
-def _text(text: Words, at: int) -> tuple[str, int] | None:
-    word = text.words[at]
-    if word[0] == '"':
-        return word[1:], at + 1
-    if word[0].isalnum() or (word[0] == "-" and len(word) > 1):
-        return text.source.text[text.starts[at] : text.ends[at]], at + 1
-    if at in text.articles:  # the article is all that there is: `print a`
-        start, end = text.articles[at]
-        return text.source.text[start:end], at
-    return None

@@ -35,8 +35,15 @@ class Vocabulary:
         files = list(files)
         language = _merged(files)
         self.articles = frozenset(language["articles"])
+        types: dict[str, ValueType] = {}
+        for file in files:
+            for kind in file.types:
+                if types.setdefault(kind.name, kind).kind != kind.kind:
+                    span = Span(file.source, 0, 0)
+                    reason = f"the type {kind.name} is there already and of another kind"
+                    self._problems.append(diagnostic("BT060", span, reason=reason))
         self.values = Values(
-            {t.name: t for f in files for t in f.types},
+            {**types, **{t.name: t for f in files for t in f.types if types[t.name].kind == t.kind}},
             language["numbers"],
             language["multipliers"],
             language["fractions"],
@@ -44,12 +51,16 @@ class Vocabulary:
             self.articles,
         )
         for file in files:
-            for kind, words, name in file.names:
-                self._add_name(kind, words, name)
+            for kind_name, words, name in file.names:
+                if types[kind_name].kind == "names":
+                    self._add_name(kind_name, words, name)
         self.roles: dict[str, list[str]] = {**language["roles"], "politeness": language["politeness"]}
         self.counts: dict[str, int] = language["counts"]
         self._negations: dict[str, list[str]] = language["negations"]
         self._add_roles()
+        self.values.connectives = frozenset(
+            phrase for role, phrases in self.roles.items() if role != "politeness" for phrase in phrases
+        )
         for entry in (*(e for f in files for e in f.entries), *entries):
             self._add_entry(entry)
         self._find_collisions()
@@ -102,7 +113,10 @@ class Vocabulary:
         if unknown:
             return
         entry = entry.replace(slots=tuple(self._with_port_default(entry, slot) for slot in entry.slots))
-        self.entries.setdefault(entry.id, []).append(entry)
+        same = self.entries.setdefault(entry.id, [])
+        if same and same[0].sort != entry.sort:
+            self._wrong(entry, f"the id {entry.id} is already that of the {same[0].sort} in {same[0].file}")
+        same.append(entry)
         for phrase in entry.phrases:
             try:
                 self._add_phrase(phrase, Meaning("command" if entry.sort == "action" else "condition", entry), types)

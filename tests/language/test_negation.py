@@ -36,3 +36,9 @@ def test_negated_with_a_slot_and_joined() -> None:
 def test_a_definition_by_a_negated_condition() -> None:
     tree = parse_tree("awake is the battery is not low\ncheck awake").tree
     assert plain(tree) == "SubTree ID=awake\nBehaviorTree ID=awake\n  Inverter\n    BatteryLow"
+
+
+@pytest.mark.parametrize("text", ["print a then wave", "print the then wave"])
+def test_an_article_can_be_the_text(text: str) -> None:
+    article = text.split()[1]
+    assert plain(parse_tree(text).tree) == f"Sequence\n  Print text={article}\n  Wave"

@@ -15,6 +15,12 @@ def ids(node: Node) -> object:
     return (node.id, *map(ids, node.children)) if node.children else node.id
 
 
+def test_fallbacks_are_flat() -> None:
+    flat = ("Fallback", "Wave", "Nod", "Stop")
+    assert ids(parse_tree("try to wave, otherwise nod, otherwise stop").tree.root) == flat
+    assert ids(parse_tree("wave otherwise nod otherwise stop").tree.root) == flat
+
+
 SKIP = ("IfThenElse", "WallInFront", "Wave", "AlwaysSuccess")
 ROUND = ("Sequence", SKIP, "AlwaysSuccess")
 

@@ -54,6 +54,8 @@ def value(kind: str, written: str) -> str | None:
         ("length", "2 s", None),
         ("length", "2", None),
         ("length", "1e999 m", None),
+        ("length", "two " + "thousand " * 110 + "m", None),
+        ("length", "nine thousand thousand thousand thousand thousand m", None),
         ("text", "hello", "hello"),
         ("text", "Hello", "Hello"),
         ("text", '"Hello, World"', "Hello, World"),

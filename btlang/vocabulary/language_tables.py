@@ -1,0 +1,80 @@
+"""The tables of a connective file: which there are, and what each may hold."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator
+
+from btlang.vocabulary.pattern import PatternError, Slot, forms
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+_NO_SLOT = (
+    "then", "and", "or", "after", "otherwise", "if", "unless", "while", "until", "provided", "not", "repeat", "try",
+    "retry", "if_possible", "wait_until", "check", "nothing", "fail", "define_strong", "define",
+)  # fmt: skip
+ROLES = {
+    **dict.fromkeys(_NO_SLOT, ""),
+    **dict.fromkeys(("every", "delay", "for", "within", "wait"), "duration"),
+    "count": "count",
+}
+"""The roles that words can have, each with the slot that its phrases hold."""
+
+WORD_LISTS = frozenset(("articles", "politeness", "unit_joiner"))
+
+
+def _words(value: object) -> bool:
+    return isinstance(value, list) and all(isinstance(item, str) and item for item in value)
+
+
+def _number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and abs(value) <= 1e6
+
+
+def _rounds(value: object) -> bool:
+    return isinstance(value, int) and not isinstance(value, bool) and (value >= 1 or value == -1)
+
+
+TABLES: dict[str, tuple[Callable[[object], bool], str]] = {
+    "roles": (_words, "a list of phrases"),
+    "negations": (_words, "a list of words"),
+    "counts": (_rounds, "a whole number from 1 on, or -1 for without end"),
+    "numbers": (_number, "a number"),
+    "multipliers": (_number, "a number"),
+    "fractions": (_number, "a number"),
+}
+"""Each table, whether a value fits it, and what does."""
+
+
+def problems(table: str, value: Any) -> Iterator[tuple[str, str]]:
+    """What is wrong with a table or word list of a file: (reason, text near it)."""
+    if table in WORD_LISTS:
+        if not _words(value):
+            yield f"{table} is a list of words", table
+        return
+    fits, wanted = TABLES[table]
+    if not isinstance(value, dict):
+        yield f"{table} is a table: [{table}]", table
+        return
+    for key, item in value.items():
+        if not fits(item):
+            yield f"{key} in [{table}] is {wanted}", key
+        elif table == "roles":
+            yield from _role_problems(key, item)
+
+
+def _role_problems(role: str, phrases: list[str]) -> Iterator[tuple[str, str]]:
+    if role not in ROLES:
+        yield f"there is no role '{role}'; there are {', '.join(ROLES)}", role
+        return
+    slot = ROLES[role]
+    for phrase in phrases:
+        try:
+            slots = [{part.name for part in form if isinstance(part, Slot)} for form in forms(phrase)]
+        except PatternError as error:
+            yield str(error), phrase
+            continue
+        if any(found != ({slot} if slot else set()) for found in slots):
+            need = f"holds {{{slot}}}, not in brackets" if slot else "holds no slot"
+            yield f"a phrase of the role {role} {need}: '{phrase}'", phrase

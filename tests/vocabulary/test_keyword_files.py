@@ -1,0 +1,65 @@
+"""Wrong keyword files: each gets a coded error at load, whatever is wrong with it."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from btlang.api import parse_tree
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.engine.compile import NODE_TYPES
+from btlang.vocabulary.keyword_file import NODE_IDS
+
+ACTION = '[[action]]\nphrase = "hop"\nid = "Hop"\n'
+
+
+@pytest.mark.parametrize(
+    ("text", "reason"),
+    [
+        ("[roles]\nthen = 5", "then in [roles] is a list of phrases"),
+        ('[roles]\nthen = "then"', "then in [roles] is a list of phrases"),
+        ('[roles]\nthen = ["then [x"]', "'[' without ']'"),
+        ('[roles]\nfoo = ["zork"]', "there is no role 'foo'"),
+        ('[roles]\nwait = ["linger"]', "holds {duration}"),
+        ('[roles]\nwait = ["linger [{duration}]"]', "holds {duration}"),
+        ('[roles]\nthen = ["then {duration}"]', "holds no slot"),
+        ('[counts]\nmany = "x"', "many in [counts] is a whole number"),
+        ("[counts]\nnone = 0", "none in [counts] is a whole number"),
+        ('[numbers]\neleventy = "x"', "eleventy in [numbers] is a number"),
+        ("[negations]\nis = 5", "is in [negations] is a list"),
+        ("numbers = 5", "numbers is a table"),
+        ("articles = 5", "articles is a list of words"),
+        ('[[type]]\nname = "t"\nunits = 5', "units and values of t are lists"),
+        ('[[type]]\nname = "t"\nvalues = 5', "units and values of t are lists"),
+        ('[[type]]\nname = "t"\nvalues = [{ name = "a", words = 5 }]', "the values of t"),
+        ('[[type]]\nname = "t"\nleast = "x"', "least of t is a number"),
+        ('[[type]]\nname = "t"\nunits = [{ words = ["x"], factor = "1/0" }]', "a unit of t"),
+        ('[[type]]\nname = "place"\nunits = [{ words = ["x"], factor = "1" }]', "of another kind"),
+        ('[[action]]\nphrase = "hop"\nid = "AlwaysSuccess"', "is a node of the tree itself"),
+        ('[[condition]]\nphrase = "hopped"\nid = "Wave"', "the id Wave is already that of the action"),
+        (ACTION + "foo = 1\nbar = 2", "'foo' is not known"),
+        ("action = 5", "action is written [[action]]"),
+    ],
+)
+def test_wrong_file(text: str, reason: str, tmp_path: Path) -> None:
+    file = tmp_path / "wrong.toml"
+    file.write_text(text, encoding="utf-8")
+    with pytest.raises(MissionError) as caught:
+        parse_tree("wave", keywords=[str(file)])
+    assert reason in str(caught.value)
+
+
+def test_a_byte_order_mark_is_fine(tmp_path: Path) -> None:
+    file = tmp_path / "words.toml"
+    file.write_text(ACTION, encoding="utf-8-sig")
+    assert parse_tree("hop", keywords=[str(file)]).tree.root.id == "Hop"
+
+
+def test_what_is_no_word_is_told() -> None:
+    with pytest.raises(TypeError, match=r"btlang\.action"):
+        parse_tree("wave", keywords=[print])
+
+
+def test_ids_of_the_engine_are_not_free() -> None:
+    assert {*NODE_TYPES, "SubTree"} == NODE_IDS
