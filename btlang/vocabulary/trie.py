@@ -86,7 +86,7 @@ def longest(root: TrieNode, text: Words, at: int, values: Values) -> Match | Non
     return Match(best, best_last, best_values) if best is not None else None
 
 
-def collisions(root: TrieNode, types: Mapping[str, ValueType]) -> Iterator[tuple[Meaning, Meaning]]:
+def collisions(root: TrieNode, values: Values) -> Iterator[tuple[Meaning, Meaning]]:
     """Pairs of different entries that some words match equally; a slot counts as one value."""
     pending = [(root, root)]
     seen: set[tuple[int, int]] = set()
@@ -101,15 +101,13 @@ def collisions(root: TrieNode, types: Mapping[str, ValueType]) -> Iterator[tuple
         pending += [(left[w], right[w]) for w in words if w in right]
         for one, other in ((left, right), (right, left)):
             for _, kind, child in one.get(SLOTS, ()):
-                pending += [(child, n) for w, n in other.items() if w not in (END, SLOTS) and _takes(types[kind], w)]
+                pending += [
+                    (child, n) for w, n in other.items() if w not in (END, SLOTS) and values.takes_word(kind, w)
+                ]
         for _, kind, child in left.get(SLOTS, ()):
             for _, other_kind, other_child in right.get(SLOTS, ()):
-                if _overlap(types[kind], types[other_kind]):
+                if _overlap(values.types[kind], values.types[other_kind]):
                     pending.append((child, other_child))
-
-
-def _takes(kind: ValueType, word: str) -> bool:
-    return kind.kind == "text" or word in kind.names
 
 
 def _overlap(one: ValueType, other: ValueType) -> bool:

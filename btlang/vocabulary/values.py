@@ -126,6 +126,13 @@ class Values:
                     stack.append(child)
         return sorted(found)
 
+    def takes_word(self, kind: str, word: str) -> bool:
+        """Whether the one word is a value of the type."""
+        value_type = self.types[kind]
+        if value_type.kind == "names":
+            return END in self._names[kind].get(word, {})
+        return value_type.kind == "text" or (value_type.kind == "number" and word in self._numbers)
+
     def read(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
         """The port text of a value of the type and where it ends, or None where there is none."""
         value_type = self.types[kind]

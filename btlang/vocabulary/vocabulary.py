@@ -157,7 +157,7 @@ class Vocabulary:
                     self._add_form((*form[:at], *words.split(), *form[at + 1 :]), meaning, types)
 
     def _find_collisions(self) -> None:
-        for one, other in collisions(self.trie, self.types):
+        for one, other in collisions(self.trie, self.values):
             self._collide(one, other)
 
     def _collide(self, one: Meaning, other: Meaning) -> None:

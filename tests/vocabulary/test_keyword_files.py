@@ -50,6 +50,24 @@ def test_wrong_file(text: str, reason: str, tmp_path: Path) -> None:
     assert reason in str(caught.value)
 
 
+@pytest.mark.parametrize(
+    "text",
+    [
+        '[[type]]\nname = "side"\nvalues = [{ name = "left", words = ["left", "port"] }]\n'
+        '[[action]]\nphrase = "lean {side}"\nid = "Lean"\n[[action]]\nphrase = "lean port"\nid = "LeanPort"',
+        ACTION.replace('"hop"', '"hop {count}"') + '[[action]]\nphrase = "hop two"\nid = "HopTwo"',
+        ACTION.replace('"hop"', '"hop {text}"') + '[[action]]\nphrase = "hop high"\nid = "HopHigh"',
+        ACTION.replace('"hop"', '"hop [high]"') + '[[action]]\nphrase = "hop/jump (high)"\nid = "Jump"',
+    ],
+)
+def test_phrases_that_match_the_same_words(text: str, tmp_path: Path) -> None:
+    file = tmp_path / "words.toml"
+    file.write_text(text, encoding="utf-8")
+    with pytest.raises(MissionError) as caught:
+        parse_tree("wave", keywords=[str(file)])
+    assert {problem.code for problem in caught.value.diagnostics} == {"BT062"}
+
+
 def test_a_byte_order_mark_is_fine(tmp_path: Path) -> None:
     file = tmp_path / "words.toml"
     file.write_text(ACTION, encoding="utf-8-sig")
