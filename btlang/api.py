@@ -222,8 +222,6 @@ def _world_problem(error: WorldError) -> MissionError:
         source = read_source(error.path)
     except MissionError:
         source = Source("", error.path)
-    lines = source.text.splitlines(keepends=True)
-    number = min(error.line or 1, len(lines))
-    start = len("".join(lines[: number - 1]))
-    end = start + len(lines[number - 1].rstrip()) if error.line and lines else start
+    start = source.offset(error.line or 1)
+    end = start + len(source.line(error.line).rstrip()) if error.line and source.text else start
     return MissionError([diagnostic("BT070", Span(source, start, end), reason=error.message)])

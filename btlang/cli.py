@@ -16,7 +16,7 @@ from btlang.diagnostics.render import render
 from btlang.frontends.mission import DEFAULT_PARSER, PARSERS
 from btlang.text.source import Source
 
-SUCCESS, FAILED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
+SUCCESS, BAD_INPUT, INTERRUPTED = 0, 2, 130
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -136,12 +136,12 @@ def _between(least: float, most: float) -> Callable[[str], float]:
 
 def _seconds(text: str) -> float:
     """Seconds, as a number or in the words of the language. Raises ArgumentTypeError."""
-    from btlang.vocabulary.load import load_vocabulary
-
     try:
-        value = load_vocabulary().duration(text) or float(text)
+        value = float(text)
     except ValueError:
-        value = math.nan
+        from btlang.vocabulary.load import load_vocabulary
+
+        value = float(load_vocabulary().value("duration", text) or math.nan)
     if not 0 < value < math.inf:
         raise argparse.ArgumentTypeError(f"a duration such as 60s or 2min is needed, not '{text}'")
     return value

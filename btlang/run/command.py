@@ -5,6 +5,7 @@ from __future__ import annotations
 import signal
 import sys
 from collections.abc import Callable
+from contextlib import AbstractContextManager, nullcontext
 
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.diagnostics.render import underlined
@@ -17,7 +18,7 @@ from btlang.tree.node import Node
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Protocol
+    from typing import Protocol, TextIO
 
     from btlang.run.events import Sink
 
@@ -41,16 +42,13 @@ def run_mission(
     sinks: list[Sink] = [] if quiet else [Lines(tree.label, tree.is_action, _print)]
     before = signal.signal(signal.SIGTERM, signal.default_int_handler)  # as Ctrl-C, from the first moment on
     try:
-        if log is None:
-            outcome = tree.run(speed=speed, rate=rate, time_limit=time_limit, sinks=sinks)
-        else:
-            # text of the mission may hold what UTF-8 does not
-            with open(log, "w", encoding="utf-8", errors="backslashreplace") as file:
+        with _opened(log) as file:
+            if file is not None:
                 sinks.append(JsonLog(file, tree.label))
-                outcome = tree.run(speed=speed, rate=rate, time_limit=time_limit, sinks=sinks)
-            for error in tree.sink_errors:
-                if isinstance(error, OSError):
-                    raise error
+            outcome = tree.run(speed=speed, rate=rate, time_limit=time_limit, sinks=sinks)
+        for error in tree.sink_errors if log is not None else ():
+            if isinstance(error, OSError):
+                raise error
     except BrokenPipeError:
         raise
     except OSError as error:
@@ -65,6 +63,12 @@ def run_mission(
     if not quiet:
         print(_ending(outcome))
     return 130 if outcome.stopped == "interrupted" else 0
+
+
+def _opened(log: str | None) -> AbstractContextManager[TextIO | None]:
+    if log is None:
+        return nullcontext()
+    return open(log, "w", encoding="utf-8", errors="backslashreplace")  # a mission may hold what UTF-8 does not
 
 
 def failure_report(outcome: Outcome, label: Callable[[Node], str]) -> str:

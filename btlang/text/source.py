@@ -24,6 +24,11 @@ class Source:
         line = bisect_right(starts, offset)
         return line, offset - starts[line - 1] + 1
 
+    def offset(self, line: int, column: int = 1) -> int:
+        """The character at a line and column (both from 1), at most the end of the text."""
+        starts = self._line_starts()
+        return min(starts[min(line, len(starts)) - 1] + column - 1, len(self.text))
+
     def line(self, number: int) -> str:
         """The text of a line (from 1) without its end."""
         starts = self._line_starts()

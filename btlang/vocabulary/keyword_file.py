@@ -173,7 +173,7 @@ def read_keyword_file(source: Source) -> KeywordFile:
         place = re.search(r" \(at (?:line (\d+), column (\d+)|end of document)\)$", str(error))
         start = len(source.text)
         if place and place[1]:
-            start = len("".join(source.text.splitlines(True)[: int(place[1]) - 1])) + int(place[2]) - 1
+            start = source.offset(int(place[1]), int(place[2]))
         reason = "it is not TOML: " + str(error)[: place.start() if place else None]
         raise MissionError([diagnostic("BT060", Span(source, start, start + 1), reason=reason)]) from None
     for key in [key for key in document if key not in _TOP]:

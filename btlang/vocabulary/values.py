@@ -79,26 +79,18 @@ def find(tree: WordTree, words: Sequence[str], at: int) -> tuple[Any, int] | Non
 
 
 class Values:
-    """Reads values at a place in a text. `types` by name; word tables as in english.toml."""
+    """Reads values at a place in a text. `types` by name; `language` holds the word tables of english.toml."""
 
-    def __init__(
-        self,
-        types: Mapping[str, ValueType],
-        numbers: Mapping[str, float],
-        multipliers: Mapping[str, float],
-        fractions: Mapping[str, float],
-        unit_joiner: frozenset[str],
-        articles: frozenset[str] = frozenset(),
-    ) -> None:
-        self._articles = articles
-        self.connectives: frozenset[str] = frozenset()
-        """Words that an article before them makes no text: `print a then wave`."""
+    def __init__(self, types: Mapping[str, ValueType], language: Mapping[str, Any]) -> None:
         self.types = dict(types)
-        self._numbers = numbers
-        self._multipliers = multipliers
-        self._joiner = unit_joiner
+        self._numbers: Mapping[str, float] = language["numbers"]
+        self._multipliers: Mapping[str, float] = language["multipliers"]
+        self._joiner = frozenset(language["unit_joiner"])
+        self._articles = frozenset(language["articles"])
+        # words that an article before them makes no text: `print a then wave`
+        self._connectives = frozenset(phrase for phrases in language["roles"].values() for phrase in phrases)
         self._fractions: WordTree = {}
-        for phrase, value in fractions.items():
+        for phrase, value in language["fractions"].items():
             insert(self._fractions, phrase.split(), value)
         self._units: WordTree = {}
         self._names: dict[str, WordTree] = {}
@@ -206,7 +198,7 @@ class Values:
             return word[1:], at + 1
         bare = word[0].isalnum() or (word[0] == "-" and len(word) > 1)
         if at in text.articles and (
-            not bare or word in self.connectives
+            not bare or word in self._connectives
         ):  # the article is all that there is: `print a`
             start, end = text.articles[at]
             return text.source.text[start:end], at

@@ -35,32 +35,15 @@ class Vocabulary:
         files = list(files)
         language = _merged(files)
         self.articles = frozenset(language["articles"])
-        types: dict[str, ValueType] = {}
+        self.values = Values(self._types_of(files), language)
         for file in files:
-            for kind in file.types:
-                if types.setdefault(kind.name, kind).kind != kind.kind:
-                    span = Span(file.source, 0, 0)
-                    reason = f"the type {kind.name} is there already and of another kind"
-                    self._problems.append(diagnostic("BT060", span, reason=reason))
-        self.values = Values(
-            {**types, **{t.name: t for f in files for t in f.types if types[t.name].kind == t.kind}},
-            language["numbers"],
-            language["multipliers"],
-            language["fractions"],
-            frozenset(language["unit_joiner"]),
-            self.articles,
-        )
-        for file in files:
-            for kind_name, words, name in file.names:
-                if types[kind_name].kind == "names":
-                    self._add_name(kind_name, words, name)
+            for kind, words, name in file.names:
+                if self.types[kind].kind == "names":
+                    self._add_name(kind, words, name)
         self.roles: dict[str, list[str]] = {**language["roles"], "politeness": language["politeness"]}
         self.counts: dict[str, int] = language["counts"]
         self._negations: dict[str, list[str]] = language["negations"]
         self._add_roles()
-        self.values.connectives = frozenset(
-            phrase for role, phrases in self.roles.items() if role != "politeness" for phrase in phrases
-        )
         for entry in (*(e for f in files for e in f.entries), *entries):
             self._add_entry(entry)
         self._find_collisions()
@@ -86,16 +69,28 @@ class Vocabulary:
         """Articles do not matter in names either."""
         self.values.add_name(kind, " ".join(word for word in words.split() if word.lower() not in self.articles), name)
 
-    def duration(self, written: str) -> float | None:
-        """The seconds of a text such as `2 min` or `half an hour`, None where it is no duration."""
+    def value(self, kind: str, written: str) -> str | None:
+        """The port text of a text that as a whole is a value of the type (`half an hour`), None where it is none."""
         text = split(Source(written), self.articles)
-        found = self.values.read("duration", text, 0) if text.words else None
-        return float(found[0]) if found and found[1] >= len(text.words) - 2 else None
+        found = self.values.read(kind, text, 0)
+        return found[0] if found and found[1] >= len(text.words) - 2 else None
 
     def word(self, role: str) -> str:
         """The word of a role that messages and canonical English use: the first in its list."""
         words = forms(self.roles[role][0])[-1]
         return " ".join(word for word in words if isinstance(word, str))
+
+    def _types_of(self, files: Iterable[KeywordFile]) -> dict[str, ValueType]:
+        """The types by name; a file may declare one anew, but not of another kind."""
+        types: dict[str, ValueType] = {}
+        for file in files:
+            for kind in file.types:
+                if types.get(kind.name, kind).kind == kind.kind:
+                    types[kind.name] = kind
+                    continue
+                reason = f"the type {kind.name} is there already and of another kind"
+                self._problems.append(diagnostic("BT060", Span(file.source, 0, 0), reason=reason))
+        return types
 
     def _add_roles(self) -> None:
         for role, phrases in self.roles.items():
@@ -127,17 +122,15 @@ class Vocabulary:
 
     def _with_port_default(self, entry: Entry, slot: SlotSpec) -> SlotSpec:
         """Defaults are written with units; ports hold them in the base unit."""
-        kind = self.types[slot.type].kind
-        if slot.default is None or kind in ("text", "names"):
+        kind = self.types[slot.type]
+        if slot.default is None or kind.kind in ("text", "names"):
             return slot
-        text = split(Source(slot.default), self.articles)
-        value = self.values.read(slot.type, text, 0) if text.words else None
-        if value is None or value[1] < len(text.words) - 2:
-            wanted = self.types[slot.type].example
-            reason = f"the default '{slot.default}' of {{{slot.name}}} is no {slot.type}, such as {wanted}"
+        value = self.value(slot.type, slot.default)
+        if value is None:
+            reason = f"the default '{slot.default}' of {{{slot.name}}} is no {slot.type}, such as {kind.example}"
             self._wrong(entry, reason)
             return slot
-        return SlotSpec(slot.name, slot.type, value[0])
+        return SlotSpec(slot.name, slot.type, value)
 
     def _add_phrase(self, phrase: str, meaning: Meaning, types: dict[str, str]) -> None:
         for form in forms(phrase, self.articles):

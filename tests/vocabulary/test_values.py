@@ -7,18 +7,9 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from btlang.api import world_vocabulary
-from btlang.text.source import Source
-from btlang.text.words import split
 from btlang.vocabulary.values import format_number
 
 VOCABULARY = world_vocabulary()
-
-
-def value(kind: str, written: str) -> str | None:
-    """The port text where the whole of it is a value."""
-    text = split(Source(written), VOCABULARY.articles)
-    found = VOCABULARY.values.read(kind, text, 0) if text.words else None
-    return found[0] if found and found[1] >= len(text.words) - 2 else None
 
 
 @pytest.mark.parametrize(
@@ -70,7 +61,7 @@ def value(kind: str, written: str) -> str | None:
     ],
 )
 def test_value(kind: str, written: str, expected: str | None) -> None:
-    assert value(kind, written) == expected
+    assert VOCABULARY.value(kind, written) == expected
 
 
 @given(st.floats(-1e9, 1e9))
