@@ -22,6 +22,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, TypeVar
 
+    from btlang.robots.simulation import Simulation
+    from btlang.run.controls import Controls
     from btlang.run.events import Sink
     from btlang.run.runner import Outcome, Runner
 
@@ -59,6 +61,17 @@ def world_vocabulary(keywords: Sequence[str | Entry | Callable[..., Any]] = (), 
         raise _world_problem(error) from None
     kinds = {"place": names.places, "person": names.people, "object": names.objects}
     return load_vocabulary(keywords, kinds)
+
+
+def load_simulation(world: str | None = None) -> Simulation:
+    """The simulated robot in the world of a file, by default the world that ships. Raises MissionError (BT070)."""
+    from btlang.robots.simulation import Simulation
+    from btlang.robots.world_file import load_world
+
+    try:
+        return Simulation(load_world(world))
+    except WorldError as error:
+        raise _world_problem(error) from None
 
 
 def action(
@@ -111,8 +124,9 @@ class RunnableTree:
         self.warnings = tuple(warnings)
         self.sink_errors: list[Exception] = []
         """What sinks of the latest run raised; such a sink gets no more events, and the mission goes on."""
+        self._controls: Controls | None = None
         self._runner: Runner | None = None
-        self._robot: Any = None
+        self._simulation: Simulation | None = None
 
     def __str__(self) -> str:
         return outline(self.tree, self._described)
@@ -133,16 +147,24 @@ class RunnableTree:
     @property
     def robot(self) -> Any:
         """The robot of the latest run or tick, the simulated one; it is made at the first use."""
-        if self._robot is None:
-            self._start(20.0, 1.0, None, ())
-        return self._robot
+        if self._simulation is None:
+            self._start()
+        assert self._simulation is not None
+        return self._simulation.robot
+
+    @property
+    def controls(self) -> Controls:
+        """Pause, resume, single step and stop, from any thread: of the run under way, else of the next one."""
+        from btlang.run.controls import Controls
+
+        if self._controls is None:
+            self._controls = Controls()
+        return self._controls
 
     def tick(self) -> int:
         """Ticks once and moves the simulated world on by 1/20 s; returns the status (see btlang.engine.status)."""
-        if self._runner is None:
-            self._start(20.0, 1.0, None, ())
-        assert self._runner is not None
-        return self._runner.step()
+        runner = self._runner or self._start()
+        return runner.tick()
 
     def halt(self) -> None:
         """Halts every running leaf and stops the robot; the next tick starts anew."""
@@ -150,9 +172,20 @@ class RunnableTree:
             self._runner.halt()
 
     def stop(self) -> None:
-        """Ends a run under way, from another thread or a signal handler."""
-        if self._runner is not None:
-            self._runner.stop()
+        """Ends the run under way, else the next one before its first tick; for another thread or a signal handler."""
+        self.controls.stop()
+
+    def pause(self) -> None:
+        """The robot of the run under way comes to rest, and the time of the mission stands still."""
+        self.controls.pause()
+
+    def resume(self) -> None:
+        """The run goes on; the commands that the pause interrupted start anew."""
+        self.controls.resume()
+
+    def step(self) -> None:
+        """The run makes one more tick, then pauses."""
+        self.controls.step()
 
     def run(
         self,
@@ -161,53 +194,64 @@ class RunnableTree:
         rate: float = 20.0,
         time_limit: float | None = None,
         sinks: Iterable[Sink] = (),
+        on: Simulation | None = None,
     ) -> Outcome:
-        """Runs the mission from its start in a fresh world until it ends, `time_limit` seconds are over, or Ctrl-C.
+        """Runs the mission from its start until it ends, `time_limit` seconds are over, or Ctrl-C.
 
         `speed` is "real", "max" or a factor of real time; `rate` is in ticks a second of the mission; `sinks` get every
-        event (see btlang.run.events). Raises MissionError where a command cannot run (BT080).
+        event (see btlang.run.events); `on` is where the mission runs, by default a fresh world.
+        Raises MissionError where a command cannot run (BT080).
         """
         factor = {"real": 1.0, "max": math.inf}.get(speed) if isinstance(speed, str) else speed
         if factor is None or not factor >= SLOWEST:
             raise ValueError(f'speed is "real", "max" or a number from {SLOWEST} on: {speed!r}')
         if not RATES[0] <= rate <= RATES[1]:
             raise ValueError(f"rate is from {RATES[0]:g} to {RATES[1]:g} ticks a second: {rate!r}")
-        self._start(rate, factor, time_limit, sinks)
-        assert self._runner is not None
-        return self._runner.run()
+        runner = self._start(rate, factor, time_limit, sinks, on)
+        try:
+            return runner.run()
+        finally:
+            self._controls = None
 
-    def _start(self, rate: float, speed: float, time_limit: float | None, sinks: Iterable[Sink]) -> None:
-        """A fresh world, robot, clock and engine."""
+    def _start(
+        self,
+        rate: float = 20.0,
+        speed: float = 1.0,
+        time_limit: float | None = None,
+        sinks: Iterable[Sink] = (),
+        on: Simulation | None = None,
+    ) -> Runner:
+        """A new engine on a fresh or a given world."""
         from btlang.backends.engine import bind_leaf
-        from btlang.engine.clock import Clock
         from btlang.engine.engine import EngineError
-        from btlang.robots.simulated import SimulatedRobot
-        from btlang.robots.world_file import load_world
-        from btlang.run.events import EventStream, RobotEvent
         from btlang.run.runner import Runner, traced_engine
 
-        clock, events = Clock(), EventStream(*sinks)
-        try:
-            world = load_world(self.world)
-        except WorldError as error:
-            raise _world_problem(error) from None
-        robot = SimulatedRobot(world, on_event=lambda kind, data: events.publish(RobotEvent(clock.now, kind, data)))
+        stage = load_simulation(self.world) if on is None else on
+        stage.begin(sinks)
         try:
             engine = traced_engine(
                 self.tree,
                 cache(lambda id: bind_leaf(id, self.vocabulary)),
-                clock=clock,
-                events=events,
-                services={"robot": robot},
+                clock=stage.clock,
+                events=stage.events,
+                services={"robot": stage.robot},
             )
         except EngineError as error:
             span = error.node.span or Span(Source(""), 0, 0)
             raise MissionError([diagnostic("BT080", span, id=error.node.id, reason=error.message)]) from None
-        self._robot = robot
-        self.sink_errors = events.errors
+        self.sink_errors = stage.events.errors
+        self._simulation = stage
         self._runner = Runner(
-            engine, clock=clock, robot=robot, rate=rate, speed=speed, time_limit=time_limit, events=events
+            engine,
+            clock=stage.clock,
+            robot=stage.robot,
+            rate=rate,
+            speed=speed,
+            time_limit=time_limit,
+            events=stage.events,
+            controls=self.controls,
         )
+        return self._runner
 
     def _described(self, node: Node) -> str:
         if node.children or node.id not in self.vocabulary.entries:

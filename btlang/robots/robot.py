@@ -47,6 +47,10 @@ class Robot(Protocol):
     on_event: OnEvent | None
 
     @property
+    def moves_by_itself(self) -> bool:
+        """True for a real robot; False where the world stands still between two steps."""
+
+    @property
     def radius(self) -> float:
         """Of the round footprint."""
 

@@ -27,6 +27,7 @@ _HANDS: tuple[Hand, Hand] = ("left", "right")
 class SimulatedRobot:
     """Implements `btlang.robots.robot.Robot`. Nothing in it is random: the same commands give the same run."""
 
+    moves_by_itself = False
     radius = ROBOT_RADIUS
     normal_speed = navigation.SPEED
     max_speed = wheels.MAX_SPEED

@@ -9,10 +9,20 @@ from btlang.tree.node import Node
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any, TypeAlias
+    from typing import Any, Protocol, TypeAlias
 
-    Event: TypeAlias = "StatusChanged | RobotEvent"
+    Event: TypeAlias = "StatusChanged | RobotEvent | PeriodPassed"
     Sink: TypeAlias = Callable[[Event], object]
+
+    class Robot(Protocol):
+        """What a run asks of a robot. `moving` may be missing; so may `moves_by_itself`, which is then taken for true.
+
+        `moves_by_itself` is False for a simulated robot, whose world stands still between two steps.
+        """
+
+        def step(self, dt: float) -> object: ...
+
+        def stop(self) -> object: ...
 
 
 class StatusChanged(Record):
@@ -35,6 +45,19 @@ class RobotEvent(Record):
     t: float
     kind: str
     data: Mapping[str, Any] = {}
+
+
+class PeriodPassed(Record):
+    """The time between two ticks is over, or one of the periods in which the robot comes to rest.
+
+    The first one comes before the first tick. `ticks` and `overruns` count from the start of the run. A sink may read
+    the robot during the call, and at no other time.
+    """
+
+    t: float
+    ticks: int
+    overruns: int
+    robot: Robot | None
 
 
 class EventStream:

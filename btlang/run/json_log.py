@@ -6,7 +6,7 @@ import json
 from collections.abc import Callable, Mapping
 
 from btlang.engine.status import NAMES
-from btlang.run.events import RobotEvent, StatusChanged
+from btlang.run.events import PeriodPassed, RobotEvent, StatusChanged
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False
@@ -31,11 +31,13 @@ class JsonLog:
         self._label = label
 
     def __call__(self, event: Event) -> None:
+        if isinstance(event, PeriodPassed):
+            return
         line = json.dumps(self._fields(event), ensure_ascii=False, default=str)
         self._output.write(line + "\n")
         self._output.flush()
 
-    def _fields(self, event: Event) -> Mapping[str, Any]:
+    def _fields(self, event: RobotEvent | StatusChanged) -> Mapping[str, Any]:
         t = round(event.t, 6)
         if isinstance(event, RobotEvent):
             return {**event.data, "t": t, "event": event.kind}

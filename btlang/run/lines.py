@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED
-from btlang.run.events import RobotEvent
+from btlang.run.events import RobotEvent, StatusChanged
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.run.events import Event, StatusChanged
+    from btlang.run.events import Event
 
 _WORDS = {IDLE: "halted", RUNNING: "start", FAILURE: "failed", SKIPPED: "skipped"}
 
@@ -31,8 +31,9 @@ class Lines:
     def __call__(self, event: Event) -> None:
         if isinstance(event, RobotEvent):
             self._robot(event)
-        elif (event.node.id == "Sleep" and event.node.span) or self._is_action(event.node):
-            self._action(event)
+        elif isinstance(event, StatusChanged):
+            if (event.node.id == "Sleep" and event.node.span) or self._is_action(event.node):
+                self._action(event)
 
     def _action(self, event: StatusChanged) -> None:
         reason = f": {event.reason}" if event.reason else ""

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import threading
 import time
 from collections.abc import Callable, Mapping
 
@@ -13,19 +12,15 @@ from btlang.engine.engine import Engine, Failure
 from btlang.engine.leaf import LeafBinding
 from btlang.engine.status import FAILURE, IDLE, RUNNING
 from btlang.record import Record
-from btlang.run.events import EventStream, RobotEvent, StatusChanged
+from btlang.run.controls import Controls
+from btlang.run.events import EventStream, PeriodPassed, RobotEvent, StatusChanged
 from btlang.tree.node import Tree
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any, Protocol
+    from typing import Any
 
-    class Robot(Protocol):
-        """What the runner asks of a robot; `moving` (a bool) may be missing."""
-
-        def step(self, dt: float) -> object: ...
-
-        def stop(self) -> object: ...
+    from btlang.run.events import Robot
 
 
 _REST = 2.0  # seconds of the mission that a robot gets to come to rest
@@ -68,6 +63,9 @@ class Runner:
 
     `speed` is seconds of the mission per second of real time; math.inf does not wait at all. `overruns` counts the
     periods that took longer than they should have. Time after a late tick is not caught up with.
+
+    A pause suspends the tree (see Engine.suspend) and brakes the robot. Then the time of the mission stands still, and
+    so does a simulated world once the robot is at rest.
     """
 
     def __init__(
@@ -80,6 +78,7 @@ class Runner:
         speed: float = 1.0,
         time_limit: float | None = None,
         events: EventStream | None = None,
+        controls: Controls | None = None,
     ) -> None:
         self._engine = engine
         self._clock = clock
@@ -88,21 +87,19 @@ class Runner:
         self._pause = self._period / speed
         self._limit = math.inf if time_limit is None else time_limit
         self._events = EventStream() if events is None else events
-        self._stop = threading.Event()
+        self.controls = Controls() if controls is None else controls
+        self._suspended = False
         self._began = clock.now
         self.ticks = 0
         self.overruns = 0
 
-    def stop(self) -> None:
-        """Ends the run before its next tick; for another thread or a signal handler."""
-        self._stop.set()
-
     def halt(self) -> None:
-        """Halts the tree and stops the robot, outside of run(); the next step starts the tree anew."""
+        """Halts the tree and stops the robot, outside of run(); the next tick starts the tree anew."""
         self._end()
 
-    def step(self) -> int:
+    def tick(self) -> int:
         """One period: ticks the tree, then, unless it completed, moves clock and robot on. Returns the status."""
+        self._suspended = False
         status = self._engine.tick()
         self.ticks += 1
         self._report_halts()
@@ -112,11 +109,12 @@ class Runner:
         return status
 
     def run(self) -> Outcome:
-        """Runs to the end, the time limit, stop() or Ctrl-C; then halts the tree and brings the robot to rest.
+        """Runs to the end, the time limit, a stop or Ctrl-C; then halts the tree and brings the robot to rest.
 
         An exception other than KeyboardInterrupt does the same and comes through.
         """
         self._began, self.ticks = self._clock.now, 0
+        self._publish_period()
         try:
             status, stopped = self._loop()
         except KeyboardInterrupt:
@@ -127,32 +125,62 @@ class Runner:
         return Outcome(status, seconds, self.ticks, None if stopped else self._engine.failure, stopped)
 
     def _loop(self) -> tuple[int, str]:
-        due = time.monotonic()
-        while not self._stop.is_set():
+        controls, due, stepped = self.controls, time.monotonic(), False
+        while not controls.stopped:
+            if controls.paused and not controls.take_step():
+                self._stand_still(stepped)
+                due = time.monotonic()
+                continue
+            stepped = controls.paused
             if self._clock.now - self._began >= self._limit - 1e-9:
                 return IDLE, "time limit"
-            status = self.step()
+            status = self.tick()
             if status != RUNNING:
                 return status, ""
             due = self._wait(due + self._pause)
         return IDLE, "interrupted"
+
+    def _stand_still(self, stepped: bool) -> None:
+        """One period of a pause. After a single step a simulated world stops as it is, so that steps add up."""
+        robot = self._robot
+        frozen = robot is None or not getattr(robot, "moves_by_itself", True)
+        if not self._suspended and not (stepped and frozen):
+            self._suspended = True
+            self._engine.suspend()
+            self._report_halts()
+            if robot is not None:
+                robot.stop()
+                robot.step(self._period)
+        elif robot is not None and (not frozen or (self._suspended and getattr(robot, "moving", False))):
+            robot.step(self._period)
+        else:
+            self.controls.wait(None)
+            return
+        self._publish_period()
+        self.controls.wait(self._period)
 
     def _wait(self, due: float) -> float:
         """Sleeps until a point in real time; returns it, or the present where that is later already."""
         if self._pause == 0:
             return due
         left = due - time.monotonic()
-        if left > 0:
-            self._stop.wait(left)
-            return due
-        self.overruns += 1
-        return due - left
+        if left <= 0:
+            self.overruns += 1
+            return due - left
+        while left > 0 and not self.controls.stopped:
+            self.controls.wait(left)
+            left = due - time.monotonic()
+        return due
 
     def _advance(self, most: float = math.inf) -> None:
         seconds = min(self._period, most)
         self._clock.advance(seconds)
         if self._robot is not None:
             self._robot.step(seconds)
+        self._publish_period()
+
+    def _publish_period(self) -> None:
+        self._events.publish(PeriodPassed(self._clock.now, self.ticks, self.overruns, self._robot))
 
     def _end(self) -> None:
         """Another Ctrl-C cuts short only the wait for the robot, not the halting."""
@@ -162,9 +190,13 @@ class Runner:
             if self._robot is not None:
                 self._robot.stop()
         self._report_halts()
+        if self._robot is None:
+            return
         rest_until = self._clock.now + _REST
-        while getattr(self._robot, "moving", False) and self._clock.now < rest_until - 1e-9:
+        while True:  # at least once: a robot that was stopped takes no command before its next step
             self._advance()
+            if not getattr(self._robot, "moving", False) or self._clock.now >= rest_until - 1e-9:
+                return
             if self._pause:
                 time.sleep(self._pause)
 

@@ -1,0 +1,37 @@
+"""A simulated robot in its world, for one mission or for several that follow each other."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from btlang.engine.clock import Clock
+from btlang.robots.simulated import SimulatedRobot
+from btlang.robots.world import World
+from btlang.run.events import EventStream, RobotEvent
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+    from btlang.run.events import Event, Sink
+
+
+class Simulation:
+    """The world keeps its state from one run to the next; each run gets a clock and an event stream of its own."""
+
+    def __init__(self, world: World) -> None:
+        self.world = world
+        self.clock = Clock()
+        self._untold: list[Event] = []  # faults from the start are there before anybody listens
+        self.events = EventStream(self._untold.append)
+        self.robot = SimulatedRobot(world, on_event=self._publish)
+
+    def begin(self, sinks: Iterable[Sink]) -> None:
+        """A new run: time starts at 0 and events go to these sinks."""
+        self.clock, self.events = Clock(), EventStream(*sinks)
+        for event in self._untold:
+            self.events.publish(event)
+        self._untold.clear()
+
+    def _publish(self, kind: str, data: Mapping[str, Any]) -> None:
+        self.events.publish(RobotEvent(self.clock.now, kind, data))
