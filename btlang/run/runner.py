@@ -157,7 +157,7 @@ class Runner:
             self.controls.wait(None)
             return
         self._publish_period()
-        self.controls.wait(self._period)
+        self.controls.wait(self._pause)
 
     def _wait(self, due: float) -> float:
         """Sleeps until a point in real time; returns it, or the present where that is later already."""
