@@ -10,12 +10,16 @@ _LONGEST = 160  # characters of an argument in a message
 
 
 class Diagnostic(Record):
-    """`arguments` fill the braces of the code's texts; `notes` are further places, each with a line about it."""
+    """`arguments` fill the braces of the code's texts; `notes` are further places, each with a line about it.
+
+    `fix` is a change that probably mends it: characters and what to write in their place. An editor may offer it.
+    """
 
     code: str
     span: Span
     arguments: tuple[tuple[str, str], ...] = ()
     notes: tuple[tuple[Span, str], ...] = ()
+    fix: tuple[Span, str] | None = None
 
     @property
     def kind(self) -> Code:
@@ -40,9 +44,15 @@ class Diagnostic(Record):
         return "\n".join(line for line in lines if line)
 
 
-def diagnostic(code: str, span: Span, notes: tuple[tuple[Span, str], ...] = (), **arguments: str) -> Diagnostic:
+def diagnostic(
+    code: str,
+    span: Span,
+    notes: tuple[tuple[Span, str], ...] = (),
+    fix: tuple[Span, str] | None = None,
+    **arguments: str,
+) -> Diagnostic:
     """A diagnostic with its arguments given by name; what cannot be shown in a line of text is made so."""
-    return Diagnostic(code, span, tuple((name, _shown(text)) for name, text in arguments.items()), notes)
+    return Diagnostic(code, span, tuple((name, _shown(text)) for name, text in arguments.items()), notes, fix)
 
 
 def _shown(text: str) -> str:

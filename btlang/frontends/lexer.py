@@ -22,7 +22,9 @@ class Lexer:
     def __init__(self, source: Source, vocabulary: Vocabulary) -> None:
         self.text: Words = split(source, vocabulary.articles)
         self.vocabulary = vocabulary
-        self.problems: list[Diagnostic] = [diagnostic("BT004", span) for span in self.text.open_quotes]
+        self.problems: list[Diagnostic] = [
+            diagnostic("BT004", span, fix=(Span(source, span.end, span.end), '"')) for span in self.text.open_quotes
+        ]
         self.problems += [diagnostic("BT003", span, characters=span.text[:20]) for span in self.text.unreadable]
         self.definitions: Definitions = find_definitions(self.text, vocabulary)
         self.problems += self.definitions.problems

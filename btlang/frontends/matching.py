@@ -31,11 +31,13 @@ class Unit(Record):
 class Matcher(ConditionScan):
     """Groups the raw tokens of a source; `units` and `problems` are complete after construction.
 
-    `conditions` are the defined names that stand for conditions.
+    `conditions` are the defined names that stand for conditions; `word` gives the word of a role, for corrections.
     """
 
-    def __init__(self, source: Source, raw: list[Token], conditions: set[str]) -> None:
-        super().__init__(source, raw)
+    def __init__(
+        self, source: Source, raw: list[Token], conditions: set[str], word: Callable[[str], str] = str
+    ) -> None:
+        super().__init__(source, raw, word)
         self.units: list[Unit] = []
         self._conditions = conditions
         self._main = self._out, self._frames
@@ -66,7 +68,7 @@ class Matcher(ConditionScan):
             self._emit("CONDITION", token, token.value)
         else:
             if token.kind == "condition":
-                self._fail("BT028", self._span(token), words=self._words(token))
+                self._fail("BT028", self._span(token), self._before(token, "check"), words=self._words(token))
                 return
             self._begin_statement(token)
             value = token.value if token.kind == "command" else (token.kind, token.value)
@@ -86,7 +88,7 @@ class Matcher(ConditionScan):
             if self._condition_at(self._at + 1):
                 last = self._raw[self._at + 1]
                 span = self._span(token, last if last.kind == "condition" else token)
-                self._fail("BT028", span, words=span.text)
+                self._fail("BT028", span, self._before(token, "check"), words=span.text)
                 return
             self._frames.append(Frame("condition"))  # for the message: what follows `not` is no condition
         self._emit("NOT", token)
@@ -208,7 +210,7 @@ class Matcher(ConditionScan):
         elif following.kind in ("count", "for", "within", "if_possible", "provided"):
             words = self._words(following)
             advice = f"Take it away; for more than the command before it use brackets: ( ... ) {words}"
-            self._fail("BT032", self._span(token), place=f"before '{words}'", advice=advice)
+            self._fail("BT032", self._span(token), (self._span(token), ""), place=f"before '{words}'", advice=advice)
         else:
             self._frames[-1].connective(self._emit("COMMA", token))
             self._next(token, True)
@@ -276,7 +278,7 @@ class Matcher(ConditionScan):
             self._skip_statement()
             return
         before = self._raw[self._at - 1]
-        self._fail("BT021", self._span(before, token), word=self._words(token))
+        self._fail("BT021", self._span(before, token), self._before(token, "then"), word=self._words(token))
 
     def _colon(self, token: Token) -> None:
         self._fail("BT026", self._span(token))
@@ -285,7 +287,7 @@ class Matcher(ConditionScan):
         self._close_forms()
         frame = self._frames[-1]
         if frame.kind != "bracket":
-            self._fail("BT024", self._span(token))
+            self._fail("BT024", self._span(token), (self._span(token), ""))
             return
         frame.close_chain()
         self._frames.pop()

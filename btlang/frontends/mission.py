@@ -32,7 +32,7 @@ def read_mission(source: Source, vocabulary: Vocabulary, parser: str = DEFAULT_P
     if parser not in PARSERS:
         raise ValueError(f"no parser '{parser}'; there are {', '.join(PARSERS)}")
     lexer = Lexer(source, vocabulary)
-    matcher = Matcher(source, lexer.tokens, lexer.conditions)
+    matcher = Matcher(source, lexer.tokens, lexer.conditions, vocabulary.word)
     problems = lexer.problems + matcher.problems
     if not lexer.tokens and not problems:
         problems = [diagnostic("BT005", Span(source, 0, 0), example="move forward 1 m")]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.frames import Frame
 from btlang.frontends.token import Token
@@ -15,10 +17,13 @@ _FOUND = {"newline": "the line ends", "semi": "the sentence ends", "close": "the
 class Scan:
     """One pass over raw tokens. Every syntax error (BT020 to BT032) is made here, one for each statement."""
 
-    def __init__(self, source: Source, raw: list[Token]) -> None:
+    def __init__(self, source: Source, raw: list[Token], word: Callable[[str], str]) -> None:
         self.source = source
         self.problems: list[Diagnostic] = []
+        self.failed_at: list[int] = []
+        """Index of the raw token (the end is one too) at which each problem showed."""
         self._raw = [*raw, Token("end", None, len(source.text), len(source.text))]
+        self._word = word
         self._at = 0
         self._operand_due = True
         self._last_end = 0
@@ -49,8 +54,13 @@ class Scan:
 
     # -- what is wrong
 
-    def _fail(self, code: str, span: Span, **arguments: str) -> None:
-        self.problems.append(diagnostic(code, span, (), **arguments))
+    def _before(self, token: Token, role: str) -> tuple[Span, str]:
+        """A fix: the word of a role put before a token."""
+        return Span(self.source, token.start, token.start), f"{self._word(role)} "
+
+    def _fail(self, code: str, span: Span, fix: tuple[Span, str] | None = None, **arguments: str) -> None:
+        self.problems.append(diagnostic(code, span, (), fix, **arguments))
+        self.failed_at.append(self._at)
         self._skip_statement()
 
     def _skip_statement(self) -> None:
@@ -80,11 +90,14 @@ class Scan:
         elif token.kind == "colon":
             self._fail("BT026", self._span(token))
         elif starts and token.kind == "comma":
-            self._fail("BT032", self._span(token), place="at the start", advice="Take it away.")
+            self._fail(
+                "BT032", self._span(token), (self._span(token), ""), place="at the start", advice="Take it away."
+            )
         elif starts or token.kind not in ENDS | {"then", "and", "or", "after", "otherwise", "comma"}:
             self._fail("BT022", self._span(token), word=self._words(token), example="wave")
         elif before is not None and before.kind == "comma" and token.kind in ENDS:
-            self._fail("BT032", self._span(before), place="at the end", advice="Take it away, or say what follows.")
+            advice = "Take it away, or say what follows."
+            self._fail("BT032", self._span(before), (self._span(before), ""), place="at the end", advice=advice)
         elif before is not None:
             self._fail("BT020", self._span(before), wanted=wanted, word=self._words(before), found=self._found(token))
 

@@ -13,6 +13,7 @@ from btlang.frontends.token import Token
 from btlang.text.source import Span
 from btlang.text.spelling import nearest, nearest_start
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
+from btlang.vocabulary.pattern import Slot, forms
 from btlang.vocabulary.trie import SLOTS, TrieNode, longest
 from btlang.vocabulary.values import ValueType
 from btlang.vocabulary.vocabulary import Vocabulary
@@ -87,7 +88,9 @@ def _misfit(
     if named:
         known = [name for kind in named for name in vocabulary.values.names(kind.name)]
         kinds = " or ".join(kind.name for kind in named)
-        return diagnostic("BT013", span, type=kinds, words=span.text, help=_near_names(span.text, known))
+        near = nearest(span.text.lower(), known)
+        fix = (span, near[0]) if near else None
+        return diagnostic("BT013", span, fix=fix, type=kinds, words=span.text, help=_near_names(near, known))
     if text.words[at][0] != '"':  # `turn leftt` lacks no angle
         return _unknown_phrase(text, first, max(end, at + 1), vocabulary, definitions, [])
     return diagnostic("BT011", span, words=span.text, wanted=f"{wanted} is needed", example=example)
@@ -104,9 +107,10 @@ def _number_misfit(
     span = text.span(at, number[1])
     with_unit = next((kind for kind in types if kind.kind == "quantity"), None)
     if with_unit is not None:
-        written = f"{head} {span.text} {with_unit.units[0].words[0]}".replace(" %", "%")
+        value = f"{span.text} {with_unit.units[0].words[0]}".replace(" %", "%")
         reason = f"{wanted} has a unit"
-        return diagnostic("BT011", span, words=span.text, wanted=reason, example=written)
+        example = f"{head} {value}"
+        return diagnostic("BT011", span, fix=(span, value), words=span.text, wanted=reason, example=example)
     limited = next((kind for kind in types if kind.whole or kind.least is not None), None)
     if limited is not None:
         least = f" from {limited.least:g} on" if limited.least is not None else ""
@@ -128,42 +132,46 @@ def _unknown_phrase(
     span = text.span(at, end)
     if before and before[-1].kind == "command" and _ends_in_a_bare_text(before[-1]):
         start = Span(text.source, before[-1].start, before[-1].end)
-        quoted = f'{start.text.rsplit(maxsplit=1)[0]} "{start.text.rsplit(maxsplit=1)[-1]} {span.text}"'
-        return diagnostic("BT010", span, words=span.text, help=f"A text of more than one word needs quotes: {quoted}")
-    known = {header.name: header.name.split() for header in definitions.headers.values()} | _phrases(vocabulary)
+        verb, word = start.text.rsplit(maxsplit=1)
+        quoted = f'{verb} "{word} {span.text}"'
+        advice = f"A text of more than one word needs quotes: {quoted}"
+        whole = Span(text.source, start.start, span.end)
+        return diagnostic("BT010", span, fix=(whole, quoted), words=span.text, help=advice)
+    names = [header.name for header in definitions.headers.values()]
     written = f" {' '.join(text.words[at:end])} "
-    inside = [header.name for header in definitions.headers.values() if f" {header.name} " in written]
-    near = list(dict.fromkeys([*inside, *nearest_start(text.words[at:end], known)]))
-    advice = "The nearest that I know: " + ", ".join(near) if near else "'btc words' lists what I know."
-    return diagnostic("BT010", span, words=span.text, help=advice)
+    inside = [(name, end - at) for name in names if f" {name} " in written]
+    near = dict(inside) | dict(_nearest_phrases(text.words[at:end], vocabulary, names)) | dict(inside)
+    if not near:
+        return diagnostic("BT010", span, words=span.text, help="'btc words' lists what I know.")
+    likely, words = next(iter(near.items()))
+    fix = (text.span(at, min(at + words, end)), likely.partition(" {")[0])
+    advice = "The nearest that I know: " + ", ".join(near)
+    return diagnostic("BT010", span, fix=fix, words=span.text, help=advice)
 
 
 @lru_cache(maxsize=4)  # a text full of unknown words asks for them at each
-def _phrases(vocabulary: Vocabulary) -> dict[str, list[str]]:
-    known: dict[str, list[str]] = {}
-    for entries in vocabulary.entries.values():
-        known |= {phrase: words for entry in entries for phrase, words in _plain(entry.phrases)}
-    for phrases in vocabulary.roles.values():
-        known |= dict(_plain(tuple(phrases)))
-    return known
+def _phrases(vocabulary: Vocabulary) -> dict[str, tuple[str, list[str]]]:
+    """What can be said, as people would write it: its id, and the words up to the first slot; each such start once."""
+    entries = [(entry.id, entry.phrases) for entries in vocabulary.entries.values() for entry in entries]
+    known: dict[tuple[str, ...], tuple[str, str]] = {}
+    for id, patterns in (*entries, *vocabulary.roles.items()):
+        for form in (form for pattern in patterns for form in reversed(forms(pattern, vocabulary.articles))):
+            start = tuple(str(part) for part in takewhile(lambda part: isinstance(part, str), form))
+            written = (f"{{{part.name}}}" if isinstance(part, Slot) else part for part in form)
+            known.setdefault(start, (" ".join(written), id))
+    return {written: (id, list(start)) for start, (written, id) in known.items() if start}
 
 
-def _plain(phrases: tuple[str, ...]) -> Iterator[tuple[str, list[str]]]:
-    """Each phrase as people would write it, and the words that it starts with, up to its first slot."""
-    for phrase in phrases:
-        words: list[str] = []
-        depth = 0
-        for piece in phrase.replace("[", " [ ").replace("]", " ] ").split():
-            depth += (piece == "[") - (piece == "]")
-            if depth == 0 and piece != "]" and not piece.startswith("("):
-                words.append(piece.split("/")[0].split("(")[0])
-        start = list(takewhile(lambda word: not word.startswith("{"), words))
-        if start:
-            yield " ".join(words), start
+def _nearest_phrases(written: list[str], vocabulary: Vocabulary, names: list[str]) -> list[tuple[str, int]]:
+    """Phrases and names that may have been meant, each with the number of words that stand for it; one of each id."""
+    phrases = {name: (name, name.split()) for name in names} | _phrases(vocabulary)
+    written = list(takewhile(lambda word: word[0].isalpha(), written))  # a value stands for no word
+    near = nearest_start(written, {key: start for key, (_, start) in phrases.items()})
+    best = {phrases[key][0]: key for key in reversed(near)}
+    return [(key, len(phrases[key][1])) for key in near if best[phrases[key][0]] == key][:3]
 
 
-def _near_names(written: str, known: list[str]) -> str:
-    near = nearest(written.lower(), known)
+def _near_names(near: list[str], known: list[str]) -> str:
     if near:
         return "The nearest: " + ", ".join(near)
     return "Known: " + ", ".join(known) if known else "None is known in this world."

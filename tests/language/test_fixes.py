@@ -1,0 +1,45 @@
+"""The change that a message proposes: applied, it mends the sentence."""
+
+from __future__ import annotations
+
+import pytest
+
+import btlang
+from btlang.diagnostics.diagnostic import MissionError
+
+
+def mended(text: str) -> str:
+    with pytest.raises(MissionError) as caught:
+        btlang.parse_tree(text)
+    problem = caught.value.diagnostics[0]
+    assert problem.fix is not None
+    span, words = problem.fix
+    return text[: span.start] + words + text[span.end :]
+
+
+@pytest.mark.parametrize(
+    ("broken", "sound"),
+    [
+        ("go to the ktichen then wave", "go to the kitchen then wave"),
+        ("mvoe forward 2 m", "move forward 2 m"),
+        ("wave then rotaet left", "wave then rotate left"),
+        ("patrol is wave\nptrol", "patrol is wave\npatrol"),
+        ("patrol is wave\ndo patrol then wave", "patrol is wave\npatrol then wave"),
+        ("move forward 2 then wave", "move forward 2 m then wave"),
+        ("wave within 5", "wave within 5 s"),
+        ("say hello dear friends", 'say "hello dear friends"'),
+        ('say "hello', 'say "hello"'),
+        ("the battery is low", "the check battery is low"),
+        ("wave and battery is low", "wave and check battery is low"),
+        ("wave not battery is low", "wave then not battery is low"),
+        ("wave nod", "wave then nod"),
+        ("wave)", "wave"),
+        (", wave", " wave"),
+        ("wave,", "wave"),
+        ("wave, twice", "wave twice"),
+    ],
+)
+def test_fix(broken: str, sound: str) -> None:
+    assert mended(broken) == sound
+    if "not battery" not in sound:  # two mistakes take two fixes
+        btlang.parse_tree(sound)
