@@ -17,9 +17,13 @@ _MARKS = {",": "comma", ";": "semi", ":": "colon", "(": "open", ")": "close"}
 
 
 class Lexer:
-    """Reads one source. `tokens` are raw tokens, `problems` what was unknown; both are complete after construction."""
+    """Reads one source. `tokens` are raw tokens, `problems` what was unknown; both are complete after construction.
 
-    def __init__(self, source: Source, vocabulary: Vocabulary) -> None:
+    With `explain` False nothing is said about unknown words, which takes time.
+    """
+
+    def __init__(self, source: Source, vocabulary: Vocabulary, explain: bool = True) -> None:
+        self._explain = explain
         self.text: Words = split(source, vocabulary.articles)
         self.vocabulary = vocabulary
         self.problems: list[Diagnostic] = [
@@ -91,7 +95,8 @@ class Lexer:
                     continue
             if match is None:
                 end = self._unknown_end(at, last)
-                self.problems.append(explain_unknown(text, at, end, self.vocabulary, self.definitions, tokens))
+                if self._explain:
+                    self.problems.append(explain_unknown(text, at, end, self.vocabulary, self.definitions, tokens))
                 tokens.append(Token("unknown", None, starts[at], ends[end - 1]))
                 at = end
             else:

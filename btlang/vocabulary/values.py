@@ -8,7 +8,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from btlang.record import Record
-from btlang.text.words import Words
+from btlang.text.source import Source
+from btlang.text.words import Words, split
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -104,6 +105,16 @@ class Values:
     def add_name(self, kind: str, words: str, name: str) -> None:
         """Lets the words stand for a name of a type."""
         insert(self._names[kind], words.lower().split(), name)
+
+    def names_tree(self, kind: str) -> WordTree:
+        """The words of the names of a type."""
+        return self._names[kind]
+
+    def is_number(self, words: Sequence[str]) -> bool:
+        """Whether the words are a number, and nothing else."""
+        text = split(Source(" ".join(words)), frozenset())
+        number = self.number(text, 0)
+        return number is not None and number[1] == len(text.words) - 2
 
     def names(self, kind: str) -> list[str]:
         """The names that a slot of the type takes, as they are printed."""

@@ -1,0 +1,113 @@
+"""What may follow in a phrase or value that has been begun: the trie read ahead of the text."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from btlang.record import Record
+from btlang.text.words import Words
+from btlang.vocabulary.entry import Meaning
+from btlang.vocabulary.trie import SLOTS, TrieNode
+from btlang.vocabulary.values import END, Values, WordTree
+
+_MOST = 200  # ways to go on from one place; nobody reads more
+
+
+class Begun(Record):
+    """How far words have led into a trie.
+
+    `nodes` are where all of them are read; `slots` are half filled: type, first word of the value, node behind it.
+    """
+
+    nodes: tuple[TrieNode, ...]
+    slots: tuple[tuple[str, int, TrieNode], ...]
+
+
+def begun(root: TrieNode, text: Words, first: int, last: int, values: Values) -> Begun:
+    """All ways to read the words `first` to `last` (exclusive) as the start of phrases."""
+    nodes: list[TrieNode] = []
+    slots: list[tuple[str, int, TrieNode]] = []
+    paths: list[tuple[TrieNode, int]] = [(root, first)]
+    while paths:
+        node, at = paths.pop()
+        if at == last:
+            nodes.append(node)
+            continue
+        for _, kind, child in node.get(SLOTS, ()):
+            value = values.read(kind, text, at)
+            if value is not None and value[1] <= last:
+                paths.append((child, value[1]))
+            slots.append((kind, at, child))
+        child = node.get(text.words[at])
+        if child is not None:
+            paths.append((child, at + 1))
+    return Begun(tuple(nodes), tuple(slots))
+
+
+def ways_on(node: TrieNode, start: str = "") -> Iterator[tuple[tuple[str, ...], TrieNode]]:
+    """Words that lead on to the end of a phrase or to its next slot; the first word begins with `start`."""
+    stack: list[tuple[tuple[str, ...], TrieNode]] = [
+        ((word,), child) for word, child in node.items() if word not in (END, SLOTS) and word.startswith(start)
+    ]
+    found = 0
+    while stack and found < _MOST:
+        words, node = stack.pop()
+        if END in node or SLOTS in node:
+            found += 1
+            yield words, node
+        stack += [((*words, word), child) for word, child in node.items() if word not in (END, SLOTS)]
+
+
+def meanings(node: TrieNode) -> Iterator[Meaning]:
+    """What the phrases through a node can mean, the shortest phrase first."""
+    level, seen = [node], {id(node)}
+    while level:
+        below: list[TrieNode] = []
+        for node in level:
+            if END in node:
+                yield node[END]
+            below += [child for word, child in node.items() if word not in (END, SLOTS)]
+            below += [child for _, _, child in node.get(SLOTS, ())]
+        level = [node for node in below if id(node) not in seen]
+        seen.update(map(id, level))
+
+
+def values_on(kind: str, values: Values, written: Sequence[str], start: str) -> Iterator[str]:
+    """What goes on a value of a type of which some words are written; the next word begins with `start`.
+
+    A number that is written in full is followed by units; where nothing is written an example is given.
+    """
+    value_type = values.types[kind]
+    if value_type.kind == "names":
+        yield from _names_on(values.names_tree(kind), written, start, values.names(kind))
+    elif value_type.kind == "text":
+        if not written and not start:
+            yield value_type.example
+    elif not written:
+        if value_type.example.startswith(start):
+            yield value_type.example
+        elif start.isdecimal() and value_type.kind == "quantity":
+            yield from (_with_unit(start, unit.words[0]) for unit in value_type.units)
+    elif value_type.kind == "quantity" and values.is_number(written):
+        yield from (unit.words[0] for unit in value_type.units if unit.words[0].startswith(start))
+
+
+def _with_unit(number: str, unit: str) -> str:
+    return f"{number} {unit}" if unit[0].isalpha() else number + unit
+
+
+def _names_on(tree: WordTree, written: Sequence[str], start: str, names: Sequence[str]) -> Iterator[str]:
+    spelt = {name.lower(): name for name in names}
+    for word in written:
+        if word not in tree:
+            return
+        tree = tree[word]
+    stack: list[tuple[tuple[str, ...], WordTree]] = [
+        ((word,), child) for word, child in tree.items() if word != END and word.startswith(start)
+    ]
+    while stack:
+        words, node = stack.pop()
+        if END in node:
+            whole = " ".join((*written, *words))
+            yield " ".join(spelt.get(whole, whole).split()[len(written) :])
+        stack += [((*words, word), child) for word, child in node.items() if word != END]

@@ -1,0 +1,141 @@
+"""Completion offers exactly what may follow: what is offered is accepted, and what is accepted is offered."""
+
+from __future__ import annotations
+
+import re
+from functools import cache
+from itertools import product
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from btlang.api import world_vocabulary
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.frontends.completion import Completion, completions
+from btlang.vocabulary.vocabulary import Vocabulary
+from tests.language.letters import letters, read
+from tests.language.sentences import broken_missions, english, missions
+
+shipped: cache[Vocabulary] = cache(world_vocabulary)  # type: ignore[valid-type]
+
+_OPERANDS = ["", " u", " p", " p u", " s"]
+_BODIES = ["", " u", ": u"]
+
+
+def offered(text: str, vocabulary: Vocabulary | None = None) -> dict[str, Completion]:
+    return {option.text: option for option in completions(text, vocabulary or shipped())}
+
+
+def is_sound(text: str) -> bool:
+    try:
+        read(text)
+    except MissionError:
+        return False
+    return True
+
+
+def places(text: str) -> list[int]:
+    """Where words begin."""
+    return [match.start() for match in re.finditer(r"[a-z]+", text)]
+
+
+@settings(max_examples=300)
+@given(missions.map(english), st.data())
+def test_what_is_accepted_is_offered(text: str, data: st.DataObject) -> None:
+    at = data.draw(st.sampled_from(places(text)))
+    word = re.match(r"[a-z]+", text[at:]).group()  # type: ignore[union-attr]
+    found = {*offered(text[:at], letters()), *offered(text[: at + 1], letters())}
+    units_and_rounds = {"s", "times"}
+    assert word in units_and_rounds or word in {option.split()[0] for option in found}
+
+
+@settings(max_examples=80)
+@given(st.one_of(missions, broken_missions()).map(english), st.data())
+def test_what_is_offered_is_accepted(text: str, data: st.DataObject) -> None:
+    at = data.draw(st.sampled_from([*places(text), len(text)]))
+    start = text[:at] if text[:at].endswith((" ", "\n")) or not at else text[:at] + " "
+    if not is_finishable(start.rpartition("\n")[0]):
+        return  # an earlier line is wrong: what is offered in this one mends nothing
+    for text, option in offered(start, letters()).items():
+        if len(text) == 1 or (option.kind == "connective" and text[-1] != " "):  # the others take values
+            assert is_finishable(start + text), text
+
+
+def is_finishable(text: str) -> bool:
+    """Whether some words and closing brackets make a mission of it."""
+    most = text.count("(")
+    closing = [")" * brackets for brackets in range(min(most, 4) + 1)]
+    endings = ("".join(parts) for parts in product(_OPERANDS, closing, _BODIES, closing))
+    return not text.strip() or any(is_sound(text + ending) for ending in endings)
+
+
+@pytest.mark.parametrize(
+    ("text", "among"),
+    [
+        ("", ["move forward", "go to ", "if", "repeat", "wait "]),
+        ("go to ", ["lab", "living room", "Alice", "cup"]),
+        ("go to the l", ["lab", "lobby", "living room"]),
+        ("go to the living ", ["room"]),
+        ("pick up the red b", ["ball"]),
+        ("Move Forward ", ["5 m", "at ", "then"]),
+        ("move forward 2", ["2 m", "2 cm"]),
+        ("move forward two ", ["m", "cm"]),
+        ("move forward 2 m ", ["at ", "then", "within "]),
+        ("wave with", ["within "]),
+        ("if the battery ", ["is low", "is full", "is not low"]),
+        ("if battery is low ", ["wave", "and"]),
+        ("if battery is low, ", ["wave", "someone is near"]),
+        ("wave if ", ["not", "someone is near"]),
+        ("wave 3 ", ["times"]),
+        ("(wave then nod", [" "]),
+        ("(wave ", [")"]),
+        ("try wave ", ["otherwise", "if possible"]),
+        ("patrol ", ["is ", "means "]),
+        ("patrol is wave\npa", ["patrol"]),
+        ("look far is someone is near\nwave if look ", ["far"]),
+        ("say ", ['"hello"']),
+        ("repeat:\n  wave\n  ", ["wave", "go to "]),
+        ("while someone is near:\n  wave\n", ["otherwise", "go to "]),
+        ("wave, please, then ", ["wave"]),
+    ],
+)
+def test_offered(text: str, among: list[str]) -> None:
+    found = offered(text)
+    assert [option for option in among if option not in found] == [] or among == [" "]
+
+
+@pytest.mark.parametrize(
+    ("text", "absent"),
+    [
+        ("wave ", ["go to ", "battery is low", "not", ")"]),
+        ("", ["and", "twice", "battery is low", "not", ")", "otherwise"]),
+        ("if ", ["wave", "then"]),
+        ("wave and ", ["battery is low", "or"]),
+        ("if battery is low and ", ["wave"]),
+        ("go to the ", ["move forward", "is "]),
+        ("flarp then ", ["wave"]),
+        ('say "go to ', ["lab"]),
+        ("patrol is wave\nwave if pa", ["patrol"]),
+        ("wave nod ", ["then"]),
+    ],
+)
+def test_not_offered(text: str, absent: list[str]) -> None:
+    found = offered(text)
+    assert [option for option in absent if option in found] == []
+
+
+@pytest.mark.parametrize(
+    ("text", "corrected"),
+    [("go to the ktichen", "kitchen"), ("mvoe", "move forward"), ("wave tehn", "then"), ("go to livng", "living room")],
+)
+def test_misspelt_words_are_corrected(text: str, corrected: str) -> None:
+    option = offered(text)[corrected]
+    assert option.spelling
+    assert text[option.start :] == text.split()[-1]
+
+
+def test_every_option_tells_what_it_is() -> None:
+    kinds = {option.kind for text in ("", "wave ", "go to ", "if ") for option in completions(text, shipped())}
+    assert kinds == {"command", "condition", "connective", "value"}
+    assert offered("")["move forward"].help.startswith("Drives")
