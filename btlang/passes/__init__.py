@@ -18,9 +18,10 @@ PASSES: tuple[Callable[[Tree, Vocabulary], Iterable[Diagnostic]], ...] = (check_
 """Checks of the lowered tree; each gives what is wrong."""
 
 
-def compile_mission(mission: Mission, vocabulary: Vocabulary) -> Tree:
+def compile_mission(mission: Mission, vocabulary: Vocabulary, *, needs_command: bool = True) -> Tree:
     """The tree of a mission. Its subtrees come in an order in which used ones precede their users.
 
+    A text that only defines names is refused; where it needs no command, its tree does nothing.
     Raises MissionError with everything that the passes find (BT005, BT014, BT040 to BT042).
     """
     ordered, problems = order_of_use(mission)
@@ -33,10 +34,11 @@ def compile_mission(mission: Mission, vocabulary: Vocabulary) -> Tree:
         subtrees.append((definition.name, lowered.node))
         if lowered.can_skip:
             skipping.add(definition.name)
-    if mission.body is None:
+    if mission.body is None and needs_command:
         example = mission.definitions[-1].name if mission.definitions else "move forward 1 m"
         raise MissionError([diagnostic("BT005", mission.span, example=example)])
-    tree = Tree(lower(mission.body, skipping).node, tuple(subtrees))
+    root = Node("AlwaysSuccess") if mission.body is None else lower(mission.body, skipping).node
+    tree = Tree(root, tuple(subtrees))
     problems = [problem for check in PASSES for problem in check(tree, vocabulary)]
     if problems:
         raise MissionError(problems)

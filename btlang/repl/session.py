@@ -1,0 +1,169 @@
+"""A mission that is written line by line: what was entered, the names defined, and the world it runs in."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from btlang.api import RunnableTree, load_simulation, world_vocabulary
+from btlang.diagnostics.diagnostic import Diagnostic
+from btlang.frontends.lexer import Lexer
+from btlang.frontends.mission import DEFAULT_PARSER, read_mission
+from btlang.passes import compile_mission
+from btlang.record import Record
+from btlang.text.source import Source
+from btlang.tree.ast import Ast, Chain, Definition, parts
+from btlang.tree.node import Node, Tree
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.robots.simulation import Simulation
+
+ENTRY = "<entry>"
+"""What messages call the source of an entry."""
+
+
+class Entry(Record):
+    """One statement as it was typed, maybe of several lines, and the texts of the definitions in it by name."""
+
+    text: str
+    definitions: tuple[tuple[str, str], ...] = ()
+    has_command: bool = False
+
+
+class Compiled(Record):
+    """An entry, and its tree with the subtrees that it defines and uses; without a command the tree does nothing."""
+
+    entry: Entry
+    tree: RunnableTree
+
+
+class Session:
+    """Entries, with undo and redo; the words; and the simulated world, which goes on from command to command."""
+
+    def __init__(self, keywords: Sequence[str] = (), world: str | None = None, parser: str = DEFAULT_PARSER) -> None:
+        """Raises MissionError where a keyword file or the world cannot be used."""
+        self._keywords = keywords
+        self._parser = parser
+        self._undone: list[tuple[Entry, ...]] = []
+        self._before: list[tuple[Entry, ...]] = []
+        self.entries: tuple[Entry, ...] = ()
+        self.file: str | None = None
+        """The file that the mission was loaded from or saved to last."""
+        self.use_world(world)
+
+    def use_world(self, world: str | None) -> None:
+        """Puts the robot into a world of its own file, None for the one that ships. Raises MissionError."""
+        vocabulary = world_vocabulary(self._keywords, world)
+        self.simulation: Simulation = load_simulation(world)
+        self.vocabulary = vocabulary
+        self.world = world
+
+    def reset(self) -> None:
+        """The same world, as it was at the start."""
+        self.simulation = load_simulation(self.world)
+
+    @property
+    def definitions(self) -> dict[str, str]:
+        """The names defined so far, each with the text of its definition."""
+        return dict(definition for entry in self.entries for definition in entry.definitions)
+
+    @property
+    def text(self) -> str:
+        """The mission, as it is saved."""
+        return "".join(f"{entry.text}\n" for entry in self.entries)
+
+    def context(self, text: str = "") -> str:
+        """The definitions that a new entry sees: those whose names it does not define anew."""
+        known = self.definitions
+        if not known:
+            return ""
+        lexer = Lexer(Source(text), self.vocabulary, explain=False)
+        anew = {header.name for header in lexer.definitions.headers.values()}
+        return "".join(f"{definition}\n" for name, definition in known.items() if name not in anew)
+
+    def compile(self, text: str) -> Compiled:
+        """Reads an entry together with the definitions above. Raises MissionError."""
+        whole = f"{text}\n{self.context(text)}"  # the entry first, so that places in it are those that were typed
+        reading = read_mission(Source(whole, ENTRY), self.vocabulary, self._parser)
+        own = [d for d in reading.mission.definitions if d.span.start < len(text)]
+        tree = compile_mission(reading.mission, self.vocabulary, needs_command=False)
+        entry = Entry(text, tuple((d.name, d.span.text) for d in own), reading.mission.body is not None)
+        shown = Tree(tree.root, _used(tree, [name for name, _ in entry.definitions]))
+        return Compiled(entry, self._runnable(shown, reading.warnings))
+
+    def compile_all(self) -> RunnableTree:
+        """The whole mission. Raises MissionError, also where it holds no command."""
+        reading = read_mission(Source(self.text, self.file or "<session>"), self.vocabulary, self._parser)
+        return self._runnable(compile_mission(reading.mission, self.vocabulary), reading.warnings)
+
+    def add(self, entry: Entry) -> None:
+        """A definition takes the place of an older one of the same name."""
+        names = {name for name, _ in entry.definitions}
+        kept = [old for old in self.entries if old.has_command or not {name for name, _ in old.definitions} <= names]
+        self.change((*(kept if names else self.entries), entry))
+
+    def change(self, entries: Sequence[Entry]) -> None:
+        """Other entries; `undo` brings the present ones back."""
+        self._before.append(self.entries)
+        self._undone.clear()
+        self.entries = tuple(entries)
+
+    def undo(self) -> bool:
+        """Takes back the latest change; False where there is none."""
+        return self._swap(self._before, self._undone)
+
+    def redo(self) -> bool:
+        """Takes back the latest undo; False where there is none."""
+        return self._swap(self._undone, self._before)
+
+    def _swap(self, source: list[tuple[Entry, ...]], target: list[tuple[Entry, ...]]) -> bool:
+        if not source:
+            return False
+        target.append(self.entries)
+        self.entries = source.pop()
+        return True
+
+    def entries_of(self, text: str, name: str = ENTRY) -> list[Entry]:
+        """The statements of a whole mission, each with the comments above it. Raises MissionError."""
+        source = Source(text, name)
+        mission = read_mission(source, self.vocabulary, self._parser).mission
+        compile_mission(mission, self.vocabulary, needs_command=False)
+        body = mission.body
+        commands = [] if body is None else [body]
+        if isinstance(body, Chain) and body.operator == "sequence":
+            commands = parts(body)
+        groups: list[list[Ast]] = []  # those that share a line
+        last = 0
+        for statement in sorted((*commands, *mission.definitions), key=lambda part: part.span.start):
+            line = source.position(statement.span.start)[0]
+            if line > last:
+                groups.append([])
+            groups[-1].append(statement)
+            last = source.position(statement.span.end)[0]
+        entries = []
+        begin = 0
+        for group in groups:
+            below = source.position(group[-1].span.end)[0] + 1
+            end = source.offset(below) if group is not groups[-1] else len(text)
+            own = tuple((d.name, d.span.text) for d in group if isinstance(d, Definition))
+            entries.append(Entry(text[begin:end].strip("\n"), own, len(own) < len(group)))
+            begin = end
+        return entries
+
+    def _runnable(self, tree: Tree, warnings: Sequence[Diagnostic]) -> RunnableTree:
+        return RunnableTree(tree, self.vocabulary, self.world, warnings)
+
+
+def _used(tree: Tree, names: Sequence[str]) -> tuple[tuple[str, Node], ...]:
+    """The subtrees of these names and those that they and the main tree use."""
+    bodies = dict(tree.subtrees)
+    needed = set(names)
+    pending = [tree.root, *(bodies[name] for name in names)]
+    while pending:
+        node = pending.pop()
+        pending += node.children
+        name = node.port("ID") if node.id == "SubTree" else ""
+        if name in bodies and name not in needed:
+            needed.add(name)
+            pending.append(bodies[name])
+    return tuple((name, body) for name, body in tree.subtrees if name in needed)

@@ -1,0 +1,109 @@
+"""A session without a terminal: entries, definitions, undo, what is saved."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import btlang
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.engine.status import SUCCESS
+from btlang.repl.session import Session
+from btlang.tree.dump import plain
+
+EXAMPLES = sorted((Path(__file__).parents[2] / "examples").glob("*.txt"))
+
+
+def entered(*texts: str) -> Session:
+    session = Session()
+    for text in texts:
+        session.add(session.compile(text).entry)
+    return session
+
+
+def test_definitions_serve_later_entries() -> None:
+    session = entered("patrol is go to the lab then go to the lobby", "patrol twice")
+    assert session.definitions == {"patrol": "patrol is go to the lab then go to the lobby"}
+    assert session.text == "patrol is go to the lab then go to the lobby\npatrol twice\n"
+    assert [entry.has_command for entry in session.entries] == [False, True]
+    assert plain(session.compile_all().tree).startswith("Repeat num_cycles=2\n  SubTree ID=patrol")
+
+
+def test_an_entry_shows_only_the_subtrees_it_uses() -> None:
+    session = entered("a cheer is wave", "party is cheer then nod", "bow is nod")
+    assert [name for name, _ in session.compile("party").tree.tree.subtrees] == ["cheer", "party"]
+    assert [name for name, _ in session.compile("fest is bow").tree.tree.subtrees] == ["bow", "fest"]
+
+
+def test_a_condition_can_be_named() -> None:
+    session = entered("company is someone is near")
+    assert session.compile("wave if company").tree.tree.root.id == "IfThenElse"
+
+
+def test_a_definition_replaces_an_older_one() -> None:
+    session = entered("greet is wave", "greet", "greet is nod", "greet")
+    assert session.text == "greet\ngreet is nod\ngreet\n"
+    assert not session.compile("greet is say hello").tree.warnings
+
+
+def test_places_in_messages_are_those_of_the_entry() -> None:
+    session = entered("patrol is wave")
+    with pytest.raises(MissionError) as caught:
+        session.compile("patrol then go to the ktichen")
+    assert caught.value.diagnostics[0].span.place == "<entry>:1:23"
+
+
+def test_undo_and_redo() -> None:
+    session = entered("wave", "nod")
+    assert session.undo()
+    assert session.text == "wave\n"
+    assert session.redo()
+    assert session.text == "wave\nnod\n"
+    assert session.undo()
+    session.add(session.compile("dock").entry)
+    assert not session.redo()
+    assert [session.undo() for _ in range(3)] == [True, True, False]
+    assert session.text == ""
+
+
+def test_the_world_goes_on() -> None:
+    session = Session()
+    for text in ("go to the lab", "go to the lobby"):
+        assert session.compile(text).tree.run(speed="max", on=session.simulation).status == SUCCESS
+    assert session.simulation.robot.pose.distance_to((3.0, 1.5)) < 0.05
+    assert session.simulation.robot.battery < 100
+    session.reset()
+    assert session.simulation.robot.battery == 100
+
+
+def option(text: str, name: str) -> str | None:
+    """What the command at the top of an example gives an option."""
+    return next((line.split(name)[1].split()[0] for line in text.splitlines() if name in line), None)
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+def test_a_mission_falls_into_its_statements(path: Path) -> None:
+    text = path.read_text()
+    world = option(text, "--world ")
+    keywords = [file for file in [option(text, "--keywords ")] if file]
+    session = Session(keywords, world)
+    entries = session.entries_of(text)
+    assert "\n".join(entry.text for entry in entries).split() == text.split()
+    session.change(entries)
+    for entry in entries:  # a statement alone, with the definitions of the others, is what it was in the whole
+        assert session.compile(entry.text).entry == entry
+    tree = btlang.parse_tree(text, keywords=keywords, world=world).tree
+    assert plain(session.compile_all().tree) == plain(tree)
+
+
+def test_statements_of_a_mission() -> None:
+    text = "# About.\n\nPlease wave. Nod!  # both\nrepeat:\n  wave\n  if stuck, nod\notherwise nod\n\n# Names.\nbow is wave; fest is nod\nbow\n"
+    entries = Session().entries_of(text)
+    assert [entry.text for entry in entries] == [
+        "# About.\n\nPlease wave. Nod!  # both",
+        "repeat:\n  wave\n  if stuck, nod\notherwise nod",
+        "# Names.\nbow is wave; fest is nod",
+        "bow",
+    ]
+    assert [tuple(name for name, _ in entry.definitions) for entry in entries] == [(), (), ("bow", "fest"), ()]
