@@ -24,7 +24,9 @@ FILES = sorted(
     path
     for folder in FOLDERS
     for path in (ROOT / folder).rglob("*")
-    if path.is_file() and not {"__pycache__", "samples"} & set(path.relative_to(ROOT).parts)
+    if path.is_file()
+    and not {"__pycache__", "samples"} & set(path.relative_to(ROOT).parts)
+    and path.suffix not in (".svg", ".png", ".gif")
 )
 MODULES = [path for path in FILES if path.suffix == ".py"]
 BORROWED = {ROOT / path for path in PROJECT["tool"]["ruff"]["extend-exclude"]}

@@ -1,0 +1,177 @@
+"""A run as a moving picture: the robot drives, its way grows, and the commands under way stand above."""
+
+from __future__ import annotations
+
+import io
+from bisect import bisect_right
+from math import ceil
+
+from btlang.pictures import letters
+from btlang.pictures.canvas import Canvas
+from btlang.pictures.placing import Area, Placer, along
+from btlang.pictures.run_legend import outcome
+from btlang.pictures.run_record import RunRecord, Sample
+from btlang.pictures.style import INK, SMALL, SOFT, TITLE
+from btlang.pictures.track import END, draw_body, way
+from btlang.pictures.world_map import OBJECT, WorldMap
+from btlang.robots.geometry import Point, Pose, wrap
+from btlang.robots.world import World
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from PIL.Image import Image
+
+FRAMES = 140
+_EACH, _LAST = 90, 2500  # milliseconds that a frame is shown, and the last one
+_LEAST = 0.25  # seconds of the mission between two frames, at least
+_COLOURS = 96
+_DPI = 90
+_MARGIN, _HEAD = 10.0, 36.0
+_ROOM = Area(_MARGIN, _HEAD, 540.0, 420.0)
+_BLUE = "#2a6fb0"
+_SPOKEN = 10  # frames that a text is shown, at least
+
+
+def animated(world: World, record: RunRecord) -> bytes:
+    """The bytes of a GIF of at most 140 frames that runs for ever."""
+    from PIL.Image import Dither
+
+    frames = _Film(world, record).frames()
+    palette = _palette(frames)
+    flat = [frame.quantize(palette=palette, dither=Dither.NONE) for frame in frames]
+    out = io.BytesIO()
+    durations = [_EACH] * (len(flat) - 1) + [_LAST]
+    flat[0].save(out, "GIF", save_all=True, append_images=flat[1:], duration=durations, loop=0, optimize=False)
+    return out.getvalue()
+
+
+def _palette(frames: list[Image]) -> Image:
+    """Colours of the whole film, from some of its frames one below the other."""
+    from PIL import Image
+
+    chosen = [frames[0], frames[len(frames) // 2], frames[-1]]
+    width, height = chosen[0].size
+    strip = Image.new("RGB", (width, height * len(chosen)))
+    for number, frame in enumerate(chosen):
+        strip.paste(frame, (0, number * height))
+    return strip.quantize(_COLOURS)
+
+
+class _Film:
+    """What stands still is drawn once; onto it the way grows; robot, things and text are drawn anew on each frame."""
+
+    def __init__(self, world: World, record: RunRecord) -> None:
+        self._record = record
+        self._times = [sample.t for sample in record.track]
+        self._things = {thing.name: thing for thing in world.objects if thing.name in record.moved}
+        still = world.replace(objects=tuple(thing for thing in world.objects if thing.name not in record.moved))
+        extent = [*way(record), *((thing.x, thing.y) for thing in self._things.values())]
+        self._map = WorldMap(still, _ROOM, extent)
+        area = self._map.area
+        self._canvas = Canvas(max(area.width, 300.0) + 2 * _MARGIN, area.y + area.height + _MARGIN)
+        self._map.draw(self._canvas)
+        placer = Placer(area)
+        placer.avoid(along([self._map.at(*place) for place in way(record)], 4.0))
+        self._map.draw_names(self._canvas, placer)
+        self._canvas.begin_film(_DPI)
+
+    def frames(self) -> list[Image]:
+        """All frames, the last one with the outcome."""
+        end = self._times[-1]
+        number = min(FRAMES - 1, max(1, ceil(end / _LEAST)))
+        film = [self._frame(end * (i - 1) / number, end * i / number) for i in range(number + 1)]
+        return [*film, self._frame(end, end, last=True)]
+
+    def _frame(self, before: float, now: float, last: bool = False) -> Image:
+        from PIL import Image
+
+        self._canvas.restore()
+        self._grow(max(before, 0.0), now)
+        sample = self._sample(now)
+        self._things_at(now, sample.pose)
+        draw_body(self._canvas, self._map, sample.pose, self._record.radius, END, 6)
+        self._speech(now, sample.pose, (now - before) * _SPOKEN)
+        self._headline(before, now, sample, last)
+        self._canvas.lay()
+        size, pixels = self._canvas.pixels()
+        return Image.frombytes("RGBA", size, pixels).convert("RGB")
+
+    def _grow(self, before: float, now: float) -> None:
+        """The way since the last frame, which stays for all frames to come."""
+        first, last = bisect_right(self._times, before), bisect_right(self._times, now)
+        poses = [self._sample(before).pose, *(s.pose for s in self._record.track[first:last]), self._sample(now).pose]
+        points = [self._map.at(pose.x, pose.y) for pose in poses]
+        if len(set(points)) > 1:
+            self._canvas.line(points, colour=_BLUE, line=2)
+        for command in self._record.commands:
+            if before < command.start.t <= now or (now == 0 and command.start.t == 0):
+                x, y = self._map.at(command.start.pose.x, command.start.pose.y)
+                self._canvas.circle(x, y, 2.2, fill=INK, edge="white", line=0.6)
+        for mark in self._record.marks:
+            if mark.kind == "bump" and before < mark.t <= now:
+                x, y = self._map.at(*mark.pose.ahead(self._record.radius))
+                self._canvas.text(x, y, "✱", size=11, colour="#c0440c", align="center", bold=True)
+        self._canvas.lay()
+        self._canvas.keep()
+
+    def _things_at(self, now: float, pose: Pose) -> None:
+        """Objects that move: where they lie, or in front of the robot that carries them."""
+        places: dict[str, Point | None] = {name: (thing.x, thing.y) for name, thing in self._things.items()}
+        places |= {name: place for t, name, place in self._record.moves if t <= now}
+        for name, place in places.items():
+            if name not in self._things:
+                continue
+            x, y = self._map.at(*(place or pose.ahead(self._record.radius)))
+            radius = max(self._things[name].radius * self._map.scale, 2.6)
+            self._canvas.circle(x, y, radius, fill=OBJECT, edge="white", line=0.6, z=7)
+            if place is not None:
+                text = letters.clipped(letters.shown(name), 100, SMALL, False, letters.width)
+                self._canvas.text(x + radius + 2, y, text, size=SMALL, colour=OBJECT, halo=True, z=5)
+
+    def _speech(self, now: float, pose: Pose, least: float) -> None:
+        """What the robot says, above it; what it last said stays for some frames."""
+        said = [mark for mark in self._record.marks if mark.kind in ("say", "print") and mark.t <= now]
+        if not said or now > said[-1].t + max(least, 0.35 + 0.06 * len(said[-1].text)):
+            return
+        text = letters.clipped(letters.shown(said[-1].text), 180, SMALL, False, letters.width)
+        width = letters.width(text, SMALL) + 12
+        x, y = self._map.at(pose.x, pose.y)
+        area = self._map.area
+        left = min(max(x - width / 2, area.x), area.x + max(area.width - width, 0))
+        top = y - self._record.radius * self._map.scale - 24
+        if top < area.y:
+            top = y + self._record.radius * self._map.scale + 9
+        self._canvas.polygon(
+            [(x - 3, top + 8), (x + 3, top + 8), (x, y)], fill="#fffdf2", edge="#9a8f6a", line=0.7, z=8
+        )
+        self._canvas.box(left, top, width, 15, round=5, fill="#fffdf2", edge="#9a8f6a", line=0.8, z=8)
+        self._canvas.text(left + 6, top + 7.5, text, size=SMALL, z=8)
+
+    def _headline(self, before: float, now: float, sample: Sample, last: bool) -> None:
+        right = self._canvas.width - _MARGIN
+        clock = f"{now:.1f} s   ·   battery {sample.battery:.0f} %"
+        self._canvas.text(right, _HEAD / 2, clock, size=SMALL, colour=SOFT, align="right", z=9)
+        room = right - _MARGIN - 130
+        colour, title = INK, self._title(before, now)
+        if last:
+            look, words = outcome(self._record)
+            colour, title = look.strong, f"{look.sign} {words}"
+        title = letters.clipped(letters.shown(title), room, TITLE, True, letters.width)
+        self._canvas.text(_MARGIN + 2, _HEAD / 2, title, size=TITLE, bold=True, colour=colour, z=9)
+
+    def _title(self, before: float, now: float) -> str:
+        under_way = [c.text for c in self._record.commands if c.start.t <= now and (c.end > now or c.start.t > before)]
+        return "  and  ".join(dict.fromkeys(under_way))
+
+    def _sample(self, t: float) -> Sample:
+        """Where the robot was, between two samples too."""
+        track = self._record.track
+        after = bisect_right(self._times, t)
+        if after == 0 or after == len(track):
+            return track[min(after, len(track) - 1)]
+        a, b = track[after - 1], track[after]
+        share = (t - a.t) / (b.t - a.t)
+        p, q = a.pose, b.pose
+        heading = p.heading + wrap(q.heading - p.heading) * share
+        pose = Pose(p.x + (q.x - p.x) * share, p.y + (q.y - p.y) * share, heading)
+        return Sample(t, pose, a.battery + (b.battery - a.battery) * share)

@@ -1,0 +1,204 @@
+"""A sheet to draw on, in points from the upper left corner. All use of matplotlib's figures is here."""
+
+from __future__ import annotations
+
+import io
+import logging
+from collections.abc import Iterator, Sequence
+from contextlib import contextmanager
+from math import sqrt
+
+from btlang.pictures.files import missing
+from btlang.pictures.letters import font
+from btlang.pictures.style import INK, PAPER, TEXT
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+    from matplotlib.artist import Artist
+
+    Points = Sequence[tuple[float, float]]
+
+_DPI = 144.0
+_MOST_PIXELS = 36e6  # of a PNG; a larger picture gets fewer pixels a point
+_LONGEST_SIDE = 32000  # pixels; many programs show no more
+_CAP_HEIGHT = 0.73  # of the font, as a share of its size
+
+
+@contextmanager
+def drawing(path: str) -> Iterator[None]:
+    """Matplotlib with its own defaults, whatever the user's settings, and without its messages.
+
+    Raises MissionError (BT081) where it cannot be imported.
+    """
+    logger = logging.getLogger("matplotlib")
+    level = logger.level
+    logger.setLevel(logging.ERROR)  # "building the font cache" is nobody's concern
+    try:
+        try:
+            from matplotlib import font_manager, style
+        except ImportError:
+            raise missing(path) from None
+        assert font_manager.fontManager
+        ours: dict[str, Any] = {"svg.fonttype": "path", "svg.hashsalt": "btlang", "path.simplify": False}
+        with style.context(ours, after_reset=True):
+            yield
+    finally:
+        logger.setLevel(level)
+
+
+class Canvas:
+    """What is drawn later lies above, unless `z` says otherwise."""
+
+    def __init__(self, width: float, height: float, paper: str = PAPER) -> None:
+        from matplotlib.backends.backend_agg import FigureCanvasAgg
+        from matplotlib.figure import Figure
+
+        self.width, self.height = width, height
+        self.figure = Figure(figsize=(width / 72, height / 72), dpi=72, facecolor=paper)
+        self._agg: Any = FigureCanvasAgg(self.figure)
+        self.axes = self.figure.add_axes((0, 0, 1, 1))
+        self.axes.set_xlim(0, width)
+        self.axes.set_ylim(height, 0)
+        self.axes.axis("off")
+        self._count = 0
+        self._new: list[Artist] = []
+
+    def add(self, artist: Artist, z: float = 0) -> Artist:
+        """Adds something of matplotlib's."""
+        self._count += 1
+        artist.set_zorder(z + self._count * 1e-6)
+        self._new.append(artist)
+        return self.axes.add_artist(artist)
+
+    def text(
+        self,
+        x: float,
+        y: float,
+        text: str,
+        *,
+        size: float = TEXT,
+        colour: str = INK,
+        bold: bool = False,
+        align: str = "left",
+        z: float = 0,
+        halo: bool = False,
+    ) -> Artist:
+        """One line whose capitals are centred on `y`. A halo keeps it legible above lines."""
+        from matplotlib.patheffects import withStroke
+        from matplotlib.text import Text
+
+        artist = Text(
+            x, y + size * _CAP_HEIGHT / 2, text, color=colour, fontproperties=font(size, bold), parse_math=False
+        )
+        artist.set_horizontalalignment(align)  # type: ignore[arg-type]
+        artist.set_verticalalignment("baseline")
+        if halo:
+            artist.set_path_effects([withStroke(linewidth=2.5, foreground=PAPER)])
+        return self.add(artist, z)
+
+    def box(
+        self,
+        x: float,
+        y: float,
+        width: float,
+        height: float,
+        *,
+        round: float = 0,
+        fill: str = "none",
+        edge: str = "none",
+        line: float = 1,
+        dashed: bool = False,
+        z: float = 0,
+    ) -> Artist:
+        """A rectangle with corners rounded to a radius."""
+        from matplotlib.patches import FancyBboxPatch
+
+        style = f"round,pad=0,rounding_size={round}" if round else "square,pad=0"
+        patch = FancyBboxPatch((x, y), width, height, boxstyle=style, fc=fill, ec=edge, lw=line, mutation_aspect=1)
+        patch.set_linestyle((0, (3, 2)) if dashed else "solid")
+        return self.add(patch, z)
+
+    def polygon(
+        self, points: Points, *, fill: str = "none", edge: str = "none", line: float = 1, z: float = 0
+    ) -> Artist:
+        """A closed shape."""
+        from matplotlib.patches import Polygon
+
+        return self.add(Polygon(points, closed=True, fc=fill, ec=edge, lw=line, joinstyle="round"), z)
+
+    def circle(
+        self,
+        x: float,
+        y: float,
+        radius: float,
+        *,
+        fill: str = "none",
+        edge: str = "none",
+        line: float = 1,
+        dashed: bool = False,
+        z: float = 0,
+    ) -> Artist:
+        """A disc or a ring."""
+        from matplotlib.patches import Circle
+
+        return self.add(Circle((x, y), radius, fc=fill, ec=edge, lw=line, ls=(0, (2, 1.5)) if dashed else "solid"), z)
+
+    def line(
+        self,
+        points: Points,
+        *,
+        colour: str = INK,
+        line: float = 1,
+        dashed: bool = False,
+        round: bool = True,
+        z: float = 0,
+    ) -> Artist:
+        """A line through the points."""
+        from matplotlib.lines import Line2D
+
+        xs, ys = [x for x, _ in points], [y for _, y in points]
+        end = "round" if round else "butt"
+        artist = Line2D(xs, ys, color=colour, lw=line, solid_capstyle=end, solid_joinstyle="round")  # type: ignore[arg-type]
+        artist.set_linestyle((0, (2, 2)) if dashed else "solid")
+        return self.add(artist, z)
+
+    def begin_film(self, dpi: float) -> None:
+        """Draws all that is there; what is added from now on is drawn by `lay`."""
+        self.figure.set_dpi(dpi)
+        self._agg.draw()
+        self._new.clear()
+        self.keep()
+
+    def lay(self) -> None:
+        """Draws what was added since the last time over the pixels, and takes it off the canvas."""
+        for artist in sorted(self._new, key=lambda new: new.get_zorder()):
+            self.axes.draw_artist(artist)
+            artist.remove()
+        self._new.clear()
+
+    def keep(self) -> None:
+        """What is there now is what `restore` brings back."""
+        self._kept = self._agg.copy_from_bbox(self.figure.bbox)
+
+    def restore(self) -> None:
+        """The pixels of the last `keep`."""
+        self._agg.restore_region(self._kept)
+
+    def pixels(self) -> tuple[tuple[int, int], bytes]:
+        """Width and height, and the pixels row by row as red, green, blue and opacity."""
+        return self._agg.get_width_height(), bytes(self._agg.buffer_rgba())
+
+    def encoded(self, kind: str) -> bytes:
+        """The bytes of a file, `kind` is ".svg" or ".png"; the same picture gives the same bytes."""
+        out = io.BytesIO()
+        if kind == ".svg":
+            self.figure.savefig(out, format="svg", metadata={"Date": None, "Creator": "btlang"})
+        else:
+            self.figure.savefig(out, format="png", dpi=self._dpi(), metadata={"Software": "btlang"})
+        return out.getvalue()
+
+    def _dpi(self) -> float:
+        side, area = max(self.width, self.height) / 72, self.width * self.height / 72**2
+        return min(_DPI, sqrt(_MOST_PIXELS / area), _LONGEST_SIDE / side)

@@ -1,0 +1,57 @@
+"""What the options for pictures of `btc run` do."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from btlang.pictures.files import check_picture
+from btlang.tree.node import Node, Tree
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Protocol
+
+    from btlang.run.events import Sink
+
+    class Mission(Protocol):
+        """What a picture needs of a btlang.api.RunnableTree."""
+
+        tree: Tree
+        world: str | None
+
+        def label(self, node: Node) -> str: ...
+
+        def is_action(self, node: Node) -> bool: ...
+
+
+@contextmanager
+def pictures_of(mission: Mission, run: str | None, tree: str | None) -> Iterator[list[Sink]]:
+    """Gives the sinks for a run, and draws it to the files (None: no picture) at the end, however it ends.
+
+    Raises MissionError (BT009, BT081), as far as it can before the run.
+    """
+    for path in (run, tree):
+        if path is not None:
+            check_picture(path)
+    sinks: list[Sink] = []
+    if tree is not None:
+        from btlang.pictures.statuses import LastStatuses
+
+        statuses = LastStatuses()
+        sinks.append(statuses)
+    if run is not None:
+        from btlang.pictures.run_picture import RunPicture
+        from btlang.robots.world_file import load_world
+
+        picture = RunPicture(load_world(mission.world), mission.label, mission.is_action)
+        sinks.append(picture)
+    try:
+        yield sinks
+    finally:
+        if run is not None:
+            picture.save(run)
+        if tree is not None and statuses.by_path:
+            from btlang.pictures.tree_picture import draw_tree
+
+            draw_tree(mission.tree, mission.label, mission.is_action, tree, statuses=statuses.by_path)

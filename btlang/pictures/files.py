@@ -1,0 +1,53 @@
+"""Files of pictures: what keeps one from being made is known before the robot moves."""
+
+from __future__ import annotations
+
+import os
+from importlib.util import find_spec
+
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.text.source import Source, Span
+
+STILL = (".svg", ".png")
+MOVING = (".gif",)
+
+
+def ending(path: str, allowed: tuple[str, ...]) -> str:
+    """The ending of a file in small letters. Raises ValueError where it is not one of those allowed."""
+    found = os.path.splitext(path)[1].lower()
+    if found not in allowed:
+        endings = ", ".join(allowed[:-1]) + " or " + allowed[-1]
+        raise ValueError(f"a picture is a file that ends in {endings}, not '{path}'")
+    return found
+
+
+def check_picture(path: str) -> None:
+    """Raises MissionError where no picture can be drawn (BT081) or where the file cannot be written (BT009)."""
+    if find_spec("matplotlib") is None:
+        raise missing(path)
+    is_new = not os.path.lexists(path)
+    try:
+        open(path, "ab").close()
+        if is_new:
+            os.remove(path)
+    except OSError as error:
+        raise _unwritable(path, error) from None
+
+
+def write_picture(path: str, data: bytes) -> None:
+    """Writes the file. Raises MissionError (BT009)."""
+    try:
+        with open(path, "wb") as file:
+            file.write(data)
+    except OSError as error:
+        raise _unwritable(path, error) from None
+
+
+def missing(path: str) -> MissionError:
+    """What to raise where matplotlib is not there."""
+    return MissionError([diagnostic("BT081", Span(Source("", path), 0, 0))])
+
+
+def _unwritable(path: str, error: OSError) -> MissionError:
+    reason = (error.strerror or str(error)).lower()
+    return MissionError([diagnostic("BT009", Span(Source("", path), 0, 0), file=path, reason=reason)])

@@ -1,0 +1,134 @@
+"""What a picture of a run shows, gathered while the mission runs."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from btlang.engine.status import IDLE, RUNNING, SKIPPED
+from btlang.record import Record
+from btlang.robots.geometry import Point, Pose
+from btlang.run.events import PeriodPassed, RobotEvent, StatusChanged
+from btlang.tree.node import Node
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+    from btlang.run.events import Event
+
+_MOVED, _TURNED, _WAITED = 0.02, 4.0, 1.0  # metres, degrees and seconds: what is less is no new sample
+
+
+class Sample(Record):
+    """Where the robot was at a time, with percent of its battery."""
+
+    t: float
+    pose: Pose
+    battery: float
+
+
+class Command:
+    """A command that ran: where and when it began, and how it ended. `status` is RUNNING until then."""
+
+    def __init__(self, number: int, text: str, start: Sample) -> None:
+        self.number = number
+        self.text = text
+        self.start = start
+        self.end = start.t
+        self.status = RUNNING
+        self.reason = ""
+
+
+class Mark(Record):
+    """Something that happened to the robot: kind say, print, bump, stuck, grasp, release or drop."""
+
+    t: float
+    kind: str
+    text: str
+    pose: Pose
+
+
+class RunRecord:
+    """A sink. `label` and `is_action` are those of btlang.api.RunnableTree.
+
+    Commands are numbered from 1 in the order in which they began. `ended` holds status and time of the whole mission.
+    `moved` says where each object that was picked up lies; None is in the robot's hand.
+    """
+
+    def __init__(self, label: Callable[[Node], str], is_action: Callable[[Node], bool]) -> None:
+        self._label = label
+        self._is_action = is_action
+        self._running: dict[str, Command] = {}
+        self._put_down: list[str] = []
+        self.track: list[Sample] = []
+        self.commands: list[Command] = []
+        self.marks: list[Mark] = []
+        self.moved: dict[str, Point | None] = {}
+        self.moves: list[tuple[float, str, Point | None]] = []
+        self.ended: tuple[int, float] | None = None
+        self.radius = 0.2
+
+    @property
+    def begun(self) -> bool:
+        """Whether the robot was seen at all."""
+        return bool(self.track)
+
+    def __call__(self, event: Event) -> None:
+        if isinstance(event, PeriodPassed):
+            if event.robot is not None:
+                self._see(event.t, event.robot)
+        elif isinstance(event, RobotEvent):
+            self._happened(event)
+        elif self.track:
+            self._changed(event)
+
+    def _see(self, t: float, robot: Any) -> None:
+        sample = Sample(t, robot.pose, robot.battery)
+        self.radius = robot.radius
+        if len(self.track) >= 2 and _same(self.track[-2], sample):
+            self.track[-1] = sample  # the latest one is always kept
+        else:
+            self.track.append(sample)
+        for name in self._put_down:
+            self._moved(t, name, robot.locate(name))
+        self._put_down.clear()
+
+    def _happened(self, event: RobotEvent) -> None:
+        if not self.track:
+            return
+        name = str(event.data.get("name") or "")
+        text = str(event.data.get("text", event.data.get("into", name)))
+        if event.kind in ("say", "print", "bump", "stuck", "grasp", "release", "drop"):
+            if event.kind == "release" and not name:
+                return  # an empty hand was opened
+            self.marks.append(Mark(event.t, event.kind, text, self.track[-1].pose))
+        if event.kind == "grasp":
+            self._moved(event.t, name, None)
+        elif event.kind in ("release", "drop"):
+            self._put_down.append(name)
+
+    def _moved(self, t: float, name: str, place: Point | None) -> None:
+        self.moved[name] = place
+        self.moves.append((t, name, place))
+
+    def _changed(self, event: StatusChanged) -> None:
+        if event.path == "/":  # after a pause it runs again
+            self.ended = None if event.status == RUNNING else (event.status, event.t)
+        if not ((event.node.id == "Sleep" and event.node.span) or self._is_action(event.node)):
+            return
+        command = self._running.pop(event.path, None)
+        if command is None:
+            if event.status in (IDLE, SKIPPED):
+                return
+            start = self.track[-1].replace(t=event.t)
+            command = Command(len(self.commands) + 1, self._label(event.node), start)
+            self.commands.append(command)
+        if event.status == RUNNING:
+            self._running[event.path] = command
+        command.status, command.end, command.reason = event.status, event.t, event.reason
+
+
+def _same(a: Sample, b: Sample) -> bool:
+    turned = abs((a.pose.heading - b.pose.heading + 180) % 360 - 180)
+    moved = a.pose.distance_to((b.pose.x, b.pose.y))
+    return moved < _MOVED and turned < _TURNED and b.t - a.t < _WAITED

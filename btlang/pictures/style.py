@@ -1,0 +1,33 @@
+"""Colours, signs and sizes. Sizes are in points; the colours of statuses can be told apart by colour-blind people."""
+
+from __future__ import annotations
+
+from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
+from btlang.record import Record
+
+INK = "#1f2933"
+SOFT = "#6b7680"
+LINE = "#8a949e"
+PAPER = "#ffffff"
+
+SMALL, TEXT, TITLE = 7.5, 9.0, 11.0
+
+
+class Look(Record):
+    """How a status is shown: its sign, the word for it, a strong colour and a pale one."""
+
+    sign: str
+    word: str
+    strong: str
+    pale: str
+
+
+SUCCEEDED = Look("✓", "success", "#00785a", "#d3efe4")
+FAILED = Look("✗", "failure", "#c0440c", "#fbdccb")
+HALTED = Look("‖", "halted", "#9a6a00", "#ffecb8")
+UNDER_WAY = Look("▶", "running", "#9a6a00", "#ffecb8")
+PASSED_OVER = Look("»", "skipped", "#6b7680", "#e9ecef")
+NEVER = Look("", "never reached", "#9aa3ab", "#f6f7f8")
+
+LOOKS = {SUCCESS: SUCCEEDED, FAILURE: FAILED, IDLE: HALTED, RUNNING: UNDER_WAY, SKIPPED: PASSED_OVER}
+"""By the last status of a node; IDLE stands for one that was halted while it ran."""

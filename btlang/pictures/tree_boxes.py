@@ -1,0 +1,156 @@
+"""A tree as boxes with text, before it is known where they go."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from btlang.engine.compile import NODE_TYPES
+from btlang.english.phrase import seconds
+from btlang.pictures.letters import shown
+from btlang.pictures.statuses import by_definition
+from btlang.record import Record
+from btlang.tree.node import Node, Tree
+
+IN_PLACE = 500  # nodes; a tree that is larger with its subtrees filled in is drawn apart
+MOST = 2000  # nodes in a picture; what is beyond becomes "... and 17 more"
+DEEPEST = 60
+
+_SYMBOLS = {
+    "Sequence": "→",
+    "AsyncSequence": "→",
+    "SequenceWithMemory": "→",
+    "ReactiveSequence": "→",
+    "Fallback": "?",
+    "AsyncFallback": "?",
+    "ReactiveFallback": "?",
+    "Parallel": "⇉",
+    "ParallelAll": "⇉",
+    "Inverter": "¬",
+    "ForceSuccess": "✓",
+    "ForceFailure": "✗",
+    "Repeat": "↻",
+    "RetryUntilSuccessful": "↺",
+}
+_TIMES = "\N{MULTIPLICATION SIGN}"
+_ROLES = {"IfThenElse": ("if", "then", "else"), "WhileDoElse": ("while", "do", "else")}
+
+
+class Box(Record):
+    """A node. `shape` is control, decorator, action, condition, frame (a subtree in place), subtree (a name) or more.
+
+    `parent` is the index of the box that it hangs on, -1 for none; `role` says what it is to its parent.
+    `status` is None where the node was never reached or there was no run.
+    """
+
+    shape: str
+    text: str
+    symbol: str = ""
+    parent: int = -1
+    role: str = ""
+    status: int | None = None
+
+
+class Sheet(Record):
+    """A tree that is drawn in one piece; parents come before their children, children in order. "" is the main tree."""
+
+    name: str
+    boxes: tuple[Box, ...]
+
+
+class Maker:
+    """Makes the sheets of a tree. `label` and `is_action` are those of btlang.api.RunnableTree."""
+
+    def __init__(
+        self,
+        tree: Tree,
+        label: Callable[[Node], str],
+        is_action: Callable[[Node], bool],
+        statuses: Mapping[str, int] | None = None,
+    ) -> None:
+        self._tree = tree
+        self._subtrees = dict(tree.subtrees)
+        self._label = label
+        self._is_action = is_action
+        self._statuses = statuses or {}
+
+    def sheets(self, apart: bool = False) -> list[Sheet]:
+        """One sheet, with the subtrees in place; or, if asked for or needed, the main tree and one of each subtree."""
+        if not apart or not self._subtrees:
+            most = IN_PLACE if self._subtrees else MOST
+            sheet = self._sheet("", self._tree.root, self._statuses, most, whole=bool(self._subtrees))
+            if sheet is not None:
+                return [sheet]
+        found = by_definition(self._statuses, self._tree)
+        sheets: list[Sheet] = []
+        left = MOST
+        for name, root in (("", self._tree.root), *self._tree.subtrees):
+            statuses = {path: status for (owner, path), status in found.items() if owner == name}
+            sheet = self._sheet(name, root, statuses, max(left, 1), apart=True)
+            assert sheet is not None
+            sheets.append(sheet)
+            left -= len(sheet.boxes)
+        return sheets
+
+    def _sheet(
+        self, name: str, root: Node, statuses: Mapping[str, int], most: int, *, apart: bool = False, whole: bool = False
+    ) -> Sheet | None:
+        """None where it must be `whole` and is larger than `most`."""
+        boxes: list[Box] = []
+        cut: dict[int, int] = {}  # nodes left out, by the box that they would hang on
+        stack = [(root, -1, "/", "", 0)]
+        while stack:
+            node, parent, path, role, depth = stack.pop()
+            if len(boxes) >= most or depth > DEEPEST:
+                if whole and len(boxes) >= most:
+                    return None
+                cut[parent] = cut.get(parent, 0) + _size(node)
+                continue
+            index = len(boxes)
+            children = node.children
+            if node.id == "SubTree" and not apart and node.port("ID") in self._subtrees:
+                children = (self._subtrees[node.port("ID")],)
+            boxes.append(self._box(node, bool(children), parent, role, statuses.get(path)))
+            roles = _ROLES.get(node.id, ())
+            for i in range(len(children) - 1, -1, -1):
+                below = f"{path.rstrip('/')}/{i}"
+                stack.append((children[i], index, below, roles[i] if i < len(roles) else "", depth + 1))
+        boxes += [Box("more", f"… and {count} more", parent=parent) for parent, count in cut.items()]
+        return Sheet(name, tuple(boxes))
+
+    def _box(self, node: Node, has_children: bool, parent: int, role: str, status: int | None) -> Box:
+        if node.id == "SubTree":
+            text = shown(node.name or node.port("ID"))
+            return Box("frame" if has_children else "subtree", text, "", parent, role, status)
+        kind = NODE_TYPES.get(node.id)
+        if has_children:
+            shape = "decorator" if kind is not None and kind.most == 1 else "control"
+            return Box(shape, shown(_named(node)), _SYMBOLS.get(node.id, ""), parent, role, status)
+        shape = "action" if kind is not None or self._is_action(node) else "condition"
+        skipped = " (skipped)" if node.port("_skipIf") == "true" else ""
+        return Box(shape, shown(self._label(node.replace(ports=_plain(node))) + skipped), "", parent, role, status)
+
+
+def _plain(node: Node) -> tuple[tuple[str, str], ...]:
+    return tuple((key, text) for key, text in node.ports if key != "_skipIf")
+
+
+def _named(node: Node) -> str:
+    """The id with its ports in short: `Repeat x3`, `Timeout 5 s`."""
+    words = [node.name, node.id]
+    for key, text in node.ports:
+        if key in ("num_cycles", "num_attempts"):
+            words.append(_TIMES + ("∞" if text == "-1" else text))
+        elif key in ("msec", "delay_msec"):
+            words.append(seconds(text))
+        else:
+            words.append(f"{key}={text}")
+    return " ".join(word for word in words if word)
+
+
+def _size(root: Node) -> int:
+    count, stack = 0, [root]
+    while stack:
+        node = stack.pop()
+        count += 1
+        stack.extend(node.children)
+    return count

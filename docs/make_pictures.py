@@ -1,0 +1,31 @@
+"""Makes the pictures that the README shows: `python docs/make_pictures.py [FOLDER]`, by default into docs/pictures."""
+
+from __future__ import annotations
+
+import re
+import sys
+import tempfile
+from pathlib import Path
+
+from btlang.cli import main
+
+DOCS = Path(__file__).parent
+
+
+def make_pictures(folder: Path) -> None:
+    """Runs the mission of the README and draws its run and its tree."""
+    readme = (DOCS.parent / "README.md").read_text(encoding="utf-8")
+    found = re.search(r"```mission tea\.txt\n(.*?)```", readme, re.DOTALL)
+    assert found is not None, "the README has no mission tea.txt"
+    folder.mkdir(parents=True, exist_ok=True)
+    with tempfile.TemporaryDirectory() as temporary:
+        mission = Path(temporary) / "tea.txt"
+        mission.write_text(found[1], encoding="utf-8")
+        run = ["run", str(mission), "--speed", "max", "--quiet", "--picture"]
+        assert main([*run, str(folder / "tea_run.svg"), "--tree-picture", str(folder / "tea_tree_after_run.svg")]) == 0
+        assert main([*run, str(folder / "tea_run.gif")]) == 0
+        assert main(["tree", str(mission), "--picture", str(folder / "tea_tree.svg")]) == 0
+
+
+if __name__ == "__main__":
+    make_pictures(Path(sys.argv[1]) if len(sys.argv) > 1 else DOCS / "pictures")

@@ -1,0 +1,103 @@
+"""What a picture of a run knows: commands, places, things that moved, statuses."""
+
+from __future__ import annotations
+
+import btlang
+from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
+from btlang.pictures.run_picture import numbers
+from btlang.pictures.run_record import RunRecord
+from btlang.pictures.statuses import LastStatuses, by_definition
+from btlang.run.events import StatusChanged
+from btlang.tree.node import Node, Tree
+
+
+def recorded(mission: str, time_limit: float | None = None) -> tuple[RunRecord, dict[str, int]]:
+    tree = btlang.parse_tree(mission)
+    record, statuses = RunRecord(tree.label, tree.is_action), LastStatuses()
+    tree.run(speed="max", sinks=[record, statuses], time_limit=time_limit)
+    assert tree.sink_errors == []
+    return record, statuses.by_path
+
+
+def test_commands_are_numbered_and_know_how_they_ended() -> None:
+    record, _ = recorded("move forward 1 m, wait 1 s, print hi, grasp the cup if possible, then move forward 5 m", 9)
+    found = [(c.number, c.text, c.status) for c in record.commands]
+    assert found == [
+        (1, "move forward 1 m", SUCCESS),
+        (2, "wait 1 s", SUCCESS),
+        (3, "print hi", SUCCESS),
+        (4, "grasp cup", FAILURE),
+        (5, "move forward 5 m", IDLE),
+    ]
+    assert "reach" in record.commands[3].reason
+    assert record.commands[1].end - record.commands[1].start.t > 0.99
+    assert record.ended is not None
+    assert record.ended[0] == IDLE
+
+
+def test_the_track_follows_the_robot() -> None:
+    record, _ = recorded("move forward 1 m, wait 1 min, then turn left 90 degrees")
+    first, last = record.track[0], record.track[-1]
+    assert abs(last.pose.x - first.pose.x - 1) < 0.05
+    assert abs(last.pose.heading - 90) < 3
+    assert last.battery < first.battery
+    assert len(record.track) < 300, "a robot that stands still gives one sample a second"
+
+
+def test_things_lie_where_they_were_put() -> None:
+    record, _ = recorded("go to the kitchen, pick up the cup, go to the office then put down the cup")
+    place = record.moved["cup"]
+    assert place is not None
+    assert 9 < place[0] < 11
+    assert [mark.kind for mark in record.marks] == ["grasp", "release"]
+    assert recorded("pick up the cup")[0].moved == {"cup": None}
+    assert recorded("open the hand")[0].marks == []
+
+
+def test_bumps_and_speech_are_marked() -> None:
+    record, _ = recorded("say hello then move forward 9 m")
+    assert [mark.kind for mark in record.marks] == ["say", "bump"]
+    assert record.marks[0].text == "hello"
+    assert record.ended is not None
+    assert record.ended[0] == FAILURE
+
+
+def test_last_statuses() -> None:
+    _, statuses = recorded("greet is wave then nod; if bumped, wave; greet; move forward 9 m; wave", 8)
+    named = {path: statuses.get(path) for path in ("/0", "/0/0", "/0/1", "/1", "/1/0", "/1/0/1", "/2", "/3")}
+    assert named == {
+        "/0": SKIPPED,
+        "/0/0": FAILURE,
+        "/0/1": None,
+        "/1": SUCCESS,
+        "/1/0": SUCCESS,
+        "/1/0/1": SUCCESS,
+        "/2": IDLE,
+        "/3": None,
+    }
+
+
+def test_a_reset_is_no_status() -> None:
+    sink, node = LastStatuses(), Node("Wave")
+    for status in (RUNNING, SUCCESS, IDLE):
+        sink(StatusChanged(0.0, 0, "/", node, status))
+    assert sink.by_path == {"/": SUCCESS}
+
+
+def test_a_definition_shows_the_latest_of_its_uses() -> None:
+    call = Node("SubTree", ports=(("ID", "job"),))
+    tree = Tree(Node("Fallback", (call, call)), (("job", Node("Sequence", (Node("A"), Node("B")))),))
+    statuses = {"/0/0/0": FAILURE, "/0/0": FAILURE, "/0": FAILURE, "/1/0/1": SUCCESS, "/1/0": SUCCESS, "/": SUCCESS}
+    assert by_definition(statuses | {"/7": SUCCESS}, tree) == {
+        ("job", "/0"): FAILURE,
+        ("job", "/"): SUCCESS,
+        ("", "/0"): FAILURE,
+        ("job", "/1"): SUCCESS,
+        ("", "/"): SUCCESS,
+    }
+
+
+def test_numbers_are_joined() -> None:
+    assert numbers([1]) == "1"
+    assert numbers([1, 2, 3, 7]) == "1\N{EN DASH}3, 7"
+    assert numbers([1, 3, 5, 7, 9]) == "1, 3, 5, …"
