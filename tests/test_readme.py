@@ -72,8 +72,10 @@ def run(arguments: list[str], folder: Path) -> subprocess.CompletedProcess[str]:
 
 
 def btc(line: str, folder: Path) -> subprocess.CompletedProcess[str]:
-    """Runs a line `btc ...`."""
+    """Runs a line `btc ...`, or `python3 FILE`."""
     words = shlex.split(line, comments=True)
+    if words[0] == "python3":
+        return run(["-W", "error", *words[1:]], folder)
     assert words[0] == "btc", line
     return run(["-m", "btlang", *words[1:]], folder)
 
@@ -120,6 +122,55 @@ def test_snippets_run(block: Block, folder: Path) -> None:
     done = run(["-W", "error", "snippet.py"], folder)
     assert done.returncode == 0, done.stdout
     assert done.stdout
+
+
+def commands_with(file: str) -> list[str]:
+    """The shown commands that name a file."""
+    lines = [block.text.partition("\n")[0] for block in BLOCKS if block.language == "console"]
+    return [line.removeprefix("$ ") for line in lines if file in line.split()]
+
+
+@pytest.mark.parametrize("block", [block for block in BLOCKS if block.language == "mission"], ids=first_line)
+def test_missions_compile(block: Block, folder: Path) -> None:
+    """With the world and the words of the first command that runs it, and without a warning."""
+    line = next(iter(commands_with(block.file)), "")
+    options = re.findall(r"--(?:world|keywords) \S+", line)
+    (folder / "shown.txt").write_text(block.text, encoding="utf-8")
+    done = btc(f"btc check shown.txt {' '.join(options)}", folder)
+    assert (done.returncode, done.stdout) == (0, "The mission is fine.\n")
+
+
+def test_every_python_file_runs() -> None:
+    """A command runs it, or a keyword file calls it."""
+    calls = "".join(block.text for block in BLOCKS if block.language == "toml")
+    files = [block.file for block in BLOCKS if block.language == "python" and block.file]
+    idle = [file for file in files if not commands_with(file) and f'"{file.removesuffix(".py")}:' not in calls]
+    assert idle == []
+
+
+def test_no_two_files_of_the_pages_have_one_name() -> None:
+    names = [block.file for block in BLOCKS if block.file]
+    assert sorted(names) == sorted(set(names))
+
+
+def test_the_tutorial_leaves_no_snippet_out() -> None:
+    """Each of its blocks is of a language that one of the tests here reads."""
+    page = ROOT / "docs" / "tutorial.md"
+    text = page.read_text(encoding="utf-8")
+    blocks_there = [block for block in BLOCKS if block.page == page]
+    assert len(blocks_there) == len(re.findall(r"^```\w", text, re.MULTILINE)) == text.count("```") / 2
+    assert {block.language for block in blocks_there} <= {"console", "mission", "python", "toml", "sh"}
+    assert all(block.file for block in blocks_there if block.language == "toml")
+
+
+def test_commands_named_in_the_tutorial_are_known(folder: Path) -> None:
+    """Those in a sentence; no robot runs for them."""
+    text = re.sub(r"^```.*?^```$", "", (ROOT / "docs" / "tutorial.md").read_text(encoding="utf-8"), flags=re.M | re.S)
+    named = re.findall(r"`(btc (?!(?:run|tree)`)[^`]+)`", text)
+    assert len(named) > 5
+    for line in named:
+        done = btc(line + " --speed max" if line.startswith("btc run ") and "--help" not in line else line, folder)
+        assert done.returncode == 0, done.stdout
 
 
 def test_ci_runs_the_two_set_up_commands() -> None:

@@ -1,7 +1,7 @@
 """Every code that a message can have, with its texts. Codes are a contract: they are never given a new meaning.
 
 BT00x reading, BT01x words, BT02x and BT03x how a sentence is put together, BT04x what it means, BT06x keyword files,
-BT07x worlds, BT08x the Python behind the words.
+BT07x worlds, BT08x the Python behind the words and what else has to be installed.
 """
 
 from __future__ import annotations
@@ -28,6 +28,7 @@ _ALL = (
          "Start it where the line above starts, or end the line above with ':'."),
     Code("BT007", "This line is indented less than its block, but it fits no line above.",
          "Start it where one of the lines above starts."),
+    Code("BT008", "There is no example '{name}'.", "All of them: btc examples"),
     Code("BT009", "I cannot write {file}: {reason}."),
     Code("BT010", "I do not know how to '{words}'."),
     Code("BT011", "'{words}' does not fit here: {wanted}.", "Write for example: {example}"),
@@ -64,6 +65,7 @@ _ALL = (
     Code("BT063", "There is no keyword file or pack '{name}'.", "Give the path of a TOML file, or the name of an installed pack."),
     Code("BT070", "This world file cannot be used: {reason}."),
     Code("BT080", "The command '{id}' cannot run: {reason}."),
+    Code("BT081", "Pictures are drawn by matplotlib, which is not installed.", "Install it: pip install 'btlang[pictures]'"),
 )  # fmt: skip
 
 CODES = {entry.code: entry for entry in _ALL}

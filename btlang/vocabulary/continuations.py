@@ -79,7 +79,7 @@ def values_on(kind: str, values: Values, written: Sequence[str], start: str) -> 
     """
     value_type = values.types[kind]
     if value_type.kind == "names":
-        yield from _names_on(values.names_tree(kind), written, start, values.names(kind))
+        yield from sorted(_names_on(values.names_tree(kind), written, start, values.names(kind)))
     elif value_type.kind == "text":
         if not written and not start:
             yield value_type.example

@@ -50,6 +50,14 @@ class Entry(Record, uncompared=("span",)):
         return self.span.source.name if self.span else "Python"
 
 
+class About(Record):
+    """What people are told of a role: the topic it is listed under, what it does, and an example that runs."""
+
+    topic: str = ""
+    help: str = ""
+    example: str = ""
+
+
 class Meaning(Record):
     """What a phrase in the trie stands for: a connective or form of the language (`role`), or an entry.
 

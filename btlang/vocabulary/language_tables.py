@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
+from btlang.vocabulary.entry import About
 from btlang.vocabulary.pattern import PatternError, Slot, forms
 
 TYPE_CHECKING = False
@@ -21,6 +22,9 @@ ROLES = {
 }
 """The roles that words can have, each with the slot that its phrases hold."""
 
+EXPLAINED = (*ROLES, "politeness")
+"""What the table `about` tells of."""
+
 WORD_LISTS = frozenset(("articles", "politeness", "unit_joiner"))
 
 
@@ -36,8 +40,17 @@ def _rounds(value: object) -> bool:
     return isinstance(value, int) and not isinstance(value, bool) and (value >= 1 or value == -1)
 
 
+def _about(value: object) -> bool:
+    return isinstance(value, dict) and value.keys() == set(About.fields) and all(map(_is_text, value.values()))
+
+
+def _is_text(value: object) -> bool:
+    return isinstance(value, str) and bool(value)
+
+
 TABLES: dict[str, tuple[Callable[[object], bool], str]] = {
     "roles": (_words, "a list of phrases"),
+    "about": (_about, "a table with the texts topic, help and example"),
     "negations": (_words, "a list of words"),
     "counts": (_rounds, "a whole number from 1 on, or -1 for without end"),
     "numbers": (_number, "a number"),
@@ -62,6 +75,8 @@ def problems(table: str, value: Any) -> Iterator[tuple[str, str]]:
             yield f"{key} in [{table}] is {wanted}", key
         elif table == "roles":
             yield from _role_problems(key, item)
+        elif table == "about" and key not in EXPLAINED:
+            yield f"there is no role '{key}'; there are {', '.join(EXPLAINED)}", key
 
 
 def _role_problems(role: str, phrases: list[str]) -> Iterator[tuple[str, str]]:

@@ -1,31 +1,166 @@
-"""The words of a vocabulary as lines to read."""
+"""The words of a vocabulary as lines to read: the list of `btc words`, and help on one phrase, word or topic."""
 
 from __future__ import annotations
 
-from btlang.vocabulary.entry import Entry
+import textwrap
+from collections.abc import Iterable, Sequence
+
+from btlang.text.source import Source
+from btlang.text.spelling import nearest
+from btlang.text.words import split
+from btlang.vocabulary.items import Item, items
+from btlang.vocabulary.pattern import Form, forms
+from btlang.vocabulary.trie import longest
 from btlang.vocabulary.vocabulary import Vocabulary
+
+_WIDTH = 80
+_FEW = 3  # of so few found, all is told
+_KEY = (
+    "[...] may be left out, {...} takes a value (see the end), a/b is a choice,",
+    "time(s) is time or times. A condition is no command: it needs a word such as",
+    "'{if}' or '{until}'. btc words TOPIC shows a topic, btc words WORD what has a word.",
+    "",
+)
 
 
 def listing(vocabulary: Vocabulary, search: str = "") -> list[str]:
-    """Phrases by topic, each with what it does and an example; with `search` only those that hold all of its words."""
-    topics: dict[str, list[Entry]] = {}
-    for entries in vocabulary.entries.values():
-        for entry in entries:
-            topics.setdefault(entry.topic or "other", []).append(entry)
-    wanted = search.lower().split()
+    """Everything that can be said, by topic, each with what it does and an example.
+
+    With `search` only the topic or sort of that name ("conditions"), else what is said with all of its words, else
+    what is explained with them; all is told of it where that is little. Where nothing is found, the nearest words.
+    """
+    known = items(vocabulary)
+    if not search.strip():
+        examples = {role: vocabulary.word(role) for role in ("if", "until")}
+        return [*_KEY[:2], _KEY[2].format(**examples), *_KEY[3:], *_by_topic(known)]
+    found = _found(known, search)
+    whole = len(found) <= _FEW and not any(_is_called(item, search) for item in found)
+    return _by_topic(found, whole) or _unknown(known, search)
+
+
+def help_on(vocabulary: Vocabulary, text: str = "") -> list[str]:
+    """Help on a topic, a phrase (with or without values), a node id, a word of the language or a type of values.
+
+    Of a phrase or word: all ways to say it, what it does, its slots, what it needs of the robot, and an example.
+    For "" all topics with what they hold; for what is not known the nearest words.
+    """
+    known = items(vocabulary)
+    wanted = text.strip().strip("{}")
+    if not wanted:
+        return _topics(known)
+    if any(_is_called(item, wanted) for item in known):
+        return _by_topic(item for item in known if _is_called(item, wanted))
+    found = _said_so(known, wanted, vocabulary) or _found(known, wanted) or _begun_so(known, wanted, vocabulary)
+    return [line for item in found for line in ("", *_whole(item))][1:] or _unknown(known, wanted)
+
+
+def _is_called(item: Item, search: str) -> bool:
+    """Whether the search is its topic or sort, as "conditions"."""
+    return search.lower() in (item.topic, item.sort, item.sort + "s")
+
+
+def _found(known: Sequence[Item], search: str) -> list[Item]:
+    called = [item for item in known if _is_called(item, search)]
+    wanted = search.lower().replace("/", " ").split()
+    return (
+        called
+        or [item for item in known if _has(item.words(), wanted)]
+        or [item for item in known if _has({*item.words(), *item.help.lower().split(), item.topic}, wanted)]
+    )
+
+
+def _has(words: Iterable[str], wanted: Sequence[str]) -> bool:
+    """Whether each wanted word is the start of one of the words."""
+    return all(any(word.startswith(start) for word in words) for start in wanted)
+
+
+def _said_so(known: Sequence[Item], text: str, vocabulary: Vocabulary) -> list[Item]:
+    """What is said with exactly these words, whatever stands in its slots."""
+    words = split(Source(text), vocabulary.articles)
+    bare = tuple(words.words[: len(words.words) - 2])
+    found = [item for item in known if text.lower() in map(str.lower, item.names)]
+    found += [item for item in known if item not in found and bare in _spoken(item, vocabulary.articles)]
+    if found:
+        return found
+    match = longest(vocabulary.trie, words, 0, vocabulary.values)
+    return _begun_so(known, text, vocabulary) if match is not None and match.last >= len(bare) else []
+
+
+def _begun_so(known: Sequence[Item], text: str, vocabulary: Vocabulary) -> list[Item]:
+    """The phrase that the text begins with."""
+    match = longest(vocabulary.trie, split(Source(text), vocabulary.articles), 0, vocabulary.values)
+    if match is None:
+        return []
+    name = match.meaning.entry.id if match.meaning.entry else match.meaning.role
+    return [item for item in known if name in item.names and item.sort != "value"]
+
+
+def _spoken(item: Item, articles: frozenset[str]) -> set[Form]:
+    """The words of each way to say it, without slots."""
+    if item.sort == "value":
+        return {(word,) for word in item.words()}
+    ways = (form for way in item.ways for form in forms(way, articles))
+    return {tuple(part for part in form if isinstance(part, str)) for form in ways}
+
+
+def _by_topic(chosen: Iterable[Item], whole: bool = False) -> list[str]:
     lines: list[str] = []
-    for topic, entries in sorted(topics.items()):
-        shown = [entry for entry in entries if all(word in _searched(entry, topic) for word in wanted)]
-        if not shown:
-            continue
-        lines += ["", f"{topic}:"] if lines else [f"{topic}:"]
-        for entry in shown:
-            mark = "" if entry.sort == "action" else "  (condition)"
-            lines.append(f"  {entry.phrases[0]}{mark}")
-            example = f" For example: {entry.example}" if entry.example and entry.example != entry.phrases[0] else ""
-            lines.append(f"      {entry.help}{example}".rstrip())
-    return lines or [f"No phrase has the words: {search}"]
+    topic = ""
+    for item in chosen:
+        if item.topic != topic:
+            topic = item.topic
+            lines += ["", f"{topic}:"] if lines else [f"{topic}:"]
+        lines += ["  " + line for line in _whole(item)] if whole and item.sort != "value" else _brief(item)
+    return lines
 
 
-def _searched(entry: Entry, topic: str) -> str:
-    return " ".join((*entry.phrases, entry.help, entry.id, topic)).lower()
+def _brief(item: Item) -> list[str]:
+    if item.sort == "value":
+        return _wrapped(item.help, f"  {item.ways[0]:<12}", " " * 14)
+    ways = item.ways if item.sort == "word" else item.ways[:1]
+    mark = "  (condition)" if item.sort == "condition" else ""
+    lines = _wrapped(", ".join(ways), "  ", "    ")
+    lines[-1] += mark
+    example = f"For example: {item.example}" if item.example and item.example != item.ways[0] else ""
+    told = [text for text in (item.help, example) if text]
+    if len(" ".join(told)) <= _WIDTH - 6:
+        told = [" ".join(told)] if told else []
+    return lines + [line for text in told for line in _wrapped(text, "      ", "      ")]
+
+
+def _whole(item: Item) -> list[str]:
+    if item.sort == "value":
+        return _brief(item)
+    mark = "  (condition)" if item.sort == "condition" else ""
+    lines = [item.ways[0] + mark, *_wrapped(item.help, "    ", "    ")]
+    if item.sort == "word" and len(item.ways) > 1:
+        lines += _wrapped("also: " + ", ".join(item.ways[1:]), "    ", "          ")
+    elif len(item.ways) > 1:
+        lines += ["    also: " + item.ways[1], *("          " + way for way in item.ways[2:])]
+    for detail in item.details:
+        lines += _wrapped(detail, "    ", "        ")
+    return [*lines, *([f"    for example: {item.example}"] if item.example else [])]
+
+
+def _topics(known: Sequence[Item]) -> list[str]:
+    lines = ["Ask for help on a topic, or on anything that can be said:"]
+    for topic in dict.fromkeys(item.topic for item in known):
+        ways = ", ".join(item.ways[0] for item in known if item.topic == topic)
+        lines.append(f"  {topic:<13} " + textwrap.shorten(ways, _WIDTH - 16, placeholder=" ..."))
+    return lines
+
+
+def _unknown(known: Sequence[Item], search: str) -> list[str]:
+    every = {word for item in known for word in (*item.words(), item.topic)}
+    wanted = search.lower().split()
+    odd = [word for word in wanted if not _has(every, [word])]
+    said = {item.topic for item in known}
+    for item in known:
+        said |= (item if item.sort == "value" else item.replace(names=())).words()
+    near = [near for word in odd for near in nearest(word, said)] if odd else wanted
+    lines = ["No phrase has the words: " + "".join(c if c.isprintable() else "?" for c in search)]
+    return [*lines, "The nearest: " + ", ".join(dict.fromkeys(near))] if near else lines
+
+
+def _wrapped(text: str, first: str, then: str) -> list[str]:
+    return textwrap.wrap(text, _WIDTH, initial_indent=first, subsequent_indent=then, break_long_words=False)

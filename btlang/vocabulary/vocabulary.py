@@ -7,8 +7,9 @@ from collections.abc import Iterable, Mapping
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.text.source import Source, Span
 from btlang.text.words import split
-from btlang.vocabulary.entry import Entry, Meaning, SlotSpec
+from btlang.vocabulary.entry import About, Entry, Meaning, SlotSpec
 from btlang.vocabulary.keyword_file import KeywordFile
+from btlang.vocabulary.language_tables import EXPLAINED
 from btlang.vocabulary.pattern import Form, PatternError, Slot, forms
 from btlang.vocabulary.trie import TrieNode, add, collisions
 from btlang.vocabulary.values import Values, ValueType
@@ -25,6 +26,7 @@ DEFINING = ("define_strong", "define")
 class Vocabulary:
     """Phrases, types and connectives of a language and its packs.
 
+    `about` says what each role means to people; it holds every role.
     Raises MissionError (BT060 to BT062) where the files do not fit together.
     """
 
@@ -42,6 +44,7 @@ class Vocabulary:
                     self._add_name(kind, words, name)
         self.roles: dict[str, list[str]] = {**language["roles"], "politeness": language["politeness"]}
         self.counts: dict[str, int] = language["counts"]
+        self.about = _about(files)
         self._negations: dict[str, list[str]] = language["negations"]
         self._add_roles()
         for entry in (*(e for f in files for e in f.entries), *entries):
@@ -182,7 +185,7 @@ class Vocabulary:
 
 _LANGUAGE: dict[str, Any] = {
     "articles": [], "politeness": [], "unit_joiner": [],
-    "roles": {}, "counts": {}, "negations": {}, "numbers": {}, "multipliers": {}, "fractions": {},
+    "roles": {}, "about": {}, "counts": {}, "negations": {}, "numbers": {}, "multipliers": {}, "fractions": {},
 }  # fmt: skip
 
 
@@ -196,3 +199,14 @@ def _merged(files: Iterable[KeywordFile]) -> dict[str, Any]:
             elif isinstance(value, list):
                 merged[key] = value
     return merged
+
+
+def _about(files: Iterable[KeywordFile]) -> dict[str, About]:
+    """What the files tell of the roles, the latest of each; a role with new words loses its example in old ones."""
+    about: dict[str, About] = {}
+    for file in files:
+        told = file.language.get("about", {})
+        replaced = [role for role in file.language.get("roles", {}) if role in about and role not in told]
+        about |= {role: about[role].replace(example="") for role in replaced}
+        about |= {role: About(**table) for role, table in told.items()}
+    return about | {role: About() for role in EXPLAINED if role not in about}

@@ -10,7 +10,7 @@ import pytest
 
 from btlang.api import world_vocabulary
 from btlang.cli import main
-from btlang.robots import simulated
+from btlang.robots import simulation
 from btlang.robots.simulated import SimulatedRobot
 
 from .cases import CASES, Case
@@ -73,7 +73,7 @@ def test_every_example_is_listed() -> None:
 @pytest.mark.parametrize("name", CASES)
 def test_run(name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
     case = CASES[name]
-    monkeypatch.setattr(simulated, "SimulatedRobot", Witness)
+    monkeypatch.setattr(simulation, "SimulatedRobot", Witness)
     path = tmp_path / "log.json"
     assert main(["run", *mission(name), *case.options, "--speed", "max", "--log", str(path)]) == case.code
     assert case.error in capsys.readouterr().err

@@ -1,0 +1,116 @@
+"""The missions that ship: what they are, their text, and copies of them with the worlds that they need."""
+
+from __future__ import annotations
+
+import os
+import re
+import textwrap
+from collections.abc import Iterable, Sequence
+
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
+from btlang.record import Record
+from btlang.text.source import Source, Span
+from btlang.vocabulary.shipped import shipped
+
+_COMMAND = re.compile(r"^#   btc .*$", re.MULTILINE)
+_WORLD = re.compile(r"--world (\S+)")
+_WIDTH = 80
+
+
+class Example(Record):
+    """A shipped mission. `about` is the comment at its top, `world` its world file ("" for the one that ships).
+
+    The comment ends with the command that runs it in the folder of the mission, with worlds in `worlds`.
+    """
+
+    name: str
+    about: str
+    world: str
+    text: str
+
+
+def examples() -> list[Example]:
+    """All shipped missions, by name."""
+    names = sorted(name[: -len(".txt")] for name in os.listdir(shipped("examples")) if name.endswith(".txt"))
+    return [_example(name) for name in names]
+
+
+def found(names: Iterable[str]) -> list[Example]:
+    """The missions of these names, with or without `.txt`. Raises MissionError (BT008)."""
+    known = {example.name: example for example in examples()}
+    wanted = [name.removesuffix(".txt") for name in names]
+    problems = [_unknown(name, known) for name in wanted if name not in known]
+    if problems:
+        raise MissionError(problems)
+    return [known[name] for name in dict.fromkeys(wanted)]
+
+
+def listing() -> list[str]:
+    """Each mission with what it does and its world, as lines to read."""
+    lines = []
+    for example in examples():
+        told = [example.about.removesuffix(":"), *([f"World: {example.world}"] if example.world else [])]
+        lines.append(example.name)
+        for text in told:
+            lines += textwrap.wrap(text, _WIDTH, initial_indent="    ", subsequent_indent="    ")
+    return [*lines, "", "To read one:    btc examples NAME", "To copy them:   btc examples --copy FOLDER [NAME ...]"]
+
+
+def copied(folder: str, chosen: Sequence[Example]) -> list[str]:
+    """Copies missions to a folder, and the worlds that they need to `worlds` in it; returns the paths written.
+
+    Nothing is overwritten: raises MissionError (BT009) with every file that is there already, before any is written.
+    A world that is there with the same text stays.
+    """
+    files = {os.path.join(folder, f"{example.name}.txt"): example.text.encode() for example in chosen}
+    worlds = {os.path.join(folder, example.world): example.world for example in chosen if example.world}
+    files |= {path: _data(world) for path, world in worlds.items()}
+    there = [path for path in files if os.path.lexists(path)]
+    kept = [path for path in there if path in worlds and _same(path, files[path])]
+    problems = [
+        _unwritable(path, "it is there already, and nothing is overwritten") for path in there if path not in kept
+    ]
+    if problems:
+        raise MissionError(problems)
+    written = [path for path in files if path not in kept]
+    for path in written:
+        try:
+            os.makedirs(os.path.dirname(path) or ".", exist_ok=True)
+            with open(path, "xb") as file:
+                file.write(files[path])
+        except OSError as error:
+            raise MissionError([_unwritable(path, (error.strerror or str(error)).lower())]) from None
+    return written
+
+
+def _example(name: str) -> Example:
+    text = _COMMAND.sub(lambda line: line[0].replace(" examples/", " "), _data(f"{name}.txt").decode("utf-8"), count=1)
+    command = _COMMAND.search(text)
+    assert command is not None, name
+    world = _WORLD.search(command[0])
+    about = " ".join(line.removeprefix("#").strip() for line in text[: command.start()].splitlines())
+    return Example(name, about, world[1] if world else "", text)
+
+
+def _data(name: str) -> bytes:
+    with open(shipped("examples", *name.split("/")), "rb") as file:
+        return file.read()
+
+
+def _same(path: str, data: bytes) -> bool:
+    try:
+        with open(path, "rb") as file:
+            return file.read() == data
+    except OSError:
+        return False
+
+
+def _unwritable(path: str, reason: str) -> Diagnostic:
+    return diagnostic("BT009", Span(Source("", path), 0, 0), file=path, reason=reason)
+
+
+def _unknown(name: str, known: Iterable[str]) -> Diagnostic:
+    from btlang.text.spelling import nearest
+
+    near = ", ".join(nearest(name.lower(), known))
+    return diagnostic("BT008", Span(Source("", name), 0, 0), name=name, help=f"The nearest: {near}" if near else "")

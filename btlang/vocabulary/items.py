@@ -1,0 +1,112 @@
+"""All that can be said as items to list: commands, conditions, connectives, and what may stand in braces."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator
+
+from btlang.record import Record
+from btlang.vocabulary.entry import Entry
+from btlang.vocabulary.pattern import Slot, forms
+from btlang.vocabulary.values import ValueType
+from btlang.vocabulary.vocabulary import Vocabulary
+
+# Commands come first; what packs bring follows, then the words of the language.
+_FIRST = ("motion", "navigation", "manipulation", "gestures", "speech", "sensing", "power")
+VALUES, WORLD = "values", "the world"
+"""Topics of what may stand in braces: numbers with units and lists of names, and the names of the world."""
+
+
+class Item(Record):
+    """One thing to list. `sort` is "command", "condition", "word" (a connective or form) or "value".
+
+    `ways` are all patterns that stand for it; `names` are further words that ask for it; `details` are lines about
+    its slots, its resources and its node.
+    """
+
+    topic: str
+    sort: str
+    ways: tuple[str, ...]
+    help: str = ""
+    example: str = ""
+    names: tuple[str, ...] = ()
+    details: tuple[str, ...] = ()
+
+    def words(self) -> frozenset[str]:
+        """All words of its patterns and names, in lower case, choices apart."""
+        return frozenset(re.findall(r"[^\W_]+(?:'\w+)?", " ".join((*self.ways, *self.names)).lower()))
+
+
+def items(vocabulary: Vocabulary) -> list[Item]:
+    """Everything that can be said, by topic and in the order to show it."""
+    commands = [_command(entry, vocabulary) for entries in vocabulary.entries.values() for entry in entries]
+    words = [item for role in vocabulary.about if (item := _word(role, vocabulary)) is not None]
+    values = [_value(kind, vocabulary) for kind in vocabulary.types.values()]
+    found = [*commands, *words, *values]
+    first = [topic for topic in _FIRST if any(item.topic == topic for item in commands)]
+    last = dict.fromkeys(item.topic for item in (*words, *values))
+    packs = [item.topic for item in commands if item.topic not in last]
+    order = list(dict.fromkeys((*first, *packs, *last)))
+    order.sort(key=(VALUES, WORLD).count)
+    return sorted(found, key=lambda item: order.index(item.topic))
+
+
+def _command(entry: Entry, vocabulary: Vocabulary) -> Item:
+    sort = "command" if entry.sort == "action" else "condition"
+    details = list(_slots(entry, vocabulary))
+    if entry.resources:
+        details.append("needs: " + ", ".join(entry.resources))
+    details.append(f"node: {entry.id}")
+    return Item(
+        entry.topic or "other", sort, entry.phrases, " ".join(entry.help.split()), entry.example, (entry.id,),
+        tuple(details),
+    )  # fmt: skip
+
+
+def _slots(entry: Entry, vocabulary: Vocabulary) -> Iterator[str]:
+    always = [{part.name for part in form if isinstance(part, Slot)} for text in entry.phrases for form in forms(text)]
+    for slot in entry.slots:
+        kind = vocabulary.types[slot.type]
+        line = f"{{{slot.name}}}: {_described(kind, vocabulary)}"
+        if slot.default is not None:
+            line += f"; {with_unit(slot.default, kind)} if left out"
+        elif not all(slot.name in names for names in always):
+            line += "; may be left out"
+        yield line
+
+
+def _word(role: str, vocabulary: Vocabulary) -> Item | None:
+    about = vocabulary.about[role]
+    counts = tuple(vocabulary.counts) if role == "count" else ()
+    ways = (*counts, *vocabulary.roles.get(role, ()))
+    if not ways:
+        return None
+    slots = dict.fromkeys(part.name for text in ways for form in forms(text) for part in form if isinstance(part, Slot))
+    details = tuple(f"{{{name}}}: {_described(vocabulary.types[name], vocabulary)}" for name in slots)
+    return Item(about.topic or "other words", "word", ways, about.help, about.example, (role,), details)
+
+
+def _value(kind: ValueType, vocabulary: Vocabulary) -> Item:
+    names = tuple(vocabulary.values.names(kind.name)) if kind.kind == "names" else ()
+    topic = WORLD if kind.kind == "names" and not kind.names else VALUES
+    return Item(topic, "value", (f"{{{kind.name}}}",), _described(kind, vocabulary), "", names)
+
+
+def _described(kind: ValueType, vocabulary: Vocabulary) -> str:
+    """What a slot of a type takes."""
+    if kind.kind == "quantity":
+        return f"a number and one of {', '.join(unit.words[0] for unit in kind.units)}"
+    if kind.kind == "names":
+        return ", ".join(vocabulary.values.names(kind.name)) or "nothing in this world"
+    if kind.kind == "text":
+        return "one word, or more in quotes"
+    least = "" if kind.least is None else f" from {kind.least:g} on"
+    return ("a whole number" if kind.whole else "a number") + least
+
+
+def with_unit(number: str, kind: ValueType) -> str:
+    """A port text as a mission would say it: `0.5 m`, `100%`."""
+    if kind.kind != "quantity":
+        return number
+    unit = kind.units[0].words[0]
+    return f"{number} {unit}" if unit[0].isalpha() else number + unit

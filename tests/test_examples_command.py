@@ -1,0 +1,108 @@
+"""`btc examples` lists, prints and copies the missions that ship; what was copied runs where it is."""
+
+from __future__ import annotations
+
+import os
+import shlex
+from pathlib import Path
+
+import pytest
+
+from btlang import examples
+from btlang.cli import main
+from tests.examples.cases import CASES
+
+ROOT = Path(__file__).parent.parent
+
+
+def command(text: str) -> list[str]:
+    """The words after `btc` of the command in a mission's comment."""
+    [line] = [line for line in text.splitlines() if line.startswith("#   btc ")]
+    return shlex.split(line.removeprefix("#   btc "))
+
+
+def test_every_mission_is_listed(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["examples"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line for line in lines if line and not line.startswith((" ", "To "))] == sorted(CASES)
+    at = lines.index("locked_lab")
+    assert lines[at + 1].startswith("    The lab is locked for a while, so")
+    assert lines[at + 4] == "    World: worlds/locked_lab.toml"
+    assert max(map(len, lines)) <= 80
+    assert not any(line.endswith(":") for line in lines)
+
+
+def test_worlds_are_those_that_the_missions_run_in() -> None:
+    worlds = {example.name: Path(example.world).stem for example in examples.examples()}
+    assert worlds == {name: case.world or "" for name, case in CASES.items()}
+
+
+@pytest.mark.parametrize("name", ["hello", "hello.txt"])
+def test_a_mission_is_printed(name: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["examples", name]) == 0
+    text = (ROOT / "examples" / "hello.txt").read_text(encoding="utf-8")
+    assert capsys.readouterr().out == text.replace("btc run examples/hello.txt", "btc run hello.txt")
+
+
+def test_unknown_names_are_told_all_at_once(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["examples", "helo", "dance", "roming"]) == 2
+    shown = capsys.readouterr()
+    assert shown.out == ""
+    assert shown.err.count("BT008") == 2
+    assert "The nearest: hello" in shown.err
+
+
+def test_a_copy_has_all_missions_and_worlds(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = tmp_path / "new" / "missions"
+    assert main(["examples", "--copy", str(folder)]) == 0
+    written = {path.relative_to(folder).as_posix() for path in folder.rglob("*") if path.is_file()}
+    shipped = ROOT / "examples"
+    assert written == {path.relative_to(shipped).as_posix() for path in shipped.rglob("*") if path.is_file()}
+    assert set(capsys.readouterr().out.splitlines()[:-1]) == {str(folder / name) for name in written}
+
+
+@pytest.mark.parametrize("name", CASES)
+def test_the_command_of_a_copy_runs_in_its_folder(
+    name: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    assert main(["examples", "--copy", ".", name]) == 0
+    case = CASES[name]
+    world = {f"worlds/{case.world}.toml"} if case.world else set()
+    assert {p.relative_to(tmp_path).as_posix() for p in tmp_path.rglob("*.*")} == {f"{name}.txt"} | world
+    words = command((tmp_path / f"{name}.txt").read_text(encoding="utf-8"))
+    assert words[:2] == ["run", f"{name}.txt"]
+    assert main([*words, "--speed", "max", "--quiet"]) == case.code, capsys.readouterr().err
+
+
+def test_nothing_is_overwritten(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "hello.txt").write_text("wave", encoding="utf-8")
+    (tmp_path / "roaming.txt").symlink_to("nowhere")
+    assert main(["examples", "--copy", str(tmp_path), "dance", "hello", "roaming"]) == 2
+    shown = capsys.readouterr().err
+    assert [line.split(": ")[1] for line in shown.splitlines() if "BT009" in line] == ["error BT009"] * 2
+    assert str(tmp_path / "hello.txt") in shown
+    assert str(tmp_path / "roaming.txt") in shown
+    assert "Traceback" not in shown
+    assert sorted(os.listdir(tmp_path)) == ["hello.txt", "roaming.txt"]
+    assert (tmp_path / "hello.txt").read_text(encoding="utf-8") == "wave"
+
+
+def test_missions_that_share_a_world_are_copied_one_by_one(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["examples", "--copy", str(tmp_path), "roaming"]) == 0
+    assert main(["examples", "--copy", str(tmp_path), "careful_walk"]) == 0
+    world = tmp_path / "worlds" / "walled_room.toml"
+    world.write_text(world.read_text(encoding="utf-8") + "# mine\n", encoding="utf-8")
+    assert main(["examples", "--copy", str(tmp_path), "look_before_you_go"]) == 2
+    assert str(world) in capsys.readouterr().err
+    assert world.read_text(encoding="utf-8").endswith("# mine\n")
+    assert not (tmp_path / "look_before_you_go.txt").exists()
+
+
+def test_a_folder_that_cannot_be_made(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = tmp_path / "file"
+    file.write_text("")
+    assert main(["examples", "--copy", str(file / "below"), "hello"]) == 2
+    shown = capsys.readouterr().err
+    assert "BT009" in shown
+    assert "Traceback" not in shown

@@ -1,0 +1,221 @@
+"""`btc words` and help on words: all that can be said is listed, and every example does what it says."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+import btlang
+from btlang.api import parse_tree, world_vocabulary
+from btlang.engine.status import FAILURE, SKIPPED, SUCCESS
+from btlang.vocabulary.items import items
+from btlang.vocabulary.language_tables import EXPLAINED, ROLES
+from btlang.vocabulary.listing import help_on, listing
+from btlang.vocabulary.load import load_vocabulary
+from btlang.vocabulary.pattern import forms
+
+VOCABULARY = world_vocabulary()
+ITEMS = items(VOCABULARY)
+EXAMPLES = {item.names[0]: item.example for item in ITEMS if item.sort in ("command", "word")}
+CONDITIONS = {item.names[0]: item.example for item in ITEMS if item.sort == "condition"}
+WHOLE = "\n".join(listing(VOCABULARY))
+
+# What cannot succeed where the robot starts: why it fails there, and the command after which it succeeds.
+NEEDS = {
+    "CloseHand": ("nothing is within reach of the right hand", "approach the cup"),
+    "CloseLeftHand": ("nothing is within reach of the left hand", "approach the cup"),
+    "Grasp": ("the cup is not within reach of the right hand", "approach the cup"),
+    "Release": ("the robot does not hold the cup", "pick up the cup"),
+    "PutDown": ("the robot does not hold the cup", "pick up the cup"),
+    "LookAtObject": ("the cup is behind the robot, where its head does not turn", "face the cup"),
+}
+HOLDS_AT_THE_START = {"HandEmpty", "PathClear", "BatteryFull"}
+
+
+def outcome(text: str) -> tuple[int, str]:
+    """How a mission ends and why it failed; it compiles without a warning and ends by itself."""
+    tree = parse_tree(text)
+    assert tree.warnings == ()
+    ended = tree.run(speed="max", time_limit=120)
+    assert not ended.stopped
+    return ended.status, ended.failure.reason if ended.failure else ""
+
+
+@pytest.mark.parametrize(("name", "example"), EXAMPLES.items(), ids=list(EXAMPLES))
+def test_examples_run(name: str, example: str) -> None:
+    if name in NEEDS:
+        reason, first = NEEDS[name]
+        assert outcome(example) == (FAILURE, reason)
+        example = f"{first} then {example}"
+    assert outcome(example) == (SUCCESS, "")
+
+
+@pytest.mark.parametrize(("name", "example"), CONDITIONS.items(), ids=list(CONDITIONS))
+def test_examples_of_conditions_are_asked(name: str, example: str) -> None:
+    assert outcome(f"check that {example}")[0] == (SUCCESS if name in HOLDS_AT_THE_START else FAILURE)
+    assert outcome(f"if {example}, wave")[0] == (SUCCESS if name in HOLDS_AT_THE_START else SKIPPED)
+
+
+def test_everything_has_its_topic_help_and_example() -> None:
+    said = [item for item in ITEMS if item.sort != "value"]
+    assert {name for item in said for name in item.names} == {*VOCABULARY.entries, *EXPLAINED}
+    for item in said:
+        assert item.topic not in ("", "other", "other words"), item
+        assert item.help.endswith("."), item
+        assert item.example, item
+
+
+def test_examples_of_words_use_their_words() -> None:
+    for role in ROLES:
+        about, [item] = VOCABULARY.about[role], [item for item in ITEMS if item.names == (role,)]
+        words = {word for way in item.ways for form in forms(way) for word in form}
+        assert words & set(about.example.replace(",", "").split()), role
+
+
+def test_topics_come_in_order() -> None:
+    heads = [line[:-1] for line in WHOLE.splitlines() if line.endswith(":") and not line.startswith(" ")]
+    assert heads[:7] == ["motion", "navigation", "manipulation", "gestures", "speech", "sensing", "power"]
+    assert heads[7:] == [
+        *("joining", "conditions", "repeating", "timing", "trying", "names", "politeness"),
+        *("values", "the world"),
+    ]
+
+
+def test_lines_fit_a_terminal() -> None:
+    assert max(map(len, WHOLE.splitlines())) <= 80
+
+
+def test_entries_of_the_list() -> None:
+    assert (
+        "  go to {place}\n      Drives to a place. Fails when there is no free way.\n"
+        "      For example: go to the kitchen\n"
+    ) in WHOLE
+    assert "  battery is low  (condition)\n" in WHOLE
+    assert "  retry, retry to, keep trying to, keep trying\n" in WHOLE
+    assert "  {place}     dock, door, hall, kitchen, lab, living room, lobby, office\n" in WHOLE + "\n"
+    assert "  {duration}  a number and one of s, ms, min, h\n" in WHOLE
+
+
+def heads(lines: list[str]) -> list[str]:
+    """The first lines of what is listed, without topics."""
+    return [line.strip() for line in lines if line.startswith("  ") and not line.startswith("   ")]
+
+
+@pytest.mark.parametrize(
+    ("search", "found"),
+    [
+        ("speech", ["say {text}", "print {text}"]),
+        ("battery low", ["battery is low  (condition)"]),
+        ("Battery LOW", ["battery is low  (condition)"]),
+        ("Undock", ["undock"]),
+        ("recharge", ["charge [to {percent}]"]),
+        ("twice", ["once"]),
+        ("retry", ["retry"]),
+        ("kitchen", ["{place}     dock, door, hall, kitchen, lab, living room, lobby, office"]),
+        ("spot towards person", ["face {person}"]),
+    ],
+)
+def test_search(search: str, found: list[str]) -> None:
+    assert heads(listing(VOCABULARY, search)) == found
+
+
+def test_of_little_all_is_told() -> None:
+    assert listing(VOCABULARY, "undock") == ["power:", *("  " + line for line in help_on(VOCABULARY, "undock"))]
+    assert "needs: voice" not in "\n".join(listing(VOCABULARY, "speech"))
+
+
+def test_conditions_are_found_by_their_sort() -> None:
+    found = heads(listing(VOCABULARY, "conditions"))
+    assert len([line for line in found if line.endswith("  (condition)")]) == len(CONDITIONS)
+    assert "unless, except if, except when" in found
+    assert "go to {place}" not in found
+
+
+@pytest.mark.parametrize(
+    ("search", "near"),
+    [("wvae", "wave"), ("kichen", "kitchen"), ("move forwrd", "forward"), ("manipluation", "manipulation")],
+)
+def test_the_nearest_words_are_offered(search: str, near: str) -> None:
+    first, second = listing(VOCABULARY, search)
+    assert first == f"No phrase has the words: {search}"
+    assert near in second.removeprefix("The nearest: ").split(", ")
+    assert help_on(VOCABULARY, search) == [first, second]
+
+
+def test_help_on_a_phrase_tells_all() -> None:
+    expected = """\
+charge [to {percent}]
+    Docks and waits until the battery is full or holds the percentage.
+    also: charge/recharge [to {percent}]
+          charge/recharge battery [to {percent}]
+    {percent}: a number and one of %; 100% if left out
+    needs: base
+    node: Charge
+    for example: charge to 80%"""
+    for text in ("charge", "Charge", "charge to 50%", "recharge the battery", " charge  then wave"):
+        assert "\n".join(help_on(VOCABULARY, text)) == expected, text
+
+
+@pytest.mark.parametrize(
+    ("text", "firsts"),
+    [
+        ("go to", ["go to {place}", "go to {person}", "approach {object}"]),
+        ("wall in front", ["wall in front  (condition)"]),
+        ("after", ["after", "after {duration}"]),
+        ("wait for", ["wait [for] {duration}", "wait until"]),
+        ("and at the same time", ["and"]),
+        ("is", ["is"]),
+        ("define_strong", ["means"]),
+        ("forever", ["once"]),
+        ("3 times", ["once"]),
+        ("{duration}", ["  {duration}  a number and one of s, ms, min, h"]),
+        ("then wave", ["then"]),
+        ("speech", ["speech:"]),
+    ],
+)
+def test_help_finds(text: str, firsts: list[str]) -> None:
+    blocks = "\n".join(help_on(VOCABULARY, text)).split("\n\n")
+    assert [block.splitlines()[0] for block in blocks] == firsts
+
+
+def test_help_on_nothing_shows_the_topics() -> None:
+    lines = help_on(VOCABULARY, " ")
+    assert lines[0].startswith("Ask for help")
+    assert [line[2:16].strip() for line in lines[1:]] == list(dict.fromkeys(item.topic for item in ITEMS))
+    assert "  joining       then, and, or, after" in lines
+
+
+@pytest.mark.parametrize("text", ["((", '"', "\0", "\n", "{", "then", "   (", "#", "é", "1" * 400])
+def test_any_text_gets_an_answer(text: str) -> None:
+    for lines in (help_on(VOCABULARY, text), listing(VOCABULARY, text)):
+        assert lines
+        assert all(line.isprintable() for line in lines)
+
+
+def test_packs_and_functions_are_listed(tmp_path: Path) -> None:
+    pack = tmp_path / "band.toml"
+    pack.write_text(
+        '[[type]]\nname = "song"\nvalues = ["la paloma", "yesterday"]\n'
+        '[[action]]\nphrase = "play {song}"\nid = "Play"\ntopic = "music"\nhelp = "Plays."\n'
+        '[roles]\nthen = ["und"]\nand = ["while also"]\n'
+        '[about]\nthen = { topic = "zusammen", help = "Danach.", example = "wave und nod" }\n',
+        encoding="utf-8",
+    )
+
+    @btlang.action("cheer")
+    def cheer() -> None:
+        """Cheers
+        aloud."""
+
+    vocabulary = load_vocabulary([str(pack), cheer])
+    lines = listing(vocabulary)
+    topics = [line for line in lines if line.endswith(":") and not line.startswith(" ")]
+    assert topics[7:11] == ["music:", "other:", "zusammen:", "joining:"]
+    assert listing(vocabulary, "cheer") == ["other:", "  cheer", "      Cheers aloud.", "      node: Cheer"]
+    assert "    {song}: la paloma, yesterday" in help_on(vocabulary, "Play")
+    assert "  {song}      la paloma, yesterday" in lines
+    assert "  {place}     nothing in this world" in lines
+    assert listing(vocabulary, "danach")[1:] == ["  und", "      Danach.", "      for example: wave und nod"]
+    assert vocabulary.about["and"].help == VOCABULARY.about["and"].help
+    assert vocabulary.about["and"].example == ""
