@@ -112,16 +112,23 @@ def _word(
 class RunnableTree:
     """A compiled mission, with the words and the world that it was compiled with.
 
-    `tree` is the tree itself; `warnings` are diagnostics that do not keep it from running.
+    `tree` is the tree itself; `warnings` are diagnostics that do not keep it from running. Each run takes place in a
+    fresh world, or on the `stage` where one is given, which goes on from run to run.
     """
 
     def __init__(
-        self, tree: Tree, vocabulary: Vocabulary, world: str | None = None, warnings: Sequence[Diagnostic] = ()
+        self,
+        tree: Tree,
+        vocabulary: Vocabulary,
+        world: str | None = None,
+        warnings: Sequence[Diagnostic] = (),
+        stage: Simulation | None = None,
     ) -> None:
         self.tree = tree
         self.vocabulary = vocabulary
         self.world = world
         self.warnings = tuple(warnings)
+        self.stage = stage
         self.sink_errors: list[Exception] = []
         """What sinks of the latest run raised; such a sink gets no more events, and the mission goes on."""
         self._controls: Controls | None = None
@@ -194,20 +201,18 @@ class RunnableTree:
         rate: float = 20.0,
         time_limit: float | None = None,
         sinks: Iterable[Sink] = (),
-        on: Simulation | None = None,
     ) -> Outcome:
         """Runs the mission from its start until it ends, `time_limit` seconds are over, or Ctrl-C.
 
         `speed` is "real", "max" or a factor of real time; `rate` is in ticks a second of the mission; `sinks` get every
-        event (see btlang.run.events); `on` is where the mission runs, by default a fresh world.
-        Raises MissionError where a command cannot run (BT080).
+        event (see btlang.run.events). Raises MissionError where a command cannot run (BT080).
         """
         factor = {"real": 1.0, "max": math.inf}.get(speed) if isinstance(speed, str) else speed
         if factor is None or not factor >= SLOWEST:
             raise ValueError(f'speed is "real", "max" or a number from {SLOWEST} on: {speed!r}')
         if not RATES[0] <= rate <= RATES[1]:
             raise ValueError(f"rate is from {RATES[0]:g} to {RATES[1]:g} ticks a second: {rate!r}")
-        runner = self._start(rate, factor, time_limit, sinks, on)
+        runner = self._start(rate, factor, time_limit, sinks)
         try:
             return runner.run()
         finally:
@@ -219,14 +224,13 @@ class RunnableTree:
         speed: float = 1.0,
         time_limit: float | None = None,
         sinks: Iterable[Sink] = (),
-        on: Simulation | None = None,
     ) -> Runner:
-        """A new engine on a fresh or a given world."""
+        """A new engine on the stage."""
         from btlang.backends.engine import bind_leaf
         from btlang.engine.engine import EngineError
         from btlang.run.runner import Runner, traced_engine
 
-        stage = load_simulation(self.world) if on is None else on
+        stage = load_simulation(self.world) if self.stage is None else self.stage
         stage.begin(sinks)
         try:
             engine = traced_engine(

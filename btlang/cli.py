@@ -41,17 +41,21 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 
 def _run(options: argparse.Namespace) -> int:
+    from btlang.pictures.command import pictures_of
     from btlang.run.command import run_mission
 
     tree = _tree(options)
-    return run_mission(
-        tree,
-        speed=options.speed,
-        rate=options.rate,
-        time_limit=options.time_limit,
-        log=options.log,
-        quiet=options.quiet,
-    )
+    with pictures_of(tree, options.picture, options.tree_picture) as sinks:
+        return run_mission(
+            tree,
+            speed=options.speed,
+            rate=options.rate,
+            time_limit=options.time_limit,
+            log=options.log,
+            quiet=options.quiet,
+            lines=options.lines,
+            sinks=sinks,
+        )
 
 
 def _check(options: argparse.Namespace) -> int:
@@ -64,8 +68,20 @@ def _show_tree(options: argparse.Namespace) -> int:
     from btlang.tree.dump import plain
 
     tree = _tree(options)
+    if options.picture is not None:
+        _draw_tree(tree, options.picture, options.apart)
+        return SUCCESS
     print(plain(tree.tree) if options.plain else tree)
     return SUCCESS
+
+
+def _draw_tree(tree: RunnableTree, path: str, apart: bool) -> None:
+    from btlang.pictures.files import check_picture
+    from btlang.pictures.tree_picture import draw_tree
+
+    check_picture(path)
+    draw_tree(tree.tree, tree.label, tree.is_action, path, apart=apart)
+    print(f"The tree is drawn in {path}.")
 
 
 def _words(options: argparse.Namespace) -> int:
@@ -76,7 +92,27 @@ def _words(options: argparse.Namespace) -> int:
     return SUCCESS
 
 
-_VERBS = {"run": _run, "check": _check, "tree": _show_tree, "words": _words}
+def _examples(options: argparse.Namespace) -> int:
+    from btlang import examples
+
+    chosen = examples.found(options.name) if options.name else examples.examples()
+    if options.copy is not None:
+        written = examples.copied(options.copy, chosen)
+        print("\n".join((*written, f"The command at the top of each mission runs it in the folder {options.copy}.")))
+    elif options.name:
+        print("\n\n".join(example.text.rstrip("\n") for example in chosen))
+    else:
+        print("\n".join(examples.listing()))
+    return SUCCESS
+
+
+def _repl(options: argparse.Namespace) -> int:
+    from btlang.repl.loop import run_repl
+
+    return run_repl(keywords=options.keywords, world=options.world, parser=options.parser, speed=options.speed)
+
+
+_VERBS = {"repl": _repl, "run": _run, "check": _check, "tree": _show_tree, "words": _words, "examples": _examples}
 
 
 def _tree(options: argparse.Namespace) -> RunnableTree:
@@ -91,29 +127,45 @@ def _tree(options: argparse.Namespace) -> RunnableTree:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser("btc", description="Compiles and runs robot missions in plain English.")
     parser.add_argument("--version", action="version", version=f"btc {btlang.__version__}")
-    verbs = parser.add_subparsers(dest="verb", required=True, metavar="VERB")
+    verbs = parser.add_subparsers(dest="verb", metavar="VERB")
+    parser.set_defaults(verb="repl", keywords=[], world=None, parser=DEFAULT_PARSER, speed="real")
     words = argparse.ArgumentParser(add_help=False)
     words.add_argument(
         "--keywords", action="append", default=[], metavar="FILE", help="further keyword file, or name of a pack"
     )
     words.add_argument("--world", metavar="FILE", help="world file (default: the world that ships)")
-    mission = argparse.ArgumentParser(add_help=False, parents=[words])
+    reading = argparse.ArgumentParser(add_help=False, parents=[words])
+    reading.add_argument("--parser", choices=list(PARSERS), default=DEFAULT_PARSER, help="(default: %(default)s)")
+    paced = argparse.ArgumentParser(add_help=False)
+    paced.add_argument("--speed", type=_speed, default="real", help="real, max, or a factor of real time")
+    mission = argparse.ArgumentParser(add_help=False, parents=[reading])
     text = mission.add_mutually_exclusive_group(required=True)
     text.add_argument("file", nargs="?", metavar="FILE", help="mission, or - for standard input")
     text.add_argument("-c", dest="text", metavar="TEXT", help="mission as text")
-    mission.add_argument("--parser", choices=list(PARSERS), default=DEFAULT_PARSER, help="(default: %(default)s)")
 
-    run = verbs.add_parser("run", parents=[mission], help="run a mission on the simulated robot")
-    run.add_argument("--speed", type=_speed, default="real", help="real, max, or a factor of real time")
+    verbs.add_parser("repl", parents=[reading, paced], help="type a mission line by line; what `btc` alone does")
+    run = verbs.add_parser("run", parents=[mission, paced], help="run a mission on the simulated robot")
     run.add_argument("--rate", type=_between(*RATES), default=20.0, metavar="HZ", help="ticks a second (default: 20)")
     run.add_argument("--for", type=_seconds, dest="time_limit", metavar="DURATION", help="stop after e.g. 60s, 2min")
     run.add_argument("--log", metavar="FILE", help="write every event as a line of JSON")
+    run.add_argument(
+        "--picture", type=_picture(".svg", ".png", ".gif"), metavar="FILE", help="draw the run: .svg, .png or .gif"
+    )
+    run.add_argument(
+        "--tree-picture", type=_picture(".svg", ".png"), metavar="FILE", help="draw the tree and how its nodes ended"
+    )
+    run.add_argument("--lines", action="store_true", help="plain lines also where the output is a terminal")
     run.add_argument("--quiet", action="store_true", help="print nothing but errors")
     verbs.add_parser("check", parents=[mission], help="say what is wrong with a mission")
     tree = verbs.add_parser("tree", parents=[mission], help="print the behavior tree of a mission")
     tree.add_argument("--plain", action="store_true", help="one line a node: Id port=value")
+    tree.add_argument("--picture", type=_picture(".svg", ".png"), metavar="FILE", help="draw the tree: .svg or .png")
+    tree.add_argument("--apart", action="store_true", help="draw each named subtree once, below the tree")
     listed = verbs.add_parser("words", parents=[words], help="list what can be said")
-    listed.add_argument("search", nargs="*", metavar="SEARCH", help="only phrases with these words")
+    listed.add_argument("search", nargs="*", metavar="SEARCH", help="only this topic, or what has these words")
+    shown = verbs.add_parser("examples", help="list the missions that ship, print them or copy them")
+    shown.add_argument("--copy", metavar="FOLDER", help="copy them to a folder, with the worlds that they need")
+    shown.add_argument("name", nargs="*", metavar="NAME", help="only these")
     return parser
 
 
@@ -132,6 +184,19 @@ def _between(least: float, most: float) -> Callable[[str], float]:
         return value
 
     return number
+
+
+def _picture(*endings: str) -> Callable[[str], str]:
+    def path(text: str) -> str:
+        from btlang.pictures.files import ending
+
+        try:
+            ending(text, endings)
+        except ValueError as problem:
+            raise argparse.ArgumentTypeError(str(problem)) from None
+        return text
+
+    return path
 
 
 def _seconds(text: str) -> float:

@@ -71,7 +71,6 @@ def test_exit_codes(btc: Screen) -> None:
 @pytest.mark.parametrize(
     "arguments",
     [
-        [],
         ["fly"],
         ["run"],
         ["run", "a.txt", "-c", "wave"],

@@ -14,7 +14,7 @@ from btlang.frontends.matching import Matcher
 from btlang.frontends.token import Token
 from btlang.record import Record
 from btlang.text.source import Source
-from btlang.text.spelling import nearest_start
+from btlang.text.spelling import nearest
 from btlang.vocabulary.continuations import Begun, begun, meanings, values_on, ways_on
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.pattern import Slot, forms
@@ -25,6 +25,7 @@ from btlang.vocabulary.vocabulary import DEFINING, Vocabulary
 _MOST_TOKENS_BACK = 6  # a phrase that is being written may look like that many shorter ones
 _LONG_ENOUGH = 3  # letters; a shorter word is no misspelling yet
 _MOST_CORRECTIONS = 3
+_LOOK_AHEAD = frozenset(("and", "or"))  # whether these are in their place depends on what follows
 _MAY_FOLLOW = ((), ("command",), ("condition",), ("close",))
 _LINE_STARTS = frozenset(("newline", "semi", "indent", "dedent"))
 
@@ -43,9 +44,10 @@ class Completion(Record):
     spelling: bool = False
 
 
-def completions(text: str, vocabulary: Vocabulary) -> list[Completion]:
+@lru_cache(maxsize=4)  # an editor asks more than once while the text stands as it is
+def completions(text: str, vocabulary: Vocabulary) -> tuple[Completion, ...]:
     """All that may follow the text, what goes on a phrase first; none inside quotes or behind an error."""
-    return Completer(text, vocabulary).found()
+    return tuple(Completer(text, vocabulary).found())
 
 
 class Completer:
@@ -54,6 +56,7 @@ class Completer:
     def __init__(self, text: str, vocabulary: Vocabulary) -> None:
         self._vocabulary = vocabulary
         self._values = vocabulary.values
+        self._text = text
         self._partial = _last_word(text)
         self._start = len(text) - len(self._partial)
         self._source = Source(text[: self._start] + "(")  # the bracket stands for what is to come
@@ -70,7 +73,7 @@ class Completer:
             return []
         start = self._partial.lower()
         options = list(self._options(start)) or list(self._defining(start))
-        if not options and len(self._partial) >= _LONG_ENOUGH:
+        if not options and len(self._partial) >= _LONG_ENOUGH and self._is_unknown():
             options = self._corrections()
         unique = {option.text: option for option in reversed(options) if option.text != self._partial}
         return list(reversed(unique.values()))
@@ -90,10 +93,17 @@ class Completer:
         if not start and not self._is_broken(len(tokens)) and self._may_stand(len(tokens), "close"):
             yield Completion(")", self._start, "connective", "ends the group")
 
+    def _is_unknown(self) -> bool:
+        """Whether the word being written belongs to nothing that is known."""
+        lexer = Lexer(Source(self._text), self._vocabulary, explain=False)
+        return bool(lexer.tokens) and any(t.kind == "unknown" and t.end > self._start for t in lexer.tokens)
+
     def _corrections(self) -> list[Completion]:
         options = {option.text: option for option in self._options("")}
-        likely = nearest_start([self._partial.lower()], {text: [text.split()[0].lower()] for text in options})
-        return [options[text].replace(spelling=True) for text in likely[:_MOST_CORRECTIONS]]
+        firsts = {text: text.split()[0].lower() for text in options}
+        likely = nearest(self._partial.lower(), dict.fromkeys(firsts.values()))
+        found = [options[text].replace(spelling=True) for word in likely for text in options if firsts[text] == word]
+        return found[:_MOST_CORRECTIONS]
 
     def _from(self, at: int, start: str) -> Iterator[Completion]:
         """Ways to go on where the token at a place is the beginning of a phrase; at the end, where one begins."""
@@ -174,9 +184,11 @@ class Completer:
         """The matching stage looks ahead, so what it says of a token depends on what follows."""
         first = self._statement(at)
         for after in _MAY_FOLLOW:
-            failed = self._failures(at, kind, *after)
-            if not any(first <= place <= at + 1 for place in failed):
+            failed = [place for place in self._failures(at, kind, *after) if place >= first]
+            if not failed or failed[0] > at + 1:
                 return True
+            if failed[0] <= at and kind not in _LOOK_AHEAD:
+                return False
         return False
 
     def _failures(self, at: int, *kinds: str) -> list[int]:

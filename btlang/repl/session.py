@@ -151,7 +151,7 @@ class Session:
         return entries
 
     def _runnable(self, tree: Tree, warnings: Sequence[Diagnostic]) -> RunnableTree:
-        return RunnableTree(tree, self.vocabulary, self.world, warnings)
+        return RunnableTree(tree, self.vocabulary, self.world, warnings, self.simulation)
 
 
 def _used(tree: Tree, names: Sequence[str]) -> tuple[tuple[str, Node], ...]:

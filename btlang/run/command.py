@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
+import os
 import signal
 import sys
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
 from contextlib import AbstractContextManager, nullcontext
 
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
@@ -14,35 +15,59 @@ from btlang.run.json_log import JsonLog
 from btlang.run.lines import Lines
 from btlang.run.runner import Outcome
 from btlang.text.source import Source, Span
-from btlang.tree.node import Node
+from btlang.tree.node import Node, Tree
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Protocol, TextIO
 
+    from btlang.run.controls import Controls
     from btlang.run.events import Sink
+    from btlang.run.live.view import LiveView
 
     class Runnable(Protocol):
         """What can be run from the command line."""
+
+        tree: Tree
 
         def run(self, *, speed: float | str, rate: float, time_limit: float | None, sinks: list[Sink]) -> Outcome: ...
 
         @property
         def sink_errors(self) -> list[Exception]: ...
 
+        @property
+        def controls(self) -> Controls: ...
+
         def label(self, node: Node) -> str: ...
 
         def is_action(self, node: Node) -> bool: ...
 
 
+_LEAST_SIZE = os.terminal_size((30, 10))  # of a terminal in which the live view is of use
+
+
 def run_mission(
-    tree: Runnable, *, speed: float | str, rate: float, time_limit: float | None, log: str | None, quiet: bool
+    tree: Runnable,
+    *,
+    speed: float | str,
+    rate: float,
+    time_limit: float | None,
+    log: str | None,
+    quiet: bool,
+    lines: bool = False,
+    sinks: Iterable[Sink] = (),
 ) -> int:
-    """Runs and reports; returns the exit code. Raises MissionError where the log cannot be written (BT009)."""
-    sinks: list[Sink] = [] if quiet else [Lines(tree.label, tree.is_action, _print)]
+    """Runs and reports; returns the exit code. Raises MissionError where the log cannot be written (BT009).
+
+    On a terminal it shows the live view, elsewhere and where `lines` is true plain lines, and nothing when `quiet`.
+    `sinks` get all events too.
+    """
+    view = None if quiet or lines else _live_view(tree)
+    shown: list[Sink] = [view] if view is not None else [] if quiet else [Lines(tree.label, tree.is_action, _print)]
+    sinks = [*shown, *sinks]
     before = signal.signal(signal.SIGTERM, signal.default_int_handler)  # as Ctrl-C, from the first moment on
     try:
-        with _opened(log) as file:
+        with _opened(log) as file, view if view is not None else nullcontext():
             if file is not None:
                 sinks.append(JsonLog(file, tree.label))
             outcome = tree.run(speed=speed, rate=rate, time_limit=time_limit, sinks=sinks)
@@ -63,6 +88,26 @@ def run_mission(
     if not quiet:
         print(_ending(outcome))
     return 130 if outcome.stopped == "interrupted" else 0
+
+
+def _live_view(tree: Runnable) -> LiveView | None:
+    """None where standard output is no terminal in which it can be shown."""
+    output = sys.stdout
+    if output is None or not output.isatty() or os.environ.get("TERM", "dumb") in ("", "dumb", "unknown"):
+        return None
+    try:
+        columns, rows = os.get_terminal_size(output.fileno())
+    except (OSError, ValueError):
+        return None
+    if columns < _LEAST_SIZE.columns or rows < _LEAST_SIZE.lines:
+        return None
+    from btlang.engine.build import EngineError
+    from btlang.run.live.view import LiveView
+
+    try:
+        return LiveView(tree, output, sys.stdin)
+    except EngineError:
+        return None  # the run itself tells what is wrong
 
 
 def _opened(log: str | None) -> AbstractContextManager[TextIO | None]:

@@ -70,7 +70,7 @@ def test_undo_and_redo() -> None:
 def test_the_world_goes_on() -> None:
     session = Session()
     for text in ("go to the lab", "go to the lobby"):
-        assert session.compile(text).tree.run(speed="max", on=session.simulation).status == SUCCESS
+        assert session.compile(text).tree.run(speed="max").status == SUCCESS
     assert session.simulation.robot.pose.distance_to((3.0, 1.5)) < 0.05
     assert session.simulation.robot.battery < 100
     session.reset()
@@ -98,7 +98,10 @@ def test_a_mission_falls_into_its_statements(path: Path) -> None:
 
 
 def test_statements_of_a_mission() -> None:
-    text = "# About.\n\nPlease wave. Nod!  # both\nrepeat:\n  wave\n  if stuck, nod\notherwise nod\n\n# Names.\nbow is wave; fest is nod\nbow\n"
+    text = (
+        "# About.\n\nPlease wave. Nod!  # both\nrepeat:\n  wave\n  if stuck, nod\notherwise nod\n\n"
+        "# Names.\nbow is wave; fest is nod\nbow\n"
+    )
     entries = Session().entries_of(text)
     assert [entry.text for entry in entries] == [
         "# About.\n\nPlease wave. Nod!  # both",

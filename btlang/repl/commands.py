@@ -1,0 +1,294 @@
+"""The words of the REPL itself: what is done with a mission, and not by the robot."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.diagnostics.reading import read_source
+from btlang.frontends.definitions import find_definitions
+from btlang.record import Record
+from btlang.repl.session import Session
+from btlang.repl.store import Kept
+from btlang.robots.world import said
+from btlang.text.source import Source, Span
+from btlang.text.words import split
+from btlang.vocabulary.listing import help_on, listing
+from btlang.vocabulary.trie import longest
+
+_MARK = ":"  # before a word of the REPL that a mission knows too
+
+
+class Leave(Exception):
+    """The user wants to leave the REPL."""
+
+
+class Command(Record):
+    """One word of the REPL; `arguments` and `help` are for people."""
+
+    name: str
+    arguments: str
+    help: str
+
+
+COMMANDS = (
+    Command("help", "[PHRASE]", "tells about a phrase or word of the language, or about the REPL"),
+    Command("words", "[SEARCH]", "lists what can be said"),
+    Command("show", "[NAME|tree]", "shows the mission, one definition, or the tree of all"),
+    Command("names", "", "lists what is defined"),
+    Command("run", "", "runs the whole mission, as `btc run` would"),
+    Command("undo", "", "takes back the last line"),
+    Command("redo", "", "takes back an undo"),
+    Command("save", "[over] FILE", "writes the mission to a file; `over` replaces another file"),
+    Command("load", "FILE", "goes on with the mission of a file; `undo` brings the present one back"),
+    Command("new", "", "begins an empty mission; `undo` brings the present one back"),
+    Command("restore", "", "brings back the session that was left last"),
+    Command("world", "[FILE]", "shows the world and the robot in it, or goes to another world"),
+    Command("reset", "", "puts the world back to its start"),
+    Command("speed", "[real|max|FACTOR]", "how fast time passes when the robot moves"),
+    Command("quit", "", "leaves, as Ctrl-D twice does"),
+)
+_NAMES = {command.name: command for command in COMMANDS}
+
+
+def command_of(text: str, session: Session) -> tuple[str, str] | None:
+    """The word of the REPL that a line begins with, and the rest; None where the line belongs to the mission.
+
+    A word that the mission knows, as a phrase or as a name that is defined or being defined, is the mission's; but
+    `show tree` shows the tree, although the robot could print it.
+    """
+    line = text.strip()
+    name, _, rest = line.partition(" ")
+    if name.startswith(_MARK):
+        return name[1:].lower(), rest.strip()
+    if "\n" in line or name.lower() not in _NAMES:
+        return None
+    if name.lower() == "show" and (rest in ("", "tree") or rest.lower() in session.definitions):
+        return "show", rest
+    source = Source(f"{session.context()}{line}")
+    words = split(source, session.vocabulary.articles)
+    definitions = find_definitions(words, session.vocabulary)
+    at = words.lines[-1].first
+    known = (
+        longest(trie, words, at, session.vocabulary.values) for trie in (session.vocabulary.trie, definitions.trie)
+    )
+    return None if any(known) else (name.lower(), rest.strip())
+
+
+class Commands:
+    """Does what the words of the REPL say; `write` gets lines for the user, `run` runs the whole mission."""
+
+    def __init__(
+        self, session: Session, write: Callable[[str], object], run: Callable[[], object], left: Kept | None = None
+    ) -> None:
+        self._session = session
+        self._write = write
+        self._run_all = run
+        self._left = left
+        self.speed: float | str = "real"
+        self.saved = session.text
+        """The mission as some file has it."""
+        self.draft = ""
+        """What the next line begins with."""
+
+    @property
+    def is_saved(self) -> bool:
+        """Whether nothing would be lost."""
+        return self._session.text in ("", self.saved)
+
+    def do(self, name: str, rest: str) -> None:
+        """Raises MissionError where a file or text is wrong, Leave where the user wants to leave."""
+        deed = getattr(self, f"_{name}", None) if name in _NAMES else None
+        if deed is None:
+            self._write(f"There is no '{name}'; 'help' lists what there is.")
+        elif rest and not _NAMES[name].arguments:
+            self._write(f"'{name}' stands alone.")
+        else:
+            deed(rest)
+
+    def _help(self, rest: str) -> None:
+        if not rest:
+            self._write("\n".join(overview()))
+        elif rest in _NAMES:
+            self._write(_described(_NAMES[rest]))
+        else:
+            self._write("\n".join(help_on(self._session.vocabulary, rest)))
+
+    def _words(self, rest: str) -> None:
+        self._write("\n".join(listing(self._session.vocabulary, rest)))
+
+    def _show(self, rest: str) -> None:
+        session = self._session
+        if not session.entries:
+            self._write("There is nothing yet: type a command, such as: move forward 1 m")
+        elif rest == "tree":
+            self._write(str(session.compile_all()))
+        elif rest:
+            name = " ".join(rest.lower().split())
+            if name not in session.definitions:
+                known = ", ".join(session.definitions) or "none yet"
+                self._write(f"There is no name '{rest}'; defined are: {known}.")
+                return
+            definition = session.definitions[name]
+            tree = str(session.compile(definition).tree).splitlines()[2:]
+            self._write("\n".join([definition, *tree]))
+        else:
+            self._write(session.text.rstrip("\n"))
+
+    def _names(self, rest: str) -> None:
+        self._write("\n".join(self._session.definitions.values()) or "No name is defined: patrol is go to the lobby")
+
+    def _run(self, rest: str) -> None:
+        self._run_all()
+
+    def _undo(self, rest: str) -> None:
+        before = self._session.entries
+        if not self._session.undo():
+            self._write("There is nothing to take back.")
+            return
+        self._write_change(before, "The robot stays where it is.")
+
+    def _redo(self, rest: str) -> None:
+        before = self._session.entries
+        if not self._session.redo():
+            self._write("There is no undo to take back.")
+            return
+        self._write_change(before, "")
+
+    def _write_change(self, before: tuple[object, ...], note: str) -> None:
+        now = self._session.entries
+        gone = [entry.text for entry in before if entry not in now]  # type: ignore[attr-defined]
+        come = [entry.text for entry in now if entry not in before]
+        lines = [f"- {line}" for text in gone for line in text.splitlines()]
+        lines += [f"+ {line}" for text in come for line in text.splitlines()]
+        self._write("\n".join([*lines, note] if note else lines))
+
+    def _save(self, rest: str) -> None:
+        session = self._session
+        over = rest.startswith("over ")
+        path = rest.removeprefix("over ").strip() or session.file
+        if not path:
+            self._write("Save to which file? save mission.txt")
+            return
+        if os.path.exists(path) and path != session.file and not over:
+            self._write(f"{path} exists already. To replace it: save over {path}")
+            return
+        try:
+            with open(path, "w", encoding="utf-8", errors="surrogateescape") as file:
+                file.write(session.text)
+        except OSError as error:
+            reason = (error.strerror or str(error)).lower()
+            raise MissionError([diagnostic("BT009", Span(Source("", path), 0, 0), file=path, reason=reason)]) from None
+        session.file, self.saved = path, session.text
+        self._write(f"Saved {_lines(session.text)} to {path}.")
+
+    def _load(self, rest: str) -> None:
+        if not rest:
+            self._write("Load which file? load mission.txt")
+            return
+        source = read_source(rest)
+        self._session.change(self._session.entries_of(source.text, rest))
+        self._session.file, self.saved = rest, self._session.text
+        self._write(f"Loaded {_lines(source.text)} from {rest}. 'run' runs them, 'show' shows them.")
+
+    def _new(self, rest: str) -> None:
+        self._session.change(())
+        self._session.file = None
+        self._write("A new mission. 'undo' brings the last one back.")
+
+    def _restore(self, rest: str) -> None:
+        left = self._left
+        if left is None:
+            self._write("No session was left.")
+            return
+        entries = self._session.entries_of("\n".join(left.entries)) if left.entries else []
+        self._session.change((*self._session.entries, *entries))
+        self._left, self.draft = None, left.draft
+        left.path.unlink(missing_ok=True)
+        self._write(f"{_lines(self._session.text)} are back. 'run' runs them, 'show' shows them.")
+
+    def _world(self, rest: str) -> None:
+        session = self._session
+        if rest:
+            before = session.world, session.vocabulary, session.simulation
+            session.use_world(rest)
+            try:
+                session.entries_of(session.text, session.file or "<session>") if session.entries else None
+            except MissionError:
+                session.world, session.vocabulary, session.simulation = before
+                raise
+        self._write("\n".join(world_lines(session)))
+
+    def _reset(self, rest: str) -> None:
+        self._session.reset()
+        self._write(robot_line(self._session))
+
+    def _speed(self, rest: str) -> None:
+        from btlang.api import SLOWEST
+
+        if rest in ("real", "max"):
+            self.speed = rest
+        elif rest:
+            try:
+                factor = float(rest)
+            except ValueError:
+                factor = 0.0
+            if not SLOWEST <= factor <= 1e6:
+                self._write("The speed is real, max, or a factor such as 5.")
+                return
+            self.speed = factor
+        self._write(f"The speed is {self.speed if isinstance(self.speed, str) else f'{self.speed:g} times real time'}.")
+
+    def _quit(self, rest: str) -> None:
+        raise Leave
+
+
+def overview() -> list[str]:
+    """What the REPL is, its words and its keys."""
+    width = max(len(f"{command.name} {command.arguments}") for command in COMMANDS)
+    listed = [f"  {f'{command.name} {command.arguments}':<{width}}  {command.help}" for command in COMMANDS]
+    return [
+        "A line of the mission runs as soon as it is entered, and is kept: move forward 1 m",
+        "A definition is only kept: patrol is go to the lobby then go to the lab",
+        "A line that ends in ':' opens a block, which an empty line closes.",
+        "",
+        *listed,
+        "",
+        "  Tab  takes what is offered      Ctrl-F  mends what is underlined      Up  earlier lines",
+        "  Ctrl-C  stops the robot, or clears the line      Ctrl-D twice  leaves",
+        f"  A word of these that your mission knows too is the REPL's with a colon: {_MARK}show",
+    ]
+
+
+def robot_line(session: Session) -> str:
+    """Where the robot is and how it is."""
+    robot = session.simulation.robot
+    held = [said(name) for hand in ("left", "right") if (name := robot.holding(hand))]
+    parts = [
+        f"robot at ({robot.pose.x:.1f}, {robot.pose.y:.1f}) facing {robot.pose.heading:.0f}\N{DEGREE SIGN}",
+        f"battery {robot.battery:.0f}%",
+        *(["docked"] if robot.docked else []),
+        *([f"holds {' and '.join(held)}"] if held else []),
+    ]
+    return ", ".join(parts)
+
+
+def world_lines(session: Session) -> list[str]:
+    """The names of the world, and the robot in it."""
+    names = session.simulation.world.names
+    kinds = (("places", names.places), ("people", names.people), ("objects", names.objects))
+    return [
+        f"world   {session.world or 'the one that ships'}",
+        *(f"{kind:<7} {', '.join(known)}" for kind, known in kinds if known),
+        robot_line(session),
+    ]
+
+
+def _described(command: Command) -> str:
+    return f"{command.name} {command.arguments}".rstrip() + f": {command.help}"
+
+
+def _lines(text: str) -> str:
+    count = len(text.splitlines())
+    return f"{count} line{'' if count == 1 else 's'}"

@@ -1,0 +1,97 @@
+"""The keys of the REPL, beside those that every line editor has."""
+
+from __future__ import annotations
+
+from prompt_toolkit.filters import Condition, completion_is_selected
+from prompt_toolkit.key_binding import KeyBindings, KeyPressEvent
+
+from btlang.repl.commands import command_of
+from btlang.repl.entering import needs_more
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.repl.screen import Screen
+
+_INDENT = "  "
+
+
+def key_bindings(screen: Screen) -> KeyBindings:
+    """Enter, Tab, Ctrl-F, Ctrl-C, Ctrl-D and Backspace."""
+    keys = KeyBindings()
+    buffer = screen.buffer
+
+    @keys.add("enter", filter=completion_is_selected)
+    def take(event: KeyPressEvent) -> None:
+        buffer.complete_state = None  # what is selected stands in the line already
+
+    @keys.add("enter", filter=~completion_is_selected)
+    def enter(event: KeyPressEvent) -> None:
+        text = buffer.text
+        if not text.strip():
+            return
+        if command_of(text, screen.session) is None:
+            if needs_more(text):
+                _new_line(event)
+                return
+            errors = screen.preview().errors
+            if errors:
+                buffer.cursor_position = min(errors[0].span.end, len(text))
+                screen.refuse()
+                return
+        buffer.append_to_history()
+        event.app.exit(result=text.rstrip())
+
+    @keys.add("escape", "enter")
+    def new_line(event: KeyPressEvent) -> None:
+        _new_line(event)
+
+    @keys.add("tab")
+    def complete(event: KeyPressEvent) -> None:
+        state = buffer.complete_state
+        if state and len(state.completions) == 1:
+            buffer.apply_completion(state.completions[0])
+        elif state:
+            buffer.complete_next()
+        elif screen.fix() is not None and not screen.offers():
+            mend(event)
+        else:
+            buffer.start_completion(insert_common_part=True)
+
+    @keys.add("c-f", filter=Condition(lambda: screen.fix() is not None))
+    def mend(event: KeyPressEvent) -> None:
+        fix = screen.fix()
+        if fix is not None:
+            start, end, words = fix
+            after = len(buffer.text) - buffer.cursor_position
+            buffer.text = buffer.text[:start] + words + buffer.text[end:]
+            buffer.cursor_position = max(start + len(words), len(buffer.text) - after)
+
+    @keys.add("backspace", filter=Condition(lambda: bool(buffer.document.current_line_before_cursor)
+                                            and buffer.document.current_line_before_cursor.isspace()))  # fmt: skip
+    def unindent(event: KeyPressEvent) -> None:
+        buffer.delete_before_cursor(min(len(_INDENT), len(buffer.document.current_line_before_cursor)))
+
+    @keys.add("c-c")
+    def clear(event: KeyPressEvent) -> None:
+        if buffer.text:
+            buffer.append_to_history()  # so that nothing is lost: Up brings it back
+            buffer.reset()
+        else:
+            screen.note = "Ctrl-D twice leaves."
+
+    @keys.add("c-d", filter=Condition(lambda: not buffer.text))
+    def leave(event: KeyPressEvent) -> None:
+        if screen.leaving:
+            event.app.exit(exception=EOFError)
+        else:
+            screen.leaving = True
+            screen.note = "Ctrl-D again leaves."
+
+    return keys
+
+
+def _new_line(event: KeyPressEvent) -> None:
+    """The next line begins where this one does, or further in where this one opens a block."""
+    line = event.current_buffer.document.current_line
+    indent = line[: len(line) - len(line.lstrip())]
+    event.current_buffer.insert_text("\n" + indent + (_INDENT if line.rstrip().endswith(":") else ""))

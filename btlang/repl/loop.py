@@ -1,0 +1,138 @@
+"""The REPL: asks for an entry, runs or does what it says, and keeps it."""
+
+from __future__ import annotations
+
+import os
+import signal
+import sys
+from collections.abc import Iterable, Sequence
+
+from btlang.api import RunnableTree
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.render import render
+from btlang.frontends.mission import DEFAULT_PARSER
+from btlang.repl.commands import Commands, Leave, command_of
+from btlang.repl.entering import entries
+from btlang.repl.session import Session
+from btlang.repl.store import Kept, Store, state_folder
+from btlang.run.command import run_mission
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import NoReturn
+
+_TERMINATED = 143
+
+
+def run_repl(
+    *,
+    keywords: Sequence[str] = (),
+    world: str | None = None,
+    parser: str = DEFAULT_PARSER,
+    speed: float | str = "real",
+) -> int:
+    """Runs until the user leaves or the input ends; returns the exit code. Raises MissionError for wrong files."""
+    session = Session(keywords, world, parser)
+    if not _is_terminal():
+        return Repl(session, Store(None), speed).read(sys.stdin or ())
+    store = Store(state_folder())
+    before = signal.signal(signal.SIGTERM, _terminate)
+    try:
+        Repl(session, store, speed, store.left()).talk()
+    finally:
+        signal.signal(signal.SIGTERM, before)
+    return 0
+
+
+class Repl:
+    """One session, at the keyboard (`talk`) or from a file of lines (`read`)."""
+
+    def __init__(self, session: Session, store: Store, speed: float | str, left: Kept | None = None) -> None:
+        self._session = session
+        self._store = store
+        self._left = left
+        self._commands = Commands(session, print, self._run_all, left)
+        self._commands.speed = speed
+
+    def talk(self) -> None:
+        """At the keyboard, until the user leaves."""
+        from btlang.repl.screen import CONTINUED, PROMPT, Screen
+
+        screen = Screen(self._session, self._store)
+        print("btlang: type what the robot is to do. 'help' tells more; Ctrl-D leaves.")
+        if self._store.problem:
+            print(f"What you type is not kept: {self._store.problem}")
+        if self._left is not None:
+            print(f"The last session was left with {_count(self._left)}: 'restore' brings it back.")
+        while True:
+            try:
+                text = screen.ask(self._commands.draft)
+            except EOFError:
+                break
+            self._commands.draft = ""
+            print(PROMPT + text.replace("\n", f"\n{CONTINUED}"))
+            try:
+                self._do(text)
+            except Leave:
+                break
+            except KeyboardInterrupt:
+                print()
+            self._keep()
+        if self._commands.is_saved:
+            self._store.forget()
+        else:
+            print("This session is kept: after the next start, 'restore' brings it back.")
+
+    def read(self, lines: Iterable[str]) -> int:
+        """From lines; returns 0, or 1 where a command failed, or 2 where an entry was wrong."""
+        worst = 0
+        for text in entries(lines, self._session.vocabulary):
+            try:
+                worst = max(worst, self._do(text))
+            except Leave:
+                break
+        return worst
+
+    def _do(self, text: str) -> int:
+        """Returns the exit code that `btc run` would have. Raises Leave."""
+        try:
+            own = command_of(text, self._session)
+            if own is not None:
+                self._commands.do(*own)
+                return 0
+            compiled = self._session.compile(text)
+            self._session.add(compiled.entry)
+            self._keep()  # before it runs: a crash on the way loses nothing
+            for warning in compiled.tree.warnings:
+                print(render(warning))
+            if compiled.entry.has_command:
+                return self._run(compiled.tree)
+            print("Defined: " + ", ".join(name for name, _ in compiled.entry.definitions))
+        except MissionError as error:
+            print("\n\n".join(render(problem) for problem in error.diagnostics), file=sys.stderr)
+            return 2
+        return 0
+
+    def _run_all(self) -> None:
+        self._run(self._session.compile_all())
+
+    def _run(self, tree: RunnableTree) -> int:
+        return run_mission(tree, speed=self._commands.speed, rate=20.0, time_limit=None, log=None, quiet=False)
+
+    def _keep(self) -> None:
+        self._store.save([entry.text for entry in self._session.entries], "")
+
+
+def _is_terminal() -> bool:
+    streams = (sys.stdin, sys.stdout)
+    is_dumb = os.environ.get("TERM", "dumb") in ("", "dumb", "unknown")
+    return not is_dumb and all(stream is not None and stream.isatty() for stream in streams)
+
+
+def _count(left: Kept) -> str:
+    lines = sum(len(text.splitlines()) for text in left.entries) + bool(left.draft.strip())
+    return f"{lines} line{'' if lines == 1 else 's'}"
+
+
+def _terminate(*_: object) -> NoReturn:
+    raise SystemExit(_TERMINATED)

@@ -1,0 +1,89 @@
+"""What is shown while an entry is being typed: its words, what is wrong with it, and its tree."""
+
+from __future__ import annotations
+
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError
+from btlang.frontends.completion import Completion, completions
+from btlang.frontends.lexer import Lexer
+from btlang.record import Record
+from btlang.repl.session import Compiled, Session
+from btlang.text.source import Source
+from btlang.vocabulary.vocabulary import Vocabulary
+
+_UNFINISHED = frozenset(("BT004", "BT023", "BT027"))  # an open quote, bracket or block
+_UNKNOWN = frozenset(("BT010", "BT013"))
+_OPERANDS = frozenset(("command", "condition", "unknown", "define"))
+
+
+class Preview(Record):
+    """A text as the user may see it.
+
+    `unfinished` tells that what is wrong may only be that more is to come, `midword` that this is the rest of a word.
+    `tree` holds lines, () where there is none;
+    `marks` are characters of the text with "connective", "name" or "error".
+    """
+
+    problems: tuple[Diagnostic, ...] = ()
+    unfinished: bool = False
+    midword: bool = False
+    tree: tuple[str, ...] = ()
+    marks: tuple[tuple[int, int, str], ...] = ()
+
+    @property
+    def errors(self) -> tuple[Diagnostic, ...]:
+        """The problems that keep the entry from running."""
+        return tuple(problem for problem in self.problems if problem.is_error)
+
+
+def preview(session: Session, text: str) -> Preview:
+    """Compiles the entry. Raises nothing."""
+    if not text.strip():
+        return Preview()
+    marks = _marks(session, text)
+    try:
+        compiled = session.compile(text)
+    except MissionError as error:
+        own = tuple(problem for problem in error.diagnostics if problem.span.start <= len(text))
+        unfinished = _is_unfinished(own, text, session.vocabulary) and _goes_on(session, text)
+        spans = () if unfinished else tuple((p.span.start, p.span.end, "error") for p in own if p.is_error)
+        midword = unfinished and text[-1:].isalnum() and own[0].code in _UNKNOWN
+        return Preview(own, unfinished, midword, (), (*marks, *spans))
+    return Preview(compiled.tree.warnings, False, False, _tree_lines(compiled), marks)
+
+
+def continuations(session: Session, text: str) -> list[Completion]:
+    """What may follow the text that stands before the cursor."""
+    context = session.context()
+    found = completions(context + text, session.vocabulary)
+    return [option.replace(start=option.start - len(context)) for option in found]
+
+
+def _is_unfinished(problems: tuple[Diagnostic, ...], text: str, vocabulary: Vocabulary) -> bool:
+    """Whether all that is wrong is at the end, or waits for it."""
+    errors = [problem for problem in problems if problem.is_error]
+    rests = (text[p.span.end :].lower().split() for p in errors if p.code not in _UNFINISHED)
+    return all(vocabulary.articles.issuperset(rest) for rest in rests)
+
+
+def _goes_on(session: Session, text: str) -> bool:
+    """Whether anything but another spelling may follow."""
+    if text.count('"') % 2:
+        return True
+    return any(not option.spelling for option in continuations(session, text))
+
+
+def _tree_lines(compiled: Compiled) -> tuple[str, ...]:
+    """The tree as `btc tree` prints it; of definitions alone only their subtrees."""
+    lines = str(compiled.tree).splitlines()
+    return tuple(lines if compiled.entry.has_command else lines[2:])
+
+
+def _marks(session: Session, text: str) -> tuple[tuple[int, int, str], ...]:
+    tokens = Lexer(Source(text), session.vocabulary, explain=False).tokens
+    marks = []
+    for token in tokens:
+        if token.kind == "define":
+            marks.append((token.start, token.end, "name"))
+        elif token.kind not in _OPERANDS and token.end > token.start:
+            marks.append((token.start, token.end, "connective"))
+    return tuple(marks)

@@ -1,0 +1,248 @@
+"""The REPL on a terminal: the line being typed, what is wrong with it, what may follow, and its tree, drawn live."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+from prompt_toolkit.application import Application
+from prompt_toolkit.buffer import Buffer
+from prompt_toolkit.completion import CompleteEvent, Completer
+from prompt_toolkit.completion import Completion as Offer
+from prompt_toolkit.document import Document
+from prompt_toolkit.filters import Condition, has_completions
+from prompt_toolkit.formatted_text import StyleAndTextTuples
+from prompt_toolkit.history import FileHistory, History, InMemoryHistory
+from prompt_toolkit.input import Input
+from prompt_toolkit.layout import HSplit, Layout, Window
+from prompt_toolkit.layout.containers import ConditionalContainer, ScrollOffsets
+from prompt_toolkit.layout.controls import BufferControl, FormattedTextControl
+from prompt_toolkit.layout.dimension import Dimension
+from prompt_toolkit.layout.menus import CompletionsMenuControl
+from prompt_toolkit.lexers import Lexer
+from prompt_toolkit.output import Output
+from prompt_toolkit.styles import Style
+
+from btlang.repl.commands import COMMANDS, command_of, robot_line
+from btlang.repl.keys import key_bindings
+from btlang.repl.preview import Preview, continuations, preview
+from btlang.repl.session import Session
+from btlang.repl.store import Store
+
+PROMPT, CONTINUED = "> ", "  "
+_MENU_ROWS = 8
+_MOST_PROBLEMS = 3  # the first ones: the others often follow from them
+
+_STYLE = Style.from_dict({
+    "prompt": "bold",
+    "connective": "ansicyan",
+    "name": "ansigreen",
+    "error": "ansired underline",
+    "problem": "ansired",
+    "warning": "ansiyellow",
+    "unfinished": "ansibrightblack",
+    "tree": "",
+    "bottom": "ansibrightblack",
+    "completion-menu": "noinherit",
+    "completion-menu.completion.current": "reverse",
+    "completion-menu.meta": "noinherit ansibrightblack",
+    "completion-menu.meta.completion.current": "noinherit ansibrightblack",
+})  # fmt: skip
+
+
+class Screen:
+    """Asks for entries. `ask` returns a text that compiles, or a line for the REPL itself.
+
+    `input` and `output` are those of the terminal where none are given.
+    """
+
+    def __init__(
+        self, session: Session, store: Store, input: Input | None = None, output: Output | None = None
+    ) -> None:
+        self.session = session
+        self._store = store
+        self._seen: tuple[str, Preview] = ("", Preview())
+        self._tree: tuple[str, ...] = ()
+        self.note = ""
+        """A line at the bottom, until the text changes."""
+        self.leaving = False
+        """Whether the user has asked once to leave."""
+        self._refused = ""
+        history: History = InMemoryHistory() if store.problem else FileHistory(str(store.history))
+        self.buffer = Buffer(
+            completer=_Offers(session),
+            complete_while_typing=True,
+            history=history,
+            multiline=True,
+            on_text_changed=self._changed,
+        )
+        self.application: Application[str] = Application(
+            layout=self._layout(),
+            key_bindings=key_bindings(self),
+            style=_STYLE,
+            erase_when_done=True,
+            input=input,
+            output=output,
+        )
+
+    def ask(self, text: str = "") -> str:
+        """Lets the user type, from a text to begin with. Raises EOFError when the user wants to leave."""
+        self.buffer.reset(Document(text))
+        self._refused, self.note, self.leaving = "", "", False
+        self._tree = ()
+        return self.application.run()
+
+    def preview(self) -> Preview:
+        """Of the text as it is now."""
+        text = self.buffer.text
+        if self._seen[0] != text or not text:
+            is_own = command_of(text, self.session) is not None
+            self._seen = text, Preview() if is_own else preview(self.session, text)
+            self._tree = self._seen[1].tree or (self._tree if text.strip() and not is_own else ())
+        return self._seen[1]
+
+    def refuse(self) -> None:
+        """Shows what is wrong with the entry although more might come: the user wants to run it."""
+        self._refused = self.buffer.text
+
+    def _is_unfinished(self) -> bool:
+        return self.preview().unfinished and self._refused != self.buffer.text
+
+    def _changed(self, _: Buffer) -> None:
+        self.note, self.leaving = "", False
+        self._store.save([entry.text for entry in self.session.entries], self.buffer.text)
+
+    # -- what is drawn
+
+    def _layout(self) -> Layout:
+        line = Window(
+            BufferControl(self.buffer, lexer=_Marks(self.preview)),
+            get_line_prefix=lambda number, wraps: [("class:prompt", PROMPT if number == wraps == 0 else CONTINUED)],
+            wrap_lines=True,
+            dont_extend_height=True,
+        )
+        menu = Window(  # in the flow of the rows, and not floating above them: nothing hides what is wrong
+            CompletionsMenuControl(),
+            height=Dimension(min=1, max=_MENU_ROWS),
+            scroll_offsets=ScrollOffsets(top=1, bottom=1),
+            dont_extend_height=True,
+            dont_extend_width=True,
+            style="class:completion-menu",
+        )
+        problems = FormattedTextControl(self._problem_lines)
+        tree = FormattedTextControl(self._tree_lines)
+        bottom = FormattedTextControl(self._bottom_line)
+        rows = [
+            line,
+            ConditionalContainer(
+                Window(problems, dont_extend_height=True, wrap_lines=True),
+                filter=Condition(lambda: bool(self._problem_lines())),
+            ),
+            ConditionalContainer(menu, filter=has_completions),
+            ConditionalContainer(
+                Window(tree, dont_extend_height=True, height=Dimension(min=1)),
+                filter=Condition(lambda: bool(self._tree)),
+            ),
+            Window(bottom, height=1, style="class:bottom"),
+            Window(),  # takes the rows that are no longer needed: what is drawn never gets fewer
+        ]
+        return Layout(HSplit(rows), focused_element=line)
+
+    def _problem_lines(self) -> StyleAndTextTuples:
+        """Carets under the words, where each line of the entry stands on a line of its own, and what is wrong."""
+        seen, unfinished = self.preview(), self._is_unfinished()
+        lines: StyleAndTextTuples = []
+        for problem in seen.problems[:_MOST_PROBLEMS] if not (unfinished and seen.midword) else ():
+            if unfinished:
+                lines.append(("class:unfinished", f"{CONTINUED}{problem.message}\n"))
+                break
+            style = "class:problem" if problem.is_error else "class:warning"
+            start, end = problem.span.start, min(problem.span.end, len(self.buffer.text))
+            if "\n" not in self.buffer.text and len(PROMPT) + end < self._columns():
+                lines.append((style, " " * (len(PROMPT) + start) + "^" * max(1, end - start) + "\n"))
+            lines += [(style, f"{CONTINUED}{line}\n") for line in (problem.message, *problem.hint.splitlines())]
+        return _without_last_end(lines)
+
+    def _tree_lines(self) -> StyleAndTextTuples:
+        seen = self.preview()
+        style = "class:tree" if seen.tree else "class:unfinished"
+        menu = _MENU_ROWS if self.buffer.complete_state else 0
+        room = max(3, self._rows() - self.buffer.text.count("\n") - 4 - menu)
+        lines = list(self._tree)
+        if len(lines) > room:
+            lines = [*lines[: room - 1], f"... {len(lines) - room + 1} more lines"]
+        return _without_last_end([(style, f"{CONTINUED}{line}\n") for line in lines])
+
+    def _bottom_line(self) -> StyleAndTextTuples:
+        if self.note:
+            return [("class:bottom", CONTINUED + self.note)]
+        fix = self.fix()
+        keys = "Tab takes what is offered" if self.buffer.complete_state else "'help' tells more"
+        if fix is not None:
+            keys = f"Ctrl-F writes: {fix[2]}"
+        return [("class:bottom", f"{CONTINUED}{robot_line(self.session)} \N{MIDDLE DOT} {keys}")]
+
+    def fix(self) -> tuple[int, int, str] | None:
+        """The first correction that is proposed: characters from and to, and what to write there."""
+        for problem in self.preview().errors if not self._is_unfinished() else ():
+            if problem.fix is not None:
+                span, words = problem.fix
+                if span.end <= len(self.buffer.text):
+                    return span.start, span.end, words
+        return None
+
+    def offers(self) -> bool:
+        """Whether anything may follow at the cursor."""
+        return bool(continuations(self.session, self.buffer.document.text_before_cursor))
+
+    def _rows(self) -> int:
+        return self.application.output.get_size().rows
+
+    def _columns(self) -> int:
+        return self.application.output.get_size().columns
+
+
+class _Offers(Completer):
+    """What may follow, for the menu; at the start of an entry also the words of the REPL."""
+
+    def __init__(self, session: Session) -> None:
+        self._session = session
+
+    def get_completions(self, document: Document, complete_event: CompleteEvent) -> Iterable[Offer]:
+        text = document.text_before_cursor
+        if not text.strip() and not complete_event.completion_requested:
+            return
+        for option in continuations(self._session, text):
+            mark = "(spelling) " if option.spelling else ""
+            yield Offer(option.text, option.start - len(text), display_meta=mark + option.help)
+        if "\n" not in text and " " not in text:
+            for command in COMMANDS:
+                if command.name.startswith(text.lower()) and command.name != text:
+                    yield Offer(command.name, -len(text), display_meta=command.help)
+
+
+class _Marks(Lexer):
+    """Colours of the entry, from its preview."""
+
+    def __init__(self, seen: Callable[[], Preview]) -> None:
+        self._preview = seen
+
+    def lex_document(self, document: Document) -> Callable[[int], StyleAndTextTuples]:
+        styles = [""] * len(document.text)
+        for start, end, name in self._preview().marks:
+            styles[start:end] = [f"class:{name}"] * (min(end, len(styles)) - start)
+        starts = [0]
+        for line in document.lines:
+            starts.append(starts[-1] + len(line) + 1)
+
+        def line_of(number: int) -> StyleAndTextTuples:
+            text = document.lines[number]
+            return list(zip(styles[starts[number] : starts[number] + len(text)], text, strict=False))
+
+        return line_of
+
+
+def _without_last_end(lines: StyleAndTextTuples) -> StyleAndTextTuples:
+    if lines:
+        style, text = lines[-1][0], lines[-1][1]
+        lines[-1] = (style, text.rstrip("\n"))
+    return lines

@@ -1,0 +1,111 @@
+"""From events to a frame: keeps the state of the run and the lines of what happened, and words both."""
+
+from __future__ import annotations
+
+import os
+from collections import deque
+from collections.abc import Callable
+
+from btlang.engine.blackboard import Blackboard
+from btlang.engine.compile import expand
+from btlang.run.events import PeriodPassed, RobotEvent, StatusChanged
+from btlang.run.lines import Lines
+from btlang.run.live import frame
+from btlang.run.live.shape import Shape
+from btlang.run.live.state import Reading, State, read_robot
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Protocol
+
+    from btlang.run.controls import Controls
+    from btlang.run.events import Event
+    from btlang.tree.node import Node, Tree
+
+    class Viewed(Protocol):
+        """What the live view asks of a mission."""
+
+        tree: Tree
+
+        @property
+        def controls(self) -> Controls: ...
+
+        def label(self, node: Node) -> str: ...
+
+        def is_action(self, node: Node) -> bool: ...
+
+
+_MOST_WAITING = 50_000  # events; a terminal may be slower than the run, or be held by its user
+
+
+class Board:
+    """`note` may be called from any thread and takes no time; all else is for one thread, that which draws.
+
+    `changes` grows with each event. Raises EngineError for a tree that cannot be compiled.
+    """
+
+    def __init__(self, mission: Viewed, signs: frame.Signs) -> None:
+        places = expand(mission.tree, Blackboard())
+        nodes = [place.node for place in places]
+        span = mission.tree.root.span
+        self.changes = 0
+        self.state = State(Shape([place.parent for place in places]), [node.id for node in nodes])
+        self._title = frame.printable(os.path.basename(span.source.name)) if span is not None else "mission"
+        self._signs = signs
+        self._words = frame.Words(nodes, mission.label)
+        self._above: list[str] = []
+        self._lines: Callable[[Event], None] = Lines(mission.label, mission.is_action, self._above.append)
+        self._waiting: deque[Event | str] = deque(maxlen=_MOST_WAITING)
+        self._noted = self._taken = self._lost = 0  # events
+        self._period: tuple[PeriodPassed, Reading | None] | None = None
+
+    def note(self, event: Event | str) -> None:
+        """Keeps an event, or a line that was printed."""
+        if isinstance(event, PeriodPassed):
+            self._period = event, read_robot(event.robot)
+        else:
+            self._waiting.append(event)
+            self._noted += 1
+        self.changes += 1
+
+    def take(self) -> list[str]:
+        """Brings the state up to date; returns the lines of what happened since the last time."""
+        noted = self._noted  # before the count, so that an event that comes just now is not taken for lost
+        count = len(self._waiting)
+        lost = noted - self._taken - self._lost - count
+        for _ in range(count):
+            self._take(self._waiting.popleft())
+        self._taken += count
+        if self._period is not None:
+            self.state.period(*self._period)
+        if lost > 0:
+            self._lost += lost
+            self._above.append(f"         ({lost} events came too fast for this terminal)")
+        lines = self._above[:]
+        self._above.clear()
+        return lines
+
+    def frame(self, width: int, height: int, doing: str, keys: bool) -> list[frame.Line]:
+        """At most `height` lines (7 or more) while the run goes on. `doing` says what it does, "" that it has ended.
+
+        `keys` tells whether keys are read. A run that ended before it began leaves nothing to show.
+        """
+        state, signs, over = self.state, self._signs, not doing
+        below = [frame.robot_line(state, signs), frame.counts_line(state, signs)]
+        if over and self._period is None:
+            return []
+        if over:
+            return [*frame.tree_lines(state, self._words, height - 2, width, over, signs), *below]
+        tree = frame.tree_lines(state, self._words, height - 4, width, over, signs)
+        below.append(frame.keys_line(doing == "paused", keys, signs))
+        return [frame.header(self._title, state, doing, signs), *tree, *below]
+
+    def _take(self, event: Event | str) -> None:
+        if isinstance(event, str):
+            self._above.append(event)
+            return
+        if isinstance(event, StatusChanged):
+            self.state.change(event.index, event.status, event.t, event.reason)
+        elif isinstance(event, RobotEvent) and event.kind == "say":
+            self.state.said = str(event.data.get("text", ""))
+        self._lines(event)

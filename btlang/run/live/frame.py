@@ -1,0 +1,202 @@
+"""What the live view says: each line as pieces of text with a style, fitted to a width."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from rich.cells import cell_len, set_cell_size
+
+from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
+from btlang.record import Record
+from btlang.run.live.selection import LEAST_HEIGHT, Row, choose_rows
+from btlang.run.live.state import HALTED, SUSPENDED, Reading, State
+from btlang.tree.node import Node
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+    Line: TypeAlias = tuple[tuple[str, str], ...]
+    """Pieces of text, each with a style of rich."""
+
+_STYLES = {IDLE: "dim", RUNNING: "bold cyan", SUCCESS: "green", FAILURE: "bold red", SKIPPED: "dim"}
+_STYLES |= {HALTED: "yellow", SUSPENDED: "bold yellow"}
+_LABELS = {IDLE: "dim", RUNNING: "bold", FAILURE: "red", SKIPPED: "dim", SUSPENDED: "bold"}
+_KEYS = (("space", "pause"), ("s", "step"), ("q", "stop"))
+
+
+class Signs(Record):
+    """The characters that a terminal can show: one for each status, forks and lines of the tree, and marks."""
+
+    statuses: str
+    forks: tuple[str, str, str]
+    more: str
+    apart: str
+
+
+UNICODE = Signs("·▶✓✗–■‖", ("├── ", "└── ", "│   "), "…", " · ")  # noqa: RUF001
+ASCII = Signs(".>+x-!=", ("|-- ", "`-- ", "|   "), "...", " - ")
+
+
+class Words:
+    """The words for the nodes of a tree, each looked up once: id or command, and the sentence of what has children."""
+
+    def __init__(self, nodes: Sequence[Node], label: Callable[[Node], str]) -> None:
+        self._nodes = nodes
+        self._label = label
+        self._known: dict[int, tuple[str, str]] = {}
+
+    def of(self, index: int) -> tuple[str, str]:
+        """What a node is called, and the sentence it came from, "" where that says no more."""
+        found = self._known.get(index)
+        if found is None:
+            node = self._nodes[index]
+            sentence = node.span.text.strip() if node.children and node.span is not None else ""
+            first, more, _ = sentence.partition("\n")
+            name = self._label(node)
+            if (more and not first.endswith(":")) or first.lower() == name.lower():
+                first = ""  # the first of many sentences says too little, and a name twice too much
+            found = self._known[index] = printable(name), printable(first)
+        return found
+
+
+def printable(text: str) -> str:
+    """The text with a mark in place of each character that would do something to a terminal."""
+    return text if text.isprintable() else "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in text)
+
+
+def header(title: str, state: State, doing: str, signs: Signs) -> Line:
+    """Mission file, time, and what the run is doing."""
+    style = {"running": "bold cyan", "paused": "bold yellow"}.get(doing, "bold")
+    return ((title, "bold"), (f"{signs.apart}{state.now:.1f} s{signs.apart}", "dim"), (doing, style))
+
+
+def tree_lines(state: State, words: Words, height: int, width: int, over: bool, signs: Signs) -> list[Line]:
+    """At most `height` lines, but at least 3, none wider than `width`. `over` says that the run has ended."""
+    rows = choose_rows(state.shape, state.statuses, max(height, LEAST_HEIGHT))
+    step = 4 if max(row.depth for row in rows) * 4 <= width // 3 else 2
+    heads = _heads([row.depth for row in rows], step, signs)
+    lines: list[Line] = []
+    sentences: list[str] = []  # of the rows around the present one
+    for row, head in zip(rows, heads, strict=True):
+        del sentences[row.depth :]
+        if len(head) > width // 2:
+            head = signs.more + head[len(head) - width // 2 + len(signs.more) :]
+        if row.node < 0:
+            counts = f"{signs.more} " + ", ".join(f"{count} {kind}" for kind, count in row.left_out)
+            lines.append(((head, "dim"), (fitted(counts, width - len(head), signs), "dim italic")))
+            continue
+        sentence = words.of(row.node)[1]
+        shown = sentence if sentence not in sentences else ""
+        sentences.append(sentence)
+        lines.append(((head, "dim"), *_node(state, words, row, shown, width - len(head), over, signs)))
+    return lines
+
+
+def robot_line(state: State, signs: Signs) -> Line:
+    """Pose, battery, what it holds, its last words."""
+    robot = state.robot or Reading()
+    parts: list[str] = []
+    if robot.pose is not None:
+        pose = robot.pose
+        parts.append(f"x {_zero(pose.x, 2)} m  y {_zero(pose.y, 2)} m  heading {_zero(pose.heading, 0)}°")
+    if robot.battery is not None:
+        parts.append(f"battery {robot.battery:.0f}%")
+    held = [f"{name} ({hand})" for hand, name in (("left", robot.left), ("right", robot.right)) if name]
+    if held:
+        parts.append("holds " + ", ".join(held))
+    if state.said:
+        parts.append(f'said "{printable(state.said)}"')
+    return (("robot ", "dim"), (signs.apart.join(parts) or "-", ""))
+
+
+def counts_line(state: State, signs: Signs) -> Line:
+    """Ticks and overruns."""
+    late = "bold yellow" if state.overruns else ""
+    return (("ticks ", "dim"), (str(state.ticks), ""), (f"{signs.apart}overruns ", "dim"), (str(state.overruns), late))
+
+
+def keys_line(paused: bool, keys: bool, signs: Signs) -> Line:
+    """What the keys do; only Ctrl-C where the keyboard is not read."""
+    pieces: list[tuple[str, str]] = []
+    for key, deed in _KEYS if keys else (("Ctrl-C", "stop"),):
+        deed = "resume" if paused and deed == "pause" else deed
+        pieces += [(key, "bold"), (f" {deed}{signs.apart}", "dim")]
+    last = pieces.pop()[0].removesuffix(signs.apart)
+    return (*pieces, (last, "dim"))
+
+
+def _node(
+    state: State, words: Words, row: Row, sentence: str, width: int, over: bool, signs: Signs
+) -> list[tuple[str, str]]:
+    node = row.node
+    status = state.statuses[node]
+    if status == SUSPENDED and over:
+        status = HALTED
+    name, _ = words.of(node)
+    end = _seconds(state, node, status) + (f"  ({row.inside} node{'s' * (row.inside > 1)})" if row.inside else "")
+    note, note_style = _note(state, row, words, status)
+    room = width - 2 - cell_len(end) - min(cell_len(note), width // 2)
+    name = fitted(name, room, signs)
+    sentence = fitted(f"  {sentence}", room - cell_len(name), signs) if sentence else ""
+    note = fitted(note, width - 2 - cell_len(name + sentence + end), signs)
+    pieces = [(signs.statuses[status] + " ", _STYLES[status]), (name, _LABELS.get(status, ""))]
+    pieces += [(sentence, "dim italic"), (end, "cyan" if status == RUNNING else "dim"), (note, note_style)]
+    return pieces
+
+
+def _note(state: State, row: Row, words: Words, status: int) -> tuple[str, str]:
+    """What is to be said of the end of a node, with its style."""
+    if status == FAILURE:
+        reason = printable(_reason(state, row, words))
+        return (f"  {reason}" if reason else ""), "red"
+    is_leaf = state.shape.ends[row.node] == row.node + 1
+    return ("  halted" if status == HALTED and is_leaf else ""), "yellow"
+
+
+def _seconds(state: State, node: int, status: int) -> str:
+    """The time in a status that lasts, or the time that the node took."""
+    began = state.started.get(node)
+    if began is None or status in (IDLE, SKIPPED):
+        return ""
+    until = state.now if status == RUNNING else state.ended.get(node, state.now)
+    return f"  {until - began:.1f} s" if status == RUNNING or until > began else ""
+
+
+def _reason(state: State, row: Row, words: Words) -> str:
+    """Why a node failed; where it is folded up, which leaf in it failed and why."""
+    node, shape = row.node, state.shape
+    while row.inside and (failed := [child for child in shape.children(node) if state.statuses[child] == FAILURE]):
+        node = failed[-1]
+    reason = state.reasons.get(node, "")
+    parts = [words.of(node)[0]] if node != row.node else []
+    return ": ".join([*parts, reason] if reason else parts)
+
+
+def _heads(depths: list[int], step: int, signs: Signs) -> list[str]:
+    """The branches in front of each row, drawn from the last row up."""
+    fork, last_fork, line = (part[:1] + part[2:][-step + 1 :] if step < 4 else part for part in signs.forks)
+    heads: list[str] = []
+    lines: list[bool] = []  # for each depth, whether a row further down hangs there
+    for depth in reversed(depths):
+        lines += [False] * (depth + 1 - len(lines))
+        above = "".join(line if lines[d] else " " * step for d in range(1, depth))
+        heads.append(above + (fork if lines[depth] else last_fork) if depth else "")
+        lines[depth] = True
+        del lines[depth + 1 :]
+    heads.reverse()
+    return heads
+
+
+def fitted(text: str, width: int, signs: Signs) -> str:
+    """The text, its end replaced by an ellipsis where it is wider."""
+    if cell_len(text) <= width:
+        return text
+    room = width - len(signs.more)
+    return set_cell_size(text, room).rstrip() + signs.more if room > 0 else ""
+
+
+def _zero(value: float, digits: int) -> str:
+    """Without the sign of a zero that comes from rounding."""
+    text = f"{value:.{digits}f}"
+    return text.removeprefix("-") if not text.strip("-0.") else text

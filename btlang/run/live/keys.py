@@ -1,0 +1,91 @@
+"""Single keys of a terminal, read in a thread of their own."""
+
+from __future__ import annotations
+
+import os
+import re
+import select
+import threading
+from collections.abc import Callable
+
+try:
+    import termios
+    import tty
+except ImportError:  # Windows: the view then has no keys
+    termios = tty = None  # type: ignore[assignment]
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+_SEQUENCE = re.compile(r"\x1b(?:[\[O][0-?]*[ -/]*[@-~]?|.)?", re.DOTALL)  # an arrow key or the like
+_PATIENCE = 0.2  # seconds until a process in the background looks again
+
+
+class Keys:
+    """Calls `pressed` with each key between `begin` and `end`; those of Ctrl-C and Ctrl-Z stay signals.
+
+    Raises OSError where the terminal cannot be read key by key.
+    """
+
+    def __init__(self, descriptor: int, pressed: Callable[[str], object]) -> None:
+        if termios is None:
+            raise OSError("no single keys can be read here")
+        try:
+            self._modes: list[Any] = termios.tcgetattr(descriptor)
+        except termios.error as error:
+            raise OSError(str(error)) from error
+        self._descriptor = descriptor
+        self._pressed = pressed
+        self._woken, self._wake = os.pipe()
+        self._ended = False
+        self._thread = threading.Thread(target=self._read, name="btlang keys", daemon=True)
+
+    def begin(self) -> None:
+        """Keys come at once and are not shown. May be called again, after a stop of the process."""
+        if self.in_front and not self._ended:
+            tty.setcbreak(self._descriptor, termios.TCSANOW)
+        if not self._thread.is_alive():
+            self._thread.start()
+
+    def restore(self) -> None:
+        """The terminal is as it was before."""
+        if self.in_front:
+            termios.tcsetattr(self._descriptor, termios.TCSANOW, self._modes)
+
+    def end(self) -> None:
+        """The terminal is as it was, and no further key is read."""
+        self._ended = True
+        try:
+            self.restore()
+        finally:
+            os.write(self._wake, b".")
+            if self._thread.is_alive():
+                self._thread.join()
+            os.close(self._woken)
+            os.close(self._wake)
+
+    @property
+    def in_front(self) -> bool:
+        """Whether this process may use the terminal; one in the background would be stopped."""
+        try:
+            return os.tcgetpgrp(self._descriptor) == os.getpgrp()
+        except OSError:  # not the terminal that controls this process, so nothing would stop it
+            return True
+
+    def _read(self) -> None:
+        while not self._ended:
+            ready, _, _ = select.select([self._descriptor, self._woken], [], [])
+            if self._woken in ready:
+                return
+            if not self.in_front:
+                select.select([self._woken], [], [], _PATIENCE)
+                continue
+            try:
+                text = os.read(self._descriptor, 1024).decode(errors="ignore")
+            except OSError:
+                return
+            if not text:
+                return
+            for key in _SEQUENCE.sub("", text):
+                self._pressed(key)

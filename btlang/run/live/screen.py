@@ -1,0 +1,107 @@
+"""A part of the terminal that is drawn anew in place, below lines that stay."""
+
+from __future__ import annotations
+
+import os
+import re
+from collections.abc import Callable, Iterator, Sequence
+
+from rich.cells import cell_len
+from rich.console import Console
+from rich.text import Text
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import TextIO
+
+    from btlang.run.live.frame import Line
+
+# Asks the terminal to show what comes between the two at once; one that does not know it ignores it.
+_BEGIN, _END = "\x1b[?2026h", "\x1b[?2026l"
+_HIDE_CURSOR, _SHOW_CURSOR = "\x1b[?25l", "\x1b[?25h"
+_ERASE_LINE, _ERASE_BELOW = "\x1b[K", "\x1b[J"
+_CONTROL = re.compile("\x1b\\[[0-9;]*m")
+
+
+class Screen:
+    """Draws frames at the end of what a terminal shows. Lines that did not change are not written again.
+
+    Used by one thread at a time.
+    """
+
+    def __init__(self, output: TextIO, size: Callable[[], os.terminal_size]) -> None:
+        self._output = output
+        self._size = size
+        self._console = Console(file=output, width=1000, highlight=False, markup=False, emoji=False)
+        self._drawn: list[str] = []
+        self._width = 0
+        self._known: dict[tuple[Line, int], str] = {}
+
+    def size(self) -> tuple[int, int]:
+        """Columns that may be used, and rows. The last column stays free: some terminals wrap when it is written."""
+        columns, rows = self._size()
+        return max(columns - 1, 1), max(rows, 1)
+
+    def begin(self) -> None:
+        """Hides the cursor."""
+        self._write(_HIDE_CURSOR)
+
+    def draw(self, above: Sequence[str], frame: Sequence[Line]) -> None:
+        """Shows a frame in place of the one before, and further lines that stay above it."""
+        width, rows = self.size()
+        known, self._known = self._known, {}
+        lines: list[str] = []
+        for line in frame[: rows - 1]:
+            drawn = known.get((line, width)) or self._rendered(line, width)
+            self._known[line, width] = drawn
+            lines.append(drawn)
+        anew = bool(above) or width != self._width
+        if lines == self._drawn and not anew:
+            return
+        # Each line is erased where it is written: a terminal may keep what is erased at once for those who scroll up.
+        parts = [_BEGIN, self._to_the_top(width)]
+        parts += [f"{_ERASE_LINE}{part.expandtabs()}{_ERASE_LINE}\r\n" for line in above for part in line.split("\n")]
+        parts += self._changes(lines, anew)
+        parts.append(_END)
+        self._drawn, self._width = lines, width
+        self._write("".join(parts))
+
+    def leave(self) -> None:
+        """What is shown now stays, and the next frame begins on a line of its own."""
+        if self._drawn:
+            self._write("\r\n")
+        self._drawn, self._known = [], {}
+
+    def end(self) -> None:
+        """Shows the cursor again."""
+        self._write(_SHOW_CURSOR)
+
+    def _changes(self, lines: list[str], anew: bool) -> Iterator[str]:
+        """From the first line of the frame to its last; what is as before is passed over."""
+        for at, line in enumerate(lines):
+            if at:
+                yield "\r\n"
+            if anew or at >= len(self._drawn) or line != self._drawn[at]:
+                yield line + _ERASE_LINE
+        if anew or len(lines) < len(self._drawn):
+            yield _ERASE_BELOW
+
+    def _to_the_top(self, width: int) -> str:
+        """To the first line of the frame. A terminal that became narrower has wrapped its lines, as most do."""
+        if not self._drawn:
+            return "\r"
+        columns = width + 1
+        rows = [max(1, -(-cell_len(_CONTROL.sub("", line)) // columns)) for line in self._drawn]
+        up = sum(rows) - 1
+        return f"\r\x1b[{up}A" if up else "\r"
+
+    def _rendered(self, line: Line, width: int) -> str:
+        text = Text.assemble(*line, no_wrap=True, end="")
+        text.truncate(width, overflow="ellipsis" if self._console.encoding.startswith("utf") else "crop")
+        with self._console.capture() as captured:
+            self._console.print(text, end="", crop=False, soft_wrap=True)
+        return captured.get()
+
+    def _write(self, text: str) -> None:
+        self._output.write(text)
+        self._output.flush()

@@ -1,0 +1,168 @@
+"""Which nodes of a tree are shown where there is no room for all: a pure function of shape, statuses and height."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Sequence
+
+from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
+from btlang.record import Record
+from btlang.run.live.choice import Choice, hidden_from
+from btlang.run.live.shape import Shape
+from btlang.run.live.state import HALTED, SUSPENDED
+
+LEAST_HEIGHT = 3
+
+_WORTH_OPENING = 4  # rows that must be free for a part of a branch; with fewer it stays folded up
+_KINDS = {IDLE: "to come", RUNNING: "running", SUCCESS: "done", FAILURE: "failed", SKIPPED: "skipped"}
+_KINDS |= {HALTED: "halted", SUSPENDED: "halted"}
+_LEVELS = "levels"
+
+
+class Row(Record):
+    """One line: a node, or (node -1) nodes that are left out, as (kind, how many) with a branch counted as one.
+
+    `depth` is the distance to the root among what is shown, `inside` how many nodes below this one are left out
+    where none of them is shown.
+    """
+
+    node: int
+    depth: int
+    inside: int = 0
+    left_out: tuple[tuple[str, int], ...] = ()
+
+
+def choose_rows(shape: Shape, statuses: bytearray, height: int) -> list[Row]:
+    """At most `height` (3 or more) rows, in the order of the tree; every node is in one of them.
+
+    In the order of their importance: the deepest of what runs, the root, all else that runs with what is above it,
+    the siblings around it, what failed, is to come or is done. What is finished is folded up first.
+    """
+    if len(shape) <= height:
+        return _rows(shape, statuses, range(len(shape)))
+    choice = Choice(shape, height)
+    tips = focus(shape, statuses, height)
+    for node in (*tips[:1], 0, *tips[1:]):
+        choice.add(node)
+    shown = [tip for tip in tips if tip in choice]
+    for node in _upward(shape, shown, height):
+        choice.add(node)
+    for node in _around(shape, choice):
+        choice.add(node)
+        if choice.full:
+            break
+    _unfold(shape, statuses, choice)
+    return _rows(shape, statuses, choice.without_small_gaps())
+
+
+def focus(shape: Shape, statuses: bytearray, most: int) -> list[int]:
+    """What matters most, the deepest first: the running (else suspended) leaves, else the leaf that failed the tree."""
+    for status in (RUNNING, SUSPENDED):
+        tips = list(_tips(shape, statuses, status))
+        if tips:
+            deepest = max(tips, key=shape.depths.__getitem__)
+            return [deepest, *(tip for tip in tips if tip != deepest)][:most]
+    node = 0
+    while statuses[node] == FAILURE:
+        failed = [child for child in shape.children(node) if statuses[child] == FAILURE]
+        if not failed:
+            return [node]
+        node = failed[-1]
+    return [node] if node else []
+
+
+def _tips(shape: Shape, statuses: bytearray, status: int) -> Iterator[int]:
+    """The nodes of a status that have none of it below."""
+    node = statuses.find(status)
+    while node >= 0:
+        following = statuses.find(status, node + 1)
+        if not 0 <= following < shape.ends[node]:
+            yield node
+        node = following
+
+
+def _upward(shape: Shape, tips: Sequence[int], most: int) -> Iterator[int]:
+    """What is above the tips, the nearest first, as far as there can be room for it."""
+    nodes = list(tips)
+    for _ in range(most):
+        nodes = [shape.parents[node] for node in nodes if shape.parents[node] > 0]
+        nodes = list(dict.fromkeys(nodes))
+        yield from nodes
+
+
+def _around(shape: Shape, choice: Choice) -> Iterator[int]:
+    """The siblings of what is shown, nearer ones first, where their parent is shown."""
+    rings = [(node, node) for node in reversed(choice.nodes) if node and shape.parents[node] in choice]
+    while rings:
+        wider: list[tuple[int, int]] = []
+        for left, right in rings:
+            right = shape.after(right) if right >= 0 else -1
+            left = shape.before[left] if left >= 0 else -1
+            if right >= 0:
+                yield right
+            if left >= 0:
+                yield left
+            if left >= 0 or right >= 0:
+                wider.append((left, right))
+        rings = wider
+
+
+def _unfold(shape: Shape, statuses: bytearray, choice: Choice) -> None:
+    """Opens branches while there is room: failed ones, those to come, the others; at last a part of a long one."""
+    order = {FAILURE: 0, IDLE: 1, RUNNING: 1}
+    long: list[int] = []
+    nodes = list(choice.nodes)
+    while nodes and not choice.full:
+        opened: list[int] = []
+        for node in sorted(nodes, key=lambda node: order.get(statuses[node], 2)):
+            if shape.ends[node] == node + 1 or not choice.folded(node):
+                continue
+            children = _first(shape.children(node), choice.room + 1)
+            if choice.add_all(children):
+                opened += children
+            else:
+                long.append(node)
+        nodes = opened
+    for node in long:
+        if choice.room < _WORTH_OPENING:
+            break
+        for child in shape.children(node):
+            if not choice.add(child):
+                break
+
+
+def _first(nodes: Iterator[int], most: int) -> list[int]:
+    return [node for node, _ in zip(nodes, range(most), strict=False)]
+
+
+def _rows(shape: Shape, statuses: bytearray, nodes: Sequence[int]) -> list[Row]:
+    rows: list[Row] = []
+    around: list[int] = []  # nodes that are shown and that the present place is below
+    for at, node in enumerate((*nodes, len(shape))):
+        start = hidden_from(shape, nodes[at - 1] if at else -1, node)
+        if start < node:
+            _leave(shape, around, start)
+            rows.append(Row(-1, len(around), 0, _counts(shape, statuses, start, node)))
+        if node == len(shape):
+            break
+        _leave(shape, around, node)
+        following = nodes[at + 1] if at + 1 < len(nodes) else len(shape)
+        inside = shape.ends[node] - node - 1 if following >= shape.ends[node] else 0
+        rows.append(Row(node, len(around), inside))
+        around.append(node)
+    return rows
+
+
+def _leave(shape: Shape, around: list[int], node: int) -> None:
+    while around and shape.ends[around[-1]] <= node:
+        around.pop()
+
+
+def _counts(shape: Shape, statuses: bytearray, start: int, end: int) -> tuple[tuple[str, int], ...]:
+    counts: dict[str, int] = {}
+    node = start
+    while node < end:
+        whole = shape.ends[node] <= end
+        kind = _KINDS[statuses[node]] if whole else _LEVELS
+        counts[kind] = counts.get(kind, 0) + 1
+        node = shape.ends[node] if whole else node + 1
+    return tuple(counts.items())

@@ -1,0 +1,169 @@
+"""The live view as a sink: notes events in no time, and draws them in a thread of its own."""
+
+from __future__ import annotations
+
+import os
+import sys
+import threading
+import time
+from contextlib import ExitStack
+
+from btlang.run.events import PeriodPassed
+from btlang.run.live import frame
+from btlang.run.live.board import Board
+from btlang.run.live.capture import captured
+from btlang.run.live.keys import Keys
+from btlang.run.live.screen import Screen
+from btlang.run.live.stopping import stoppable
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from types import TracebackType
+    from typing import TextIO
+
+    from btlang.run.events import Event
+    from btlang.run.live.board import Viewed
+
+
+_INTERVAL = 0.2  # seconds between two frames
+_LATEST = 0.1  # seconds after which a frame does not wait any longer for the end of a period
+_SHARE = 40  # a frame that took long to make is followed by a rest of so many times as long
+_LONGEST_REST = 1.0
+_SWITCH = 0.0005  # seconds after which the drawing thread lets a run that is waiting go on
+_OTHER_LINES = 6  # one row in so many shows what happened, above the frame
+
+
+class LiveView:
+    """A sink for one run, between `with` and its end.
+
+    It shows the tree at the end of what the terminal shows, and above it the lines that `Lines` writes, which stay. The
+    keys space, s and q of `keyboard`, where there is one, pause, step and stop the run. What is printed to standard
+    output, or to a standard error on a terminal, comes above the tree. Raises EngineError for a tree that cannot be
+    compiled.
+    """
+
+    def __init__(self, mission: Viewed, output: TextIO, keyboard: TextIO | None = None) -> None:
+        unicode = (output.encoding or "").lower().startswith("utf")
+        self._board = Board(mission, frame.UNICODE if unicode else frame.ASCII)
+        self._controls = mission.controls
+        self._output = output
+        self._screen = Screen(output, lambda: os.get_terminal_size(output.fileno()))
+        self._keys = self._open_keys(keyboard)
+        self._due = 0.0  # when the next frame may be drawn
+        self._wake = threading.Event()
+        self._drawing = threading.RLock()
+        self._drawn: object = None  # what the last frame was made from
+        self._left = False  # for as long as the process is stopped
+        self._behind = False  # the process is or was in the background, where it neither draws nor reads
+        self._ended = False
+        self._thread = threading.Thread(target=self._draw_on, name="btlang live view", daemon=True)
+        self._exits = ExitStack()
+
+    def __call__(self, event: Event) -> None:
+        """Notes an event."""
+        self._board.note(event)
+        if isinstance(event, PeriodPassed) and time.monotonic() >= self._due:
+            self._wake.set()  # the run now sleeps until its next tick, so that drawing takes no time from it
+
+    def __enter__(self) -> LiveView:
+        with ExitStack() as exits:
+            exits.callback(self._screen.end)
+            self._screen.begin()
+            if self._keys is not None:
+                exits.callback(self._keys.end)
+                self._keys.begin()
+            exits.callback(self._finish)
+            exits.callback(sys.setswitchinterval, sys.getswitchinterval())
+            sys.setswitchinterval(_SWITCH)
+            exits.enter_context(captured(self._output, self._board.note))
+            exits.enter_context(stoppable(self._leave, self._come_back))
+            self._thread.start()
+            self._exits = exits.pop_all()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self._exits.close()
+
+    def _draw_on(self) -> None:
+        rest = 0.0
+        while not self._ended:
+            self._wake.wait(rest + _LATEST)
+            self._wake.clear()
+            if self._left or not self._in_front:
+                self._behind = True
+                continue
+            began = time.monotonic()
+            try:
+                with self._drawing:
+                    if self._behind:
+                        self._come_back()
+                    self._draw()
+            except (OSError, ValueError):  # the terminal is gone; the run is not
+                return
+            now = time.monotonic()
+            rest = min(max(_INTERVAL, _SHARE * (now - began)), _LONGEST_REST)
+            self._due = now + rest
+
+    def _draw(self) -> None:
+        """Draws a frame where there is anything new."""
+        width, height = self._screen.size()
+        doing = self._doing()
+        seen = self._board.changes, width, height, doing
+        if seen == self._drawn:
+            return
+        self._drawn = seen
+        above = self._board.take()
+        lines = self._board.frame(width, height - max(height // _OTHER_LINES, 1), doing, self._keys is not None)
+        self._screen.draw(above, lines)
+
+    def _doing(self) -> str:
+        if self._ended:
+            return ""
+        return "stopping" if self._controls.stopped else "paused" if self._controls.paused else "running"
+
+    @property
+    def _in_front(self) -> bool:
+        return self._keys is None or self._keys.in_front
+
+    def _finish(self) -> None:
+        self._ended = True
+        self._wake.set()
+        if self._thread.ident is not None:
+            self._thread.join()
+        try:
+            with self._drawing:
+                self._draw()
+                self._screen.leave()
+        except (OSError, ValueError):  # as above
+            return
+
+    def _open_keys(self, keyboard: TextIO | None) -> Keys | None:
+        try:
+            return Keys(keyboard.fileno(), self._press) if keyboard is not None and keyboard.isatty() else None
+        except (OSError, ValueError):
+            return None
+
+    def _press(self, key: str) -> None:
+        deed = {" ": self._controls.toggle, "s": self._controls.step, "q": self._controls.stop}.get(key.lower())
+        if deed is not None:
+            deed()
+            self._wake.set()
+
+    def _leave(self) -> None:
+        """Gives the terminal back for as long as the process is stopped."""
+        with self._drawing:
+            self._left = True
+            self._screen.leave()
+            self._screen.end()
+            if self._keys is not None:
+                self._keys.restore()
+
+    def _come_back(self) -> None:
+        with self._drawing:
+            self._left, self._drawn = False, None
+            self._behind = not self._in_front
+            self._screen.begin()
+            if self._keys is not None:
+                self._keys.begin()
