@@ -199,7 +199,7 @@ class Completer:
     def _about(self, meaning: Meaning) -> tuple[str, str]:
         if meaning.entry is not None:
             return ("condition" if meaning.entry.sort == "condition" else "command"), meaning.entry.help
-        return "connective", meaning.role.replace("_", " ")
+        return "connective", self._vocabulary.about[meaning.role].help
 
 
 def _last_word(text: str) -> str:

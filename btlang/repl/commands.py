@@ -76,6 +76,11 @@ def command_of(text: str, session: Session) -> tuple[str, str] | None:
     return None if any(known) else (name.lower(), rest.strip())
 
 
+def is_begun(text: str) -> bool:
+    """Whether the text may become a word of the REPL."""
+    return any(name.startswith(text.lower()) for name in _NAMES)
+
+
 class Commands:
     """Does what the words of the REPL say; `write` gets lines for the user, `run` runs the whole mission."""
 
@@ -190,7 +195,7 @@ class Commands:
         source = read_source(rest)
         self._session.change(self._session.entries_of(source.text, rest))
         self._session.file, self.saved = rest, self._session.text
-        self._write(f"Loaded {_lines(source.text)} from {rest}. 'run' runs them, 'show' shows them.")
+        self._write(f"Loaded {_lines(source.text)} from {rest}. 'run' runs the mission, 'show' shows it.")
 
     def _new(self, rest: str) -> None:
         self._session.change(())
@@ -206,7 +211,7 @@ class Commands:
         self._session.change((*self._session.entries, *entries))
         self._left, self.draft = None, left.draft
         left.path.unlink(missing_ok=True)
-        self._write(f"{_lines(self._session.text)} are back. 'run' runs them, 'show' shows them.")
+        self._write(f"Back: {_lines(self._session.text)}. 'run' runs the mission, 'show' shows it.")
 
     def _world(self, rest: str) -> None:
         session = self._session

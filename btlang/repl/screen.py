@@ -2,12 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable
 
 from prompt_toolkit.application import Application
 from prompt_toolkit.buffer import Buffer
-from prompt_toolkit.completion import CompleteEvent, Completer
-from prompt_toolkit.completion import Completion as Offer
 from prompt_toolkit.document import Document
 from prompt_toolkit.filters import Condition, has_completions
 from prompt_toolkit.formatted_text import StyleAndTextTuples
@@ -22,8 +20,9 @@ from prompt_toolkit.lexers import Lexer
 from prompt_toolkit.output import Output
 from prompt_toolkit.styles import Style
 
-from btlang.repl.commands import COMMANDS, command_of, robot_line
+from btlang.repl.commands import command_of, is_begun, robot_line
 from btlang.repl.keys import key_bindings
+from btlang.repl.offers import Offers
 from btlang.repl.preview import Preview, continuations, preview
 from btlang.repl.session import Session
 from btlang.repl.store import Store
@@ -69,7 +68,7 @@ class Screen:
         self._refused = ""
         history: History = InMemoryHistory() if store.problem else FileHistory(str(store.history))
         self.buffer = Buffer(
-            completer=_Offers(session),
+            completer=Offers(session),
             complete_while_typing=True,
             history=history,
             multiline=True,
@@ -95,7 +94,7 @@ class Screen:
         """Of the text as it is now."""
         text = self.buffer.text
         if self._seen[0] != text or not text:
-            is_own = command_of(text, self.session) is not None
+            is_own = command_of(text, self.session) is not None or is_begun(text)
             self._seen = text, Preview() if is_own else preview(self.session, text)
             self._tree = self._seen[1].tree or (self._tree if text.strip() and not is_own else ())
         return self._seen[1]
@@ -199,25 +198,6 @@ class Screen:
 
     def _columns(self) -> int:
         return self.application.output.get_size().columns
-
-
-class _Offers(Completer):
-    """What may follow, for the menu; at the start of an entry also the words of the REPL."""
-
-    def __init__(self, session: Session) -> None:
-        self._session = session
-
-    def get_completions(self, document: Document, complete_event: CompleteEvent) -> Iterable[Offer]:
-        text = document.text_before_cursor
-        if not text.strip() and not complete_event.completion_requested:
-            return
-        for option in continuations(self._session, text):
-            mark = "(spelling) " if option.spelling else ""
-            yield Offer(option.text, option.start - len(text), display_meta=mark + option.help)
-        if "\n" not in text and " " not in text:
-            for command in COMMANDS:
-                if command.name.startswith(text.lower()) and command.name != text:
-                    yield Offer(command.name, -len(text), display_meta=command.help)
 
 
 class _Marks(Lexer):

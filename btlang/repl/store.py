@@ -86,14 +86,14 @@ class Store:
 
     def _write(self, state: dict[str, object]) -> None:
         new = self._own.with_suffix(".new")
-        new.write_text(json.dumps(state, ensure_ascii=False), encoding="utf-8", errors="surrogateescape")
+        new.write_text(json.dumps(state), encoding="ascii")
         os.replace(new, self._own)
 
 
 def _read(path: Path) -> Kept | None:
     """None where the session is empty or not readable."""
     try:
-        state = json.loads(path.read_text(encoding="utf-8", errors="surrogateescape"))
+        state = json.loads(path.read_text(encoding="ascii"))
         entries, draft = tuple(map(str, state["entries"])), str(state["draft"])
     except (OSError, ValueError, KeyError, TypeError):
         return None

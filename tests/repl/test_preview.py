@@ -1,0 +1,57 @@
+"""What is shown of an entry while it is typed."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given, settings
+
+from btlang.repl.preview import continuations, preview
+from btlang.repl.session import Session
+from tests.language.sentences import broken_missions, english
+
+SESSION = Session()
+
+
+@pytest.mark.parametrize(
+    "text",
+    ["go to the ", "go to", "mo", "move forward 2", "wave then ", "if ", "if battery is lo", "(wave then nod",
+     'say "he', "repeat:", "repeat:\n  wa", "patrol is ", "wave within 5 "],
+)  # fmt: skip
+def test_a_beginning_is_no_mistake(text: str) -> None:
+    assert preview(SESSION, text).unfinished
+
+
+@pytest.mark.parametrize(
+    "text", ["go to the ktichen", "flarp", "wave nod", "wave then then", "go to the ktich then wave and ", "wave))"]
+)
+def test_a_mistake_is_told_at_once(text: str) -> None:
+    seen = preview(SESSION, text)
+    assert not seen.unfinished
+    assert any(name == "error" for _, _, name in seen.marks)
+
+
+def test_the_tree_of_an_entry() -> None:
+    assert preview(SESSION, "wave then nod").tree == ("Sequence", "├── Wave: wave", "└── Nod: nod")
+    assert preview(SESSION, "bow is nod").tree == ("bow:", "Nod: nod")
+    assert preview(SESSION, "  ").tree == ()
+
+
+def test_marks() -> None:
+    assert preview(SESSION, "bow is nod and wave").marks == ((0, 6, "name"), (11, 14, "connective"))
+
+
+def test_names_of_the_session_are_offered() -> None:
+    session = Session()
+    session.add(session.compile("bow is nod").entry)
+    (offer,) = (option for option in continuations(session, "wave then bo") if option.kind == "name")
+    assert (offer.text, offer.start) == ("bow", 10)
+
+
+@settings(max_examples=100, deadline=None)
+@given(broken_missions().map(english))
+def test_any_text_has_a_preview(text: str) -> None:
+    seen = preview(SESSION, text)
+    assert bool(seen.errors) != bool(seen.tree) or not text.strip()
+    for start, end, _ in seen.marks:
+        assert 0 <= start <= end <= len(text) + 1
+    continuations(SESSION, text)
