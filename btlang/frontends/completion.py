@@ -25,6 +25,11 @@ from btlang.vocabulary.vocabulary import DEFINING, Vocabulary
 _MOST_TOKENS_BACK = 6  # a phrase that is being written may look like that many shorter ones
 _LONG_ENOUGH = 3  # letters; a shorter word is no misspelling yet
 _MOST_CORRECTIONS = 3
+_ALIKE = {
+    **dict.fromkeys(("wait", "nothing", "fail"), "command"), "negated": "condition", "unless": "if", "until": "while",
+    "if_possible": "within", "retry": "try", "wait_until": "check", "delay": "every",
+}  # fmt: skip
+"""Roles that stand where others stand: the matching stage is asked for one of them."""
 _LOOK_AHEAD = frozenset(("and", "or"))  # whether these are in their place depends on what follows
 _MAY_FOLLOW = ((), ("command",), ("condition",), ("close",))
 _LINE_STARTS = frozenset(("newline", "semi", "indent", "dedent"))
@@ -174,7 +179,7 @@ class Completer:
 
     def _may_stand(self, at: int, role: str) -> bool:
         """Whether a token of the role is accepted behind the first `at` tokens, and can be gone on from."""
-        kind = "condition" if role == "negated" else role
+        kind = _ALIKE.get(role, role)
         key = at, kind
         if key not in self._accepted:
             self._accepted[key] = kind != "politeness" and self._is_accepted(at, kind)

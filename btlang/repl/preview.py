@@ -5,6 +5,7 @@ from __future__ import annotations
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError
 from btlang.frontends.completion import Completion, completions
 from btlang.frontends.lexer import Lexer
+from btlang.frontends.token import Token
 from btlang.record import Record
 from btlang.repl.session import Compiled, Session
 from btlang.text.source import Source
@@ -12,6 +13,12 @@ from btlang.vocabulary.vocabulary import Vocabulary
 
 _UNFINISHED = frozenset(("BT004", "BT023", "BT027"))  # an open quote, bracket or block
 _UNKNOWN = frozenset(("BT010", "BT013"))
+_ENDS_NOTHING = frozenset((
+    "unknown", "then", "and", "or", "after", "otherwise", "comma", "semi", "colon", "open", "define", "not", "if",
+    "unless", "while", "until", "provided", "repeat", "try", "retry", "check", "wait_until",
+))  # fmt: skip
+"""Tokens that no sentence ends with."""
+_MOST_TRIES = 3
 _OPERANDS = frozenset(("command", "condition", "unknown", "define"))
 
 
@@ -19,7 +26,7 @@ class Preview(Record):
     """A text as the user may see it.
 
     `unfinished` tells that what is wrong may only be that more is to come, `midword` that this is the rest of a word.
-    `tree` holds lines, () where there is none;
+    `tree` holds lines, those of the part that can be read where not all can, () where there is none;
     `marks` are characters of the text with "connective", "name" or "error".
     """
 
@@ -39,7 +46,8 @@ def preview(session: Session, text: str) -> Preview:
     """Compiles the entry. Raises nothing."""
     if not text.strip():
         return Preview()
-    marks = _marks(session, text)
+    tokens = Lexer(Source(text), session.vocabulary, explain=False).tokens
+    marks = _marks(tokens)
     try:
         compiled = session.compile(text)
     except MissionError as error:
@@ -47,7 +55,7 @@ def preview(session: Session, text: str) -> Preview:
         unfinished = _is_unfinished(own, text, session.vocabulary) and _goes_on(session, text)
         spans = () if unfinished else tuple((p.span.start, p.span.end, "error") for p in own if p.is_error)
         midword = unfinished and text[-1:].isalnum() and own[0].code in _UNKNOWN
-        return Preview(own, unfinished, midword, (), (*marks, *spans))
+        return Preview(own, unfinished, midword, _tree_so_far(session, text, tokens), (*marks, *spans))
     return Preview(compiled.tree.warnings, False, False, _tree_lines(compiled), marks)
 
 
@@ -72,14 +80,30 @@ def _goes_on(session: Session, text: str) -> bool:
     return any(not option.spelling for option in continuations(session, text))
 
 
+def _tree_so_far(session: Session, text: str, tokens: list[Token]) -> tuple[str, ...]:
+    """The tree of the text without its last words, as few as possible."""
+    tokens = [token for token in tokens if token.end > token.start]
+    for _ in range(_MOST_TRIES):
+        if tokens:
+            tokens.pop()
+        while tokens and tokens[-1].kind in _ENDS_NOTHING:
+            tokens.pop()
+        if not tokens:
+            break
+        try:
+            return _tree_lines(session.compile(text[: tokens[-1].end]))
+        except MissionError:
+            continue
+    return ()
+
+
 def _tree_lines(compiled: Compiled) -> tuple[str, ...]:
     """The tree as `btc tree` prints it; of definitions alone only their subtrees."""
     lines = str(compiled.tree).splitlines()
     return tuple(lines if compiled.entry.has_command else lines[2:])
 
 
-def _marks(session: Session, text: str) -> tuple[tuple[int, int, str], ...]:
-    tokens = Lexer(Source(text), session.vocabulary, explain=False).tokens
+def _marks(tokens: list[Token]) -> tuple[tuple[int, int, str], ...]:
     marks = []
     for token in tokens:
         if token.kind == "define":

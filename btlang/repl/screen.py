@@ -60,7 +60,6 @@ class Screen:
         self.session = session
         self._store = store
         self._seen: tuple[str, Preview] = ("", Preview())
-        self._tree: tuple[str, ...] = ()
         self.note = ""
         """A line at the bottom, until the text changes."""
         self.leaving = False
@@ -87,7 +86,6 @@ class Screen:
         """Lets the user type, from a text to begin with. Raises EOFError when the user wants to leave."""
         self.buffer.reset(Document(text))
         self._refused, self.note, self.leaving = "", "", False
-        self._tree = ()
         return self.application.run()
 
     def preview(self) -> Preview:
@@ -96,7 +94,6 @@ class Screen:
         if self._seen[0] != text or not text:
             is_own = command_of(text, self.session) is not None or is_begun(text)
             self._seen = text, Preview() if is_own else preview(self.session, text)
-            self._tree = self._seen[1].tree or (self._tree if text.strip() and not is_own else ())
         return self._seen[1]
 
     def refuse(self) -> None:
@@ -139,7 +136,7 @@ class Screen:
             ConditionalContainer(menu, filter=has_completions),
             ConditionalContainer(
                 Window(tree, dont_extend_height=True, height=Dimension(min=1)),
-                filter=Condition(lambda: bool(self._tree)),
+                filter=Condition(lambda: bool(self.preview().tree)),
             ),
             Window(bottom, height=1, style="class:bottom"),
             Window(),  # takes the rows that are no longer needed: what is drawn never gets fewer
@@ -163,10 +160,10 @@ class Screen:
 
     def _tree_lines(self) -> StyleAndTextTuples:
         seen = self.preview()
-        style = "class:tree" if seen.tree else "class:unfinished"
+        style = "class:unfinished" if seen.errors else "class:tree"
         menu = _MENU_ROWS if self.buffer.complete_state else 0
         room = max(3, self._rows() - self.buffer.text.count("\n") - 4 - menu)
-        lines = list(self._tree)
+        lines = list(seen.tree)
         if len(lines) > room:
             lines = [*lines[: room - 1], f"... {len(lines) - room + 1} more lines"]
         return _without_last_end([(style, f"{CONTINUED}{line}\n") for line in lines])

@@ -36,6 +36,11 @@ def test_the_tree_of_an_entry() -> None:
     assert preview(SESSION, "  ").tree == ()
 
 
+def test_the_tree_so_far() -> None:
+    for more in ("", " th", " then ", " then wa", " then (no", " and if ", " then flarp"):
+        assert preview(SESSION, f"wave then nod{more}").tree[:2] == ("Sequence", "├── Wave: wave"), more
+
+
 def test_marks() -> None:
     assert preview(SESSION, "bow is nod and wave").marks == ((0, 6, "name"), (11, 14, "connective"))
 
@@ -51,7 +56,7 @@ def test_names_of_the_session_are_offered() -> None:
 @given(broken_missions().map(english))
 def test_any_text_has_a_preview(text: str) -> None:
     seen = preview(SESSION, text)
-    assert bool(seen.errors) != bool(seen.tree) or not text.strip()
+    assert seen.errors or seen.tree or not text.strip()
     for start, end, _ in seen.marks:
         assert 0 <= start <= end <= len(text) + 1
     continuations(SESSION, text)

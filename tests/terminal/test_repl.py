@@ -1,0 +1,200 @@
+"""The REPL as its user sees it, in a real terminal."""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+
+import pytest
+
+from tests.conftest import matches_golden
+from tests.terminal.tmux import BTC, Terminal
+from tests.test_readme import BLOCKS
+
+GOLDEN = Path(__file__).parent / "golden"
+Open = Callable[..., Terminal]
+
+
+@pytest.fixture
+def repl(terminal: Open, tmp_path: Path) -> Callable[..., Terminal]:
+    """Opens the REPL; all those of a test share history and sessions."""
+
+    def opened(*options: str, **how: int) -> Terminal:
+        environment = {"XDG_STATE_HOME": str(tmp_path / "state")}
+        started = terminal(*BTC, "repl", *options, folder=tmp_path, environment=environment, **{"height": 40, **how})
+        started.wait_for("battery")
+        return started
+
+    return opened
+
+
+def shown(screen: str) -> str:
+    """What must be the same in each run: without times and the places that a moving robot has come to."""
+    screen = re.sub(r"-?\d+\.\d+( s| m)?|(?<=ticks )\d+|(?<=overruns )\d+|(?<=facing |eading )-?\d+", "N", screen)
+    return re.sub(r" {2,}(?=N)", " ", screen)
+
+
+def golden(user: Terminal, text: str, name: str) -> None:
+    """The screen once the text is on it, all of it is drawn, and nothing changes any more."""
+    user.wait_for(text)
+    before = [""]
+
+    def is_still(screen: str) -> bool:
+        last, before[0] = before[0], screen
+        return screen == last and screen.rstrip().splitlines()[-1].startswith("  robot at ")
+
+    matches_golden(shown(user.wait_until(is_still)), GOLDEN / f"repl_{name}.txt")
+
+
+def test_a_session_from_the_first_mistake_to_the_history(repl: Callable[..., Terminal], tmp_path: Path) -> None:
+    user = repl()
+    user.type("patrol is go to the lobby then go to the ktich", enter=False)
+    golden(user, "kitchen", "1_mistake")
+    user.press("Tab")
+    user.type(" then wav", enter=False)
+    golden(user, "wave", "2_completion")
+    user.press("Tab")
+    golden(user, "Wave: wave", "3_completed")
+    user.press("Enter", "Enter")
+    golden(user, "Defined: patrol", "4_defined")
+
+    user.type("patrl", enter=False)
+    golden(user, "Ctrl-F writes: patrol", "5_correction")
+    user.press("C-f")
+    user.wait_for("SubTree ID=patrol")
+    user.press("Enter")
+    user.wait_for("start  go to lobby")
+    user.press("C-c")
+    golden(user, "stands still", "6_interrupted")
+
+    user.type("undo")
+    golden(user, "- patrol", "7_undone")
+    user.type("save mission.txt")
+    user.wait_for("Saved 1 line to mission.txt.")
+    assert (tmp_path / "mission.txt").read_text() == "patrol is go to the lobby then go to the kitchen then wave\n"
+    user.press("C-d", "C-d")
+    assert user.wait_for_end() == 0
+
+    again = repl()
+    assert "restore" not in again.screen()  # all was saved
+    again.press("Up", "Up", "Up")
+    golden(again, "> patrol", "8_history")
+    again.press("C-c")
+    again.type("load mission.txt")
+    again.wait_for("Loaded 1 line")
+    again.type("show")
+    golden(again, "> show", "9_loaded")
+
+
+def test_a_killed_session_is_offered_again(repl: Callable[..., Terminal], tmp_path: Path) -> None:
+    user = repl()
+    user.type("bow is nod")
+    user.wait_for("Defined: bow")
+    user.type("bow then wa", enter=False)
+    user.wait_for("wait")
+    (session,) = (tmp_path / "state" / "btlang" / "sessions").iterdir()
+    os.kill(int(session.stem), signal.SIGKILL)
+    user.wait_for("[status 137]")
+    again = repl()
+    again.wait_for("'restore' brings it back")
+    again.type("restore")
+    golden(again, "> bow then wa", "restored")
+    again.press("C-c")
+    again.type("show")
+    again.wait_for("> show\nbow is nod")
+    again.press("C-d", "C-d")
+    again.wait_for("This session is kept")
+    assert again.wait_for_end() == 0
+
+
+def test_ctrl_c_stops_the_robot_and_not_the_repl(repl: Callable[..., Terminal]) -> None:
+    user = repl()
+    user.type("turn left forever")
+    user.wait_for("start  turn left")
+    user.press("C-c")
+    user.wait_for("Interrupted after")
+    user.type("world")
+    user.wait_for("places")
+    user.press("C-c")
+    user.wait_for("Ctrl-D twice leaves")
+    user.type("say still here")
+    user.wait_for("quotes")
+    user.press("C-c", "C-d")
+    user.wait_for("Ctrl-D again leaves")
+    user.type("nod", enter=False)  # anything else is no second Ctrl-D
+    user.wait_for("Nod: nod")
+    user.press("C-c", "C-d", "C-d")
+    assert user.wait_for_end() == 0
+
+
+def test_sigterm_halts_the_robot_and_leaves(repl: Callable[..., Terminal], tmp_path: Path) -> None:
+    user = repl()
+    user.type("turn left forever")
+    user.wait_for("start  turn left")
+    (session,) = (tmp_path / "state" / "btlang" / "sessions").iterdir()
+    os.kill(int(session.stem), signal.SIGTERM)
+    assert user.wait_for_end() == 143
+    assert repl().wait_for("'restore' brings it back")
+
+
+def test_blocks_take_several_lines(repl: Callable[..., Terminal]) -> None:
+    user = repl("--speed", "max")
+    user.type("try:")
+    user.type("check the battery is low")
+    user.press("BSpace")
+    user.type("otherwise:")
+    user.type("nod")
+    golden(user, "Fallback", "block")
+    user.press("Enter")
+    user.wait_for("succeeded")
+    user.press("Up")
+    user.wait_until(lambda screen: screen.count("otherwise:") == 2)
+
+
+def test_what_cannot_run_stays_in_the_line(repl: Callable[..., Terminal]) -> None:
+    user = repl()
+    user.type("wave nod")
+    golden(user, "Two commands stand side by side", "refused")
+    user.press("C-f")
+    user.wait_for("> wave then nod")
+
+
+def test_a_narrow_terminal(repl: Callable[..., Terminal]) -> None:
+    user = repl(width=40, height=12)
+    user.type("repeat go to the lab then wave and say hello, then go to the lobby 3 times then nod", enter=False)
+    golden(user, "more lines", "narrow")
+
+
+def test_without_a_terminal_lines_are_read(tmp_path: Path) -> None:
+    lines = "bow is nod\nspeed max\nrepeat 2 times:\n  bow\nsay done\nflarp\nshow\nquit\nwave\n"
+    done = subprocess.run([*BTC], input=lines, capture_output=True, text=True, cwd=tmp_path, check=False, env={
+        **os.environ, "PYTHONPATH": str(Path(__file__).parents[2]), "XDG_STATE_HOME": str(tmp_path),
+    })  # fmt: skip
+    assert done.returncode == 2
+    assert "I do not know how to 'flarp'" in done.stderr
+    assert done.stdout.endswith("bow is nod\nrepeat 2 times:\n  bow\nsay done\n")
+    assert done.stdout.count("start  nod") == 2
+    assert list(tmp_path.iterdir()) == []  # nothing is kept
+
+
+def test_a_folder_that_cannot_be_written_to(terminal: Open, tmp_path: Path) -> None:
+    (tmp_path / "state").write_text("a file, and no folder")
+    user = terminal(*BTC, folder=tmp_path, environment={"XDG_STATE_HOME": str(tmp_path / "state")})
+    user.wait_for("What you type is not kept")
+    user.type("nod")
+    user.wait_for("succeeded")
+
+
+SCREENS = [block.text for block in BLOCKS if block.language == "screen"]
+
+
+@pytest.mark.parametrize("screen", SCREENS, ids=lambda screen: screen.partition("\n")[0])
+def test_the_screens_of_the_tutorial(repl: Callable[..., Terminal], screen: str) -> None:
+    user = repl()
+    prompt, *lines = screen.splitlines()
+    user.type(prompt.removeprefix("> "), enter=False)
+    user.wait_until(lambda seen: all(line in seen.splitlines() for line in lines), screen)
