@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import errno
 import math
 import os
 import sys
@@ -33,9 +34,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except MissionError as error:
         print("\n\n".join(render(problem) for problem in error.diagnostics), file=sys.stderr)
         return BAD_INPUT
-    except BrokenPipeError:  # the reader of our output has seen enough
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return SUCCESS
+    except OSError as error:
+        if error.errno not in (errno.EPIPE, errno.EIO):
+            raise
+        nowhere = os.open(os.devnull, os.O_WRONLY)
+        for stream in (sys.stdout, sys.stderr):
+            os.dup2(nowhere, stream.fileno())
+        # the reader of our output has seen enough, or the terminal is gone
+        return SUCCESS if error.errno == errno.EPIPE else INTERRUPTED
     except KeyboardInterrupt:
         return INTERRUPTED
 

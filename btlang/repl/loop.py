@@ -21,8 +21,6 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import NoReturn
 
-_TERMINATED = 143
-
 
 def run_repl(
     *,
@@ -36,11 +34,13 @@ def run_repl(
     if not _is_terminal():
         return Repl(session, Store(None), speed).read(sys.stdin or ())
     store = Store(state_folder())
-    before = signal.signal(signal.SIGTERM, _terminate)
+    numbers = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]
+    before = [signal.signal(number, _terminate) for number in numbers]
     try:
         Repl(session, store, speed, store.left()).talk()
     finally:
-        signal.signal(signal.SIGTERM, before)
+        for number, handler in zip(numbers, before, strict=True):
+            signal.signal(number, handler)
     return 0
 
 
@@ -59,7 +59,7 @@ class Repl:
         from btlang.repl.screen import CONTINUED, PROMPT, Screen
 
         screen = Screen(self._session, self._store)
-        print("btlang: type what the robot is to do. 'help' tells more; Ctrl-D leaves.")
+        print("btlang: type what the robot is to do. 'help' tells more; Ctrl-D twice leaves.")
         if self._store.problem:
             print(f"What you type is not kept: {self._store.problem}")
         if self._left is not None:
@@ -117,7 +117,8 @@ class Repl:
         self._run(self._session.compile_all())
 
     def _run(self, tree: RunnableTree) -> int:
-        return run_mission(tree, speed=self._commands.speed, rate=20.0, time_limit=None, log=None, quiet=False)
+        speed = self._commands.speed
+        return run_mission(tree, speed=speed, rate=20.0, time_limit=None, log=None, quiet=False, tree_stays=False)
 
     def _keep(self) -> None:
         self._store.save([entry.text for entry in self._session.entries], "")
@@ -134,5 +135,5 @@ def _count(left: Kept) -> str:
     return f"{lines} line{'' if lines == 1 else 's'}"
 
 
-def _terminate(*_: object) -> NoReturn:
-    raise SystemExit(_TERMINATED)
+def _terminate(number: int, _: object) -> NoReturn:
+    raise SystemExit(128 + number)

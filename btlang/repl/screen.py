@@ -92,8 +92,9 @@ class Screen:
         """Of the text as it is now."""
         text = self.buffer.text
         if self._seen[0] != text or not text:
-            is_own = command_of(text, self.session) is not None or is_begun(text)
-            self._seen = text, Preview() if is_own else preview(self.session, text)
+            seen = preview(self.session, text)
+            is_own = command_of(text, self.session) is not None or (seen.errors and is_begun(text))
+            self._seen = text, Preview() if is_own else seen
         return self._seen[1]
 
     def refuse(self) -> None:
@@ -202,6 +203,10 @@ class _Marks(Lexer):
 
     def __init__(self, seen: Callable[[], Preview]) -> None:
         self._preview = seen
+
+    def invalidation_hash(self) -> object:
+        """The same text may be coloured otherwise later, when more names are defined."""
+        return self._preview().marks
 
     def lex_document(self, document: Document) -> Callable[[int], StyleAndTextTuples]:
         styles = [""] * len(document.text)

@@ -5,8 +5,8 @@ from __future__ import annotations
 import os
 import signal
 import sys
-from collections.abc import Callable, Iterable
-from contextlib import AbstractContextManager, nullcontext
+from collections.abc import Callable, Iterable, Iterator
+from contextlib import AbstractContextManager, contextmanager, nullcontext
 
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.diagnostics.render import underlined
@@ -55,19 +55,19 @@ def run_mission(
     log: str | None,
     quiet: bool,
     lines: bool = False,
+    tree_stays: bool = True,
     sinks: Iterable[Sink] = (),
 ) -> int:
     """Runs and reports; returns the exit code. Raises MissionError where the log cannot be written (BT009).
 
-    On a terminal it shows the live view, elsewhere and where `lines` is true plain lines, and nothing when `quiet`.
-    `sinks` get all events too.
+    On a terminal it shows the live view, whose tree stays at the end or not; elsewhere and where `lines` is true plain
+    lines; and nothing when `quiet`. `sinks` get all events too.
     """
-    view = None if quiet or lines else _live_view(tree)
+    view = None if quiet or lines else _live_view(tree, tree_stays)
     shown: list[Sink] = [view] if view is not None else [] if quiet else [Lines(tree.label, tree.is_action, _print)]
     sinks = [*shown, *sinks]
-    before = signal.signal(signal.SIGTERM, signal.default_int_handler)  # as Ctrl-C, from the first moment on
     try:
-        with _opened(log) as file, view if view is not None else nullcontext():
+        with _interrupted_by_signals(), _opened(log) as file, view if view is not None else nullcontext():
             if file is not None:
                 sinks.append(JsonLog(file, tree.label))
             outcome = tree.run(speed=speed, rate=rate, time_limit=time_limit, sinks=sinks)
@@ -80,8 +80,6 @@ def run_mission(
         reason = (error.strerror or str(error)).lower()
         name = log or "the output"
         raise MissionError([diagnostic("BT009", Span(Source("", name), 0, 0), file=name, reason=reason)]) from None
-    finally:
-        signal.signal(signal.SIGTERM, before)
     if outcome.status == FAILURE:
         print(failure_report(outcome, tree.label), file=sys.stderr)
         return 1
@@ -90,7 +88,21 @@ def run_mission(
     return 130 if outcome.stopped == "interrupted" else 0
 
 
-def _live_view(tree: Runnable) -> LiveView | None:
+@contextmanager
+def _interrupted_by_signals() -> Iterator[None]:
+    """A signal to end, or that the terminal is gone, halts the robot as Ctrl-C does; a caller's own handler stays."""
+    numbers = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]
+    taken = [number for number in numbers if signal.getsignal(number) == signal.SIG_DFL]
+    for number in taken:
+        signal.signal(number, signal.default_int_handler)
+    try:
+        yield
+    finally:
+        for number in taken:
+            signal.signal(number, signal.SIG_DFL)
+
+
+def _live_view(tree: Runnable, tree_stays: bool) -> LiveView | None:
     """None where standard output is no terminal in which it can be shown."""
     output = sys.stdout
     if output is None or not output.isatty() or os.environ.get("TERM", "dumb") in ("", "dumb", "unknown"):
@@ -105,7 +117,7 @@ def _live_view(tree: Runnable) -> LiveView | None:
     from btlang.run.live.view import LiveView
 
     try:
-        return LiveView(tree, output, sys.stdin)
+        return LiveView(tree, output, sys.stdin, tree_stays)
     except EngineError:
         return None  # the run itself tells what is wrong
 

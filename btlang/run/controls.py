@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-import threading
+from queue import Empty, SimpleQueue
 
 
 class Controls:
     """May be used from any thread, from keys and from signal handlers; the run takes notice before its next tick."""
 
     def __init__(self) -> None:
-        self._changed = threading.Event()
+        self._changed: SimpleQueue[None] = SimpleQueue()  # unlike an Event it may be set within a signal handler
         self._steps = 0
         self.paused = False
         """Whether the run stands still, or will before its next tick."""
@@ -19,13 +19,13 @@ class Controls:
     def pause(self) -> None:
         """The robot comes to rest and the time of the mission stands still."""
         self.paused = True
-        self._changed.set()
+        self._changed.put(None)
 
     def resume(self) -> None:
         """Goes on where the pause began: the commands that it interrupted start anew."""
         self.paused = False
         self._steps = 0
-        self._changed.set()
+        self._changed.put(None)
 
     def toggle(self) -> None:
         """Pauses, or resumes."""
@@ -42,7 +42,7 @@ class Controls:
     def stop(self) -> None:
         """Ends the run."""
         self.stopped = True
-        self._changed.set()
+        self._changed.put(None)
 
     def take_step(self) -> bool:
         """Whether a single step was asked for that has not been made; the run then makes it."""
@@ -53,5 +53,7 @@ class Controls:
 
     def wait(self, seconds: float | None) -> None:
         """Sleeps so many seconds (None: without end), or until something is asked for."""
-        if self._changed.wait(seconds):
-            self._changed.clear()
+        try:
+            self._changed.get(timeout=seconds)
+        except Empty:
+            return

@@ -17,6 +17,7 @@ from btlang.vocabulary.vocabulary import Vocabulary
 from tests.language.letters import letters, read
 from tests.language.sentences import broken_missions, english, missions
 
+
 @cache
 def shipped() -> Vocabulary:
     return world_vocabulary()

@@ -131,13 +131,23 @@ def test_ctrl_c_stops_the_robot_and_not_the_repl(repl: Callable[..., Terminal]) 
     assert user.wait_for_end() == 0
 
 
-def test_sigterm_halts_the_robot_and_leaves(repl: Callable[..., Terminal], tmp_path: Path) -> None:
+@pytest.mark.parametrize(("number", "status"), [(signal.SIGTERM, 143), (signal.SIGHUP, 129)])
+@pytest.mark.parametrize("is_running", [True, False])
+def test_signals_halt_the_robot_and_leave(
+    repl: Callable[..., Terminal], tmp_path: Path, number: int, status: int, is_running: bool
+) -> None:
     user = repl()
-    user.type("turn left forever")
-    user.wait_for("start  turn left")
+    if is_running:
+        user.type("turn left forever")
+        user.wait_for("start  turn left")
+    else:
+        user.type("turn left", enter=False)
+        user.wait_for("TurnLeft")
     (session,) = (tmp_path / "state" / "btlang" / "sessions").iterdir()
-    os.kill(int(session.stem), signal.SIGTERM)
-    assert user.wait_for_end() == 143
+    os.kill(int(session.stem), number)
+    assert user.wait_for_end() == status
+    assert "Traceback" not in user.history()
+    assert ("halted turn left" in user.history()) == is_running
     assert repl().wait_for("'restore' brings it back")
 
 

@@ -28,6 +28,11 @@ class Capture(io.TextIOBase):
         """That of the real stream."""
         return self._real.encoding
 
+    @property
+    def errors(self) -> str | None:  # type: ignore[override]
+        """That of the real stream."""
+        return self._real.errors
+
     def __getattr__(self, name: str) -> Any:
         return getattr(self._real, name)
 

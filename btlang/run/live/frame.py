@@ -54,10 +54,16 @@ class Words:
             sentence = node.span.text.strip() if node.children and node.span is not None else ""
             first, more, _ = sentence.partition("\n")
             name = self._label(node)
-            if (more and not first.endswith(":")) or first.lower() == name.lower():
+            if (more and not _heads_a_block(node, first)) or first.lower() == name.lower():
                 first = ""  # the first of many sentences says too little, and a name twice too much
             found = self._known[index] = printable(name), printable(first)
         return found
+
+
+def _heads_a_block(node: Node, line: str) -> bool:
+    """Whether the first line of a node's text is about all of it: `repeat 3 times:`."""
+    inner, outer = node.children[0].span, node.span
+    return line.endswith(":") and not (inner is not None and outer is not None and inner.start == outer.start)
 
 
 def printable(text: str) -> str:
@@ -74,7 +80,7 @@ def header(title: str, state: State, doing: str, signs: Signs) -> Line:
 def tree_lines(state: State, words: Words, height: int, width: int, over: bool, signs: Signs) -> list[Line]:
     """At most `height` lines, but at least 3, none wider than `width`. `over` says that the run has ended."""
     rows = choose_rows(state.shape, state.statuses, max(height, LEAST_HEIGHT))
-    step = 4 if max(row.depth for row in rows) * 4 <= width // 3 else 2
+    step = 4 if min(state.shape.depth, height) * 4 <= width // 2 else 2  # the same throughout a run
     heads = _heads([row.depth for row in rows], step, signs)
     lines: list[Line] = []
     sentences: list[str] = []  # of the rows around the present one

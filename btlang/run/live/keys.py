@@ -7,6 +7,7 @@ import re
 import select
 import threading
 from collections.abc import Callable
+from contextlib import suppress
 
 try:
     import termios
@@ -44,14 +45,16 @@ class Keys:
     def begin(self) -> None:
         """Keys come at once and are not shown. May be called again, after a stop of the process."""
         if self.in_front and not self._ended:
-            tty.setcbreak(self._descriptor, termios.TCSANOW)
+            with suppress(termios.error):  # the terminal is gone
+                tty.setcbreak(self._descriptor, termios.TCSANOW)
         if not self._thread.is_alive():
             self._thread.start()
 
     def restore(self) -> None:
         """The terminal is as it was before."""
         if self.in_front:
-            termios.tcsetattr(self._descriptor, termios.TCSANOW, self._modes)
+            with suppress(termios.error):
+                termios.tcsetattr(self._descriptor, termios.TCSANOW, self._modes)
 
     def end(self) -> None:
         """The terminal is as it was, and no further key is read."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import re
 from collections.abc import Callable, Iterator, Sequence
+from contextlib import suppress
 
 from rich.cells import cell_len
 from rich.console import Console
@@ -58,9 +59,8 @@ class Screen:
         anew = bool(above) or width != self._width
         if lines == self._drawn and not anew:
             return
-        # Each line is erased where it is written: a terminal may keep what is erased at once for those who scroll up.
         parts = [_BEGIN, self._to_the_top(width)]
-        parts += [f"{_ERASE_LINE}{part.expandtabs()}{_ERASE_LINE}\r\n" for line in above for part in line.split("\n")]
+        parts += [_staying(part.expandtabs(), width + 1) for line in above for part in line.split("\n")]
         parts += self._changes(lines, anew)
         parts.append(_END)
         self._drawn, self._width = lines, width
@@ -73,8 +73,9 @@ class Screen:
         self._drawn, self._known = [], {}
 
     def end(self) -> None:
-        """Shows the cursor again."""
-        self._write(_SHOW_CURSOR)
+        """Shows the cursor again; does nothing where the terminal is gone."""
+        with suppress(OSError, ValueError):
+            self._write(_SHOW_CURSOR)
 
     def _changes(self, lines: list[str], anew: bool) -> Iterator[str]:
         """From the first line of the frame to its last; what is as before is passed over."""
@@ -105,3 +106,12 @@ class Screen:
     def _write(self, text: str) -> None:
         self._output.write(text)
         self._output.flush()
+
+
+def _staying(line: str, columns: int) -> str:
+    """A line above the frame. It erases what it is written over: what is erased at once, tmux keeps in its history.
+
+    Nothing is erased after a line that fills the last column, where the cursor still stands on its last character.
+    """
+    full = cell_len(_CONTROL.sub("", line)) % columns == 0 and line
+    return f"{_ERASE_LINE}{line}{'' if full else _ERASE_LINE}\r\n"

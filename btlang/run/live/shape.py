@@ -9,10 +9,10 @@ class Shape:
     """A node is its preorder number; all below node i are the numbers from i + 1 up to `ends[i]` (exclusive).
 
     `parents` holds the parent of each node (-1: the root), `before` the sibling in front of it (-1: there is none),
-    `depths` the distance to the root.
+    `depths` the distance to the root, and `depth` the largest of them.
     """
 
-    __slots__ = ("before", "depths", "ends", "parents")
+    __slots__ = ("before", "depth", "depths", "ends", "parents")
 
     def __init__(self, parents: Sequence[int]) -> None:
         count = len(parents)
@@ -28,6 +28,7 @@ class Shape:
             self.before[i] = latest[parents[i]]
             latest[parents[i]] = i
             self.depths[i] = self.depths[parents[i]] + 1
+        self.depth = max(self.depths)
 
     def __len__(self) -> int:
         return len(self.parents)

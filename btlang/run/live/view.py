@@ -6,7 +6,7 @@ import os
 import sys
 import threading
 import time
-from contextlib import ExitStack
+from contextlib import ExitStack, suppress
 
 from btlang.run.events import PeriodPassed
 from btlang.run.live import frame
@@ -36,15 +36,18 @@ _OTHER_LINES = 6  # one row in so many shows what happened, above the frame
 class LiveView:
     """A sink for one run, between `with` and its end.
 
-    It shows the tree at the end of what the terminal shows, and above it the lines that `Lines` writes, which stay. The
-    keys space, s and q of `keyboard`, where there is one, pause, step and stop the run. What is printed to standard
-    output, or to a standard error on a terminal, comes above the tree. Raises EngineError for a tree that cannot be
-    compiled.
+    It shows the tree at the end of what the terminal shows, and above it the lines that `Lines` writes, which stay; the
+    tree stays too unless `tree_stays` is false. The keys space, s and q of `keyboard`, where there is one, pause, step
+    and stop the run. What is printed to standard output, or to a standard error on a terminal, comes above the tree.
+    Raises EngineError for a tree that cannot be compiled.
     """
 
-    def __init__(self, mission: Viewed, output: TextIO, keyboard: TextIO | None = None) -> None:
+    def __init__(
+        self, mission: Viewed, output: TextIO, keyboard: TextIO | None = None, tree_stays: bool = True
+    ) -> None:
         unicode = (output.encoding or "").lower().startswith("utf")
         self._board = Board(mission, frame.UNICODE if unicode else frame.ASCII)
+        self._tree_stays = tree_stays
         self._controls = mission.controls
         self._output = output
         self._screen = Screen(output, lambda: os.get_terminal_size(output.fileno()))
@@ -134,7 +137,10 @@ class LiveView:
             self._thread.join()
         try:
             with self._drawing:
-                self._draw()
+                if self._tree_stays:
+                    self._draw()
+                else:
+                    self._screen.draw(self._board.take(), [])
                 self._screen.leave()
         except (OSError, ValueError):  # as above
             return
@@ -161,7 +167,7 @@ class LiveView:
                 self._keys.restore()
 
     def _come_back(self) -> None:
-        with self._drawing:
+        with self._drawing, suppress(OSError, ValueError):  # a terminal that is gone sends this signal too
             self._left, self._drawn = False, None
             self._behind = not self._in_front
             self._screen.begin()

@@ -1,0 +1,27 @@
+"""The fixture `terminal`: opens terminals for a test and closes them after it."""
+
+from __future__ import annotations
+
+import shutil
+from collections.abc import Callable, Iterator
+
+import pytest
+
+from tests.terminal.tmux import Terminal
+
+
+@pytest.fixture
+def terminal() -> Iterator[Callable[..., Terminal]]:
+    """A function that opens a terminal (see Terminal) in which a command runs; all are closed after the test."""
+    if shutil.which("tmux") is None:
+        pytest.skip("tmux is not installed; the terminal tests need it")
+    opened: list[Terminal] = []
+
+    def open_terminal(*command: str, **options: object) -> Terminal:
+        made = Terminal(*command, **options)  # type: ignore[arg-type]
+        opened.append(made)
+        return made
+
+    yield open_terminal
+    for one in opened:
+        one.close()
