@@ -110,6 +110,26 @@ def at_place(robot: Robot, place: str) -> bool:
     return robot.pose.distance_to(robot.locate(place)) <= AT_PLACE
 
 
+def distance_to_place(robot: Robot, place: str) -> float:
+    """Metres to a place, as the crow flies."""
+    return robot.pose.distance_to(robot.locate(place))
+
+
+def distance_to_person(robot: Robot, person: str) -> float:
+    """Metres to a person, as the crow flies."""
+    return robot.pose.distance_to(robot.locate(person))
+
+
+def distance_to_object(robot: Robot, object: str) -> float:
+    """Metres to an object, as the crow flies."""
+    return robot.pose.distance_to(robot.locate(object))
+
+
+def people_near(robot: Robot) -> int:
+    """How many people are within 1.5 m."""
+    return len(robot.nearby_people(NEAR_PERSON))
+
+
 def person_near(robot: Robot, person: str) -> bool:
     """Whether a person is within 1.5 m."""
     return robot.pose.distance_to(robot.locate(person)) <= NEAR_PERSON

@@ -6,6 +6,7 @@ import os
 import sys
 from importlib import import_module
 
+from btlang.backends.comparing import comparing
 from btlang.engine.build import EngineError
 from btlang.engine.leaf import LeafBinding
 from btlang.tree.node import Node
@@ -26,7 +27,8 @@ def bind_leaf(node_id: str, vocabulary: Vocabulary) -> LeafBinding | None:
     slots: dict[str, SlotSpec] = {slot.name: slot for other in vocabulary.entries[node_id] for slot in other.slots}
     converters = {name: _converter(slot, vocabulary) for name, slot in slots.items()}
     defaults = {name: slot.default for name, slot in slots.items() if slot.default is not None}
-    return LeafBinding(_imported(entry), converters, defaults)
+    call = _imported(entry)
+    return LeafBinding(comparing(call) if entry.measures else call, converters, defaults)
 
 
 def _converter(slot: SlotSpec, vocabulary: Vocabulary) -> Callable[[str], Any]:

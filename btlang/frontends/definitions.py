@@ -13,7 +13,7 @@ from btlang.vocabulary.trie import TrieNode, add, longest
 from btlang.vocabulary.vocabulary import DEFINING, Vocabulary
 
 # A line that starts with one of these compares; it defines nothing.
-_STARTS_NO_NAME = frozenset(("if", "unless", "while", "until", "otherwise", "then"))
+_STARTS_NO_NAME = frozenset(("if", "unless", "while", "until", "otherwise", "then", "check", "wait_until"))
 _NOT_IN_A_NAME = frozenset(("if", "unless", "while", "until", "otherwise", "then", "and", "or", "after", "provided"))
 
 
@@ -107,7 +107,7 @@ def _defining_word(text: Words, first: int, last: int, vocabulary: Vocabulary) -
         at = first
         while at < last:
             if text.words[at] in choices:
-                return at
+                return None if _is_compared(text, first, at, vocabulary) else at
             match = longest(vocabulary.trie, text, at, vocabulary.values)
             if match is None:
                 at += 1
@@ -117,6 +117,14 @@ def _defining_word(text: Words, first: int, last: int, vocabulary: Vocabulary) -
             # a command phrase inside a name is no reason against it: `go home is ...`
             at = match.last if match.meaning.role != "command" else max(at + 1, _stop(text, at, match.last, choices))
     return None
+
+
+def _is_compared(text: Words, first: int, at: int, vocabulary: Vocabulary) -> bool:
+    """Whether a quantity ends right before a word: what follows compares it."""
+    if not vocabulary.quantities:
+        return False
+    matches = (longest(vocabulary.quantities, text, start, vocabulary.values) for start in range(first, at))
+    return any(match is not None and match.last == at for match in matches)
 
 
 def _stop(text: Words, at: int, last: int, choices: list[str]) -> int:

@@ -10,6 +10,7 @@ from itertools import takewhile
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.definitions import Definitions
 from btlang.frontends.token import Token
+from btlang.record import Record
 from btlang.text.source import Span
 from btlang.text.spelling import nearest, nearest_start
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
@@ -28,8 +29,8 @@ def explain_unknown(
     start, misfits = at, list(_misfits(text, at, vocabulary))
     if before and before[-1].kind not in ("comma", "newline", "indent", "dedent", "open", "semi"):
         phrase = bisect_left(text.starts, before[-1].start)  # `move forward 5 s`: read that far, and no further
-        longer = [found for found in _misfits(text, phrase, vocabulary) if found[0] >= at]
-        if longer and (not misfits or longer[0][0] >= misfits[0][0]):
+        longer = [found for found in _misfits(text, phrase, vocabulary) if found.at >= at]
+        if longer and (not misfits or longer[0].at >= misfits[0].at):
             start, misfits = phrase, longer
     if misfits:
         return _misfit(text, start, end, misfits, vocabulary, definitions)
@@ -42,9 +43,18 @@ def explain_unknown(
     return _unknown_phrase(text, at, end, vocabulary, definitions, before)
 
 
-def _misfits(text: Words, at: int, vocabulary: Vocabulary) -> Iterator[tuple[int, str]]:
-    """(word, type) of the slots that a phrase would have at the furthest word that its own words reach."""
-    furthest, found = at, []
+class _Misfit(Record):
+    """A slot without a value of its type: the word where it is, the type, and the words that may follow the value."""
+
+    at: int
+    kind: str
+    following: frozenset[str]
+
+
+def _misfits(text: Words, at: int, vocabulary: Vocabulary) -> Iterator[_Misfit]:
+    """The slots that a phrase would have at the furthest word that its own words reach."""
+    furthest = at
+    found: dict[str, set[str]] = {}
     paths: list[tuple[TrieNode, int]] = [(vocabulary.trie, at)]
     while paths:
         node, i = paths.pop()
@@ -53,20 +63,20 @@ def _misfits(text: Words, at: int, vocabulary: Vocabulary) -> Iterator[tuple[int
             if value is not None:
                 paths.append((child, value[1]))
             elif i > furthest:
-                furthest, found = i, [kind]
+                furthest, found = i, {kind: set(child)}
             elif i == furthest and i > at:
-                found.append(kind)
+                found.setdefault(kind, set()).update(child)
         child = node.get(text.words[i])
         if child is not None:
             paths.append((child, i + 1))
-    yield from ((furthest, kind) for kind in dict.fromkeys(found))
+    yield from (_Misfit(furthest, kind, frozenset(following)) for kind, following in found.items())
 
 
 def _misfit(
-    text: Words, first: int, end: int, misfits: list[tuple[int, str]], vocabulary: Vocabulary, definitions: Definitions
+    text: Words, first: int, end: int, misfits: list[_Misfit], vocabulary: Vocabulary, definitions: Definitions
 ) -> Diagnostic:
-    at = misfits[0][0]
-    types = [vocabulary.types[kind] for _, kind in misfits]
+    at = misfits[0].at
+    types = [vocabulary.types[misfit.kind] for misfit in misfits]
     wanted = " or ".join(f"{_article(kind.name)} {kind.name}" for kind in types)
     head = text.span(first, at).text
     example = f"{head} {_value_example(types[0], vocabulary)}"
@@ -84,7 +94,8 @@ def _misfit(
     if number is not None:
         return _number_misfit(text, at, number, types, head, example, wanted)
     named = [kind for kind in types if kind.kind == "names"]
-    span = text.span(at, max(end, at + 1))
+    following = frozenset().union(*(misfit.following for misfit in misfits))
+    span = text.span(at, next((i for i in range(at + 1, end) if text.words[i] in following), max(end, at + 1)))
     if named:
         known = [name for kind in named for name in vocabulary.values.names(kind.name)]
         kinds = " or ".join(kind.name for kind in named)

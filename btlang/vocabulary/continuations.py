@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Iterator, Sequence
 
 from btlang.record import Record
@@ -45,17 +46,17 @@ def begun(root: TrieNode, text: Words, first: int, last: int, values: Values) ->
 
 
 def ways_on(node: TrieNode, start: str = "") -> Iterator[tuple[tuple[str, ...], TrieNode]]:
-    """Words that lead on to the end of a phrase or to its next slot; the first word begins with `start`."""
-    stack: list[tuple[tuple[str, ...], TrieNode]] = [
+    """Words that lead on to the end of a phrase or to its next slot, fewest first; the first begins with `start`."""
+    pending: deque[tuple[tuple[str, ...], TrieNode]] = deque(
         ((word,), child) for word, child in node.items() if word not in (END, SLOTS) and word.startswith(start)
-    ]
+    )
     found = 0
-    while stack and found < _MOST:
-        words, node = stack.pop()
+    while pending and found < _MOST:
+        words, node = pending.popleft()
         if END in node or SLOTS in node:
             found += 1
             yield words, node
-        stack += [((*words, word), child) for word, child in node.items() if word not in (END, SLOTS)]
+        pending += [((*words, word), child) for word, child in node.items() if word not in (END, SLOTS)]
 
 
 def meanings(node: TrieNode) -> Iterator[Meaning]:

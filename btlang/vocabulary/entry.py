@@ -19,11 +19,16 @@ class SlotSpec(Record):
     default: str | None = None
 
 
+COMPARISONS = ("below", "above", "at_least", "at_most", "equal")
+"""The ports of a condition that compares a quantity; each holds the value to compare with."""
+
+
 class Entry(Record, uncompared=("span",)):
     """One action or condition.
 
     `call` is "module:name" or the Python object itself; `phrases` are patterns, the first is the one printed back;
-    `span` is the place of its first phrase in its keyword file.
+    `span` is the place of its first phrase in its keyword file. Where `measures` names a type, the `call` gives a
+    quantity of it; the vocabulary makes the phrases that compare it of the `quantity` ones and the words for comparing.
     """
 
     sort: str  # "action" or "condition"
@@ -35,6 +40,8 @@ class Entry(Record, uncompared=("span",)):
     topic: str = ""
     help: str = ""
     example: str = ""
+    quantity: tuple[str, ...] = ()
+    measures: str = ""
     span: Span | None = None
 
     def slot(self, name: str) -> SlotSpec:

@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 
 from btlang.record import Record
-from btlang.vocabulary.entry import Entry
+from btlang.vocabulary.entry import COMPARISONS, Entry
 from btlang.vocabulary.pattern import Slot, forms
 from btlang.vocabulary.values import ValueType
 from btlang.vocabulary.vocabulary import Vocabulary
@@ -54,18 +54,23 @@ def items(vocabulary: Vocabulary) -> list[Item]:
 def _command(entry: Entry, vocabulary: Vocabulary) -> Item:
     sort = "command" if entry.sort == "action" else "condition"
     details = list(_slots(entry, vocabulary))
+    ways = entry.phrases
+    if entry.measures:
+        ways = (f"{entry.quantity[0]} {vocabulary.comparisons['below'][0]}", *entry.quantity[1:])
+        said = (re.sub(r" \{.*?\}", "", patterns[0]) for patterns in vocabulary.comparisons.values())
+        details.append(f"compared: {', '.join(said)} {{{entry.measures}}}")
     if entry.resources:
         details.append("needs: " + ", ".join(entry.resources))
     details.append(f"node: {entry.id}")
     return Item(
-        entry.topic or "other", sort, entry.phrases, " ".join(entry.help.split()), entry.example, (entry.id,),
+        entry.topic or "other", sort, ways, " ".join(entry.help.split()), entry.example, (entry.id,),
         tuple(details),
     )  # fmt: skip
 
 
 def _slots(entry: Entry, vocabulary: Vocabulary) -> Iterator[str]:
     always = [{part.name for part in form if isinstance(part, Slot)} for text in entry.phrases for form in forms(text)]
-    for slot in entry.slots:
+    for slot in entry.slots[: -len(COMPARISONS)] if entry.measures else entry.slots:
         kind = vocabulary.types[slot.type]
         line = f"{{{slot.name}}}: {_described(kind, vocabulary)}"
         if slot.default is not None:
@@ -79,11 +84,17 @@ def _word(role: str, vocabulary: Vocabulary) -> Item | None:
     about = vocabulary.about[role]
     counts = tuple(vocabulary.counts) if role == "count" else ()
     ways = (*counts, *vocabulary.roles.get(role, ()))
+    if role == "compare":
+        return Item(about.topic, "word", _comparisons(vocabulary), about.help, about.example, (role,))
     if not ways:
         return None
     slots = dict.fromkeys(part.name for text in ways for form in forms(text) for part in form if isinstance(part, Slot))
     details = tuple(f"{{{name}}}: {_described(vocabulary.types[name], vocabulary)}" for name in slots)
     return Item(about.topic or "other words", "word", ways, about.help, about.example, (role,), details)
+
+
+def _comparisons(vocabulary: Vocabulary) -> tuple[str, ...]:
+    return tuple(pattern for patterns in vocabulary.comparisons.values() for pattern in patterns)
 
 
 def _value(kind: ValueType, vocabulary: Vocabulary) -> Item:

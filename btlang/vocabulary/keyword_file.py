@@ -17,7 +17,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-_TOP = {"language", "action", "condition", "type", *WORD_LISTS, *TABLES}
+_TOP = {"language", "action", "condition", "quantity", "type", *WORD_LISTS, *TABLES}
 NODE_IDS = frozenset((
     "Sequence", "Fallback", "AsyncSequence", "AsyncFallback", "SequenceWithMemory", "Parallel", "ParallelAll",
     "ReactiveSequence", "ReactiveFallback", "IfThenElse", "WhileDoElse", "Inverter", "ForceSuccess", "ForceFailure",
@@ -68,8 +68,9 @@ class _Reader:
         if not isinstance(name, str) or not re.fullmatch(r"[A-Za-z]\w*", name):
             self.wrong(f"the {sort} '{near}' needs id = \"...\", one word that starts with a letter", near)
             return None
-        for key in [key for key in table if key not in _ENTRY]:
-            self.wrong(f"'{key}' is not known in [[{sort}]]; known are {', '.join(sorted(_ENTRY))}", near)
+        keys = _ENTRY | {"type"} if sort == "quantity" else _ENTRY
+        for key in [key for key in table if key not in keys]:
+            self.wrong(f"'{key}' is not known in [[{sort}]]; known are {', '.join(sorted(keys))}", near)
         if name in NODE_IDS:
             self.wrong(f"'{name}' is a node of the tree itself; the {sort} '{near}' needs another id", near)
         call, resources = table.get("call", ""), table.get("resources", [])
@@ -78,9 +79,22 @@ class _Reader:
         if not _strings(resources):
             self.wrong(f"resources of '{near}' is a list of names", near)
             resources = []
-        texts = {key: str(table.get(key, "")) for key in ("topic", "help", "example")}
+        topic, help, example = (str(table.get(key, "")) for key in ("topic", "help", "example"))
         slots = self.slots(phrases, table.get("slots", {}), near)
-        return Entry(sort, name, tuple(phrases), str(call), slots, tuple(resources), span=self.span(near), **texts)
+        made = Entry(
+            sort, name, tuple(phrases), str(call), slots, tuple(resources), topic, help, example, span=self.span(near)
+        )
+        return self.quantity(made, table, near) if sort == "quantity" else made
+
+    def quantity(self, entry: Entry, table: dict[str, Any], near: str) -> Entry:
+        """A condition whose phrases are made when the words for comparing are known."""
+        measures = table.get("type")
+        if not isinstance(measures, str):
+            self.wrong(f"the quantity '{near}' needs type = \"length\", or another type with values to compare", near)
+        made: Entry = entry.replace(
+            sort="condition", phrases=(), quantity=entry.phrases, measures=str(measures), resources=()
+        )
+        return made
 
     def slots(self, phrases: list[str], table: Any, near: str) -> tuple[SlotSpec, ...]:
         if not isinstance(table, dict):
@@ -179,7 +193,7 @@ def read_keyword_file(source: Source) -> KeywordFile:
     for key in [key for key in document if key not in _TOP]:
         reader.wrong(f"'{key}' is not known in a keyword file; known are {', '.join(sorted(_TOP))}", key)
     entries, types, names = [], [], []
-    for sort in ("action", "condition"):
+    for sort in ("action", "condition", "quantity"):
         for table in _tables(document, sort, reader):
             entry = reader.entry(sort, table)
             if entry is not None:
@@ -189,7 +203,7 @@ def read_keyword_file(source: Source) -> KeywordFile:
         if declared is not None:
             types.append(declared[0])
             names += declared[1]
-    language = {k: v for k, v in document.items() if k not in ("action", "condition", "type")}
+    language = {k: v for k, v in document.items() if k not in ("action", "condition", "quantity", "type")}
     for key, value in language.items():
         if key in TABLES or key in WORD_LISTS:
             for reason, near in problems(key, value):

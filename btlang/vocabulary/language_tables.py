@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 
-from btlang.vocabulary.entry import About
+from btlang.vocabulary.entry import COMPARISONS, About
 from btlang.vocabulary.pattern import PatternError, Slot, forms
 
 TYPE_CHECKING = False
@@ -22,7 +22,10 @@ ROLES = {
 }
 """The roles that words can have, each with the slot that its phrases hold."""
 
-EXPLAINED = (*ROLES, "politeness")
+COMPARING = {**dict.fromkeys(COMPARISONS, "value"), "between": "low high"}
+"""The ways to compare a quantity, each with the slots that its phrases hold."""
+
+EXPLAINED = (*ROLES, "compare", "politeness")
 """What the table `about` tells of."""
 
 WORD_LISTS = frozenset(("articles", "politeness", "unit_joiner"))
@@ -51,6 +54,7 @@ def _is_text(value: object) -> bool:
 TABLES: dict[str, tuple[Callable[[object], bool], str]] = {
     "roles": (_words, "a list of phrases"),
     "about": (_about, "a table with the texts topic, help and example"),
+    "comparisons": (_words, "a list of phrases"),
     "negations": (_words, "a list of words"),
     "counts": (_rounds, "a whole number from 1 on, or -1 for without end"),
     "numbers": (_number, "a number"),
@@ -74,22 +78,24 @@ def problems(table: str, value: Any) -> Iterator[tuple[str, str]]:
         if not fits(item):
             yield f"{key} in [{table}] is {wanted}", key
         elif table == "roles":
-            yield from _role_problems(key, item)
+            yield from _phrase_problems("role", key, item, ROLES)
+        elif table == "comparisons":
+            yield from _phrase_problems("comparison", key, item, COMPARING)
         elif table == "about" and key not in EXPLAINED:
             yield f"there is no role '{key}'; there are {', '.join(EXPLAINED)}", key
 
 
-def _role_problems(role: str, phrases: list[str]) -> Iterator[tuple[str, str]]:
-    if role not in ROLES:
-        yield f"there is no role '{role}'; there are {', '.join(ROLES)}", role
+def _phrase_problems(kind: str, name: str, phrases: list[str], known: Mapping[str, str]) -> Iterator[tuple[str, str]]:
+    if name not in known:
+        yield f"there is no {kind} '{name}'; there are {', '.join(known)}", name
         return
-    slot = ROLES[role]
+    wanted = set(known[name].split())
     for phrase in phrases:
         try:
             slots = [{part.name for part in form if isinstance(part, Slot)} for form in forms(phrase)]
         except PatternError as error:
             yield str(error), phrase
             continue
-        if any(found != ({slot} if slot else set()) for found in slots):
-            need = f"holds {{{slot}}}, not in brackets" if slot else "holds no slot"
-            yield f"a phrase of the role {role} {need}: '{phrase}'", phrase
+        if any(found != wanted for found in slots):
+            need = f"holds {' and '.join(f'{{{slot}}}' for slot in sorted(wanted, reverse=True))}, not in brackets"
+            yield f"a phrase of the {kind} {name} {need if wanted else 'holds no slot'}: '{phrase}'", phrase

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.text.source import Source, Span
 from btlang.text.words import split
-from btlang.vocabulary.entry import About, Entry, Meaning, SlotSpec
+from btlang.vocabulary.entry import COMPARISONS, About, Entry, Meaning, SlotSpec
 from btlang.vocabulary.keyword_file import KeywordFile
 from btlang.vocabulary.language_tables import EXPLAINED
 from btlang.vocabulary.pattern import Form, PatternError, Slot, forms
@@ -45,6 +46,9 @@ class Vocabulary:
         self.roles: dict[str, list[str]] = {**language["roles"], "politeness": language["politeness"]}
         self.counts: dict[str, int] = language["counts"]
         self.about = _about(files)
+        self.quantities: TrieNode = {}
+        """The phrases of quantities alone: before `is` they compare and define nothing."""
+        self.comparisons: dict[str, list[str]] = language["comparisons"]
         self._negations: dict[str, list[str]] = language["negations"]
         self._add_roles()
         for entry in (*(e for f in files for e in f.entries), *entries):
@@ -103,6 +107,8 @@ class Vocabulary:
             self._add_phrase(words, Meaning("count", value=rounds), {})
 
     def _add_entry(self, entry: Entry) -> None:
+        if entry.measures:
+            entry = self._with_comparisons(entry)
         types = {slot.name: slot.type for slot in entry.slots}
         unknown = [slot for slot in entry.slots if slot.type not in self.types]
         for slot in unknown:
@@ -122,6 +128,20 @@ class Vocabulary:
                     self._add_negations(phrase, Meaning("negated", entry), types)
             except PatternError as error:
                 self._wrong(entry, str(error))
+
+    def _with_comparisons(self, entry: Entry) -> Entry:
+        """`battery` becomes `battery is below {below}` and so on, for each way to compare."""
+        for pattern in entry.quantity:
+            try:
+                for form in forms(pattern, self.articles):
+                    add(self.quantities, form, {s.name: s.type for s in entry.slots}, Meaning("quantity", entry))
+            except PatternError:
+                return entry  # the keyword file has told
+        ways = [way for name, patterns in self.comparisons.items() for way in _compared(name, patterns)]
+        phrases = tuple(f"{quantity} {way}" for way in ways for quantity in entry.quantity)
+        compared = tuple(SlotSpec(name, entry.measures) for name in COMPARISONS)
+        made: Entry = entry.replace(phrases=phrases, slots=(*entry.slots, *compared))
+        return made
 
     def _with_port_default(self, entry: Entry, slot: SlotSpec) -> SlotSpec:
         """Defaults are written with units; ports hold them in the base unit."""
@@ -183,9 +203,15 @@ class Vocabulary:
         self._problems.append(diagnostic("BT061", span, reason=reason))
 
 
+def _compared(name: str, patterns: Iterable[str]) -> list[str]:
+    """The words of a comparison with the names of ports in their slots."""
+    ports = {"value": name, "low": "at_least", "high": "at_most"}
+    return [re.sub(r"\{(\w+)\}", lambda slot: f"{{{ports[slot[1]]}}}", pattern) for pattern in patterns]
+
+
 _LANGUAGE: dict[str, Any] = {
-    "articles": [], "politeness": [], "unit_joiner": [],
-    "roles": {}, "about": {}, "counts": {}, "negations": {}, "numbers": {}, "multipliers": {}, "fractions": {},
+    "articles": [], "politeness": [], "unit_joiner": [], "roles": {}, "about": {}, "comparisons": {}, "counts": {},
+    "negations": {}, "numbers": {}, "multipliers": {}, "fractions": {},
 }  # fmt: skip
 
 

@@ -30,7 +30,10 @@ NEEDS = {
     "PutDown": ("the robot does not hold the cup", "pick up the cup"),
     "LookAtObject": ("the cup is behind the robot, where its head does not turn", "face the cup"),
 }
-HOLDS_AT_THE_START = {"HandEmpty", "PathClear", "BatteryFull"}
+HOLDS_AT_THE_START = {
+    "HandEmpty", "PathClear", "BatteryFull", "DistanceAhead", "DistanceToPlace", "DistanceToPerson", "DistanceToObject",
+    "PeopleNear",
+}  # fmt: skip
 
 
 def outcome(text: str) -> tuple[int, str]:
@@ -165,7 +168,7 @@ charge [to {percent}]
         ("after", ["after", "after {duration}"]),
         ("wait for", ["wait [for] {duration}", "wait until"]),
         ("and at the same time", ["and"]),
-        ("is", ["is"]),
+        ("is", ["is below {value}", "is"]),
         ("define_strong", ["means"]),
         ("forever", ["once"]),
         ("3 times", ["once"]),

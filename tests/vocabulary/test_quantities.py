@@ -1,0 +1,89 @@
+"""Quantities: compared by the language, bound to a function that gives a number."""
+
+from __future__ import annotations
+
+import pytest
+
+import btlang
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.engine.status import FAILURE, SUCCESS
+from btlang.tree.dump import plain
+
+
+@pytest.mark.parametrize(
+    ("condition", "node"),
+    [
+        ("the battery is below 20%", "Battery below=20"),
+        ("battery level is less than 20 percent", "Battery below=20"),
+        ("the battery drops below twenty percent", "Battery below=20"),
+        ("the battery is more than half a percent", "Battery above=0.5"),
+        ("the battery is at least 20%", "Battery at_least=20"),
+        ("the battery is 20% or less", "Battery at_most=20"),
+        ("the battery is 20%", "Battery equal=20"),
+        ("the distance ahead is between 50 cm and 2 m", "DistanceAhead at_least=0.5 at_most=2"),
+        ("the distance to the living room is under 1 m", 'DistanceToPlace below=1 place="living room"'),
+        ("the number of people nearby is 0", "PeopleNear equal=0"),
+    ],
+)
+def test_comparisons(condition: str, node: str) -> None:
+    for parser in ("shunting-yard", "lark"):
+        assert plain(btlang.parse_tree(f"check {condition}", parser=parser).tree) == node
+        negated = btlang.parse_tree(f"wave if not {condition}", parser=parser).tree.root.children[0]
+        assert negated.id == "Inverter"
+    tree = btlang.parse_tree(f"check {condition}")
+    assert plain(btlang.parse_tree(f"check {tree.label(tree.tree.root)}").tree) == node  # reads back
+
+
+def test_negation_stands_inside_too() -> None:
+    assert plain(btlang.parse_tree("check the battery is not below 20%").tree) == "Inverter\n  Battery below=20"
+    assert plain(btlang.parse_tree("check the battery isn't between 2% and 3%").tree).startswith("Inverter\n  Battery")
+
+
+def test_a_quantity_at_line_start_compares_and_defines_nothing() -> None:
+    for text in ("the battery is below 20%", "battery is 20% then wave"):
+        with pytest.raises(MissionError) as caught:
+            btlang.parse_tree(text)
+        assert caught.value.diagnostics[0].code == "BT028"
+    tree = btlang.parse_tree("tired is the battery is below 20%\nwave unless tired").tree
+    assert plain(tree).endswith("BehaviorTree ID=tired\n  Battery below=20")
+
+
+@pytest.mark.parametrize(
+    ("text", "code"),
+    [
+        ("check the battery is below 20", "BT011"),
+        ("check the battery is below 2 m", "BT011"),
+        ("check the battery is below", "BT012"),
+        ("check the battery is below -1%", "BT014"),
+        ("check the battery is nice", "BT010"),
+        ("check the distance to the moon is below 2 m", "BT013"),
+    ],
+)
+def test_wrong_values(text: str, code: str) -> None:
+    with pytest.raises(MissionError) as caught:
+        btlang.parse_tree(text)
+    assert [problem.code for problem in caught.value.diagnostics] == [code]
+
+
+@pytest.mark.parametrize(
+    ("condition", "status"),
+    [
+        ("the battery is above 99%", SUCCESS),
+        ("the battery is below 99%", FAILURE),
+        ("the battery is 100%", SUCCESS),
+        ("the battery is at least 100%", SUCCESS),
+        ("the battery is at most 99.9%", FAILURE),
+        ("the battery is between 99% and 100%", SUCCESS),
+        ("the distance to the lobby is 1.5 m", SUCCESS),
+        ("the distance to Alice is more than 10 m", FAILURE),
+        ("the number of people nearby is less than 1", SUCCESS),
+    ],
+)
+def test_they_hold_in_the_world(condition: str, status: int) -> None:
+    assert btlang.parse_tree(f"check {condition}").run(speed="max").status == status
+
+
+def test_they_stop_a_loop() -> None:
+    tree = btlang.parse_tree("move forward 5 m until the distance ahead is less than 2 m")
+    assert tree.run(speed="max").status == SUCCESS
+    assert 1.7 < 6.0 - 0.2 - tree.robot.pose.x < 2.0  # the wall is at x = 6
