@@ -1,7 +1,9 @@
 """Every code that a message can have, with its texts. Codes are a contract: they are never given a new meaning.
 
 BT00x reading, BT01x words, BT02x and BT03x how a sentence is put together, BT04x what it means, BT06x keyword files,
-BT07x worlds, BT08x the Python behind the words and what else has to be installed.
+BT07x worlds, BT08x the Python behind the words and what else has to be installed, BT09x the codes themselves.
+
+Each code has a page in `pages/`, which `btc explain` prints.
 """
 
 from __future__ import annotations
@@ -54,6 +56,8 @@ _ALL = (
     Code("BT029", "'{words}' is a command, but a condition is needed {place}."),
     Code("BT032", "A comma cannot stand {place}.", "{advice}"),
     Code("BT033", "A definition stands at the left margin, not inside a block or brackets.", "Move it out."),
+    Code("BT034", "'{words}' holds two lists, and I do not know how they go together.",
+         "Use one list in a command, and another command for the rest."),
     Code("BT040", "'{name}' is defined by itself: {circle}.", "Repeat with 'repeat' or 'while' instead."),
     Code("BT041", "Both of these need the {resource} at the same time: '{first}' and '{second}'.",
          "Do one after the other: {fixed}"),
@@ -66,6 +70,7 @@ _ALL = (
     Code("BT070", "This world file cannot be used: {reason}."),
     Code("BT080", "The command '{id}' cannot run: {reason}."),
     Code("BT081", "Pictures are drawn by matplotlib, which is not installed.", "Install it: pip install 'btlang[pictures]'"),
+    Code("BT090", "There is no code '{name}'.", "All of them: btc explain"),
 )  # fmt: skip
 
 CODES = {entry.code: entry for entry in _ALL}

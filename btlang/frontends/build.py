@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from btlang.frontends.token import Token
+from btlang.frontends.token import Listed, Token
 from btlang.text.source import Source, Span
 from btlang.tree.ast import (
     Ast,
@@ -51,6 +51,11 @@ class Builder:
         span, value = Span(self.source, token.start, token.end), token.value
         if type(value) is str:
             return Name(value, span)
+        if type(value) is Listed:
+            is_condition = token.kind == "CONDITION"
+            operators = ("any", "all") if is_condition else ("fallback", "sequence")
+            items = tuple(Phrase(value.entry, arguments, span) for arguments in value.arguments)
+            return Chain(operators[value.joiner != "or"], items, True, span)
         kind, amount = value
         if kind == "wait":
             return Wait(amount, span)

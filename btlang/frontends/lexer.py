@@ -6,10 +6,11 @@ from collections.abc import Iterator
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.definitions import Definitions, find_definitions
-from btlang.frontends.token import Token
+from btlang.frontends.token import Listed, Token
 from btlang.frontends.unknown import explain_unknown
 from btlang.text.source import Source, Span
 from btlang.text.words import END_OF_TEXT, Words, split
+from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.trie import Match, longest
 from btlang.vocabulary.vocabulary import Vocabulary
 
@@ -85,7 +86,7 @@ class Lexer:
                 tokens.append(Token(_MARKS[word], None, starts[at], ends[at]))
                 at += 1
                 continue
-            match = longest(trie, text, at, values)
+            match = longest(trie, text, at, values, names)
             if names and word in names:
                 named = longest(names, text, at, values)
                 if named is not None and (match is None or named.last >= match.last):
@@ -123,12 +124,27 @@ class Lexer:
         if match.values and match.values[-1].first == match.last:  # the article was the value: `print a`
             end = text.articles[match.last][1]
         if meaning.entry is not None:
-            arguments = tuple((value.name, value.text) for value in match.values)
             kind = "condition" if meaning.role == "negated" else meaning.role
-            return Token(kind, (meaning.entry, arguments), start, end)
+            return Token(kind, self._called(meaning.entry, match, at), start, end)
         if match.values:
             return Token(meaning.role, match.values[0].text, start, end)
         return Token(meaning.role, str(meaning.value) if meaning.role == "count" else None, start, end)
+
+    def _called(self, entry: Entry, match: Match, at: int) -> tuple[Entry, tuple[tuple[str, str], ...]] | Listed:
+        """The entry with its arguments, or with several of them where one slot holds a list."""
+        arguments = tuple((value.name, value.text) for value in match.values)
+        lists = [place for place, value in enumerate(match.values) if value.more]
+        if not lists:
+            return entry, arguments
+        if len(lists) > 1:
+            self.problems.append(
+                diagnostic("BT034", self.text.span(at, match.last), words=self.text.span(at, match.last).text)
+            )
+        place = lists[0]
+        value = match.values[place]
+        texts = (value.text, *value.more)
+        every = tuple((*arguments[:place], (value.name, text), *arguments[place + 1 :]) for text in texts)
+        return Listed(entry, every, value.joiner)
 
     def _unknown_end(self, at: int, last: int) -> int:
         """Unknown words reach to the next mark or connective, or to a phrase that is more than one word."""

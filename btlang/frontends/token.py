@@ -17,9 +17,20 @@ grouped tokens, which need no look-ahead any more:
 
 from __future__ import annotations
 
+from btlang.record import Record
+from btlang.vocabulary.entry import Entry
+
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
+
+
+class Listed(Record):
+    """A phrase with a list in one slot: arguments for each value. `joiner` is "and", "or" or ""."""
+
+    entry: Entry
+    arguments: tuple[tuple[tuple[str, str], ...], ...]
+    joiner: str
 
 
 class Token:

@@ -38,6 +38,8 @@ def begun(root: TrieNode, text: Words, first: int, last: int, values: Values) ->
             value = values.read(kind, text, at)
             if value is not None and value[1] <= last:
                 paths.append((child, value[1]))
+                if value[1] < last and values.joiners.issuperset(text.words[value[1] : last]):
+                    slots.append((kind, last, child))  # the next value of a list
             slots.append((kind, at, child))
         child = node.get(text.words[at])
         if child is not None:

@@ -22,13 +22,19 @@ TrieNode = dict[str, "Any"]
 
 
 class SlotValue(Record):
-    """The value that was read in a slot: its port text and the words `first` to `last` (exclusive)."""
+    """The value that was read in a slot: its port text and the words `first` to `last` (exclusive).
+
+    Of a list (`the lab, the hall and the dock`) `more` holds the further values; `joiner` is "and", "or", or "" where
+    there are only commas.
+    """
 
     name: str
     type: str
     text: str
     first: int
     last: int
+    more: tuple[str, ...] = ()
+    joiner: str = ""
 
 
 class Match(Record):
@@ -60,9 +66,12 @@ def add(root: TrieNode, form: Form, types: Mapping[str, str], meaning: Meaning) 
     return before
 
 
-def longest(root: TrieNode, text: Words, at: int, values: Values) -> Match | None:
-    """The longest phrase at a word; where two are equally long, the one with words in place of slots."""
-    words = text.words
+def longest(root: TrieNode, text: Words, at: int, values: Values, names: TrieNode | None = None) -> Match | None:
+    """The longest phrase at a word; where two are equally long, the one with words in place of slots.
+
+    A slot of an entry also takes a list of values. It ends before a phrase, or a name in the trie `names`.
+    """
+    words, joiners = text.words, values.joiners
     node: TrieNode | None = root.get(words[at])
     if node is None and SLOTS not in root:
         return None
@@ -73,17 +82,53 @@ def longest(root: TrieNode, text: Words, at: int, values: Values) -> Match | Non
         node, i, found = paths.pop()
         while True:
             if END in node and (i > best_last or best is None):
-                best, best_last, best_values = node[END], i, found
+                if node[END].entry is not None or not any(value.more for value in found):
+                    best, best_last, best_values = node[END], i, found
             if SLOTS in node:
                 for name, kind, child in node[SLOTS]:
                     value = values.read(kind, text, i)
-                    if value is not None:
-                        paths.append((child, value[1], (*found, SlotValue(name, kind, value[0], i, value[1]))))
+                    if value is None:
+                        continue
+                    one = SlotValue(name, kind, value[0], i, value[1])
+                    paths.append((child, value[1], (*found, one)))
+                    if words[value[1]] in joiners:
+                        listed = _listed(root, text, one, values, names)
+                        if listed is not None:
+                            paths.append((child, listed.last, (*found, listed)))
             node = node.get(words[i])
             if node is None:
                 break
             i += 1
     return Match(best, best_last, best_values) if best is not None else None
+
+
+def _listed(root: TrieNode, text: Words, first: SlotValue, values: Values, names: TrieNode | None) -> SlotValue | None:
+    """The list that a value begins. It goes on while a value of the type follows that starts no longer phrase."""
+    if values.types[first.type].kind == "text":
+        return None
+    more: list[str] = []
+    last, joiner = first.last, ""
+    while True:
+        at = last
+        comma = text.words[at] == ","
+        at += comma
+        joined = longest(root, text, at, values) if text.words[at] in values.joiners else None
+        role = joined.meaning.role if joined is not None and joined.meaning.role in ("and", "or") else ""
+        if (joiner and role != joiner) or not (role or comma):
+            break
+        if joined is not None and role:
+            at = joined.last
+        value = values.read(first.type, text, at)
+        if value is None or any(_reaches_beyond(trie, text, at, value[1], values) for trie in (root, names or {})):
+            break
+        more.append(value[0])
+        last, joiner = value[1], role
+    return first.replace(more=tuple(more), joiner=joiner, last=last) if more else None
+
+
+def _reaches_beyond(root: TrieNode, text: Words, at: int, last: int, values: Values) -> bool:
+    match = longest(root, text, at, values)
+    return match is not None and match.last > last
 
 
 def collisions(root: TrieNode, values: Values) -> Iterator[tuple[Meaning, Meaning]]:

@@ -90,6 +90,9 @@ class Values:
         self._articles = frozenset(language["articles"])
         # words that an article before them makes no text: `print a then wave`
         self._connectives = frozenset(phrase for phrases in language["roles"].values() for phrase in phrases)
+        joining = (phrase for role in ("and", "or") for phrase in language["roles"].get(role, ()))
+        self.joiners = frozenset((",", *(phrase.split()[0] for phrase in joining)))
+        """The first words of what stands between the values of a list."""
         self._fractions: WordTree = {}
         for phrase, value in language["fractions"].items():
             insert(self._fractions, phrase.split(), value)
