@@ -30,7 +30,8 @@ from btlang.tree.ast import (
 )
 
 CHAINS = {
-    "SEMI": "sequence", "OR_ELSE": "fallback", "WIDE_AND": "parallel", "THEN": "sequence", "AFTER": "sequence",
+    "SEMI": "sequence", "BLOCK_AND": "parallel", "BLOCK_OR": "fallback",
+    "OR_ELSE": "fallback", "WIDE_AND": "parallel", "THEN": "sequence", "AFTER": "sequence",
     "OR": "fallback", "AND": "parallel",
     "COND_OR_ELSE": "any", "COND_WIDE_AND": "all", "COND_OR": "any", "COND_AND": "all",
 }  # fmt: skip

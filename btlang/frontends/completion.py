@@ -27,11 +27,11 @@ _LONG_ENOUGH = 3  # letters; a shorter word is no misspelling yet
 _MOST_CORRECTIONS = 3
 _ALIKE = {
     **dict.fromkeys(("wait", "nothing", "fail"), "command"), "negated": "condition", "unless": "if", "until": "while",
-    "if_possible": "within", "retry": "try", "wait_until": "check", "delay": "every",
+    "if_possible": "within", "retry": "try", "wait_until": "check", "delay": "every", "in_order": "in_parallel",
 }  # fmt: skip
 """Roles that stand where others stand: the matching stage is asked for one of them."""
 _LOOK_AHEAD = frozenset(("and", "or"))  # whether these are in their place depends on what follows
-_MAY_FOLLOW = ((), ("command",), ("condition",), ("close",))
+_MAY_FOLLOW = ((), ("command",), ("condition",), ("close",), ("colon",))
 _LINE_STARTS = frozenset(("newline", "semi", "indent", "dedent"))
 
 

@@ -10,10 +10,13 @@ class Frame:
 
     The owners are the nearest open forms of the same bracket that a count, an `until` (or `while`, `for`) or an
     `otherwise` would belong to; `after` says what follows the end of a condition. `commas` are those whose meaning
-    the next connective will tell; `last` is the latest connective. `statement` of a group is "", "open" or "ended".
+    the next connective will tell; `last` is the latest connective. `statement` of a group is "", "open" or "ended";
+    `joint` is the token between its statements.
     """
 
-    __slots__ = ("after", "commas", "count_owner", "else_owner", "kind", "last", "opener", "statement", "stop_owner")
+    __slots__ = (
+        "after", "commas", "count_owner", "else_owner", "joint", "kind", "last", "opener", "statement", "stop_owner",
+    )  # fmt: skip
 
     def __init__(self, kind: str, opener: Token | None = None, outer: Frame | None = None, after: str = "") -> None:
         self.kind = kind
@@ -25,6 +28,7 @@ class Frame:
         self.commas: list[Token] = []
         self.last: Token | None = None
         self.statement = ""
+        self.joint = "SEMI"
 
     @property
     def is_group(self) -> bool:

@@ -80,7 +80,7 @@ class Matcher(ConditionScan):
         frame = self._frames[-1]
         if frame.is_group:
             if frame.statement == "ended":
-                self._out.append(Token("SEMI", None, token.start, token.start))
+                self._out.append(Token(frame.joint, None, token.start, token.start))
             frame.statement = "open"
 
     def _not(self, token: Token) -> None:
@@ -142,6 +142,22 @@ class Matcher(ConditionScan):
                 body.else_owner = body
         self._frames.append(body)
         self._separator()
+
+    def _joined_block(self, token: Token) -> None:
+        """`in parallel:`, `the first that works:` and the lines below."""
+        if self._refuse_in_condition(token):
+            return
+        colon = self._raw[self._at + 1]
+        if colon.kind != "colon":
+            self._fail("BT035", self._span(token), words=self._words(token))
+            return
+        self._begin_statement(token)
+        self._next(token, True)
+        self._next(colon, True)
+        if self._raw[self._at].kind == "indent":
+            self._open_block("BLOCK_AND" if token.kind == "in_parallel" else "BLOCK_OR")
+        else:
+            self._skip_statement()  # the lexer has told that the block is missing
 
     def _set_amount(self, opener: Token, amount: Token) -> None:
         """A count or duration of a repeat or try, before or after its body."""
@@ -338,6 +354,7 @@ _OPERAND: dict[str, Callable[[Matcher, Token], None]] = {
     **dict.fromkeys(("command", "condition", "unknown", "wait", "nothing", "fail"), Matcher._operand),
     **dict.fromkeys(("if", "unless", "while", "until"), Matcher._form),
     **dict.fromkeys(("check", "wait_until"), Matcher._test),
+    **dict.fromkeys(("in_parallel", "in_order"), Matcher._joined_block),
     **dict.fromkeys(("repeat", "try", "retry", "every", "delay"), Matcher._loop),
     "not": Matcher._not,
     "open": Matcher._open,

@@ -115,10 +115,12 @@ class Scan:
         else:
             self._operand_due = False  # an empty line or sentence
 
-    def _open_block(self) -> None:
-        """At an indent: the lines below are statements of a new group."""
+    def _open_block(self, joint: str = "SEMI") -> None:
+        """At an indent: the lines below are statements of a new group, with a token between them."""
         following = self._raw[self._at + 1]
         self._out.append(Token("OPEN", None, following.start, following.start))
-        self._frames.append(Frame("block"))
+        block = Frame("block")
+        block.joint = joint
+        self._frames.append(block)
         self._at += 1
         self._operand_due = True

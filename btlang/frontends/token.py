@@ -5,6 +5,7 @@ grouped tokens, which need no look-ahead any more:
 
     COMMAND CONDITION                      operands
     SEMI OR_ELSE WIDE_AND THEN AFTER OR AND    between commands, loosest first
+    BLOCK_AND BLOCK_OR                     in place of SEMI between the lines of `in parallel:`, `the first that works:`
     COND_OR_ELSE COND_WIDE_AND COND_OR COND_AND NOT    between and before conditions
     OPEN CLOSE COND_OPEN COND_CLOSE        brackets; a block is a bracket too
     POSTFIX                                after one command: `twice`, `within 10 s`, ...

@@ -13,7 +13,8 @@ if TYPE_CHECKING:
 
 _NO_SLOT = (
     "then", "and", "or", "after", "otherwise", "if", "unless", "while", "until", "provided", "not", "repeat", "try",
-    "retry", "if_possible", "wait_until", "check", "nothing", "fail", "define_strong", "define",
+    "retry", "if_possible", "wait_until", "check", "nothing", "fail", "in_parallel", "in_order",
+    "define_strong", "define",
 )  # fmt: skip
 ROLES = {
     **dict.fromkeys(_NO_SLOT, ""),

@@ -121,11 +121,13 @@ def _brief(item: Item) -> list[str]:
     mark = "  (condition)" if item.sort == "condition" else ""
     lines = _wrapped(", ".join(ways), "  ", "    ")
     lines[-1] += mark
-    example = f"For example: {item.example}" if item.example and item.example != item.ways[0] else ""
+    block = _block(item.example, 8) if "\n" in item.example else []
+    example = f"For example: {item.example}" if item.example not in ("", item.ways[0]) and not block else ""
     told = [text for text in (item.help, example) if text]
     if len(" ".join(told)) <= _WIDTH - 6:
         told = [" ".join(told)] if told else []
-    return lines + [line for text in told for line in _wrapped(text, "      ", "      ")]
+    lines += [line for text in told for line in _wrapped(text, "      ", "      ")]
+    return [*lines, *(["      For example:", *block] if block else [])]
 
 
 def _whole(item: Item) -> list[str]:
@@ -139,6 +141,8 @@ def _whole(item: Item) -> list[str]:
         lines += ["    also: " + item.ways[1], *("          " + way for way in item.ways[2:])]
     for detail in item.details:
         lines += _wrapped(detail, "    ", "        ")
+    if "\n" in item.example:
+        return [*lines, "    for example:", *_block(item.example, 6)]
     return [*lines, *([f"    for example: {item.example}"] if item.example else [])]
 
 
@@ -164,3 +168,7 @@ def _unknown(known: Sequence[Item], search: str) -> list[str]:
 
 def _wrapped(text: str, first: str, then: str) -> list[str]:
     return textwrap.wrap(text, _WIDTH, initial_indent=first, subsequent_indent=then, break_long_words=False)
+
+
+def _block(example: str, indent: int) -> list[str]:
+    return [" " * indent + line for line in example.splitlines()]

@@ -186,7 +186,7 @@ def test_help_on_nothing_shows_the_topics() -> None:
     lines = help_on(VOCABULARY, " ")
     assert lines[0].startswith("Ask for help")
     assert [line[2:16].strip() for line in lines[1:]] == list(dict.fromkeys(item.topic for item in ITEMS))
-    assert "  joining       then, and, or, after" in lines
+    assert "  joining       then, and, or, in parallel, after" in lines
 
 
 @pytest.mark.parametrize("text", ["((", '"', "\0", "\n", "{", "then", "   (", "#", "é", "1" * 400])
