@@ -59,6 +59,7 @@ _ALL = (
     Code("BT034", "'{words}' holds two lists, and I do not know how they go together.",
          "Use one list in a command, and another command for the rest."),
     Code("BT035", "'{words}' opens a block, so a ':' and indented lines must follow.", "Write:\n  {words}:\n    first command\n    second command"),
+    Code("BT036", "I cannot read this place.", "A place is given in metres, with a direction or without: {example}"),
     Code("BT040", "'{name}' is defined by itself: {circle}.", "Repeat with 'repeat' or 'while' instead."),
     Code("BT041", "Both of these need the {resource} at the same time: '{first}' and '{second}'.",
          "Do one after the other: {fixed}"),

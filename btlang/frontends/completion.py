@@ -20,7 +20,7 @@ from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.pattern import Slot, forms
 from btlang.vocabulary.trie import SLOTS, TrieNode
 from btlang.vocabulary.values import END
-from btlang.vocabulary.vocabulary import DEFINING, Vocabulary
+from btlang.vocabulary.vocabulary import DEFINING, NO_PHRASES, Vocabulary
 
 _MOST_TOKENS_BACK = 6  # a phrase that is being written may look like that many shorter ones
 _LONG_ENOUGH = 3  # letters; a shorter word is no misspelling yet
@@ -223,7 +223,7 @@ def _openings(vocabulary: Vocabulary) -> list[tuple[str, TrieNode]]:
     """The words, up to the first slot, of the first phrase of each role and entry, and where they lead in the trie."""
     found: dict[str, TrieNode] = {}
     entries = [entry.phrases[0] for entries in vocabulary.entries.values() for entry in entries]
-    roles = [phrases[0] for role, phrases in vocabulary.roles.items() if role not in (*DEFINING, "politeness")]
+    roles = [phrases[0] for role, phrases in vocabulary.roles.items() if role not in (*NO_PHRASES, "politeness")]
     for pattern in (*entries, *roles, *vocabulary.counts):
         node, words = vocabulary.trie, []
         for part in forms(pattern, vocabulary.articles)[-1]:

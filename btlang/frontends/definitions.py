@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.record import Record
@@ -34,15 +34,18 @@ class Definitions:
         self.problems: list[Diagnostic] = []
 
 
-def find_definitions(text: Words, vocabulary: Vocabulary) -> Definitions:
-    """Every definition of the text. A name defined twice is listed twice; the later one counts."""
+def find_definitions(text: Words, vocabulary: Vocabulary, facts: Container[int] = ()) -> Definitions:
+    """Every definition of the text. A name defined twice is listed twice; the later one counts.
+
+    `facts` are the words at which facts start, which define no command.
+    """
     found = Definitions()
     defining = {word for role in DEFINING for word in vocabulary.roles[role]}
     if defining.isdisjoint(text.words):
         return found
     margin = text.lines[0].indent if text.lines else 0
     for indent, first, last in _statements(text):
-        if defining.isdisjoint(text.words[first:last]):
+        if first in facts or defining.isdisjoint(text.words[first:last]):
             continue
         header = _header(text, first, last, vocabulary, found.problems)
         if header is None:

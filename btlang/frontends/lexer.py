@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.definitions import Definitions, find_definitions
+from btlang.frontends.facts import find_facts
 from btlang.frontends.token import Listed, Token
 from btlang.frontends.unknown import explain_unknown
 from btlang.text.source import Source, Span
@@ -31,7 +32,13 @@ class Lexer:
             diagnostic("BT004", span, fix=(Span(source, span.end, span.end), '"')) for span in self.text.open_quotes
         ]
         self.problems += [diagnostic("BT003", span, characters=span.text[:20]) for span in self.text.unreadable]
-        self.definitions: Definitions = find_definitions(self.text, vocabulary)
+        facts = find_facts(self.text, vocabulary)
+        self.problems += facts.problems
+        self.facts = facts.found
+        self._fact_ends = facts.ends
+        if self.facts:
+            self.vocabulary = vocabulary.with_places(tuple(fact.name for fact in self.facts))
+        self.definitions: Definitions = find_definitions(self.text, self.vocabulary, facts.ends)
         self.problems += self.definitions.problems
         self.tokens: list[Token] = []
         self._lines()
@@ -77,6 +84,9 @@ class Lexer:
         headers = self.definitions.headers
         while at < last:
             word = words[at]
+            if at in self._fact_ends:
+                at = self._fact_ends[at]
+                continue
             if at in headers:
                 header = headers[at]
                 tokens.append(Token("define", header, starts[at], ends[header.body - 1]))

@@ -34,7 +34,7 @@ def read_mission(source: Source, vocabulary: Vocabulary, parser: str = DEFAULT_P
     lexer = Lexer(source, vocabulary)
     matcher = Matcher(source, lexer.tokens, lexer.conditions, vocabulary.word)
     problems = lexer.problems + matcher.problems
-    if not lexer.tokens and not problems:
+    if not lexer.tokens and not lexer.facts and not problems:
         problems = [diagnostic("BT005", Span(source, 0, 0), example="move forward 1 m")]
     if any(problem.is_error for problem in problems):
         raise MissionError(problems)
@@ -50,5 +50,6 @@ def read_mission(source: Source, vocabulary: Vocabulary, parser: str = DEFAULT_P
         span = Span(source, unit.header.span.start, inner.span.end)
         definitions.pop(unit.header.name, None)  # a later definition replaces an earlier one
         definitions[unit.header.name] = Definition(unit.header.name, inner, unit.header.span, span)
-    mission = Mission(body, tuple(definitions.values()), Span(source, 0, len(source.text)))
+    facts = {fact.name: fact for fact in lexer.facts}  # a later fact replaces an earlier one
+    mission = Mission(body, tuple(definitions.values()), Span(source, 0, len(source.text)), tuple(facts.values()))
     return Reading(mission, tuple(problems))

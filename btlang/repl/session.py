@@ -5,13 +5,12 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from btlang.api import RunnableTree, load_simulation, world_vocabulary
-from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.frontends.lexer import Lexer
-from btlang.frontends.mission import DEFAULT_PARSER, read_mission
+from btlang.frontends.mission import DEFAULT_PARSER, Reading, read_mission
 from btlang.passes import compile_mission
 from btlang.record import Record
 from btlang.text.source import Source
-from btlang.tree.ast import Ast, Chain, Definition, parts
+from btlang.tree.ast import Ast, Chain, Definition, Fact, parts
 from btlang.tree.node import Node, Tree
 
 TYPE_CHECKING = False
@@ -78,23 +77,25 @@ class Session:
         if not known:
             return ""
         lexer = Lexer(Source(text), self.vocabulary, explain=False)
-        anew = {header.name for header in lexer.definitions.headers.values()}
+        anew = {header.name for header in lexer.definitions.headers.values()} | {fact.name for fact in lexer.facts}
         return "".join(f"{definition}\n" for name, definition in known.items() if name not in anew)
 
     def compile(self, text: str) -> Compiled:
         """Reads an entry together with the definitions above. Raises MissionError."""
         whole = f"{text}\n{self.context(text)}"  # the entry first, so that places in it are those that were typed
         reading = read_mission(Source(whole, ENTRY), self.vocabulary, self._parser)
-        own = [d for d in reading.mission.definitions if d.span.start < len(text)]
+        mission = reading.mission
+        named: list[Definition | Fact] = [*mission.definitions, *mission.facts]
+        own = [d for d in named if d.span.start < len(text)]
         tree = compile_mission(reading.mission, self.vocabulary, needs_command=False)
         entry = Entry(text, tuple((d.name, d.span.text) for d in own), reading.mission.body is not None)
         shown = Tree(tree.root, _used(tree, [name for name, _ in entry.definitions]))
-        return Compiled(entry, self._runnable(shown, reading.warnings))
+        return Compiled(entry, self._runnable(shown, reading))
 
     def compile_all(self) -> RunnableTree:
         """The whole mission. Raises MissionError, also where it holds no command."""
         reading = read_mission(Source(self.text, self.file or "<session>"), self.vocabulary, self._parser)
-        return self._runnable(compile_mission(reading.mission, self.vocabulary), reading.warnings)
+        return self._runnable(compile_mission(reading.mission, self.vocabulary), reading)
 
     def add(self, entry: Entry) -> None:
         """A definition takes the place of an older one of the same name."""
@@ -134,7 +135,7 @@ class Session:
             commands = parts(body)
         groups: list[list[Ast]] = []  # those that share a line
         last = 0
-        for statement in sorted((*commands, *mission.definitions), key=lambda part: part.span.start):
+        for statement in sorted((*commands, *mission.definitions, *mission.facts), key=lambda part: part.span.start):
             line = source.position(statement.span.start)[0]
             if line > last:
                 groups.append([])
@@ -145,20 +146,22 @@ class Session:
         for group in groups:
             below = source.position(group[-1].span.end)[0] + 1
             end = source.offset(below) if group is not groups[-1] else len(text)
-            own = tuple((d.name, d.span.text) for d in group if isinstance(d, Definition))
+            own = tuple((d.name, d.span.text) for d in group if isinstance(d, Definition | Fact))
             entries.append(Entry(text[begin:end].strip("\n"), own, len(own) < len(group)))
             begin = end
         return entries
 
-    def _runnable(self, tree: Tree, warnings: Sequence[Diagnostic]) -> RunnableTree:
-        return RunnableTree(tree, self.vocabulary, self.world, warnings, self.simulation)
+    def _runnable(self, tree: Tree, reading: Reading) -> RunnableTree:
+        return RunnableTree(
+            tree, self.vocabulary, self.world, reading.warnings, stage=self.simulation, mission=reading.mission
+        )
 
 
 def _used(tree: Tree, names: Sequence[str]) -> tuple[tuple[str, Node], ...]:
     """The subtrees of these names and those that they and the main tree use."""
     bodies = dict(tree.subtrees)
     needed = set(names)
-    pending = [tree.root, *(bodies[name] for name in names)]
+    pending = [tree.root, *(bodies[name] for name in names if name in bodies)]
     while pending:
         node = pending.pop()
         pending += node.children

@@ -61,6 +61,11 @@ class Navigator:
         self._planner = Planner(world, obstacles)
         self.journey: Journey | None = None
 
+    def add_place(self, place: Place) -> None:
+        """Names one more place, in place of one that is called the same."""
+        self._places = {name: known for name, known in self._places.items() if name.lower() != place.name.lower()}
+        self._places[place.name] = place
+
     def start(self, name: str) -> Journey:
         """Sets out at once; a journey under way is given up. The name is one of the world's."""
         self.cancel(f"the robot set out for {said(name)} instead")

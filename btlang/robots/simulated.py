@@ -18,7 +18,7 @@ from btlang.robots.obstacles import Array, Obstacles
 from btlang.robots.power import Power
 from btlang.robots.robot import Hand, OnEvent, RobotError
 from btlang.robots.scan import Scanner
-from btlang.robots.world import ROBOT_RADIUS, World, said
+from btlang.robots.world import ROBOT_RADIUS, Place, World, said
 
 _CONTROL_PERIOD = 0.05
 _HANDS: tuple[Hand, Hand] = ("left", "right")
@@ -159,6 +159,11 @@ class SimulatedRobot:
         """Names of the people within so many metres, nearest first."""
         distances = [(self.pose.distance_to(self.locate(name)), name) for name in self.world.names.people]
         return [name for distance, name in sorted(distances) if distance <= within]
+
+    def add_place(self, place: Place) -> None:
+        """Names one more place; one of the same name is replaced. The floor that is planned on does not grow."""
+        self.world = self.world.with_place(place)
+        self._navigator.add_place(place)
 
     def move_thing(self, name: str, x: float, y: float) -> None:
         """Puts an object or a person somewhere else, as somebody in the world would. Raises RobotError."""

@@ -168,12 +168,23 @@ class Definition(Ast):
     parts = ("body",)
 
 
+class Fact(Ast):
+    """A place of this mission, in metres and degrees; `facing` is None where any direction will do."""
+
+    name: str
+    x: float
+    y: float
+    facing: float | None
+    span: Span
+
+
 class Mission(Ast):
-    """A whole text: the sequence of its commands (None where it only defines) and its definitions in order."""
+    """A whole text: the sequence of its commands (None where there are none), its definitions and facts in order."""
 
     body: Ast | None
     definitions: tuple[Definition, ...]
     span: Span
+    facts: tuple[Fact, ...] = ()
     parts = ("body", "definitions")
 
 

@@ -14,7 +14,7 @@ if TYPE_CHECKING:
 _NO_SLOT = (
     "then", "and", "or", "after", "otherwise", "if", "unless", "while", "until", "provided", "not", "repeat", "try",
     "retry", "if_possible", "wait_until", "check", "nothing", "fail", "in_parallel", "in_order",
-    "define_strong", "define",
+    "define_strong", "define", "fact", "facing",
 )  # fmt: skip
 ROLES = {
     **dict.fromkeys(_NO_SLOT, ""),

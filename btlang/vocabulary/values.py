@@ -5,7 +5,8 @@ A value becomes the text of a port, in the unit whose factor is 1: `half a meter
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
+from copy import copy, deepcopy
 
 from btlang.record import Record
 from btlang.text.source import Source
@@ -108,6 +109,14 @@ class Values:
     def add_name(self, kind: str, words: str, name: str) -> None:
         """Lets the words stand for a name of a type."""
         insert(self._names[kind], words.lower().split(), name)
+
+    def with_names(self, kind: str, names: Iterable[str]) -> Values:
+        """The same with further names of a type."""
+        made = copy(self)
+        made._names = {**self._names, kind: deepcopy(self._names[kind])}
+        for name in names:
+            made.add_name(kind, name, name)
+        return made
 
     def names_tree(self, kind: str) -> WordTree:
         """The words of the names of a type."""

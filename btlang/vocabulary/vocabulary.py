@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
+from copy import copy
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.text.source import Source, Span
@@ -23,6 +24,9 @@ if TYPE_CHECKING:
 DEFINING = ("define_strong", "define")
 """Roles whose words define a name where they are found first in a line; elsewhere they are words like any other."""
 
+NO_PHRASES = frozenset((*DEFINING, "fact", "facing"))
+"""Roles whose words are looked for where definitions and facts are, and nowhere else."""
+
 
 class Vocabulary:
     """Phrases, types and connectives of a language and its packs.
@@ -38,6 +42,7 @@ class Vocabulary:
         files = list(files)
         language = _merged(files)
         self.articles = frozenset(language["articles"])
+        self._with_places: dict[tuple[str, ...], Vocabulary] = {}
         self.values = Values(self._types_of(files), language)
         for file in files:
             for kind, words, name in file.names:
@@ -76,6 +81,14 @@ class Vocabulary:
         """Articles do not matter in names either."""
         self.values.add_name(kind, " ".join(word for word in words.split() if word.lower() not in self.articles), name)
 
+    def with_places(self, names: tuple[str, ...]) -> Vocabulary:
+        """The same words with further places; the same object for the same names."""
+        if names not in self._with_places:
+            made = copy(self)
+            made.values = self.values.with_names("place", names)
+            self._with_places[names] = made
+        return self._with_places[names]
+
     def value(self, kind: str, written: str) -> str | None:
         """The port text of a text that as a whole is a value of the type (`half an hour`), None where it is none."""
         text = split(Source(written), self.articles)
@@ -101,7 +114,7 @@ class Vocabulary:
 
     def _add_roles(self) -> None:
         for role, phrases in self.roles.items():
-            for phrase in phrases if role not in DEFINING else ():
+            for phrase in phrases if role not in NO_PHRASES else ():
                 self._add_phrase(phrase, Meaning(role), {})
         for words, rounds in self.counts.items():
             self._add_phrase(words, Meaning("count", value=rounds), {})
