@@ -10,6 +10,7 @@ from btlang.engine.build import EngineError, Shared, Site
 from btlang.engine.leaf import ActionFailed
 from btlang.engine.subtree import child_scope, subtree
 from btlang.engine.watch import Watch
+from btlang.engine.whenever import whenever
 from btlang.record import Record
 from btlang.tree.node import Node, Tree
 
@@ -44,6 +45,7 @@ NODE_TYPES = {
     "ReactiveFallback": NodeType(reactive.reactive_fallback, 1, _MANY),
     "IfThenElse": NodeType(branch.if_then_else, 2, 3),
     "WhileDoElse": NodeType(branch.while_do_else, 2, 3),
+    "Whenever": NodeType(whenever, 3, 3),
     "Inverter": NodeType(decorators.inverter, 1, 1),
     "ForceSuccess": NodeType(decorators.force_success, 1, 1),
     "ForceFailure": NodeType(decorators.force_failure, 1, 1),

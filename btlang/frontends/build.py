@@ -25,6 +25,7 @@ from btlang.tree.ast import (
     Try,
     Wait,
     WaitUntil,
+    Whenever,
     While,
     Within,
 )
@@ -113,8 +114,10 @@ class Builder:
         return timed(str(amount), body, span)
 
     def form(self, kind: str, condition: Ast, body: Ast, otherwise: Ast | None, start: int, end: int) -> Ast:
-        """if, unless, while, until, provided: before or after a command."""
+        """if, unless, while, until, provided, whenever: before or after a command."""
         span = Span(self.source, start, end)
+        if kind == "whenever":
+            return Whenever(condition, body, span)
         if kind == "provided":
             return Provided(condition, body, span)
         if kind in ("if", "unless"):

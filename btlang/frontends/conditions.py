@@ -8,7 +8,7 @@ from btlang.frontends.token import Token
 
 STARTS_OPERAND = frozenset((
     "command", "condition", "unknown", "wait", "nothing", "fail", "not", "open", "repeat", "try", "retry", "check",
-    "wait_until", "in_parallel", "in_order",
+    "wait_until", "whenever", "in_parallel", "in_order",
 ))  # fmt: skip
 """What can only be the start of a command or condition."""
 
@@ -76,7 +76,7 @@ class ConditionScan(Scan):
         if frame.after == "body":
             self._emit("DO", token)
             body = Frame("body", frame.opener, self._frames[-1])
-            body.else_owner = body
+            body.else_owner = body if frame.opener is not None and frame.opener.value != "whenever" else None
             self._frames.append(body)
             self._operand_due = True
             if token.kind in ("and", "or"):

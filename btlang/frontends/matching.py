@@ -111,6 +111,14 @@ class Matcher(ConditionScan):
         self._frames.append(Frame("condition", opener, self._frames[-1], after="body"))
         self._next(token, True)
 
+    def _whenever(self, token: Token) -> None:
+        """A standing rule begins a statement of the text or of a block that is a sequence."""
+        frame = self._frames[-1]
+        if frame.kind not in ("top", "block") or frame.statement == "open" or frame.joint != "SEMI" or frame.last:
+            self._fail("BT037", self._span(token), words=self._words(token))
+            return
+        self._form(token)
+
     def _test(self, token: Token) -> None:
         if self._refuse_in_condition(token):
             return
@@ -356,6 +364,7 @@ _OPERAND: dict[str, Callable[[Matcher, Token], None]] = {
     **dict.fromkeys(("check", "wait_until"), Matcher._test),
     **dict.fromkeys(("in_parallel", "in_order"), Matcher._joined_block),
     **dict.fromkeys(("repeat", "try", "retry", "every", "delay"), Matcher._loop),
+    "whenever": Matcher._whenever,
     "not": Matcher._not,
     "open": Matcher._open,
     "then": Matcher._leading_then,

@@ -62,10 +62,35 @@ def _phrase(item: ast.Phrase, _done: list[Lowered]) -> Lowered:
 
 
 def _chain(item: ast.Chain, done: list[Lowered]) -> Lowered:
+    if item.operator == "sequence" and any(isinstance(part, ast.Whenever) for part in item.items):
+        return _ruled(item, done)
     if item.operator == "parallel":
         return Lowered(_node("Parallel", [_round(part) for part in done], item.span))
     children = [part.node for part in done]
     return Lowered(_node(_CHAINS[item.operator], children, item.span), all(part.can_skip for part in done))
+
+
+def _ruled(item: ast.Chain, done: list[Lowered]) -> Lowered:
+    """Standing rules round the other commands; the first one is the outermost, so that it wins."""
+    rules = [part for part, own in zip(done, item.items, strict=True) if isinstance(own, ast.Whenever)]
+    others = [part for part, own in zip(done, item.items, strict=True) if not isinstance(own, ast.Whenever)]
+    if not others:
+        work = Lowered(_node("AlwaysSuccess", (), item.span))
+    elif len(others) == 1:
+        work = others[0]
+    else:
+        work = Lowered(_node("Sequence", [part.node for part in others], item.span), all(p.can_skip for p in others))
+    for rule in reversed(rules):
+        condition, reaction, _ = rule.node.children
+        span = rule.node.span or item.span
+        work = Lowered(_node("Whenever", (condition, reaction, work.node), span), work.can_skip)
+    return work
+
+
+def _whenever(item: ast.Whenever, done: list[Lowered]) -> Lowered:
+    """A rule alone has nothing to interrupt."""
+    nothing = _node("AlwaysSuccess", (), item.span)
+    return Lowered(_node("Whenever", (done[0].node, done[1].node, nothing), item.span))
 
 
 def _not(item: ast.Not, done: list[Lowered]) -> Lowered:
@@ -166,6 +191,7 @@ _LOWER: dict[type[ast.Ast], Callable[[Any, list[Lowered]], Lowered]] = {
     ast.Not: _not,
     ast.If: _if,
     ast.While: _while,
+    ast.Whenever: _whenever,
     ast.Provided: _provided,
     ast.Repeat: _repeat,
     ast.Retry: _retry,

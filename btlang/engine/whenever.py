@@ -1,0 +1,84 @@
+"""A standing rule over other work. BehaviorTree.CPP has no such node; it is named `Whenever` in XML too.
+
+Suspension is that of a pause: running leaves are halted, positions, counts and timers are kept.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from btlang.engine.build import Site, apart
+from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.engine.build import Compiled
+
+
+def whenever(site: Site, children: Sequence[Compiled]) -> Compiled:
+    """Children: condition, reaction, work. The condition is asked at every tick.
+
+    When it becomes true (true at the start counts too), the work is suspended, and the reaction is ticked until it
+    completes. If it fails, the whole fails; else the work goes on. The condition must have been false before it counts
+    again. The whole ends with the status of the work. A condition that is RUNNING counts as false.
+    """
+    ticks, halts = apart(children)
+    interrupts = site.shared.interrupts
+    armed = True  # the condition has been false since it last counted
+    reacting = working = False  # which of both was RUNNING at the last tick
+
+    def suspend() -> None:
+        nonlocal working
+        working = False
+        halts[2](True)
+
+    def holds() -> bool:
+        if working:
+            interrupts.append(suspend)
+        status = ticks[0]()
+        if working:
+            interrupts.pop()
+        if status == SKIPPED:
+            halts[0](False)
+        return status == SUCCESS
+
+    def end() -> None:
+        nonlocal armed, reacting, working
+        armed, reacting, working = True, False, False
+        halts[0](False)
+
+    def tick() -> int:
+        nonlocal armed, reacting, working
+        if not holds():
+            armed = True
+        elif armed and not reacting:
+            armed, reacting = False, True
+            if working:
+                suspend()
+        if reacting:
+            status = ticks[1]()
+            if status == RUNNING:
+                return RUNNING
+            reacting = False
+            if status == FAILURE:
+                halts[2](False)
+                end()
+                return FAILURE
+            if status == SKIPPED:
+                halts[1](False)
+        status = ticks[2]()
+        working = status == RUNNING
+        if not working:
+            end()
+            if status == SKIPPED:
+                halts[2](False)
+        return status
+
+    def halt(keep: bool) -> None:
+        nonlocal armed, reacting, working
+        for stop in halts:
+            stop(keep)
+        if not keep:
+            armed, reacting, working = True, False, False
+
+    return tick, halt
