@@ -61,6 +61,7 @@ _ALL = (
     Code("BT035", "'{words}' opens a block, so a ':' and indented lines must follow.", "Write:\n  {words}:\n    first command\n    second command"),
     Code("BT036", "I cannot read this place.", "A place is given in metres, with a direction or without: {example}"),
     Code("BT037", "'{words}' is a rule over other lines, so it stands at the start of a line of its own.", "For one command say: if ..., or: ... until ..."),
+    Code("BT038", "'{words}' stands for nothing here: no {type} comes before it in this sentence.", "Name it, such as: {example}"),
     Code("BT040", "'{name}' is defined by itself: {circle}.", "Repeat with 'repeat' or 'while' instead."),
     Code("BT041", "Both of these need the {resource} at the same time: '{first}' and '{second}'.",
          "Do one after the other: {fixed}"),

@@ -60,12 +60,12 @@ class Completer:
 
     def __init__(self, text: str, vocabulary: Vocabulary) -> None:
         self._vocabulary = vocabulary
-        self._values = vocabulary.values
         self._text = text
         self._partial = _last_word(text)
         self._start = len(text) - len(self._partial)
         self._source = Source(text[: self._start] + "(")  # the bracket stands for what is to come
         self._lexer = Lexer(self._source, vocabulary, explain=False)
+        self._values = self._lexer.values
         self._words = self._lexer.text
         self._last = len(self._words.words) - 3  # the bracket; line end and text end follow
         bracket = max((i for i, token in enumerate(self._lexer.tokens) if token.kind == "open"), default=0)

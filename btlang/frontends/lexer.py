@@ -10,7 +10,7 @@ from btlang.frontends.facts import find_facts
 from btlang.frontends.token import Listed, Token
 from btlang.frontends.unknown import explain_unknown
 from btlang.text.source import Source, Span
-from btlang.text.words import END_OF_TEXT, Words, split
+from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, split
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.trie import Match, longest
 from btlang.vocabulary.vocabulary import Vocabulary
@@ -40,6 +40,7 @@ class Lexer:
             self.vocabulary = vocabulary.with_places(tuple(fact.name for fact in self.facts))
         self.definitions: Definitions = find_definitions(self.text, self.vocabulary, facts.ends)
         self.problems += self.definitions.problems
+        self.values = self.vocabulary.values.for_reading()
         self.tokens: list[Token] = []
         self._lines()
         self.conditions: set[str] = self._condition_names()
@@ -71,6 +72,8 @@ class Lexer:
                     self.problems.append(diagnostic("BT007", first))
             if number and not opens_block:
                 self._mark("newline", line.first)
+            if line.indent <= indents[0]:
+                self.values.latest.clear()  # pronouns do not reach beyond a statement
             self._line(line.first, line.last)
             opens_block = self.text.words[line.last - 1] == ":"
         if opens_block:
@@ -79,7 +82,7 @@ class Lexer:
             self._mark("dedent", len(self.text.words) - 1)
 
     def _line(self, at: int, last: int) -> None:
-        text, names, trie, values = self.text, self.definitions.trie, self.vocabulary.trie, self.vocabulary.values
+        text, names, trie, values = self.text, self.definitions.trie, self.vocabulary.trie, self.values
         words, starts, ends, tokens = text.words, text.starts, text.ends, self.tokens
         headers = self.definitions.headers
         while at < last:
@@ -94,6 +97,8 @@ class Lexer:
                 continue
             if word in _MARKS:
                 tokens.append(Token(_MARKS[word], None, starts[at], ends[at]))
+                if word == END_OF_STATEMENT:
+                    values.latest.clear()
                 at += 1
                 continue
             match = longest(trie, text, at, values, names)
@@ -107,7 +112,9 @@ class Lexer:
             if match is None:
                 end = self._unknown_end(at, last)
                 if self._explain:
-                    self.problems.append(explain_unknown(text, at, end, self.vocabulary, self.definitions, tokens))
+                    self.problems.append(
+                        explain_unknown(text, at, end, self.vocabulary, values, self.definitions, tokens)
+                    )
                 tokens.append(Token("unknown", None, starts[at], ends[end - 1]))
                 at = end
             else:
@@ -117,6 +124,8 @@ class Lexer:
                 if match.meaning.role == "negated":
                     tokens.append(Token("not", None, starts[at], starts[at]))
                 tokens.append(self._phrase(match, at))
+                for value in match.values:
+                    values.latest[value.type] = value.text if not value.more else value.more[-1]
                 at = match.last
 
     def _politeness(self, match: Match, at: int) -> int:

@@ -16,20 +16,29 @@ from btlang.text.spelling import nearest, nearest_start
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.pattern import Slot, forms
 from btlang.vocabulary.trie import SLOTS, TrieNode, longest
-from btlang.vocabulary.values import ValueType
+from btlang.vocabulary.values import Values, ValueType
 from btlang.vocabulary.vocabulary import Vocabulary
 
 _NOT_A_VALUE = frozenset((END_OF_TEXT, END_OF_STATEMENT, ",", ":", "(", ")"))
 
 
 def explain_unknown(
-    text: Words, at: int, end: int, vocabulary: Vocabulary, definitions: Definitions, before: list[Token]
+    text: Words,
+    at: int,
+    end: int,
+    vocabulary: Vocabulary,
+    values: Values,
+    definitions: Definitions,
+    before: list[Token],
 ) -> Diagnostic:
-    """The diagnostic (BT010 to BT014, BT019) for words `at` to `end`, which nothing in the vocabulary matches."""
-    start, misfits = at, list(_misfits(text, at, vocabulary))
+    """The diagnostic (BT010 to BT014, BT019, BT038) for words `at` to `end`, which nothing in the vocabulary matches.
+
+    `values` read the values of this text, with its pronouns.
+    """
+    start, misfits = at, list(_misfits(text, at, vocabulary, values))
     if before and before[-1].kind not in ("comma", "newline", "indent", "dedent", "open", "semi"):
         phrase = bisect_left(text.starts, before[-1].start)  # `move forward 5 s`: read that far, and no further
-        longer = [found for found in _misfits(text, phrase, vocabulary) if found.at >= at]
+        longer = [found for found in _misfits(text, phrase, vocabulary, values) if found.at >= at]
         if longer and (not misfits or longer[0].at >= misfits[0].at):
             start, misfits = phrase, longer
     if misfits:
@@ -51,7 +60,7 @@ class _Misfit(Record):
     following: frozenset[str]
 
 
-def _misfits(text: Words, at: int, vocabulary: Vocabulary) -> Iterator[_Misfit]:
+def _misfits(text: Words, at: int, vocabulary: Vocabulary, values: Values) -> Iterator[_Misfit]:
     """The slots that a phrase would have at the furthest word that its own words reach."""
     furthest = at
     found: dict[str, set[str]] = {}
@@ -59,7 +68,7 @@ def _misfits(text: Words, at: int, vocabulary: Vocabulary) -> Iterator[_Misfit]:
     while paths:
         node, i = paths.pop()
         for _, kind, child in node.get(SLOTS, ()):
-            value = vocabulary.values.read(kind, text, i)
+            value = values.read(kind, text, i)
             if value is not None:
                 paths.append((child, value[1]))
             elif i > furthest:
@@ -96,6 +105,15 @@ def _misfit(
     named = [kind for kind in types if kind.kind == "names"]
     following = frozenset().union(*(misfit.following for misfit in misfits))
     span = text.span(at, next((i for i in range(at + 1, end) if text.words[i] in following), max(end, at + 1)))
+    if named and text.words[at] in vocabulary.values.pronouns:
+        kinds = " or ".join(kind.name for kind in named)
+        return diagnostic(
+            "BT038",
+            text.span(at, at + 1),
+            words=text.words[at],
+            type=kinds,
+            example=_value_example(named[0], vocabulary),
+        )
     if named:
         known = [name for kind in named for name in vocabulary.values.names(kind.name)]
         kinds = " or ".join(kind.name for kind in named)

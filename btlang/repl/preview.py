@@ -15,7 +15,8 @@ _UNFINISHED = frozenset(("BT004", "BT023", "BT027"))  # an open quote, bracket o
 _UNKNOWN = frozenset(("BT010", "BT013"))
 _ENDS_NOTHING = frozenset((
     "unknown", "then", "and", "or", "after", "otherwise", "comma", "semi", "colon", "open", "define", "not", "if",
-    "unless", "while", "until", "provided", "repeat", "try", "retry", "check", "wait_until", "whenever", "in_parallel", "in_order",
+    "unless", "while", "until", "provided", "repeat", "try", "retry", "check", "wait_until",
+    "whenever", "in_parallel", "in_order",
 ))  # fmt: skip
 """Tokens that no sentence ends with."""
 _MOST_TRIES = 3

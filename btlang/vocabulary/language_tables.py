@@ -57,6 +57,7 @@ TABLES: dict[str, tuple[Callable[[object], bool], str]] = {
     "about": (_about, "a table with the texts topic, help and example"),
     "comparisons": (_words, "a list of phrases"),
     "negations": (_words, "a list of words"),
+    "pronouns": (_words, "a list of types"),
     "counts": (_rounds, "a whole number from 1 on, or -1 for without end"),
     "numbers": (_number, "a number"),
     "multipliers": (_number, "a number"),

@@ -94,6 +94,10 @@ class Values:
         joining = (phrase for role in ("and", "or") for phrase in language["roles"].get(role, ()))
         self.joiners = frozenset((",", *(phrase.split()[0] for phrase in joining)))
         """The first words of what stands between the values of a list."""
+        self.pronouns: Mapping[str, Sequence[str]] = language["pronouns"]
+        """Words that stand for the latest value of a type, each with the types that it may be of."""
+        self.latest: dict[str, str] = {}
+        """Those values. Whoever reads a text sets them, on a copy of its own."""
         self._fractions: WordTree = {}
         for phrase, value in language["fractions"].items():
             insert(self._fractions, phrase.split(), value)
@@ -116,6 +120,12 @@ class Values:
         made._names = {**self._names, kind: deepcopy(self._names[kind])}
         for name in names:
             made.add_name(kind, name, name)
+        return made
+
+    def for_reading(self) -> Values:
+        """The same with pronouns of its own."""
+        made = copy(self)
+        made.latest = {}
         return made
 
     def names_tree(self, kind: str) -> WordTree:
@@ -159,7 +169,8 @@ class Values:
         if value_type.kind == "number":
             return self._plain_number(value_type, text, at)
         if value_type.kind == "names":
-            return find(self._names[kind], text.words, at) or self._quoted_name(kind, text, at)
+            found = find(self._names[kind], text.words, at) or self._quoted_name(kind, text, at)
+            return found or self._referred(kind, text.words[at], at)
         return self._text(text, at)
 
     def quantity(self, text: Words, at: int) -> tuple[float, str, int] | None:
@@ -226,6 +237,12 @@ class Values:
             start, end = text.articles[at]
             return text.source.text[start:end], at
         return (text.source.text[text.starts[at] : text.ends[at]], at + 1) if bare else None
+
+    def _referred(self, kind: str, word: str, at: int) -> tuple[str, int] | None:
+        """What a pronoun stands for."""
+        if kind in self.pronouns.get(word, ()) and kind in self.latest:
+            return self.latest[kind], at + 1
+        return None
 
     def _quoted_name(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
         word = text.words[at]

@@ -224,7 +224,7 @@ def _compared(name: str, patterns: Iterable[str]) -> list[str]:
 
 _LANGUAGE: dict[str, Any] = {
     "articles": [], "politeness": [], "unit_joiner": [], "roles": {}, "about": {}, "comparisons": {}, "counts": {},
-    "negations": {}, "numbers": {}, "multipliers": {}, "fractions": {},
+    "negations": {}, "pronouns": {}, "numbers": {}, "multipliers": {}, "fractions": {},
 }  # fmt: skip
 
 
