@@ -32,6 +32,7 @@ class Case:
 
 _ROUND = ("GoTo kitchen", "LookAround", "GoTo lab", "LookAround", "GoTo office", "LookAround", "GoTo lobby")
 _SHELVES = ("GoTo first shelf", "LookAround", "GoTo second shelf", "LookAround", "GoTo third shelf", "LookAround")
+_QUESTION = "You have a question? The staff in the cafe know everything."
 _WATCH = (*_SHELVES, "GoTo gate", "Print nobody at the gate", "Charge")
 _SWING = ("RaiseBothArms", "TurnLeft 45", "LowerBothArms", "TurnRight 45", "TurnLeft 45", "TurnRight 45")
 
@@ -84,6 +85,19 @@ CASES = {
         done=(*["MoveForward 0.75"] * 6, "TurnRight", "MoveForward 0.75", "TurnRight", "..."),
         said=("I can go no further.",),
         cells=6,
+    ),
+    "museum_guide": Case(
+        world="museum",
+        done=("TurnAround", "..."),
+        said=(
+            "Good afternoon! I am your guide. Please follow me.", _QUESTION, "This statue is two thousand years old.",
+            "Hush! Do not wake the mummy.", _QUESTION, "And this was a very big lizard.",
+            "Excuse me, I need a little energy. I will be back.", "Where were we?", _QUESTION,
+            "There is time for one more.", _QUESTION, _QUESTION, "The tour is over. Enjoy your coffee!",
+        ),
+        met=("dock", "undock"),
+        at="cafe",
+        seconds=(240, 330),
     ),
     "museum_tour": Case(
         world="museum",
