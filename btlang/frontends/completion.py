@@ -74,8 +74,8 @@ class Completer:
 
     def found(self) -> list[Completion]:
         """Sorted: phrases under way, then what may begin here; each once."""
-        if self._words.open_quotes or self._words.words[self._last] != "(":
-            return []
+        if self._words.open_quotes or self._last < 0 or self._words.starts[self._last] != self._start:
+            return []  # in quotes, or in a comment
         start = self._partial.lower()
         options = list(self._options(start)) or list(self._defining(start))
         if not options and len(self._partial) >= _LONG_ENOUGH and self._is_unknown():

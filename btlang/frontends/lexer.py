@@ -75,7 +75,7 @@ class Lexer:
             if line.indent <= indents[0]:
                 self.values.latest.clear()  # pronouns do not reach beyond a statement
             self._line(line.first, line.last)
-            opens_block = self.text.words[line.last - 1] == ":"
+            opens_block = bool(self.tokens) and self.tokens[-1].kind == "colon"  # politeness may stand behind it
         if opens_block:
             self.problems.append(diagnostic("BT027", self._last_span()))
         for _ in indents[1:]:

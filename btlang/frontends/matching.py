@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.conditions import STARTS_OPERAND, ConditionScan
 from btlang.frontends.definitions import Header
 from btlang.frontends.frames import Frame
@@ -49,7 +50,7 @@ class Matcher(ConditionScan):
             elif self._frames[-1].is_condition:
                 self._after_condition(token)
             else:
-                _OPERATOR[token.kind](self, token)
+                _OPERATOR.get(token.kind, Matcher._side_by_side)(self, token)
         self.units.append(Unit(None, tuple(self._out)))
 
     # -- operands
@@ -348,7 +349,9 @@ class Matcher(ConditionScan):
 
     def _end_block(self) -> None:
         if self._frames[-1].kind == "block":
-            self._frames.pop()
+            block = self._frames.pop()
+            if not block.statement and block.opener is not None:  # there is nothing but politeness in it
+                self.problems.append(diagnostic("BT027", self._span(block.opener)))
             self._out.append(Token("CLOSE", None, self._last_end, self._last_end))
             body = self._frames[-1]
             if body.kind == "body" and body.else_owner is not body:

@@ -119,7 +119,7 @@ class Scan:
         """At an indent: the lines below are statements of a new group, with a token between them."""
         following = self._raw[self._at + 1]
         self._out.append(Token("OPEN", None, following.start, following.start))
-        block = Frame("block")
+        block = Frame("block", self._raw[self._at - 1])
         block.joint = joint
         self._frames.append(block)
         self._at += 1

@@ -136,10 +136,13 @@ def _number_misfit(
     span = text.span(at, number[1])
     with_unit = next((kind for kind in types if kind.kind == "quantity"), None)
     if with_unit is not None:
-        value = f"{span.text} {with_unit.units[0].words[0]}".replace(" %", "%")
+        units = [word for unit in with_unit.units for word in unit.words]
+        misspelt = nearest(text.words[number[1]], units)[:1] if text.words[number[1]][0].isalpha() else []
+        unit = misspelt[0] if misspelt else units[0]
+        value = f"{span.text} {unit}".replace(" %", "%")
         reason = f"{wanted} has a unit"
-        example = f"{head} {value}"
-        return diagnostic("BT011", span, fix=(span, value), words=span.text, wanted=reason, example=example)
+        fix = (text.span(at, number[1] + len(misspelt)), value)
+        return diagnostic("BT011", span, fix=fix, words=span.text, wanted=reason, example=f"{head} {value}")
     limited = next((kind for kind in types if kind.whole or kind.least is not None), None)
     if limited is not None:
         least = f" from {limited.least:g} on" if limited.least is not None else ""
@@ -159,9 +162,9 @@ def _unknown_phrase(
     text: Words, at: int, end: int, vocabulary: Vocabulary, definitions: Definitions, before: list[Token]
 ) -> Diagnostic:
     span = text.span(at, end)
-    if before and before[-1].kind == "command" and _ends_in_a_bare_text(before[-1]):
-        start = Span(text.source, before[-1].start, before[-1].end)
-        verb, word = start.text.rsplit(maxsplit=1)
+    start = Span(text.source, before[-1].start, before[-1].end) if before else span
+    if before and before[-1].kind == "command" and _ends_in_a_bare_text(before[-1]) and start.text[-1].isalnum():
+        verb, _, word = start.text.rpartition(" ")
         quoted = f'{verb} "{word} {span.text}"'
         advice = f"A text of more than one word needs quotes: {quoted}"
         whole = Span(text.source, start.start, span.end)
@@ -173,7 +176,8 @@ def _unknown_phrase(
     if not near:
         return diagnostic("BT010", span, words=span.text, help="'btc words' lists what I know.")
     likely, words = next(iter(near.items()))
-    fix = (text.span(at, min(at + words, end)), likely.partition(" {")[0])
+    misspelt, mended = text.span(at, min(at + words, end)), likely.partition(" {")[0]
+    fix = (misspelt, mended) if misspelt.text.lower() != mended else None
     advice = "The nearest that I know: " + ", ".join(near)
     return diagnostic("BT010", span, fix=fix, words=span.text, help=advice)
 

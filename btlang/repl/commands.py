@@ -10,7 +10,7 @@ from btlang.diagnostics.reading import read_source
 from btlang.frontends.definitions import find_definitions
 from btlang.record import Record
 from btlang.repl.session import Session
-from btlang.repl.store import Kept
+from btlang.repl.store import Store
 from btlang.robots.world import said
 from btlang.text.source import Source, Span
 from btlang.text.words import split
@@ -37,7 +37,7 @@ COMMANDS = (
     Command("words", "[SEARCH]", "lists what can be said"),
     Command("show", "[NAME|tree]", "shows the mission, one definition, or the tree of all"),
     Command("names", "", "lists what is defined"),
-    Command("run", "", "runs the whole mission, as `btc run` would"),
+    Command("run", "", "runs the whole mission, from where the robot stands; `reset` first for a new world"),
     Command("undo", "", "takes back the last line"),
     Command("redo", "", "takes back an undo"),
     Command("save", "[over] FILE", "writes the mission to a file; `over` replaces another file"),
@@ -85,12 +85,12 @@ class Commands:
     """Does what the words of the REPL say; `write` gets lines for the user, `run` runs the whole mission."""
 
     def __init__(
-        self, session: Session, write: Callable[[str], object], run: Callable[[], object], left: Kept | None = None
+        self, session: Session, write: Callable[[str], object], run: Callable[[], object], store: Store | None = None
     ) -> None:
         self._session = session
         self._write = write
         self._run_all = run
-        self._left = left
+        self._store = store
         self.speed: float | str = "real"
         self.saved = session.text
         """The mission as some file has it."""
@@ -203,14 +203,16 @@ class Commands:
         self._write("A new mission. 'undo' brings the last one back.")
 
     def _restore(self, rest: str) -> None:
-        left = self._left
-        if left is None:
+        left = self._store.left() if self._store is not None else None
+        if left is None or self._store is None:
             self._write("No session was left.")
             return
+        if left.world is not None and left.world != self._session.world:
+            self._world(left.world)
         entries = self._session.entries_of("\n".join(left.entries)) if left.entries else []
         self._session.change((*self._session.entries, *entries))
-        self._left, self.draft = None, left.draft
-        left.path.unlink(missing_ok=True)
+        self.draft = left.draft
+        self._store.done_with(left)
         self._write(f"Back: {_lines(self._session.text)}. 'run' runs the mission, 'show' shows it.")
 
     def _world(self, rest: str) -> None:

@@ -7,6 +7,7 @@ from prompt_toolkit.key_binding import KeyBindings, KeyPressEvent
 
 from btlang.repl.commands import command_of
 from btlang.repl.entering import needs_more
+from btlang.repl.preview import preview
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -33,7 +34,7 @@ def key_bindings(screen: Screen) -> KeyBindings:
             if needs_more(text):
                 _new_line(event)
                 return
-            errors = screen.preview().errors
+            errors = preview(screen.session, text).errors
             if errors:
                 buffer.cursor_position = min(errors[0].span.end, len(text))
                 screen.refuse()

@@ -5,7 +5,8 @@ from __future__ import annotations
 import os
 import signal
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
+from contextlib import contextmanager
 
 from btlang.api import RunnableTree
 from btlang.diagnostics.diagnostic import MissionError
@@ -37,7 +38,7 @@ def run_repl(
     numbers = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]
     before = [signal.signal(number, _terminate) for number in numbers]
     try:
-        Repl(session, store, speed, store.left()).talk()
+        Repl(session, store, speed).talk()
     finally:
         for number, handler in zip(numbers, before, strict=True):
             signal.signal(number, handler)
@@ -47,11 +48,10 @@ def run_repl(
 class Repl:
     """One session, at the keyboard (`talk`) or from a file of lines (`read`)."""
 
-    def __init__(self, session: Session, store: Store, speed: float | str, left: Kept | None = None) -> None:
+    def __init__(self, session: Session, store: Store, speed: float | str) -> None:
         self._session = session
         self._store = store
-        self._left = left
-        self._commands = Commands(session, print, self._run_all, left)
+        self._commands = Commands(session, print, self._run_all, store)
         self._commands.speed = speed
 
     def talk(self) -> None:
@@ -62,22 +62,20 @@ class Repl:
         print("btlang: type what the robot is to do. 'help' tells more; Ctrl-D twice leaves.")
         if self._store.problem:
             print(f"What you type is not kept: {self._store.problem}")
-        if self._left is not None:
-            print(f"The last session was left with {_count(self._left)}: 'restore' brings it back.")
+        left = self._store.left()
+        if left is not None:
+            print(f"The last session was left with {_count(left)}: 'restore' brings it back.")
         while True:
             try:
                 text = screen.ask(self._commands.draft)
-            except EOFError:
-                break
-            self._commands.draft = ""
-            print(PROMPT + text.replace("\n", f"\n{CONTINUED}"))
-            try:
+                self._commands.draft = ""
+                print(PROMPT + text.replace("\n", f"\n{CONTINUED}"))
                 self._do(text)
-            except Leave:
+                self._keep()
+            except (EOFError, Leave):
                 break
             except KeyboardInterrupt:
                 print()
-            self._keep()
         if self._commands.is_saved:
             self._store.forget()
         else:
@@ -101,6 +99,8 @@ class Repl:
                 self._commands.do(*own)
                 return 0
             compiled = self._session.compile(text)
+            if not compiled.entry.has_command and not compiled.entry.definitions:
+                return 0  # a comment, or politeness
             self._session.add(compiled.entry)
             self._keep()  # before it runs: a crash on the way loses nothing
             for warning in compiled.tree.warnings:
@@ -118,10 +118,32 @@ class Repl:
 
     def _run(self, tree: RunnableTree) -> int:
         speed = self._commands.speed
-        return run_mission(tree, speed=speed, rate=20.0, time_limit=None, log=None, quiet=False, tree_stays=False)
+        with _type_ahead():
+            return run_mission(
+                tree, speed=speed, rate=20.0, time_limit=None, log=None, quiet=False, keys=False, tree_stays=False
+            )
 
     def _keep(self) -> None:
-        self._store.save([entry.text for entry in self._session.entries], "")
+        self._store.save([entry.text for entry in self._session.entries], "", self._session.world)
+
+
+@contextmanager
+def _type_ahead() -> Iterator[None]:
+    """What is typed while the robot moves is not shown, and stands in the next line."""
+    try:
+        import termios
+
+        before = termios.tcgetattr(0)
+    except (ImportError, OSError, termios.error):
+        yield
+        return
+    silent = list(before)
+    silent[3] &= ~(termios.ECHO | termios.ICANON)
+    termios.tcsetattr(0, termios.TCSANOW, silent)
+    try:
+        yield
+    finally:
+        termios.tcsetattr(0, termios.TCSANOW, before)
 
 
 def _is_terminal() -> bool:

@@ -52,7 +52,7 @@ def preview(session: Session, text: str) -> Preview:
     try:
         compiled = session.compile(text)
     except MissionError as error:
-        own = tuple(problem for problem in error.diagnostics if problem.span.start <= len(text))
+        own = tuple(p for p in error.diagnostics if p.span.start <= len(text)) or tuple(error.diagnostics)
         unfinished = _is_unfinished(own, text, session.vocabulary) and _goes_on(session, text)
         spans = () if unfinished else tuple((p.span.start, p.span.end, "error") for p in own if p.is_error)
         midword = unfinished and text[-1:].isalnum() and own[0].code in _UNKNOWN

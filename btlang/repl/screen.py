@@ -86,6 +86,7 @@ class Screen:
         """Lets the user type, from a text to begin with. Raises EOFError when the user wants to leave."""
         self.buffer.reset(Document(text))
         self._refused, self.note, self.leaving = "", "", False
+        self._keep()
         return self.application.run()
 
     def preview(self) -> Preview:
@@ -106,7 +107,10 @@ class Screen:
 
     def _changed(self, _: Buffer) -> None:
         self.note, self.leaving = "", False
-        self._store.save([entry.text for entry in self.session.entries], self.buffer.text)
+        self._keep()
+
+    def _keep(self) -> None:
+        self._store.save([entry.text for entry in self.session.entries], self.buffer.text, self.session.world)
 
     # -- what is drawn
 
@@ -154,7 +158,7 @@ class Screen:
                 break
             style = "class:problem" if problem.is_error else "class:warning"
             start, end = problem.span.start, min(problem.span.end, len(self.buffer.text))
-            if "\n" not in self.buffer.text and len(PROMPT) + end < self._columns():
+            if "\n" not in self.buffer.text and len(PROMPT) + len(self.buffer.text) < self._columns():
                 lines.append((style, " " * (len(PROMPT) + start) + "^" * max(1, end - start) + "\n"))
             lines += [(style, f"{CONTINUED}{line}\n") for line in (problem.message, *problem.hint.splitlines())]
         return _without_last_end(lines)
@@ -176,7 +180,7 @@ class Screen:
         keys = "Tab takes what is offered" if self.buffer.complete_state else "'help' tells more"
         if fix is not None:
             keys = f"Ctrl-F writes: {fix[2]}"
-        return [("class:bottom", f"{CONTINUED}{robot_line(self.session)} \N{MIDDLE DOT} {keys}")]
+        return [("class:bottom", f"{CONTINUED}{keys} \N{MIDDLE DOT} {robot_line(self.session)}")]
 
     def fix(self) -> tuple[int, int, str] | None:
         """The first correction that is proposed: characters from and to, and what to write there."""

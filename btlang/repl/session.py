@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from textwrap import indent
 
 from btlang.api import RunnableTree, load_simulation, world_vocabulary
 from btlang.frontends.lexer import Lexer
@@ -82,7 +83,9 @@ class Session:
 
     def compile(self, text: str) -> Compiled:
         """Reads an entry together with the definitions above. Raises MissionError."""
-        whole = f"{text}\n{self.context(text)}"  # the entry first, so that places in it are those that were typed
+        margin = text[: len(text) - len(text.lstrip())].rpartition("\n")[2]
+        above = indent(self.context(text), margin)
+        whole = f"{text}\n{above}"  # the entry first, so that places in it are those that were typed
         reading = read_mission(Source(whole, ENTRY), self.vocabulary, self._parser)
         mission = reading.mission
         named: list[Definition | Fact] = [*mission.definitions, *mission.facts]

@@ -4,18 +4,25 @@ from __future__ import annotations
 
 import json
 import os
+import time
 from pathlib import Path
 
 from btlang.record import Record
+
+try:
+    import fcntl
+except ImportError:  # not on Windows, where sessions of running processes are offered too
+    fcntl = None  # type: ignore[assignment]
 
 _MOST_KEPT = 20  # sessions; older ones are deleted
 
 
 class Kept(Record):
-    """A session of a process that is gone: the texts of its entries, and what was being typed."""
+    """A session of a process that is gone: its entries, what was being typed, and the world that it was for."""
 
     entries: tuple[str, ...]
     draft: str
+    world: str | None
     path: Path
 
 
@@ -34,48 +41,59 @@ class Store:
 
     def __init__(self, folder: Path | None) -> None:
         self._folder = folder or Path()
-        self._own = self._folder / "sessions" / f"{os.getpid()}.json"
+        # the number alone would not do: in a container every process may have the same
+        self._own = self._folder / "sessions" / f"{time.time_ns()}-{os.getpid()}.json"
+        self._held: int | None = None
         self.problem = "" if folder else "no folder"
         if folder is None:
             return
         try:
             self._own.parent.mkdir(parents=True, exist_ok=True)
             self.history.touch()
-            self._write({"entries": [], "draft": ""})
+            self._held = _lock(self._own)
+            self.save([], "")
         except OSError as error:
             self.problem = f"{self._folder}: {(error.strerror or str(error)).lower()}"
+
+    def __del__(self) -> None:
+        if self._held is not None:
+            os.close(self._held)
 
     @property
     def history(self) -> Path:
         """What was typed in all sessions, in the format of prompt_toolkit's FileHistory."""
         return self._folder / "history"
 
-    def save(self, entries: list[str], draft: str) -> None:
+    def save(self, entries: list[str], draft: str, world: str | None = None) -> None:
         """The present state of this session, in its file before this returns: it outlives a kill at any moment."""
-        if not self.problem:
-            try:
-                self._write({"entries": entries, "draft": draft})
-            except OSError as error:
-                self.problem = f"{self._own}: {(error.strerror or str(error)).lower()}"
+        if self.problem:
+            return
+        state = {"entries": entries, "draft": draft, "world": world and os.path.abspath(world)}
+        try:
+            new = self._own.with_suffix(".new")
+            new.write_text(json.dumps(state), encoding="ascii")
+            os.replace(new, self._own)
+        except OSError as error:
+            self.problem = f"{self._own}: {(error.strerror or str(error)).lower()}"
 
     def forget(self) -> None:
-        """Deletes this session's file: all of it has been saved elsewhere, or there is nothing in it."""
+        """Deletes this session's files: all of it has been saved elsewhere, or there is nothing in it."""
         if not self.problem:
-            self._own.unlink(missing_ok=True)
+            _delete(self._own)
 
     def left(self) -> Kept | None:
         """The latest session that was left with something in it."""
         kept = []
         for path in self._files():
-            if _is_alive(path):
+            if path == self._own or not _is_left(path):
                 continue
             session = _read(path)
             if session is None:
-                path.unlink(missing_ok=True)
+                _delete(path)
             else:
                 kept.append(session)
         for old in kept[_MOST_KEPT:]:
-            old.path.unlink(missing_ok=True)
+            _delete(old.path)
         return kept[0] if kept else None
 
     def _files(self) -> list[Path]:
@@ -84,28 +102,40 @@ class Store:
         except OSError:
             return []
 
-    def _write(self, state: dict[str, object]) -> None:
-        new = self._own.with_suffix(".new")
-        new.write_text(json.dumps(state), encoding="ascii")
-        os.replace(new, self._own)
+    def done_with(self, kept: Kept) -> None:
+        """A session that was taken up again is no longer kept by itself."""
+        _delete(kept.path)
 
 
 def _read(path: Path) -> Kept | None:
     """None where the session is empty or not readable."""
     try:
         state = json.loads(path.read_text(encoding="ascii"))
-        entries, draft = tuple(map(str, state["entries"])), str(state["draft"])
-    except (OSError, ValueError, KeyError, TypeError):
+        entries, draft, world = tuple(map(str, state["entries"])), str(state["draft"]), state.get("world")
+    except (OSError, ValueError, KeyError, TypeError, AttributeError):
         return None
-    return Kept(entries, draft, path) if entries or draft.strip() else None
+    return Kept(entries, draft, world and str(world), path) if entries or draft.strip() else None
 
 
-def _is_alive(path: Path) -> bool:
-    """Whether the process that a session is named after still runs."""
-    try:
-        os.kill(int(path.stem), 0)
-    except (ValueError, OverflowError, ProcessLookupError):
-        return False
-    except PermissionError:
-        return True
-    return True
+def _delete(path: Path) -> None:
+    path.unlink(missing_ok=True)
+    path.with_suffix(".lock").unlink(missing_ok=True)
+
+
+def _lock(path: Path) -> int | None:
+    """The open lock of a session, which ends with its process; None where one that still runs holds it."""
+    lock = os.open(path.with_suffix(".lock"), os.O_CREAT | os.O_WRONLY, 0o600)
+    if fcntl is not None:
+        try:
+            fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
+        except OSError:
+            os.close(lock)
+            return None
+    return lock
+
+
+def _is_left(path: Path) -> bool:
+    lock = _lock(path)
+    if lock is not None:
+        os.close(lock)
+    return lock is not None

@@ -55,15 +55,16 @@ def run_mission(
     log: str | None,
     quiet: bool,
     lines: bool = False,
+    keys: bool = True,
     tree_stays: bool = True,
     sinks: Iterable[Sink] = (),
 ) -> int:
     """Runs and reports; returns the exit code. Raises MissionError where the log cannot be written (BT009).
 
-    On a terminal it shows the live view, whose tree stays at the end or not; elsewhere and where `lines` is true plain
-    lines; and nothing when `quiet`. `sinks` get all events too.
+    On a terminal it shows the live view, with keys or not, whose tree stays at the end or not; elsewhere and where
+    `lines` is true plain lines; and nothing when `quiet`. `sinks` get all events too.
     """
-    view = None if quiet or lines else _live_view(tree, tree_stays)
+    view = None if quiet or lines else _live_view(tree, keys, tree_stays)
     shown: list[Sink] = [view] if view is not None else [] if quiet else [Lines(tree.label, tree.is_action, _print)]
     sinks = [*shown, *sinks]
     try:
@@ -102,7 +103,7 @@ def _interrupted_by_signals() -> Iterator[None]:
             signal.signal(number, signal.SIG_DFL)
 
 
-def _live_view(tree: Runnable, tree_stays: bool) -> LiveView | None:
+def _live_view(tree: Runnable, keys: bool, tree_stays: bool) -> LiveView | None:
     """None where standard output is no terminal in which it can be shown."""
     output = sys.stdout
     if output is None or not output.isatty() or os.environ.get("TERM", "dumb") in ("", "dumb", "unknown"):
@@ -117,7 +118,7 @@ def _live_view(tree: Runnable, tree_stays: bool) -> LiveView | None:
     from btlang.run.live.view import LiveView
 
     try:
-        return LiveView(tree, output, sys.stdin, tree_stays)
+        return LiveView(tree, output, sys.stdin if keys else None, tree_stays)
     except EngineError:
         return None  # the run itself tells what is wrong
 

@@ -1,7 +1,8 @@
 """The syntax tree of a mission, as both parsers give it: what was said, with the exact characters of each part.
 
 Commands: Phrase, Name, Chain, If, While, Provided, Repeat, Retry, Try, Within, For, Every, Delay, Wait, WaitUntil,
-Check, Nothing, Fail; Whenever in a sequence. Conditions: Phrase, Name, Chain ("all", "any"), Not. `parts` names the fields that hold subtrees.
+Check, Nothing, Fail; Whenever in a sequence. Conditions: Phrase, Name, Chain ("all", "any"), Not. `parts` names the
+fields that hold subtrees.
 Amounts are port texts in base units (seconds); a number of rounds of -1 is without end.
 """
 

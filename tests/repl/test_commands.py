@@ -20,7 +20,7 @@ class Repl:
         self.session = Session()
         self.said: list[str] = []
         self.runs = 0
-        self.commands = Commands(self.session, self.said.append, self._run, store.left() if store else None)
+        self.commands = Commands(self.session, self.said.append, self._run, store)
         for text in texts:
             self.session.add(self.session.compile(text).entry)
 
@@ -188,23 +188,34 @@ def test_entries_of_lines() -> None:
     ]  # fmt: skip
 
 
-def test_a_store_keeps_what_was_left(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr("os.getpid", lambda: 2**22 + 1)  # of no process
-    left = Store(tmp_path)
-    left.save(["bow is nod", "bow\ud800"], "bow the")
-    monkeypatch.undo()
+def test_a_store_keeps_what_was_left(tmp_path: Path) -> None:
+    gone = Store(tmp_path)
+    gone.save(["bow is nod", "bow\ud800"], "bow the")
     store = Store(tmp_path)
+    assert store.left() is None  # its process runs still
+    del gone
     (tmp_path / "sessions" / "broken.json").write_text("{", encoding="utf-8")
     kept = store.left()
     assert kept is not None
-    assert (kept.entries, kept.draft) == (("bow is nod", "bow\ud800"), "bow the")
-    repl = Repl(store=store)
-    left.save(["bow is nod", "bow"], "bow the")
-    repl = Repl("wave", store=store)
-    assert "3 lines" in repl.do("restore")
-    assert repl.session.text == "wave\nbow is nod\nbow\n"
-    assert repl.commands.draft == "bow the"
+    assert (kept.entries, kept.draft, kept.world) == (("bow is nod", "bow\ud800"), "bow the", None)
+    store.done_with(kept)
     assert store.left() is None
+
+
+def test_restore_takes_one_session_after_the_other_with_its_world(tmp_path: Path) -> None:
+    Path("room.toml").write_text(
+        'start = { x = 1, y = 1 }\nplaces = [{ name = "corner", x = 2, y = 2 }]\n', encoding="utf-8"
+    )
+    for texts, draft, world in ((["bow is nod", "bow"], "bow the", None), (["go to the corner"], "", "room.toml")):
+        gone = Store(tmp_path)
+        gone.save(texts, draft, world)
+        del gone
+    repl = Repl(store=Store(tmp_path))
+    assert "1 line" in repl.do("restore")
+    assert repl.session.text == "go to the corner\n"
+    assert repl.session.world == str(tmp_path / "room.toml")
+    assert "3 lines" in repl.do("restore")
+    assert repl.commands.draft == "bow the"
     assert "No session was left" in repl.do("restore")
 
 

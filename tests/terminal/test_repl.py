@@ -26,7 +26,7 @@ def repl(terminal: Open, tmp_path: Path) -> Callable[..., Terminal]:
     def opened(*options: str, **how: int) -> Terminal:
         environment = {"XDG_STATE_HOME": str(tmp_path / "state")}
         started = terminal(*BTC, "repl", *options, folder=tmp_path, environment=environment, **{"height": 40, **how})
-        started.wait_for("battery")
+        started.wait_for("robot at")
         return started
 
     return opened
@@ -45,9 +45,15 @@ def golden(user: Terminal, text: str, name: str) -> None:
 
     def is_still(screen: str) -> bool:
         last, before[0] = before[0], screen
-        return screen == last and screen.rstrip().splitlines()[-1].startswith("  robot at ")
+        return screen == last and "robot at " in screen.rstrip().splitlines()[-1]
 
     matches_golden(shown(user.wait_until(is_still)), GOLDEN / f"repl_{name}.txt")
+
+
+def process(folder: Path) -> int:
+    """The number of the one process that a session file is of."""
+    (session,) = (folder / "state" / "btlang" / "sessions").glob("*.json")
+    return int(session.stem.rpartition("-")[2])
 
 
 def test_a_session_from_the_first_mistake_to_the_history(repl: Callable[..., Terminal], tmp_path: Path) -> None:
@@ -96,8 +102,7 @@ def test_a_killed_session_is_offered_again(repl: Callable[..., Terminal], tmp_pa
     user.wait_for("Defined: bow")
     user.type("bow then wa", enter=False)
     user.wait_for("wait")
-    (session,) = (tmp_path / "state" / "btlang" / "sessions").iterdir()
-    os.kill(int(session.stem), signal.SIGKILL)
+    os.kill(process(tmp_path), signal.SIGKILL)
     user.wait_for("[status 137]")
     again = repl()
     again.wait_for("'restore' brings it back")
@@ -143,8 +148,7 @@ def test_signals_halt_the_robot_and_leave(
     else:
         user.type("turn left", enter=False)
         user.wait_for("TurnLeft")
-    (session,) = (tmp_path / "state" / "btlang" / "sessions").iterdir()
-    os.kill(int(session.stem), number)
+    os.kill(process(tmp_path), number)
     assert user.wait_for_end() == status
     assert "Traceback" not in user.history()
     assert ("halted turn left" in user.history()) == is_running
@@ -171,6 +175,31 @@ def test_what_cannot_run_stays_in_the_line(repl: Callable[..., Terminal]) -> Non
     golden(user, "Two commands stand side by side", "refused")
     user.press("C-f")
     user.wait_for("> wave then nod")
+
+
+def test_what_is_typed_ahead_stands_in_the_next_line(repl: Callable[..., Terminal]) -> None:
+    user = repl()
+    user.type("move forward 1 m")
+    user.wait_for("start  move forward 1 m")
+    user.type("say sq", enter=False)  # neither pauses, nor steps, nor stops
+    user.wait_for("succeeded")
+    user.wait_for("> say sq")
+
+
+def test_beginnings_that_are_nothing(repl: Callable[..., Terminal]) -> None:
+    user = repl()
+    user.type("# a comment", enter=False)
+    user.press("C-c")
+    user.type("bow is nod")
+    user.wait_for("Defined: bow")
+    for text in (" wave", "repeat 2 times: please", 'say"hello" there', "please"):
+        user.type(text, enter=False)
+        user.press("C-c")
+    user.type("# a comment")
+    user.type("  nod")
+    user.wait_for("succeeded")
+    assert "exception" not in user.history().lower()
+    assert "Traceback" not in user.history()
 
 
 def test_a_narrow_terminal(repl: Callable[..., Terminal]) -> None:
