@@ -10,8 +10,10 @@ from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.english.phrase import phrase_of
 from btlang.frontends.mission import DEFAULT_PARSER, read_mission
 from btlang.passes import compile_mission
+from btlang.robots.world import Place
 from btlang.robots.world_file import WorldError, world_names
 from btlang.text.source import Source, Span
+from btlang.tree.ast import Mission
 from btlang.tree.dump import described, outline
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.entry import Entry, SlotSpec
@@ -50,7 +52,27 @@ def parse_tree(
     source = Source(text) if isinstance(text, str) else text
     vocabulary = world_vocabulary(keywords, world)
     reading = read_mission(source, vocabulary, parser)
-    return RunnableTree(compile_mission(reading.mission, vocabulary), vocabulary, world, reading.warnings)
+    tree = compile_mission(reading.mission, vocabulary)
+    return RunnableTree(tree, vocabulary, world, reading.warnings, mission=reading.mission)
+
+
+def format_mission(
+    text: str | Source,
+    *,
+    parser: str = DEFAULT_PARSER,
+    keywords: Sequence[str | Entry | Callable[..., Any]] = (),
+    world: str | None = None,
+) -> str:
+    """The text in the canonical layout: its words, comments and lines stay, and so does its tree.
+
+    A text that only defines names has a layout too. Raises MissionError where something is wrong with the mission.
+    """
+    from btlang.english.layout import laid_out
+
+    source = Source(text) if isinstance(text, str) else text
+    vocabulary = world_vocabulary(keywords, world)
+    compile_mission(read_mission(source, vocabulary, parser).mission, vocabulary, needs_command=False)
+    return laid_out(source, vocabulary.articles)
 
 
 def world_vocabulary(keywords: Sequence[str | Entry | Callable[..., Any]] = (), world: str | None = None) -> Vocabulary:
@@ -112,8 +134,9 @@ def _word(
 class RunnableTree:
     """A compiled mission, with the words and the world that it was compiled with.
 
-    `tree` is the tree itself; `warnings` are diagnostics that do not keep it from running. Each run takes place in a
-    fresh world, or on the `stage` where one is given, which goes on from run to run.
+    `tree` is the tree itself; `warnings` are diagnostics that do not keep it from running; `mission` is the syntax tree
+    that it was compiled from, where there is one. Each run takes place in a fresh world, or on the `stage` where one is
+    given, which goes on from run to run.
     """
 
     def __init__(
@@ -123,8 +146,10 @@ class RunnableTree:
         world: str | None = None,
         warnings: Sequence[Diagnostic] = (),
         stage: Simulation | None = None,
+        mission: Mission | None = None,
     ) -> None:
         self.tree = tree
+        self.mission = mission
         self.vocabulary = vocabulary
         self.world = world
         self.warnings = tuple(warnings)
@@ -141,6 +166,17 @@ class RunnableTree:
     def print(self) -> None:
         """Prints the tree with its branches drawn."""
         print(self)
+
+    def explain(self, width: int = 100) -> str:
+        """Each statement as written, in English whose brackets show how it was read, and as a tree.
+
+        Lines are at most `width` columns long. Raises ValueError where the tree was not compiled from a mission.
+        """
+        from btlang.backends.explain import explain_mission
+
+        if self.mission is None:
+            raise ValueError("this tree was not compiled from a mission")
+        return explain_mission(self.mission, self.tree, self.vocabulary, self._described, width)
 
     def label(self, node: Node) -> str:
         """The English of a leaf, `Id port=value` of any other node."""
@@ -231,6 +267,8 @@ class RunnableTree:
         from btlang.run.runner import Runner, traced_engine
 
         stage = load_simulation(self.world) if self.stage is None else self.stage
+        for fact in self.mission.facts if self.mission is not None else ():
+            stage.robot.add_place(Place(fact.name, fact.x, fact.y, fact.facing))
         stage.begin(sinks)
         try:
             engine = traced_engine(

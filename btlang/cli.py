@@ -8,16 +8,18 @@ import math
 import os
 import sys
 from collections.abc import Callable, Sequence
+from functools import partial
 
 import btlang
-from btlang.api import RATES, SLOWEST, RunnableTree, parse_tree, world_vocabulary
+from btlang.api import RATES, SLOWEST, RunnableTree, format_mission, parse_tree, world_vocabulary
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.reading import read_source
-from btlang.diagnostics.render import render
+from btlang.diagnostics.report import FORMATS, Report
 from btlang.frontends.mission import DEFAULT_PARSER, PARSERS
 from btlang.text.source import Source
 
-SUCCESS, BAD_INPUT, INTERRUPTED = 0, 2, 130
+SUCCESS, UNFORMATTED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
+_WIDEST = 120  # columns; longer lines are hard to read
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -27,21 +29,25 @@ def main(arguments: Sequence[str] | None = None) -> int:
             stream.reconfigure(errors="replace")  # a terminal that cannot show a character still gets the rest
     try:
         options = _parser().parse_args(arguments)
-        code = _VERBS[options.verb](options)
+        options.report = Report(options.format, on_output=options.verb == "check")
+        try:
+            code = _VERBS[options.verb](options)
+        except MissionError as error:
+            options.report.add(error.diagnostics)
+            code = BAD_INPUT
+        options.report.close()
         if sys.stdout is not None:
             sys.stdout.flush()
         return code
-    except MissionError as error:
-        print("\n\n".join(render(problem) for problem in error.diagnostics), file=sys.stderr)
-        return BAD_INPUT
     except OSError as error:
-        if error.errno not in (errno.EPIPE, errno.EIO):
-            raise
+        # the reader of our output has seen enough, or the terminal is gone
+        codes = {errno.EPIPE: SUCCESS, errno.EIO: INTERRUPTED}
+        if error.errno not in codes:
+            print(f"btc: {(error.strerror or str(error)).lower()}", file=sys.stderr)
         nowhere = os.open(os.devnull, os.O_WRONLY)
         for stream in (sys.stdout, sys.stderr):
             os.dup2(nowhere, stream.fileno())
-        # the reader of our output has seen enough, or the terminal is gone
-        return SUCCESS if error.errno == errno.EPIPE else INTERRUPTED
+        return codes.get(error.errno or 0, BAD_INPUT)
     except KeyboardInterrupt:
         return INTERRUPTED
 
@@ -66,7 +72,8 @@ def _run(options: argparse.Namespace) -> int:
 
 def _check(options: argparse.Namespace) -> int:
     _tree(options)
-    print("The mission is fine.")
+    if not options.report.is_json:
+        print("The mission is fine.")
     return SUCCESS
 
 
@@ -112,21 +119,87 @@ def _examples(options: argparse.Namespace) -> int:
     return SUCCESS
 
 
+def _explain(options: argparse.Namespace) -> int:
+    from btlang.diagnostics.explain import all_codes, explain_code, is_code
+
+    subject = options.file
+    if options.text is not None or (subject is not None and not is_code(subject) and _is_file(subject)):
+        return _explain_mission(options)
+    print(all_codes() if subject is None else explain_code(subject))
+    return SUCCESS
+
+
+def _is_file(subject: str) -> bool:
+    """Whether it names a file, there or not: a word alone that names none is meant as a code."""
+    return subject == "-" or os.path.exists(subject) or (subject != "" and not subject.isalnum())
+
+
+def _explain_mission(options: argparse.Namespace) -> int:
+    from shutil import get_terminal_size
+
+    width = get_terminal_size((100, 24)).columns
+    print(_tree(options).explain(min(width, _WIDEST)))
+    return SUCCESS
+
+
+def _format(options: argparse.Namespace) -> int:
+    """Files in place; standard input and a text of the command line to standard output."""
+    sources = [partial(read_source, path) for path in options.file]
+    if options.text is not None:
+        sources = [partial(Source, options.text, "<command line>")]
+    code = SUCCESS
+    for read in sources:
+        try:
+            if _format_one(read(), options):
+                code = code or UNFORMATTED
+        except MissionError as error:
+            options.report.add(error.diagnostics)
+            code = BAD_INPUT
+    return code
+
+
+def _format_one(source: Source, options: argparse.Namespace) -> bool:
+    """Whether `--check` found that the text would change."""
+    text = format_mission(source, parser=options.parser, keywords=options.keywords, world=options.world)
+    changes = text != source.text
+    if options.check:
+        if changes:
+            print(f"{source.name} would change.")
+        return changes
+    if options.text is not None or source.name == "-":
+        print(text, end="")
+    elif changes:
+        from btlang.backends.mission_file import replace_text
+
+        replace_text(source.name, text)
+        print(f"{source.name} is laid out anew.")
+    return False
+
+
 def _repl(options: argparse.Namespace) -> int:
     from btlang.repl.loop import run_repl
 
     return run_repl(keywords=options.keywords, world=options.world, parser=options.parser, speed=options.speed)
 
 
-_VERBS = {"repl": _repl, "run": _run, "check": _check, "tree": _show_tree, "words": _words, "examples": _examples}
+_VERBS = {
+    "repl": _repl,
+    "run": _run,
+    "check": _check,
+    "tree": _show_tree,
+    "words": _words,
+    "examples": _examples,
+    "explain": _explain,
+    "format": _format,
+}
 
 
 def _tree(options: argparse.Namespace) -> RunnableTree:
-    """Compiles what the options name; warnings go to standard error."""
+    """Compiles what the options name; warnings go to the report."""
     source = Source(options.text, "<command line>") if options.text is not None else read_source(options.file)
     tree = parse_tree(source, parser=options.parser, keywords=options.keywords, world=options.world)
     for warning in tree.warnings:
-        print(render(warning), file=sys.stderr)
+        options.report.add([warning])
     return tree
 
 
@@ -134,7 +207,7 @@ def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser("btc", description="Compiles and runs robot missions in plain English.")
     parser.add_argument("--version", action="version", version=f"btc {btlang.__version__}")
     verbs = parser.add_subparsers(dest="verb", metavar="VERB")
-    parser.set_defaults(verb="repl", keywords=[], world=None, parser=DEFAULT_PARSER, speed="real")
+    parser.set_defaults(verb="repl", keywords=[], world=None, parser=DEFAULT_PARSER, speed="real", format="text")
     words = argparse.ArgumentParser(add_help=False)
     words.add_argument(
         "--keywords", action="append", default=[], metavar="FILE", help="further keyword file, or name of a pack"
@@ -145,6 +218,9 @@ def _parser() -> argparse.ArgumentParser:
     paced = argparse.ArgumentParser(add_help=False)
     paced.add_argument("--speed", type=_speed, default="real", help="real, max, or a factor of real time")
     mission = argparse.ArgumentParser(add_help=False, parents=[reading])
+    mission.add_argument(
+        "--format", choices=FORMATS, default="text", help="of messages: text, or json for programs (default: text)"
+    )
     text = mission.add_mutually_exclusive_group(required=True)
     text.add_argument("file", nargs="?", metavar="FILE", help="mission, or - for standard input")
     text.add_argument("-c", dest="text", metavar="TEXT", help="mission as text")
@@ -172,6 +248,15 @@ def _parser() -> argparse.ArgumentParser:
     shown = verbs.add_parser("examples", help="list the missions that ship, print them or copy them")
     shown.add_argument("--copy", metavar="FOLDER", help="copy them to a folder, with the worlds that they need")
     shown.add_argument("name", nargs="*", metavar="NAME", help="only these")
+    explained = verbs.add_parser("explain", parents=[reading], help="show how a mission is read, or tell of a message")
+    subject = explained.add_mutually_exclusive_group()
+    subject.add_argument("file", nargs="?", metavar="FILE|CODE", help="mission, - for standard input, or e.g. BT013")
+    subject.add_argument("-c", dest="text", metavar="TEXT", help="mission as text")
+    formatted = verbs.add_parser("format", parents=[reading], help="lay out missions: indentation, spaces, empty lines")
+    formatted.add_argument("--check", action="store_true", help="change nothing; exit with 1 where a file would change")
+    several = formatted.add_mutually_exclusive_group(required=True)
+    several.add_argument("file", nargs="*", default=[], metavar="FILE", help="mission, or - for standard input")
+    several.add_argument("-c", dest="text", metavar="TEXT", help="mission as text")
     return parser
 
 

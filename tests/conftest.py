@@ -11,6 +11,8 @@ from hypothesis import HealthCheck, settings
 settings.register_profile(
     "ci", deadline=None, derandomize=True, database=None, suppress_health_check=[HealthCheck.too_slow]
 )
+for variable in ("FORCE_COLOR", "CLICOLOR_FORCE"):  # what is compared is plain text
+    os.environ.pop(variable, None)
 
 
 def matches_golden(actual: str, path: Path) -> None:

@@ -51,8 +51,19 @@ def diagnostic(
     fix: tuple[Span, str] | None = None,
     **arguments: str,
 ) -> Diagnostic:
-    """A diagnostic with its arguments given by name; what cannot be shown in a line of text is made so."""
+    """A diagnostic with its arguments given by name; what cannot be shown in a line of text is made so.
+
+    A fix that would change nothing but case, or that would grow together with a word beside it, is left out.
+    """
+    if fix is not None and (fix[0].text.lower() == fix[1].lower() or _grows_together(*fix)):
+        fix = None
     return Diagnostic(code, span, tuple((name, _shown(text)) for name, text in arguments.items()), notes, fix)
+
+
+def _grows_together(span: Span, words: str) -> bool:
+    text = span.source.text
+    before, after = text[max(0, span.start - 1) : span.start] + words[:1], words[-1:] + text[span.end : span.end + 1]
+    return any(len(pair) == 2 and pair.isalnum() for pair in (before, after))
 
 
 def _shown(text: str) -> str:

@@ -1,33 +1,62 @@
-"""A diagnostic as plain text: place, message, the line with the words underlined, the hint."""
+"""A diagnostic as text for people: place, message, the line with the words underlined, the hint, the line mended."""
 
 from __future__ import annotations
+
+import os
 
 from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.text.source import Span
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import TextIO
+
+RED, YELLOW, CYAN, _PLAIN = "\x1b[1;31m", "\x1b[1;33m", "\x1b[36m", "\x1b[0m"
+_COLOURS = {"error": RED, "warning": YELLOW}
 _WIDEST = 120
 
 
-def render(diagnostic: Diagnostic) -> str:
-    """Several lines without a last line end:
+def render(diagnostic: Diagnostic, colour: bool = False) -> str:
+    """Several lines without a last line end; colour changes nothing but the colour.
 
     mission.txt:1:7: error BT013: I know no place 'labb'.
-      go to labb
+      go to labb then wave
             ^^^^
-      The nearest is: lab
+      The nearest: lab
+      Perhaps: go to lab then wave
     """
     severity = diagnostic.kind.severity
-    lines = [
-        f"{diagnostic.span.place}: {severity} {diagnostic.code}: {diagnostic.message}",
-        *underlined(diagnostic.span),
-    ]
+    own, noted = (_COLOURS[severity], CYAN) if colour else ("", "")
+    label = _painted(f"{severity} {diagnostic.code}:", own)
+    lines = [f"{diagnostic.span.place}: {label} {diagnostic.message}", *underlined(diagnostic.span, own)]
     lines += [f"  {line}" for line in diagnostic.hint.splitlines()]
+    line = mended_line(diagnostic)
+    if line:
+        lines.append(f"  Perhaps: {line}")
     for span, text in diagnostic.notes:
-        lines += [f"  {span.place}: {text}", *underlined(span)]
+        lines += [f"  {span.place}: {text}", *underlined(span, noted)]
     return "\n".join(lines)
 
 
-def underlined(span: Span) -> list[str]:
+def mended_line(diagnostic: Diagnostic) -> str:
+    """The line with the fix of this diagnostic alone; "" where the hint shows it already or it is long."""
+    if diagnostic.fix is None:
+        return ""
+    span, words = diagnostic.fix
+    number, column = span.source.position(span.start)
+    line = span.source.line(number)
+    first, last = column - 1, column - 1 + span.end - span.start
+    if last > len(line) or "\n" in words:
+        return ""
+    before, after = line[:first], line[last:]
+    mended = _printable(f"{before}{words}{after}".strip())
+    shown = mended  # a hint that has the words together with the one before them says enough
+    if before.strip():
+        shown = words if span.start < diagnostic.span.start else f"{before.split()[-1]} {words}"
+    return "" if len(mended) > _WIDEST or shown in diagnostic.hint else mended
+
+
+def underlined(span: Span, colour: str = "") -> list[str]:
     """The first line of the span with `^` under its characters; a long line is cut around them."""
     if not span.source.text:
         return []
@@ -40,5 +69,27 @@ def underlined(span: Span) -> list[str]:
         before, after = ("..." if cut else ""), ("..." if cut + _WIDEST < len(line) else "")
         line = before + line[cut : cut + _WIDEST] + after
         first, last = first - cut + len(before), min(last - cut + len(before), len(line))
-    line = "".join(c if c.isprintable() else " " for c in line)
-    return [f"  {line}".rstrip(), "  " + " " * first + "^" * max(1, last - first)]
+    marks = "^" * max(1, last - first)
+    return [f"  {_printable(line)}".rstrip(), "  " + " " * first + _painted(marks, colour)]
+
+
+def has_colour(stream: TextIO | None) -> bool:
+    """Whether a stream shows colours: a terminal does. NO_COLOR forbids them, FORCE_COLOR and CLICOLOR_FORCE ask for
+    them anywhere, CLICOLOR=0 turns them off on a terminal. The first of these that is set decides.
+    """
+    if os.environ.get("NO_COLOR"):
+        return False
+    if any(os.environ.get(name, "0") not in ("", "0") for name in ("FORCE_COLOR", "CLICOLOR_FORCE")):
+        return True
+    if os.environ.get("CLICOLOR") == "0" or os.environ.get("TERM") == "dumb" or stream is None:
+        return False
+    understands = os.name != "nt" or bool(os.environ.get("WT_SESSION") or os.environ.get("TERM"))
+    return understands and stream.isatty()
+
+
+def _painted(text: str, colour: str) -> str:
+    return f"{colour}{text}{_PLAIN}" if colour else text
+
+
+def _printable(line: str) -> str:
+    return "".join(c if c.isprintable() else " " for c in line)

@@ -1,12 +1,18 @@
-"""A leaf as its phrase, in the first words that its keyword entry offers."""
+"""A leaf as its phrase, in the first words that its keyword entry offers and that read back as the same leaf."""
 
 from __future__ import annotations
 
+from collections.abc import Iterator, Mapping
+
+from btlang.text.source import Source
+from btlang.text.words import split
 from btlang.tree.dump import described
 from btlang.tree.node import Node
+from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.pattern import Form, Slot, forms
+from btlang.vocabulary.trie import TrieNode, longest
 from btlang.vocabulary.values import ValueType
-from btlang.vocabulary.vocabulary import Vocabulary
+from btlang.vocabulary.vocabulary import DEFINING, Vocabulary
 
 
 def phrase_of(node: Node, vocabulary: Vocabulary) -> str:
@@ -17,14 +23,7 @@ def phrase_of(node: Node, vocabulary: Vocabulary) -> str:
         return f"{vocabulary.word('wait')} {seconds(node.port('msec'))}"
     if node.id in ("AlwaysSuccess", "AlwaysFailure"):
         return vocabulary.word("nothing" if node.id == "AlwaysSuccess" else "fail")
-    ports = dict(node.ports)
-    for entry in vocabulary.entries.get(node.id, ()):
-        for phrase in entry.phrases:
-            fitting = [form for form in forms(phrase) if {p.name for p in form if isinstance(p, Slot)} == ports.keys()]
-            if fitting:
-                types = {slot.name: vocabulary.types[slot.type] for slot in entry.slots}
-                return _filled(fitting[-1], ports, types)
-    return described(node)
+    return leaf_words(node.id, dict(node.ports), vocabulary) or described(node)
 
 
 def seconds(msec: str) -> str:
@@ -32,14 +31,90 @@ def seconds(msec: str) -> str:
     return f"{int(msec) / 1000:g} s" if msec.isdigit() else msec
 
 
-def _filled(form: Form, ports: dict[str, str], types: dict[str, ValueType]) -> str:
-    words = [value_of(ports[part.name], types[part.name]) if isinstance(part, Slot) else part for part in form]
+def leaf_words(node_id: str, ports: Mapping[str, str], vocabulary: Vocabulary, names: TrieNode | None = None) -> str:
+    """The phrase of a leaf with these ports, "" where no phrase of it has just these slots.
+
+    Preferred is one that is read back as the leaf where `names` are defined; a port may hold its default.
+    """
+    first = ""
+    for entry in vocabulary.entries.get(node_id, ()):
+        spoken = {name: text for name, text in ports.items() if _default(entry, name) != text}
+        for form, values in _fitting(entry, spoken):
+            words = _filled(form, values, entry, vocabulary)
+            if _reads_back(words, entry, spoken, vocabulary, names):
+                return words
+            first = first or words
+    return first
+
+
+def _default(entry: Entry, slot: str) -> str | None:
+    return next((known.default for known in entry.slots if known.name == slot), None)
+
+
+def _fitting(entry: Entry, spoken: Mapping[str, str]) -> Iterator[tuple[Form, Mapping[str, str]]]:
+    """The forms that say the values, the shortest of each phrase first; those that say a default too come last."""
+    defaults = {slot.name: slot.default for slot in entry.slots if slot.default is not None}
+    wordy: list[tuple[Form, Mapping[str, str]]] = []
+    for phrase in entry.phrases:
+        for form in reversed(forms(phrase)):
+            slots = {part.name for part in form if isinstance(part, Slot)}
+            if slots == spoken.keys():
+                yield form, spoken
+            elif spoken.keys() < slots <= spoken.keys() | defaults.keys():
+                wordy.append((form, {**defaults, **spoken}))
+    yield from wordy
+
+
+def _reads_back(
+    words: str, entry: Entry, spoken: Mapping[str, str], vocabulary: Vocabulary, names: TrieNode | None
+) -> bool:
+    text = split(Source(words), vocabulary.articles)
+    match = longest(vocabulary.trie, text, 0, vocabulary.values)
+    if match is None or match.meaning.entry is None or match.meaning.role == "negated":
+        return False
+    if match.last != len(text.words) - 2 or match.meaning.entry.id != entry.id:
+        return False
+    if {value.name: value.text for value in match.values if _default(entry, value.name) != value.text} != spoken:
+        return False
+    named = longest(names, text, 0, vocabulary.values) if names else None
+    return named is None or named.last < match.last
+
+
+def _filled(form: Form, values: Mapping[str, str], entry: Entry, vocabulary: Vocabulary) -> str:
+    types = {slot.name: vocabulary.types[slot.type] for slot in entry.slots}
+    words = (
+        value_of(values[part.name], types[part.name], vocabulary) if isinstance(part, Slot) else part for part in form
+    )
     return " ".join(words)
 
 
-def value_of(text: str, kind: ValueType) -> str:
-    """A port text as a user would say it: `2 m`, `20%`, `"two words"`."""
+def value_of(text: str, kind: ValueType, vocabulary: Vocabulary) -> str:
+    """A port text as a user would say it: `2 m`, `20%`, `hello`, `"two words"`.
+
+    A text that could be taken for something else is quoted.
+    """
     if kind.kind == "quantity":
         unit = kind.units[0].words[0]
         return f"{text}{unit}" if unit in ("%", "°") else f"{text} {unit}"
-    return f'"{text}"' if kind.kind == "text" and not text.isalnum() else text
+    if kind.kind == "number":
+        return text
+    ways = [f'"{text}"', f"'{text}'"]
+    if kind.kind == "names" or not _says_more(text, vocabulary):
+        ways.insert(0, text)
+    return next((way for way in ways if vocabulary.value(kind.name, way) == text), ways[0])
+
+
+def _says_more(text: str, vocabulary: Vocabulary) -> bool:
+    """Whether a bare word would be more than a text: an article, or the begin of a phrase or definition."""
+    word = text.lower()
+    defines = any(word in vocabulary.roles[role] for role in DEFINING)
+    return not text.isalnum() or defines or word in vocabulary.articles or word in vocabulary.trie
+
+
+def holds_definer(words: str, vocabulary: Vocabulary) -> bool:
+    """Whether a phrase or name holds a word that would define at the start of a line, and is no condition."""
+    text = split(Source(words), vocabulary.articles)
+    if not any(word in vocabulary.roles[role] for role in DEFINING for word in text.words):
+        return False
+    match = longest(vocabulary.trie, text, 0, vocabulary.values)
+    return match is None or match.meaning.role != "condition" or match.last < len(text.words) - 2

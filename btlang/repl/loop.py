@@ -10,7 +10,7 @@ from contextlib import contextmanager
 
 from btlang.api import RunnableTree
 from btlang.diagnostics.diagnostic import MissionError
-from btlang.diagnostics.render import render
+from btlang.diagnostics.render import has_colour, render
 from btlang.frontends.mission import DEFAULT_PARSER
 from btlang.repl.commands import Commands, Leave, command_of
 from btlang.repl.entering import entries
@@ -104,12 +104,14 @@ class Repl:
             self._session.add(compiled.entry)
             self._keep()  # before it runs: a crash on the way loses nothing
             for warning in compiled.tree.warnings:
-                print(render(warning))
+                print(render(warning, has_colour(sys.stdout)))
             if compiled.entry.has_command:
                 return self._run(compiled.tree)
             print("Defined: " + ", ".join(name for name, _ in compiled.entry.definitions))
         except MissionError as error:
-            print("\n\n".join(render(problem) for problem in error.diagnostics), file=sys.stderr)
+            print(
+                "\n\n".join(render(problem, has_colour(sys.stderr)) for problem in error.diagnostics), file=sys.stderr
+            )
             return 2
         return 0
 

@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
-from btlang.diagnostics.render import underlined
+from btlang.diagnostics.render import RED, has_colour, underlined
 from btlang.engine.status import FAILURE, SKIPPED
 from btlang.run.json_log import JsonLog
 from btlang.run.lines import Lines
@@ -82,7 +82,7 @@ def run_mission(
         name = log or "the output"
         raise MissionError([diagnostic("BT009", Span(Source("", name), 0, 0), file=name, reason=reason)]) from None
     if outcome.status == FAILURE:
-        print(failure_report(outcome, tree.label), file=sys.stderr)
+        print(failure_report(outcome, tree.label, RED if has_colour(sys.stderr) else ""), file=sys.stderr)
         return 1
     if not quiet:
         print(_ending(outcome))
@@ -129,15 +129,15 @@ def _opened(log: str | None) -> AbstractContextManager[TextIO | None]:
     return open(log, "w", encoding="utf-8", errors="backslashreplace")  # a mission may hold what UTF-8 does not
 
 
-def failure_report(outcome: Outcome, label: Callable[[Node], str]) -> str:
-    """Which sentence failed, at which leaf, and why."""
+def failure_report(outcome: Outcome, label: Callable[[Node], str], colour: str = "") -> str:
+    """Which sentence failed, its words underlined in a colour, at which leaf, and why."""
     lines = [f"The mission failed after {outcome.seconds:.1f} s."]
     failure = outcome.failure
     if failure is not None:
         span = failure.node.span
         if span is not None:
             sentence = span.text.splitlines()[0] if failure.node.children else label(failure.node)
-            lines += [f"{span.place}: {sentence}", *underlined(span)]
+            lines += [f"{span.place}: {sentence}", *underlined(span, colour)]
         asked = "the mission says so" if failure.node.id == "AlwaysFailure" else "it does not hold"
         lines.append(f"  {failure.node.id}: {failure.reason or asked}")
     return "\n".join(lines)

@@ -1,0 +1,53 @@
+"""The page of each code: what its message means, an example that gets it, and the same example mended.
+
+A page is `pages/BTnnn.md`; its first line is `# BTnnn: title`. tests/diagnostics/test_pages.py says how examples are
+written, and runs them.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+
+from btlang.diagnostics.codes import CODES
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
+from btlang.text.source import Source, Span
+
+PAGES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "pages")
+_CODE = re.compile(r"bt(\d+)", re.IGNORECASE | re.ASCII)
+
+
+def is_code(text: str) -> bool:
+    """Whether a text looks like a code, known or not: BT and digits, in any case."""
+    return _CODE.fullmatch(text) is not None
+
+
+def explain_code(code: str) -> str:
+    """The page of a code without its last line end; `bt13` is BT013. Raises MissionError (BT090)."""
+    match = _CODE.fullmatch(code)
+    known = f"BT{match[1].lstrip('0'):0>3}" if match else code
+    if known not in CODES:
+        raise MissionError([_unknown(code)])
+    return _page(known)
+
+
+def all_codes() -> str:
+    """A line for each code with the title of its page, then how to read one."""
+    titles = [_page(code).partition("\n")[0].removeprefix("# ") for code in sorted(CODES)]
+    return "\n".join([*(title.replace(":", " ", 1) for title in titles), "", "To read one: btc explain CODE"])
+
+
+def _page(code: str) -> str:
+    with open(os.path.join(PAGES, f"{code}.md"), encoding="utf-8") as file:
+        return file.read().rstrip("\n")
+
+
+def _unknown(written: str) -> Diagnostic:
+    match = _CODE.fullmatch(written)
+    if match is None:
+        advice = "A code is BT and three digits, such as BT013."
+    else:
+        number = int(match[1][:9])  # int() refuses thousands of digits
+        near = sorted(CODES, key=lambda code: (abs(int(code[2:]) - number), code))[:2]
+        advice = f"The nearest: {', '.join(near)}"
+    return diagnostic("BT090", Span(Source("", written), 0, 0), name=written, help=advice)

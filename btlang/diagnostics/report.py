@@ -1,0 +1,81 @@
+"""Where the diagnostics of one command go: as text to standard error, or as one JSON document for programs.
+
+The document is an array with an object for each diagnostic, in the order of `in_order`, on one line. Its keys are
+those of `as_data`; docs/messages.md tells the same to users. Keys may be added, none gets another meaning.
+"""
+
+from __future__ import annotations
+
+import sys
+from collections.abc import Iterable
+
+from btlang.diagnostics.diagnostic import Diagnostic, in_order
+from btlang.diagnostics.render import has_colour, render
+from btlang.text.source import Span
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+FORMATS = ("text", "json")
+
+
+class Report:
+    """Text is printed as it is added; JSON is held until `close` prints it all.
+
+    `on_output` puts the JSON on standard output, for a command that prints nothing else there.
+    """
+
+    def __init__(self, form: str = "text", on_output: bool = False) -> None:
+        self.is_json = form == "json"
+        self._on_output = on_output
+        self._held: list[Diagnostic] = []
+
+    def add(self, problems: Iterable[Diagnostic]) -> None:
+        """Tells these diagnostics, with an empty line between them where it is text."""
+        if self.is_json:
+            self._held += problems
+        else:
+            colour = has_colour(sys.stderr)
+            print("\n\n".join(render(problem, colour) for problem in problems), file=sys.stderr)
+
+    def close(self) -> None:
+        """Prints the document, `[]` where there was nothing to tell."""
+        if self.is_json:
+            print(as_json(self._held), file=sys.stdout if self._on_output else sys.stderr)
+
+
+def as_json(problems: Iterable[Diagnostic]) -> str:
+    """The document, in ASCII without a line end."""
+    import json
+
+    return json.dumps([as_data(problem) for problem in in_order(list(problems))])
+
+
+def as_data(problem: Diagnostic) -> dict[str, Any]:
+    """The object of one diagnostic.
+
+    - `code`, `severity` ("error" or "warning"), `message`, `hint` (lines joined by line ends, "" for none);
+    - `file`, `line`, `column`, `end_line`, `end_column`: where it is. Lines and columns count from 1, columns in
+      characters (Unicode code points); the end is exclusive: the place just after the last character;
+    - `words`: the text at that place;
+    - `fix`: None, or `text` and the place whose characters it replaces;
+    - `notes`: objects with a `message` and its place.
+    """
+    kind = problem.kind
+    told = {"code": problem.code, "severity": kind.severity, "message": problem.message, "hint": problem.hint}
+    fix = None if problem.fix is None else {"text": problem.fix[1], **_place(problem.fix[0])}
+    notes = [{"message": text, **_place(span)} for span, text in problem.notes]
+    return {**told, **_place(problem.span), "words": problem.span.text, "fix": fix, "notes": notes}
+
+
+def _place(span: Span) -> dict[str, str | int]:
+    line, column = span.source.position(span.start)
+    end_line, end_column = span.source.position(span.end)
+    return {
+        "file": span.source.name,
+        "line": line,
+        "column": column,
+        "end_line": end_line,
+        "end_column": end_column,
+    }

@@ -1,0 +1,54 @@
+"""The diagnostics of every bad sample that `btc check` reads, for tests of what is made of them."""
+
+from __future__ import annotations
+
+import os
+from functools import cache
+from pathlib import Path
+
+from btlang.api import world_vocabulary
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError
+from btlang.diagnostics.reading import read_source
+from btlang.frontends.mission import DEFAULT_PARSER, read_mission
+from btlang.passes import compile_mission
+from btlang.text.source import Source
+from btlang.vocabulary.vocabulary import Vocabulary
+
+BAD = Path(__file__).parent.parent / "samples" / "bad"
+
+
+def told(source: Source, command: str = "") -> list[Diagnostic]:
+    """What is told of a mission, with the options `--keywords` and `--world` of a command line; errors and warnings."""
+    words = command.split()
+    options = {word: words[at + 1] for at, word in enumerate(words) if word.startswith("--") and at + 1 < len(words)}
+    try:
+        vocabulary = words_of(options.get("--keywords"), options.get("--world"))
+        reading = read_mission(source, vocabulary, DEFAULT_PARSER)
+        compile_mission(reading.mission, vocabulary)
+    except MissionError as error:
+        return error.diagnostics
+    return list(reading.warnings)
+
+
+@cache
+def words_of(keywords: str | None, world: str | None) -> Vocabulary:
+    """The words of a keyword file and the names of a world."""
+    return world_vocabulary([keywords] if keywords else [], world)
+
+
+@cache
+def sample_diagnostics() -> tuple[Diagnostic, ...]:
+    """Of all samples, in their order; the names of files in them are those in the folder of the samples."""
+    before = Path.cwd()
+    found: list[Diagnostic] = []
+    os.chdir(BAD)
+    try:
+        for path in sorted(BAD.glob("*.txt")):
+            first = path.read_text(encoding="latin-1").partition("\n")[0]
+            try:
+                found += told(read_source(path.name), first if first.startswith("# btc ") else "")
+            except MissionError as error:
+                found += error.diagnostics
+    finally:
+        os.chdir(before)
+    return tuple(found)

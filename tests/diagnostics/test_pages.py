@@ -1,0 +1,122 @@
+"""Every code has a page, and the examples of a page do what it says: the wrong one gets its code, the right one none.
+
+A label, an empty line and indented lines are an example. Labels are `Wrong:` and `Right:` for a mission, `Wrong
+keyword file:` and `Wrong world:` for a file that a mission is checked with, `Wrong command:` for a command, and `The
+file NAME:` for a file beside it. `, saved as ENCODING` may end a label.
+"""
+
+from __future__ import annotations
+
+import re
+import shlex
+import sys
+from pathlib import Path
+from typing import NamedTuple
+
+import pytest
+
+from btlang.cli import main
+from btlang.diagnostics.codes import CODES
+from btlang.diagnostics.explain import PAGES
+
+TEXTS = {path.stem: path.read_text(encoding="utf-8") for path in Path(PAGES).iterdir()}
+_LABELLED = re.compile(r"^(Wrong|Right|The file)(?: ([\w. ]+))?(?:, saved as ([\w-]+))?:\n\n((?: {4}.*\n?)+)", re.M)
+_COMMANDS = {"": "check FILE", "keyword file": "check -c wave --keywords FILE", "world": "check -c wave --world FILE"}
+
+
+class Example(NamedTuple):
+    """An example of a page: Wrong, Right or The file; what it is; its encoding; its text."""
+
+    sort: str
+    of: str
+    encoding: str
+    text: str
+
+
+def examples(page: str) -> list[Example]:
+    """All examples of a page, in its order."""
+    return [
+        Example(sort, of, encoding or "utf-8", re.sub(r"^ {4}", "", text, flags=re.M))
+        for sort, of, encoding, text in _LABELLED.findall(page)
+    ]
+
+
+def said(example: Example, page: str, folder: Path, capsys: pytest.CaptureFixture[str]) -> tuple[int, str]:
+    """The exit code and the messages of an example."""
+    for file in examples(page):
+        if file.sort == "The file":
+            (folder / file.of).write_text(file.text, encoding=file.encoding)
+    if example.of == "command":
+        [btc, *command] = shlex.split(example.text)
+        assert btc == "btc"
+    else:
+        (folder / "example.txt").write_text(example.text, encoding=example.encoding)
+        command = _COMMANDS[example.of].replace("FILE", "example.txt").split()
+    code = main(command)
+    return code, capsys.readouterr().err
+
+
+@pytest.mark.parametrize("code", sorted(CODES))
+def test_examples(
+    code: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    monkeypatch.setitem(sys.modules, "matplotlib", None)  # so that BT081 can be shown
+    page = TEXTS[code]
+    [wrong] = [example for example in examples(page) if example.sort == "Wrong"]
+    [right] = [example for example in examples(page) if example.sort == "Right"]
+    assert wrong.of == right.of
+    exit_code, messages = said(wrong, page, tmp_path, capsys)
+    assert re.findall(r" (?:error|warning) (BT\d+): ", messages)[:1] == [code], messages
+    assert exit_code == (0 if CODES[code].severity == "warning" else 2)
+    assert said(right, page, tmp_path, capsys) == (0, "")
+
+
+def test_every_code_has_a_page_and_every_page_a_code() -> None:
+    assert sorted(TEXTS) == sorted(CODES)
+
+
+@pytest.mark.parametrize("code", sorted(TEXTS))
+def test_form(code: str) -> None:
+    """A title, a few lines of prose, no line that a narrow terminal would wrap, no block that is not tested."""
+    page = TEXTS[code]
+    title, empty, *rest = page.splitlines()
+    assert re.fullmatch(rf"# {code}: [a-z][^.]+", title, re.I)
+    assert (empty, page[-1], page[-2] == "\n") == ("", "\n", False)
+    prose = [line for line in rest if line and not line.startswith(" ")]
+    labels = [line for line in prose if re.match(r"(Wrong|Right|The file [\w.]+)\b.*:$", line)]
+    assert 1 <= len(prose) - len(labels) <= 10
+    assert len(labels) == len(examples(page)) == len(re.findall(r"\n\n {4}", page))
+    assert max(map(len, page.splitlines())) <= 84
+    assert len([line for line in rest if line]) <= 30
+
+
+def test_explain_prints_a_page(capsys: pytest.CaptureFixture[str]) -> None:
+    for written in ("BT013", "bt013", "Bt13"):
+        assert main(["explain", written]) == 0
+        assert capsys.readouterr() == (TEXTS["BT013"], "")
+
+
+def test_explain_lists_all_codes(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["explain"]) == 0
+    lines = capsys.readouterr().out.splitlines()
+    assert [line.partition(" ")[0] for line in lines[:-2]] == sorted(CODES)
+    assert "BT013  an unknown name" in lines
+
+
+@pytest.mark.parametrize(
+    ("written", "told"),
+    [
+        ("BT031", "The nearest: BT032, BT029"),
+        ("BT9999999999999", "The nearest: BT090, BT081"),
+        ("BT" + "9" * 6000, "The nearest: "),
+        ("BT", "A code is BT and three digits"),
+        ("", "A code is BT and three digits"),
+        ("BT\N{SUPERSCRIPT TWO}", "A code is BT and three digits"),
+    ],
+)
+def test_an_unknown_code_is_told(written: str, told: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["explain", written]) == 2
+    errors = capsys.readouterr().err
+    assert "error BT090" in errors
+    assert told in errors

@@ -1,0 +1,132 @@
+"""Random syntax trees over the letters vocabulary, for hypothesis: also those that no sentence was drawn for."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from hypothesis import strategies as st
+
+from btlang.text.source import Source, Span
+from btlang.tree import ast
+from tests.language.letters import COMMANDS, CONDITIONS, letters
+
+SPAN = Span(Source("x"), 0, 1)
+NAMES = ("big dance", "once more")
+
+Trees = st.SearchStrategy[ast.Ast]
+
+
+def phrase(letter: str) -> ast.Ast:
+    entry = letters().entry(letter.upper())
+    assert entry is not None
+    return ast.Phrase(entry, (), SPAN)
+
+
+def either(*letters: str) -> ast.Ast:
+    return ast.Chain("fallback", tuple(map(phrase, letters)), False, SPAN)
+
+
+def _chain(operator: str, items: list[ast.Ast], bracketed: bool) -> ast.Ast:
+    """An equal chain inside it has brackets, as the parsers make it."""
+    kept = [
+        item.replace(bracketed=True) if isinstance(item, ast.Chain) and item.operator == operator else item
+        for item in items
+    ]
+    return ast.Chain(operator, tuple(kept), bracketed, SPAN)
+
+
+def _chains(operators: list[str], inner: Trees) -> Trees:
+    return st.builds(_chain, st.sampled_from(operators), st.lists(inner, min_size=2, max_size=3), st.booleans())
+
+
+conditions: Trees = st.recursive(
+    st.sampled_from(CONDITIONS).map(phrase),
+    lambda inner: st.one_of(_chains(["all", "any"], inner), st.builds(ast.Not, inner, st.just(SPAN))),
+    max_leaves=4,
+)
+_seconds = st.sampled_from(["5", "0.2", "90"])
+_rounds = st.sampled_from([-1, 1, 2, 3])
+_span = st.just(SPAN)
+_leaves: Trees = st.one_of(
+    st.sampled_from(COMMANDS).map(phrase),
+    st.sampled_from(COMMANDS).map(phrase),
+    st.builds(ast.Fail, _span),
+    st.builds(ast.Nothing, _span),
+    st.builds(ast.Wait, _seconds, _span),
+    st.builds(ast.Check, conditions, _span),
+    st.builds(ast.WaitUntil, conditions, _span),
+)
+
+
+def _forms(inner: Trees) -> Trees:
+    perhaps = st.one_of(st.none(), inner)
+    timed: list[Callable[..., ast.Ast]] = [ast.Within, ast.For, ast.Every, ast.Delay]
+    return st.one_of(
+        _chains(["sequence", "fallback", "parallel"], inner),
+        st.builds(ast.If, st.booleans(), conditions, inner, perhaps, _span),
+        st.builds(ast.While, st.booleans(), conditions, inner, perhaps, _span),
+        st.builds(ast.Provided, conditions, inner, _span),
+        st.builds(ast.Repeat, _rounds, inner, _span),
+        st.builds(ast.Retry, _rounds, inner, _span),
+        st.builds(ast.Try, inner, perhaps, _span),
+        *(st.builds(form, _seconds, inner, _span) for form in timed),
+    )
+
+
+commands: Trees = st.recursive(_leaves, _forms, max_leaves=8)
+
+
+def _rule_block(rules: list[ast.Ast], work: list[ast.Ast]) -> ast.Ast:
+    return ast.Repeat(2, _chain("sequence", [*rules, *work], True), SPAN)
+
+
+def _about(inner: Trees) -> Trees:
+    """Forms round one that holds standing rules, as lines and blocks can say them."""
+    form = inner.map(lambda node: ast.Repeat(3, node, SPAN) if isinstance(node, ast.Chain) else node)
+    perhaps = st.one_of(st.none(), commands, inner)
+    few = st.lists(commands, max_size=2)
+    joined = st.builds(lambda left, node, right: [*left, node, *right], few, form, few).filter(lambda all: len(all) > 1)
+    return st.one_of(
+        st.builds(_chain, st.sampled_from(["sequence", "fallback", "parallel"]), joined, st.booleans()),
+        st.builds(ast.If, st.booleans(), conditions, inner, perhaps, _span),
+        st.builds(ast.While, st.booleans(), conditions, commands, inner, _span),
+        st.builds(ast.Repeat, _rounds, inner, _span),
+        st.builds(ast.Retry, _rounds, inner, _span),
+        st.builds(ast.Try, st.one_of(inner, commands), inner, _span),
+        st.builds(ast.Try, inner, st.none(), _span),
+        st.builds(ast.Every, _seconds, inner, _span),
+    )
+
+
+_rules = st.builds(ast.Whenever, conditions, commands, _span)
+ruled: Trees = st.recursive(
+    st.builds(_rule_block, st.lists(_rules, min_size=1, max_size=2), st.lists(commands, min_size=1, max_size=2)),
+    _about,
+    max_leaves=3,
+)
+"""Commands in which standing rules hold."""
+
+
+@st.composite
+def missions(draw: st.DrawFn) -> ast.Mission:
+    """Commands, and up to two definitions that they use."""
+    bodies = draw(st.lists(st.one_of(commands, conditions, ruled), max_size=len(NAMES)))
+    body = draw(st.one_of(commands, commands, ruled))
+    definitions = [ast.Definition(name, inner, SPAN, SPAN) for name, inner in zip(NAMES, bodies, strict=False)]
+    used = [_use(name, inner) for name, inner in zip(NAMES, bodies, strict=False)]
+    if used and not isinstance(body, ast.Chain):
+        body = _chain(draw(st.sampled_from(["sequence", "fallback", "parallel"])), [*used, body], False)
+    elif used:
+        body = _chain("sequence", [*used, ast.Repeat(2, body, SPAN)], False)
+    rules = draw(st.lists(_rules, max_size=2))
+    if rules:
+        items = list(body.items) if isinstance(body, ast.Chain) and body.operator == "sequence" else [body]
+        body = _chain("sequence", [*rules, *items], False)
+    return ast.Mission(body, tuple(definitions), SPAN)
+
+
+def _use(name: str, body: ast.Ast) -> ast.Ast:
+    used = ast.Name(name, SPAN)
+    is_condition = isinstance(body, ast.Not) or (isinstance(body, ast.Chain) and body.operator in ("all", "any"))
+    is_condition = is_condition or (isinstance(body, ast.Phrase) and body.entry.sort == "condition")
+    return ast.Check(used, SPAN) if is_condition else ast.Repeat(2, used, SPAN)
