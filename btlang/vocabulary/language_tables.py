@@ -12,8 +12,8 @@ if TYPE_CHECKING:
     from typing import Any
 
 _NO_SLOT = (
-    "then", "and", "or", "after", "otherwise", "if", "unless", "while", "until", "whenever", "provided", "not", "repeat",
-    "try", "retry", "if_possible", "wait_until", "check", "nothing", "fail", "in_parallel", "in_order",
+    "then", "and", "or", "after", "otherwise", "if", "unless", "while", "until", "whenever", "provided", "not",
+    "repeat", "try", "retry", "if_possible", "wait_until", "check", "nothing", "fail", "in_parallel", "in_order",
     "define_strong", "define", "fact", "facing",
 )  # fmt: skip
 ROLES = {
