@@ -8,6 +8,7 @@ import shlex
 import signal
 import subprocess
 import sys
+import termios
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -28,6 +29,22 @@ Open = Callable[..., Terminal]
 def run(terminal: Open, *options: str, **window: object) -> Terminal:
     """`btc run` in a terminal of its own."""
     return terminal(*BTC, "run", *options, **window)
+
+
+def test_a_paused_run_ends_when_its_terminal_is_gone() -> None:
+    master, slave = os.openpty()
+    termios.tcsetwinsize(slave, (24, 80))
+    environment = {**os.environ, "TERM": "xterm", "PYTHONPATH": str(REPOSITORY)}
+    process = subprocess.Popen([*BTC, "run", "-c", DRIVE], stdin=slave, stdout=slave, stderr=slave, env=environment)
+    os.close(slave)
+    seen = b""
+    while b"running" not in seen:
+        seen += os.read(master, 65536)
+    os.write(master, b" ")
+    while b"paused" not in seen:
+        seen += os.read(master, 65536)
+    os.close(master)
+    assert process.wait(timeout=20) == 130
 
 
 def same_each_time(screen: str) -> str:

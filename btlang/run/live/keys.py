@@ -22,6 +22,9 @@ if TYPE_CHECKING:
 _SEQUENCE = re.compile(r"\x1b(?:[\[O][0-?]*[ -/]*[@-~]?|.)?", re.DOTALL)  # an arrow key or the like
 _PATIENCE = 0.2  # seconds until a process in the background looks again
 
+STOP = "q"
+"""The key that ends the run."""
+
 
 class Keys:
     """Calls `pressed` with each key between `begin` and `end`; those of Ctrl-C and Ctrl-Z stay signals.
@@ -87,8 +90,9 @@ class Keys:
             try:
                 text = os.read(self._descriptor, 1024).decode(errors="ignore")
             except OSError:
-                return
-            if not text:
+                text = ""
+            if not text:  # the terminal is gone, and nobody could end a pause
+                self._pressed(STOP)
                 return
             for key in _SEQUENCE.sub("", text):
                 self._pressed(key)

@@ -12,7 +12,7 @@ from btlang.run.events import PeriodPassed
 from btlang.run.live import frame
 from btlang.run.live.board import Board
 from btlang.run.live.capture import captured
-from btlang.run.live.keys import Keys
+from btlang.run.live.keys import STOP, Keys
 from btlang.run.live.screen import Screen
 from btlang.run.live.stopping import stoppable
 
@@ -152,7 +152,7 @@ class LiveView:
             return None
 
     def _press(self, key: str) -> None:
-        deed = {" ": self._controls.toggle, "s": self._controls.step, "q": self._controls.stop}.get(key.lower())
+        deed = {" ": self._controls.toggle, "s": self._controls.step, STOP: self._controls.stop}.get(key.lower())
         if deed is not None:
             deed()
             self._wake.set()
