@@ -13,7 +13,7 @@ from functools import partial
 import btlang
 from btlang.api import RATES, SLOWEST, RunnableTree, format_mission, parse_tree, world_vocabulary
 from btlang.diagnostics.diagnostic import MissionError
-from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.reading import read_source, reason_of
 from btlang.diagnostics.report import FORMATS, Report
 from btlang.frontends.mission import DEFAULT_PARSER, PARSERS
 from btlang.text.source import Source
@@ -43,7 +43,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         # the reader of our output has seen enough, or the terminal is gone
         codes = {errno.EPIPE: SUCCESS, errno.EIO: INTERRUPTED}
         if error.errno not in codes:
-            print(f"btc: {(error.strerror or str(error)).lower()}", file=sys.stderr)
+            print(f"btc: {reason_of(error)}", file=sys.stderr)
         nowhere = os.open(os.devnull, os.O_WRONLY)
         for stream in (sys.stdout, sys.stderr):
             os.dup2(nowhere, stream.fileno())

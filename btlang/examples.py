@@ -8,6 +8,7 @@ import textwrap
 from collections.abc import Iterable, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
+from btlang.diagnostics.reading import unwritable
 from btlang.record import Record
 from btlang.text.source import Source, Span
 from btlang.vocabulary.shipped import shipped
@@ -68,7 +69,7 @@ def copied(folder: str, chosen: Sequence[Example]) -> list[str]:
     there = [path for path in files if os.path.lexists(path)]
     kept = [path for path in there if path in worlds and _same(path, files[path])]
     problems = [
-        _unwritable(path, "it is there already, and nothing is overwritten") for path in there if path not in kept
+        unwritable(path, "it is there already, and nothing is overwritten") for path in there if path not in kept
     ]
     if problems:
         raise MissionError(problems)
@@ -79,7 +80,7 @@ def copied(folder: str, chosen: Sequence[Example]) -> list[str]:
             with open(path, "xb") as file:
                 file.write(files[path])
         except OSError as error:
-            raise MissionError([_unwritable(path, (error.strerror or str(error)).lower())]) from None
+            raise MissionError([unwritable(path, error)]) from None
     return written
 
 
@@ -103,10 +104,6 @@ def _same(path: str, data: bytes) -> bool:
             return file.read() == data
     except OSError:
         return False
-
-
-def _unwritable(path: str, reason: str) -> Diagnostic:
-    return diagnostic("BT009", Span(Source("", path), 0, 0), file=path, reason=reason)
 
 
 def _unknown(name: str, known: Iterable[str]) -> Diagnostic:

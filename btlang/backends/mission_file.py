@@ -5,8 +5,8 @@ from __future__ import annotations
 import os
 import shutil
 
-from btlang.diagnostics.diagnostic import MissionError, diagnostic
-from btlang.text.source import Source, Span
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.reading import unwritable
 
 
 def replace_text(path: str, text: str) -> None:
@@ -25,5 +25,4 @@ def replace_text(path: str, text: str) -> None:
             if os.path.exists(new):
                 os.remove(new)
     except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        raise MissionError([diagnostic("BT009", Span(Source("", path), 0, 0), file=path, reason=reason)]) from None
+        raise MissionError([unwritable(path, error)]) from None

@@ -1,10 +1,10 @@
-"""Files to sources; everything that can be wrong with a file becomes a diagnostic."""
+"""Files to sources; everything that can be wrong with a file becomes a diagnostic, also when it is to be written."""
 
 from __future__ import annotations
 
 import sys
 
-from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.text.source import Source, Span
 
 
@@ -18,11 +18,21 @@ def read_source(path: str) -> Source:
                 data = file.read()
     except OSError as error:
         nowhere = Span(Source("", path), 0, 0)
-        reason = (error.strerror or str(error)).lower()
-        raise MissionError([diagnostic("BT001", nowhere, file=path, reason=reason)]) from None
+        raise MissionError([diagnostic("BT001", nowhere, file=path, reason=reason_of(error))]) from None
     try:
         return Source(data.decode("utf-8-sig"), path)
     except UnicodeDecodeError as error:
         readable = data[: error.start].decode("utf-8")
         source = Source(readable + data[error.start :].decode("latin-1"), path)
         raise MissionError([diagnostic("BT002", Span(source, len(readable), len(readable) + 1))]) from None
+
+
+def unwritable(path: str, reason: str | OSError) -> Diagnostic:
+    """BT009: a file cannot be written."""
+    told = reason if isinstance(reason, str) else reason_of(reason)
+    return diagnostic("BT009", Span(Source("", path), 0, 0), file=path, reason=told)
+
+
+def reason_of(error: OSError) -> str:
+    """The reason in the words of the operating system, to stand in a sentence."""
+    return (error.strerror or str(error)).lower()

@@ -11,7 +11,7 @@ from btlang.tree.node import Node
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.pattern import Form, Slot, forms
 from btlang.vocabulary.trie import TrieNode, longest
-from btlang.vocabulary.values import ValueType
+from btlang.vocabulary.values import ValueType, with_unit
 from btlang.vocabulary.vocabulary import DEFINING, Vocabulary
 
 
@@ -94,8 +94,7 @@ def value_of(text: str, kind: ValueType, vocabulary: Vocabulary) -> str:
     A text that could be taken for something else is quoted.
     """
     if kind.kind == "quantity":
-        unit = kind.units[0].words[0]
-        return f"{text}{unit}" if unit in ("%", "°") else f"{text} {unit}"
+        return with_unit(text, kind.units[0].words[0])
     if kind.kind == "number":
         return text
     ways = [f'"{text}"', f"'{text}'"]

@@ -44,7 +44,7 @@ def find_definitions(text: Words, vocabulary: Vocabulary, facts: Container[int] 
     if defining.isdisjoint(text.words):
         return found
     margin = text.lines[0].indent if text.lines else 0
-    for indent, first, last in _statements(text):
+    for indent, first, last in statements(text):
         if first in facts or defining.isdisjoint(text.words[first:last]):
             continue
         header = _header(text, first, last, vocabulary, found.problems)
@@ -71,7 +71,7 @@ def _add_name(header: Header, found: Definitions, vocabulary: Vocabulary) -> Non
         found.problems.append(diagnostic("BT018", header.span, name=header.name))
 
 
-def _statements(text: Words) -> Iterator[tuple[int, int, int]]:
+def statements(text: Words) -> Iterator[tuple[int, int, int]]:
     """(indent, first word, last word) of what stands between line ends, `;` and full stops."""
     for line in text.lines:
         first = line.first

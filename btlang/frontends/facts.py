@@ -2,10 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.text.words import END_OF_STATEMENT, Words
+from btlang.frontends.definitions import statements
+from btlang.text.words import Words
 from btlang.tree.ast import Fact
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.vocabulary import Vocabulary
@@ -31,7 +30,7 @@ def find_facts(text: Words, vocabulary: Vocabulary) -> Facts:
     placing = [phrase.split() for phrase in vocabulary.roles["fact"]]
     if not any(words[0] in text.words for words in placing) or _OPEN not in text.words:
         return facts
-    for first, last in statements(text):
+    for _, first, last in statements(text):
         for at in range(first, last):
             words = next((w for w in placing if text.words[at : at + len(w)] == w), None)
             if words is not None and text.words[at + len(words)] == _OPEN:
@@ -45,17 +44,6 @@ def find_facts(text: Words, vocabulary: Vocabulary) -> Facts:
                 facts.ends[first] = last
                 break
     return facts
-
-
-def statements(text: Words) -> Iterator[tuple[int, int]]:
-    """First and last word (exclusive) of what stands between line ends, `;` and full stops."""
-    for line in text.lines:
-        first = line.first
-        for at in range(line.first, line.last):
-            if text.words[at] == END_OF_STATEMENT:
-                yield first, at
-                first = at + 1
-        yield first, line.last
 
 
 def _fact(text: Words, start: int, is_at: int, at: int, last: int, vocabulary: Vocabulary) -> Fact | None:

@@ -16,7 +16,7 @@ from btlang.text.spelling import nearest, nearest_start
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.pattern import Slot, forms
 from btlang.vocabulary.trie import SLOTS, TrieNode, longest
-from btlang.vocabulary.values import Values, ValueType
+from btlang.vocabulary.values import Values, ValueType, with_unit
 from btlang.vocabulary.vocabulary import Vocabulary
 
 _NOT_A_VALUE = frozenset((END_OF_TEXT, END_OF_STATEMENT, ",", ":", "(", ")"))
@@ -134,12 +134,12 @@ def _number_misfit(
     text: Words, at: int, number: tuple[float, int], types: list[ValueType], head: str, example: str, wanted: str
 ) -> Diagnostic:
     span = text.span(at, number[1])
-    with_unit = next((kind for kind in types if kind.kind == "quantity"), None)
-    if with_unit is not None:
-        units = [word for unit in with_unit.units for word in unit.words]
+    measured = next((kind for kind in types if kind.kind == "quantity"), None)
+    if measured is not None:
+        units = [word for unit in measured.units for word in unit.words]
         misspelt = nearest(text.words[number[1]], units)[:1] if text.words[number[1]][0].isalpha() else []
         unit = misspelt[0] if misspelt else units[0]
-        value = f"{span.text} {unit}".replace(" %", "%")
+        value = with_unit(span.text, unit)
         reason = f"{wanted} has a unit"
         fix = (text.span(at, number[1] + len(misspelt)), value)
         return diagnostic("BT011", span, fix=fix, words=span.text, wanted=reason, example=f"{head} {value}")
@@ -176,8 +176,7 @@ def _unknown_phrase(
     if not near:
         return diagnostic("BT010", span, words=span.text, help="'btc words' lists what I know.")
     likely, words = next(iter(near.items()))
-    misspelt, mended = text.span(at, min(at + words, end)), likely.partition(" {")[0]
-    fix = (misspelt, mended) if misspelt.text.lower() != mended else None
+    fix = (text.span(at, min(at + words, end)), likely.partition(" {")[0])
     advice = "The nearest that I know: " + ", ".join(near)
     return diagnostic("BT010", span, fix=fix, words=span.text, help=advice)
 

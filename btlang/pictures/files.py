@@ -6,6 +6,7 @@ import os
 from importlib.util import find_spec
 
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.diagnostics.reading import unwritable
 from btlang.text.source import Source, Span
 
 STILL = (".svg", ".png")
@@ -31,7 +32,7 @@ def check_picture(path: str) -> None:
         if is_new:
             os.remove(path)
     except OSError as error:
-        raise _unwritable(path, error) from None
+        raise MissionError([unwritable(path, error)]) from None
 
 
 def write_picture(path: str, data: bytes) -> None:
@@ -40,14 +41,9 @@ def write_picture(path: str, data: bytes) -> None:
         with open(path, "wb") as file:
             file.write(data)
     except OSError as error:
-        raise _unwritable(path, error) from None
+        raise MissionError([unwritable(path, error)]) from None
 
 
 def missing(path: str) -> MissionError:
     """What to raise where matplotlib is not there."""
     return MissionError([diagnostic("BT081", Span(Source("", path), 0, 0))])
-
-
-def _unwritable(path: str, error: OSError) -> MissionError:
-    reason = (error.strerror or str(error)).lower()
-    return MissionError([diagnostic("BT009", Span(Source("", path), 0, 0), file=path, reason=reason)])

@@ -5,14 +5,14 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 
-from btlang.diagnostics.diagnostic import MissionError, diagnostic
-from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.reading import read_source, unwritable
 from btlang.frontends.definitions import find_definitions
 from btlang.record import Record
-from btlang.repl.session import Session
+from btlang.repl.session import Entry, Session
 from btlang.repl.store import Store
 from btlang.robots.world import said
-from btlang.text.source import Source, Span
+from btlang.text.source import Source
 from btlang.text.words import split
 from btlang.vocabulary.listing import help_on, listing
 from btlang.vocabulary.trie import longest
@@ -161,9 +161,9 @@ class Commands:
             return
         self._write_change(before, "")
 
-    def _write_change(self, before: tuple[object, ...], note: str) -> None:
+    def _write_change(self, before: tuple[Entry, ...], note: str) -> None:
         now = self._session.entries
-        gone = [entry.text for entry in before if entry not in now]  # type: ignore[attr-defined]
+        gone = [entry.text for entry in before if entry not in now]
         come = [entry.text for entry in now if entry not in before]
         lines = [f"- {line}" for text in gone for line in text.splitlines()]
         lines += [f"+ {line}" for text in come for line in text.splitlines()]
@@ -183,8 +183,7 @@ class Commands:
             with open(path, "w", encoding="utf-8", errors="surrogateescape") as file:
                 file.write(session.text)
         except OSError as error:
-            reason = (error.strerror or str(error)).lower()
-            raise MissionError([diagnostic("BT009", Span(Source("", path), 0, 0), file=path, reason=reason)]) from None
+            raise MissionError([unwritable(path, error)]) from None
         session.file, self.saved = path, session.text
         self._write(f"Saved {_lines(session.text)} to {path}.")
 

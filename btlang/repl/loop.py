@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import signal
 import sys
 from collections.abc import Iterable, Iterator, Sequence
@@ -16,7 +15,7 @@ from btlang.repl.commands import Commands, Leave, command_of
 from btlang.repl.entering import entries
 from btlang.repl.session import Session
 from btlang.repl.store import Kept, Store, state_folder
-from btlang.run.command import run_mission
+from btlang.run.command import ENDING_SIGNALS, can_draw, run_mission
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -32,15 +31,14 @@ def run_repl(
 ) -> int:
     """Runs until the user leaves or the input ends; returns the exit code. Raises MissionError for wrong files."""
     session = Session(keywords, world, parser)
-    if not _is_terminal():
+    if not can_draw(sys.stdout) or sys.stdin is None or not sys.stdin.isatty():
         return Repl(session, Store(None), speed).read(sys.stdin or ())
     store = Store(state_folder())
-    numbers = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]
-    before = [signal.signal(number, _terminate) for number in numbers]
+    before = [signal.signal(number, _terminate) for number in ENDING_SIGNALS]
     try:
         Repl(session, store, speed).talk()
     finally:
-        for number, handler in zip(numbers, before, strict=True):
+        for number, handler in zip(ENDING_SIGNALS, before, strict=True):
             signal.signal(number, handler)
     return 0
 
@@ -146,12 +144,6 @@ def _type_ahead() -> Iterator[None]:
         yield
     finally:
         termios.tcsetattr(0, termios.TCSANOW, before)
-
-
-def _is_terminal() -> bool:
-    streams = (sys.stdin, sys.stdout)
-    is_dumb = os.environ.get("TERM", "dumb") in ("", "dumb", "unknown")
-    return not is_dumb and all(stream is not None and stream.isatty() for stream in streams)
 
 
 def _count(left: Kept) -> str:

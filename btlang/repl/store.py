@@ -7,6 +7,7 @@ import os
 import time
 from pathlib import Path
 
+from btlang.diagnostics.reading import reason_of
 from btlang.record import Record
 
 try:
@@ -53,7 +54,7 @@ class Store:
             self._held = _lock(self._own)
             self.save([], "")
         except OSError as error:
-            self.problem = f"{self._folder}: {(error.strerror or str(error)).lower()}"
+            self.problem = f"{self._folder}: {reason_of(error)}"
 
     def __del__(self) -> None:
         if self._held is not None:
@@ -74,7 +75,7 @@ class Store:
             new.write_text(json.dumps(state), encoding="ascii")
             os.replace(new, self._own)
         except OSError as error:
-            self.problem = f"{self._own}: {(error.strerror or str(error)).lower()}"
+            self.problem = f"{self._own}: {reason_of(error)}"
 
     def forget(self) -> None:
         """Deletes this session's files: all of it has been saved elsewhere, or there is nothing in it."""

@@ -8,13 +8,13 @@ import sys
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 
-from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.reading import unwritable
 from btlang.diagnostics.render import RED, has_colour, underlined
 from btlang.engine.status import FAILURE, SKIPPED
 from btlang.run.json_log import JsonLog
 from btlang.run.lines import Lines
 from btlang.run.runner import Outcome
-from btlang.text.source import Source, Span
 from btlang.tree.node import Node, Tree
 
 TYPE_CHECKING = False
@@ -43,6 +43,8 @@ if TYPE_CHECKING:
         def is_action(self, node: Node) -> bool: ...
 
 
+ENDING_SIGNALS = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]
+"""A signal to end, and that the terminal is gone, as far as the system has them."""
 _LEAST_SIZE = os.terminal_size((30, 10))  # of a terminal in which the live view is of use
 
 
@@ -78,9 +80,7 @@ def run_mission(
     except BrokenPipeError:
         raise
     except OSError as error:
-        reason = (error.strerror or str(error)).lower()
-        name = log or "the output"
-        raise MissionError([diagnostic("BT009", Span(Source("", name), 0, 0), file=name, reason=reason)]) from None
+        raise MissionError([unwritable(log or "the output", error)]) from None
     if outcome.status == FAILURE:
         print(failure_report(outcome, tree.label, RED if has_colour(sys.stderr) else ""), file=sys.stderr)
         return 1
@@ -92,8 +92,7 @@ def run_mission(
 @contextmanager
 def _interrupted_by_signals() -> Iterator[None]:
     """A signal to end, or that the terminal is gone, halts the robot as Ctrl-C does; a caller's own handler stays."""
-    numbers = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]
-    taken = [number for number in numbers if signal.getsignal(number) == signal.SIG_DFL]
+    taken = [number for number in ENDING_SIGNALS if signal.getsignal(number) == signal.SIG_DFL]
     for number in taken:
         signal.signal(number, signal.default_int_handler)
     try:
@@ -103,10 +102,15 @@ def _interrupted_by_signals() -> Iterator[None]:
             signal.signal(number, signal.SIG_DFL)
 
 
+def can_draw(output: TextIO | None) -> bool:
+    """Whether an output is a terminal in which a cursor can be moved."""
+    return output is not None and output.isatty() and os.environ.get("TERM", "dumb") not in ("", "dumb", "unknown")
+
+
 def _live_view(tree: Runnable, keys: bool, tree_stays: bool) -> LiveView | None:
     """None where standard output is no terminal in which it can be shown."""
     output = sys.stdout
-    if output is None or not output.isatty() or os.environ.get("TERM", "dumb") in ("", "dumb", "unknown"):
+    if output is None or not can_draw(output):
         return None
     try:
         columns, rows = os.get_terminal_size(output.fileno())

@@ -9,7 +9,7 @@ from btlang.record import Record
 from btlang.text.words import Words
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.trie import SLOTS, TrieNode
-from btlang.vocabulary.values import END, Values, WordTree
+from btlang.vocabulary.values import END, Values, WordTree, with_unit
 
 _MOST = 200  # ways to go on from one place; nobody reads more
 
@@ -90,13 +90,9 @@ def values_on(kind: str, values: Values, written: Sequence[str], start: str) -> 
         if value_type.example.startswith(start):
             yield value_type.example
         elif start.isdecimal() and value_type.kind == "quantity":
-            yield from (_with_unit(start, unit.words[0]) for unit in value_type.units)
+            yield from (with_unit(start, unit.words[0]) for unit in value_type.units)
     elif value_type.kind == "quantity" and values.is_number(written):
         yield from (unit.words[0] for unit in value_type.units if unit.words[0].startswith(start))
-
-
-def _with_unit(number: str, unit: str) -> str:
-    return f"{number} {unit}" if unit[0].isalpha() else number + unit
 
 
 def _names_on(tree: WordTree, written: Sequence[str], start: str, names: Sequence[str]) -> Iterator[str]:

@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from btlang.record import Record
 from btlang.vocabulary.entry import COMPARISONS, Entry
 from btlang.vocabulary.pattern import Slot, forms
-from btlang.vocabulary.values import ValueType
+from btlang.vocabulary.values import ValueType, with_unit
 from btlang.vocabulary.vocabulary import Vocabulary
 
 # Commands come first; what packs bring follows, then the words of the language.
@@ -74,7 +74,7 @@ def _slots(entry: Entry, vocabulary: Vocabulary) -> Iterator[str]:
         kind = vocabulary.types[slot.type]
         line = f"{{{slot.name}}}: {_described(kind, vocabulary)}"
         if slot.default is not None:
-            line += f"; {with_unit(slot.default, kind)} if left out"
+            line += f"; {_default(slot.default, kind)} if left out"
         elif not all(slot.name in names for names in always):
             line += "; may be left out"
         yield line
@@ -115,9 +115,6 @@ def _described(kind: ValueType, vocabulary: Vocabulary) -> str:
     return ("a whole number" if kind.whole else "a number") + least
 
 
-def with_unit(number: str, kind: ValueType) -> str:
+def _default(text: str, kind: ValueType) -> str:
     """A port text as a mission would say it: `0.5 m`, `100%`."""
-    if kind.kind != "quantity":
-        return number
-    unit = kind.units[0].words[0]
-    return f"{number} {unit}" if unit[0].isalpha() else number + unit
+    return with_unit(text, kind.units[0].words[0]) if kind.kind == "quantity" else text

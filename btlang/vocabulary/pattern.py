@@ -8,6 +8,7 @@ Written by us because the `cucumber-expressions` package only matches whole stri
 from __future__ import annotations
 
 import re
+from functools import lru_cache
 from itertools import product
 
 from btlang.record import Record
@@ -35,7 +36,8 @@ _PIECE = re.compile(
 )
 
 
-def forms(pattern: str, articles: frozenset[str] = frozenset()) -> list[Form]:
+@lru_cache(maxsize=4096)  # asked for at each load several times, and for each leaf that is named
+def forms(pattern: str, articles: frozenset[str] = frozenset()) -> tuple[Form, ...]:
     """Every way to say the pattern, without articles, longest first. Raises PatternError."""
     ways: list[list[Form]] = [[()]]  # a stack: the innermost open `[` is the last
     for match in _PIECE.finditer(pattern):
@@ -65,7 +67,7 @@ def forms(pattern: str, articles: frozenset[str] = frozenset()) -> list[Form]:
     )
     if not found or () in ways[0]:
         raise PatternError(f"the phrase '{pattern}' has no word that must be said")
-    return found
+    return tuple(found)
 
 
 def _joined(left: list[Form], right: list[Form], pattern: str) -> list[Form]:

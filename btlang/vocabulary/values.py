@@ -30,6 +30,11 @@ class Unit(Record):
     denominator: float
 
 
+def with_unit(number: str, unit: str) -> str:
+    """A number and a word of a unit as they are written: `2 m`, `20%`."""
+    return f"{number} {unit}" if unit[0].isalpha() else number + unit
+
+
 class ValueType(Record):
     """A type that a slot may have.
 
@@ -47,8 +52,7 @@ class ValueType(Record):
     def example(self) -> str:
         """A value as a user would write it."""
         if self.kind == "quantity":
-            word = self.units[0].words[0]
-            return "5%" if word == "%" else f"5 {word}"
+            return with_unit("5", self.units[0].words[0])
         if self.kind == "names":
             return self.names[0] if self.names else self.name
         return '"hello"' if self.kind == "text" else "3"
