@@ -56,6 +56,7 @@ NODE_TYPES = {
     "Sleep": NodeType(timed.sleep, 0, 0, ("msec",)),
     "AlwaysSuccess": NodeType(leaves.always_success, 0, 0),
     "AlwaysFailure": NodeType(leaves.always_failure, 0, 0),
+    "SetBlackboard": NodeType(leaves.set_blackboard, 0, 0, ("value", "output_key")),
 }
 _SUBTREE = NodeType(subtree, 1, 1)
 

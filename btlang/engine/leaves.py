@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import lru_cache, partial
 
-from btlang.engine.build import Fault, Site, halt_nothing
+from btlang.engine.build import Fault, Site, blackboard_key, halt_nothing
 from btlang.engine.leaf import ActionFailed, LeafBinding
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
 
@@ -31,6 +31,24 @@ def always_success(site: Site, children: Sequence[Compiled]) -> Compiled:
 def always_failure(site: Site, children: Sequence[Compiled]) -> Compiled:
     """FAILURE."""
     return site.fail, halt_nothing
+
+
+def set_blackboard(site: Site, children: Sequence[Compiled]) -> Compiled:
+    """The port `value`, a text or a `{key}` to copy, goes under the key `output_key` (set_blackboard_node.h)."""
+    scope, value, target = site.scope, site.node.port("value"), site.node.port("output_key")
+    target = blackboard_key("output_key", target) or target
+    if not target:
+        raise site.error("SetBlackboard needs a port output_key")
+    key = blackboard_key("value", value)
+
+    def tick() -> int:
+        try:
+            scope.set(target, value if key is None else scope.get(key))
+        except KeyError:
+            return site.fail(f"{{{key}}} has no value")
+        return SUCCESS
+
+    return tick, halt_nothing
 
 
 def skipped(site: Site, children: Sequence[Compiled]) -> Compiled:

@@ -11,7 +11,7 @@ import math
 from collections.abc import Callable, Iterable, Iterator
 
 from btlang.english.pieces import COLON, Pieces, is_longer, mark
-from btlang.english.sentence import THEN, Speaker, is_flat_fallback, statements
+from btlang.english.sentence import THEN, Speaker, each_head, is_flat_fallback, statements
 from btlang.tree import ast
 
 TYPE_CHECKING = False
@@ -117,12 +117,16 @@ def _timed(*roles: str) -> Callable[[Any, Speaker], Iterator[Section]]:
     return sections
 
 
+def _for_each(node: ast.ForEach, speaker: Speaker) -> Iterator[Section]:
+    yield tuple(each_head(node, speaker)), statements(node.body)
+
+
 def _definition(node: ast.Definition, speaker: Speaker) -> Iterator[Section]:
     """A condition stays in its line: the lines of a block are commands."""
     body = node.body
     if isinstance(body, ast.Chain) and body.operator in ("all", "any"):
         return
-    if not isinstance(body, ast.Phrase | ast.Name | ast.Not):
+    if not isinstance(body, ast.Phrase | ast.Name | ast.Compared | ast.Not):
         yield (mark(node.name), mark(speaker.word("define_strong").text)), statements(body)
 
 
@@ -141,6 +145,7 @@ _SECTIONS: dict[type[ast.Ast], Callable[[Any, Speaker], Iterator[Section]]] = {
     ast.For: _timed("repeat", "for"),
     ast.Every: _timed("every"),
     ast.Delay: _timed("delay"),
+    ast.ForEach: _for_each,
     ast.Definition: _definition,
 }
 """The forms that have blocks; any other statement stays in one line."""

@@ -8,22 +8,35 @@ from btlang.text.source import Source
 from btlang.text.words import split
 from btlang.tree.dump import described
 from btlang.tree.node import Node
-from btlang.vocabulary.entry import Entry
-from btlang.vocabulary.pattern import Form, Slot, forms
+from btlang.vocabulary.entry import MEASURED, Entry
+from btlang.vocabulary.pattern import Form, Slot, forms, name_form
 from btlang.vocabulary.trie import TrieNode, longest
 from btlang.vocabulary.values import ValueType, with_unit
 from btlang.vocabulary.vocabulary import DEFINING, Vocabulary
 
 
 def phrase_of(node: Node, vocabulary: Vocabulary) -> str:
-    """The English of a node: `move forward 2 m`, `wait 5 s`, the name of a subtree; else `Id port=value`."""
+    """The English of a node: `move forward 2 m`, `wait 5 s`, the name of a subtree; else `Id port=value`.
+
+    What works with values of the mission is shown as it was written.
+    """
     if node.id == "SubTree":
-        return node.port("ID")
+        return _filled_name(node)
+    computed = node.id in ("Script", "ScriptCondition") or any(text.startswith("{_") for _, text in node.ports)
+    if node.span is not None and (computed or node.port(MEASURED)):
+        return node.span.text
     if node.id == "Sleep":
         return f"{vocabulary.word('wait')} {seconds(node.port('msec'))}"
     if node.id in ("AlwaysSuccess", "AlwaysFailure"):
         return vocabulary.word("nothing" if node.id == "AlwaysSuccess" else "fail")
     return leaf_words(node.id, dict(node.ports), vocabulary) or described(node)
+
+
+def _filled_name(node: Node) -> str:
+    """The name of a subtree with its arguments in place of its parameters."""
+    ports = dict(node.ports)
+    parts = name_form(node.port("ID"))
+    return " ".join(ports.get(part.name, f"{{{part.name}}}") if isinstance(part, Slot) else part for part in parts)
 
 
 def seconds(msec: str) -> str:
@@ -93,6 +106,8 @@ def value_of(text: str, kind: ValueType, vocabulary: Vocabulary) -> str:
 
     A text that could be taken for something else is quoted.
     """
+    if text.startswith("{") and kind.kind != "text":
+        return text
     if kind.kind == "quantity":
         return with_unit(text, kind.units[0].words[0])
     if kind.kind == "number":

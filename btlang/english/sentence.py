@@ -8,15 +8,29 @@ with a value behind it; brackets do the rest.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 
 from btlang.english.phrase import holds_definer, leaf_words, value_of
-from btlang.english.pieces import CLOSE, COMMA, LEAF, OPEN, WORD, Piece, Pieces, flat, last_of, mark, reads_on, text_of
+from btlang.english.pieces import (
+    CLOSE,
+    COLON,
+    COMMA,
+    LEAF,
+    OPEN,
+    WORD,
+    Piece,
+    Pieces,
+    flat,
+    last_of,
+    mark,
+    reads_on,
+    text_of,
+)
 from btlang.record import Record
 from btlang.tree import ast
 from btlang.tree.visit import fold
 from btlang.vocabulary.entry import Meaning
-from btlang.vocabulary.pattern import Form, Slot, forms
+from btlang.vocabulary.pattern import Form, Slot, forms, name_form
 from btlang.vocabulary.trie import TrieNode, add
 from btlang.vocabulary.values import format_number
 from btlang.vocabulary.vocabulary import Vocabulary
@@ -57,18 +71,25 @@ class Speaker:
     a chain in an equal chain, and a form that reaches to the right where something follows it.
     """
 
-    def __init__(self, vocabulary: Vocabulary, names: Iterable[str] = (), brackets: str = "needed") -> None:
+    def __init__(
+        self, vocabulary: Vocabulary, names: Iterable[str | ast.Definition] = (), brackets: str = "needed"
+    ) -> None:
         if brackets not in ("needed", "all"):
             raise ValueError(f'brackets are "needed" or "all": {brackets!r}')
-        self.vocabulary = vocabulary
+        self.vocabulary = vocabulary.with_references()
         self.all_brackets = brackets == "all"
         self.names: TrieNode = {}
         self._said: dict[int, tuple[ast.Ast, Said]] = {}  # with its node, whose id is then that of no other
         self._forms: dict[str, Form] = {}
         self._leaves: dict[tuple[str, tuple[tuple[str, str], ...]], str] = {}
         self._reads_on: dict[tuple[Piece, Piece], bool] = {}
-        for name in names:
-            add(self.names, tuple(name.split()), {}, Meaning("name"))
+        self._parameters: dict[str, dict[str, str]] = {}
+        for defined in names:
+            name, types = (
+                (defined.name, dict(defined.parameters)) if isinstance(defined, ast.Definition) else (defined, {})
+            )
+            self._parameters[name] = types
+            add(self.names, name_form(name), types, Meaning("name"))
 
     def say(self, node: ast.Ast) -> Said:
         """What is said of a node (any but a Mission)."""
@@ -121,14 +142,27 @@ class Speaker:
             self._leaves[key] = leaf_words(node_id, dict(arguments), self.vocabulary, self.names)
         return self._leaves[key]
 
+    def value(self, text: str, kind: str) -> str:
+        """A port text of a type as it is written."""
+        return value_of(text, self.vocabulary.types[kind], self.vocabulary)
+
+    def name(self, node: ast.Name) -> str:
+        """A defined name with its arguments."""
+        types, arguments = self._parameters.get(node.name, {}), dict(node.arguments)
+        parts = name_form(node.name)
+        return " ".join(
+            self.value(arguments[part.name], types.get(part.name, "text")) if isinstance(part, Slot) else part
+            for part in parts
+        )
+
     def duration(self, role: str, seconds: str) -> Piece:
         """The word of a role that has a duration."""
-        return self.word(role, duration=value_of(seconds, self.vocabulary.types["duration"], self.vocabulary))
+        return self.word(role, duration=self.value(seconds, "duration"))
 
-    def rounds(self, number: int) -> Piece:
+    def rounds(self, number: str) -> Piece:
         """`3 times`; one word for once and for a number without end."""
-        single = [word for word, rounds in self.vocabulary.counts.items() if rounds == number]
-        return Piece(single[0], WORD) if single and number in (-1, 1) else self.word("count", count=str(number))
+        single = [word for word, rounds in self.vocabulary.counts.items() if str(rounds) == number]
+        return Piece(single[0], WORD) if single and number in ("-1", "1") else self.word("count", count=number)
 
     # -- brackets
 
@@ -189,7 +223,7 @@ def speaker_of(mission: ast.Mission, vocabulary: Vocabulary, brackets: str = "ne
     """Says the parts of a mission, where its names and places are known."""
     if mission.facts:
         vocabulary = vocabulary.with_places(tuple(fact.name for fact in mission.facts))
-    return Speaker(vocabulary, (definition.name for definition in mission.definitions), brackets)
+    return Speaker(vocabulary, mission.definitions, brackets)
 
 
 def statements(body: ast.Ast | None) -> Iterator[tuple[ast.Ast, str]]:
@@ -204,12 +238,67 @@ def _leaf(text: str) -> Said:
     return Said((Piece(text, LEAF),), WHOLE)
 
 
+def _unread(text: str) -> Said:
+    """What no phrase of the vocabulary is looked for in."""
+    return Said((mark(text),), WHOLE)
+
+
 def _phrase(node: ast.Phrase, _parts: list[Said], speaker: Speaker) -> Said:
     return _leaf(speaker.phrase(node.entry.id, node.arguments) or node.span.text)
 
 
-def _name(node: ast.Name, _parts: list[Said], _speaker: Speaker) -> Said:
-    return _leaf(node.name)
+def _name(node: ast.Name, _parts: list[Said], speaker: Speaker) -> Said:
+    return _leaf(speaker.name(node))
+
+
+def _compared(node: ast.Compared, _parts: list[Said], speaker: Speaker) -> Said:
+    """The name is in braces: a bare one could be the start of a phrase."""
+    ports = {port: speaker.value(text, node.kind) for port, text in node.arguments}
+    form = next(
+        form
+        for form in speaker.vocabulary.comparing_forms(node.kind)
+        if {part.name for part in form if isinstance(part, Slot)} == ports.keys()
+    )
+    return _unread(" ".join((f"{{{node.key}}}", *filled(form, ports))))
+
+
+def _assign(node: ast.Assign, _parts: list[Said], speaker: Speaker) -> Said:
+    word, joint = speaker.vocabulary.word(node.operation), "set_to" if node.operation == "set" else "by"
+    value = speaker.value(node.text, node.kind)
+    if node.kind == "text" and value == node.text and not value.startswith("{"):
+        value = f'"{value}"'  # a bare word may also be a name or a number
+    return _unread(f"{word} {spelt(node.key)} {speaker.vocabulary.word(joint)} {value}")
+
+
+def _remember(node: ast.Remember, _parts: list[Said], speaker: Speaker) -> Said:
+    types = {slot.name: slot.type for slot in node.entry.slots}
+    ports = {name: speaker.value(text, types[name]) for name, text in node.arguments}
+    ways = (form for pattern in node.entry.quantity for form in reversed(forms(pattern)))
+    form = next(f for f in ways if {part.name for part in f if isinstance(part, Slot)} == ports.keys())
+    quantity = " ".join(filled(form, ports))
+    joint = speaker.vocabulary.word("remember_as")
+    return _unread(f"{speaker.vocabulary.word('remember')} {quantity} {joint} {spelt(node.key)}")
+
+
+def _for_each(node: ast.ForEach, parts: list[Said], speaker: Speaker) -> Said:
+    return speaker.before((*each_head(node, speaker), mark(COLON)), parts[0])
+
+
+def each_head(node: ast.ForEach, speaker: Speaker) -> Iterator[Piece]:
+    """`for each place in lab, dock`: marks, as no phrase is looked for in it."""
+    word = speaker.vocabulary.word
+    values = ", ".join(speaker.value(text, node.kind) for text in node.values)
+    yield mark(f"{word('each')} {spelt(node.key)} {word('each_in')} {values}")
+
+
+def filled(form: Form, values: Mapping[str, str]) -> Iterator[str]:
+    """The words of a form with values in its slots."""
+    return (values[part.name] if isinstance(part, Slot) else part for part in form)
+
+
+def spelt(key: str) -> str:
+    """The key of a value as words."""
+    return key.replace("_", " ")
 
 
 def _chain(node: ast.Chain, parts: list[Said], speaker: Speaker) -> Said:
@@ -324,6 +413,10 @@ def _fact(node: ast.Fact, _parts: list[Said], speaker: Speaker) -> Said:
 SAYS: dict[type[ast.Ast], Callable[[Any, list[Said], Speaker], Said]] = {
     ast.Phrase: _phrase,
     ast.Name: _name,
+    ast.Compared: _compared,
+    ast.Assign: _assign,
+    ast.Remember: _remember,
+    ast.ForEach: _for_each,
     ast.Chain: _chain,
     ast.Not: _not,
     ast.If: _branching("if", "unless"),

@@ -4,22 +4,27 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from btlang.frontends.remembering import Assigned, Remembered
 from btlang.frontends.token import Listed, Token
 from btlang.text.source import Source, Span
 from btlang.tree.ast import (
+    Assign,
     Ast,
     Chain,
     Check,
+    Compared,
     Delay,
     Every,
     Fail,
     For,
+    ForEach,
     If,
     Name,
     Not,
     Nothing,
     Phrase,
     Provided,
+    Remember,
     Repeat,
     Retry,
     Try,
@@ -29,6 +34,7 @@ from btlang.tree.ast import (
     While,
     Within,
 )
+from btlang.vocabulary.entry import Entry
 
 CHAINS = {
     "SEMI": "sequence", "BLOCK_AND": "parallel", "BLOCK_OR": "fallback",
@@ -51,21 +57,23 @@ class Builder:
     def leaf(self, token: Token) -> Ast:
         """COMMAND or CONDITION."""
         span, value = Span(self.source, token.start, token.end), token.value
-        if type(value) is str:
-            return Name(value, span)
-        if type(value) is Listed:
-            is_condition = token.kind == "CONDITION"
-            operators = ("any", "all") if is_condition else ("fallback", "sequence")
-            items = tuple(Phrase(value.entry, arguments, span) for arguments in value.arguments)
-            return Chain(operators[value.joiner != "or"], items, True, span)
+        if type(value) is not tuple:
+            return self._stated(value, token.kind == "CONDITION", span)
         kind, amount = value
+        if type(kind) is Entry:
+            return _called(kind, amount, span)
         if kind == "wait":
             return Wait(amount, span)
-        if kind == "nothing":
-            return Nothing(span)
-        if kind == "fail":
-            return Fail(span)
-        return Phrase(kind, amount, span)
+        return Nothing(span) if kind == "nothing" else Fail(span)
+
+    def _stated(self, value: Listed | Assigned | Remembered, is_condition: bool, span: Span) -> Ast:
+        if isinstance(value, Assigned):
+            return Assign(value.key, value.operation, value.kind, value.text, span)
+        if isinstance(value, Remembered):
+            return Remember(value.key, value.entry, value.arguments, span)
+        operators = ("any", "all") if is_condition else ("fallback", "sequence")
+        items = tuple(_called(value.entry, arguments, span) for arguments in value.arguments)
+        return Chain(operators[value.joiner != "or"], items, True, span)
 
     def chain(self, operator: str, items: Sequence[Ast], start: int, end: int) -> Ast:
         """Operands of one kind of connective, flat: equal chains without brackets melt into it."""
@@ -97,6 +105,8 @@ class Builder:
         """LOOP body [ELSE otherwise] END; `tried_end` is where the part before `otherwise` ends."""
         kind, amount = opener.value
         span = Span(self.source, opener.start, end)
+        if kind == "each":
+            return ForEach(amount.key, amount.kind, amount.values, body, span)
         if kind == "try":
             return Try(body, otherwise, span)
         if otherwise is None:
@@ -105,9 +115,9 @@ class Builder:
 
     def _counted(self, kind: str, amount: str | None, body: Ast, span: Span) -> Ast:
         if kind in ("repeat", "count"):
-            return Repeat(int(amount or -1), body, span)
+            return Repeat(amount or "-1", body, span)
         if kind == "retry":
-            return Retry(int(amount or -1), body, span)
+            return Retry(amount or "-1", body, span)
         if kind == "if_possible":
             return Try(body, None, span)
         timed = {"for": For, "within": Within, "every": Every, "delay": Delay}[kind]
@@ -128,3 +138,11 @@ class Builder:
         """check, wait until."""
         span = Span(self.source, opener.start, end)
         return Check(condition, span) if opener.value == "check" else WaitUntil(condition, span)
+
+
+def _called(entry: Entry, arguments: tuple[tuple[str, str], ...], span: Span) -> Ast:
+    if entry.sort == "name":
+        return Name(entry.id, arguments, span)
+    if entry.sort == "value":
+        return Compared(entry.id, entry.measures, arguments, span)
+    return Phrase(entry, arguments, span)

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterator
+from bisect import bisect_right
+from collections.abc import Container, Iterator, Mapping
+from itertools import takewhile
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.record import Record
 from btlang.text.source import Span
 from btlang.text.words import END_OF_STATEMENT, Words
-from btlang.vocabulary.entry import Meaning
+from btlang.vocabulary.entry import Entry, Meaning, SlotSpec
+from btlang.vocabulary.pattern import name_form
 from btlang.vocabulary.trie import TrieNode, add, longest
+from btlang.vocabulary.values import key_of
 from btlang.vocabulary.vocabulary import DEFINING, Vocabulary
 
 # A line that starts with one of these compares; it defines nothing.
@@ -18,26 +22,38 @@ _NOT_IN_A_NAME = frozenset(("if", "unless", "while", "until", "otherwise", "then
 
 
 class Header(Record):
-    """The head of a definition: its name, the words of it, and the word at which the body starts."""
+    """The head of a definition: its name, the words of it, and the words `body` to `last` (exclusive) of its body.
+
+    The name is a pattern: `greet {someone}`. `parameters` are its slots, each with the words as they were written.
+    """
 
     name: str
     span: Span
     body: int
+    last: int
+    parameters: tuple[tuple[str, tuple[str, ...]], ...] = ()
 
 
 class Definitions:
-    """The definitions of a text: `headers` by the word at which they start, `trie` of their names."""
+    """The definitions of a text: `headers` by the word at which they start, `trie` of their names.
+
+    A name with parameters comes into the trie when their types are known (see variables.py).
+    """
 
     def __init__(self) -> None:
         self.headers: dict[int, Header] = {}
         self.trie: TrieNode = {}
+        self.types: dict[int, tuple[tuple[str, str], ...]] = {}
+        """The parameters with their types of those in the trie, by the first word of the body."""
         self.problems: list[Diagnostic] = []
 
 
-def find_definitions(text: Words, vocabulary: Vocabulary, facts: Container[int] = ()) -> Definitions:
+def find_definitions(
+    text: Words, vocabulary: Vocabulary, facts: Container[int] = (), variables: Container[tuple[str, ...]] = ()
+) -> Definitions:
     """Every definition of the text. A name defined twice is listed twice; the later one counts.
 
-    `facts` are the words at which facts start, which define no command.
+    `facts` are the words at which facts start, which define no command; `variables` are words that are compared.
     """
     found = Definitions()
     defining = {word for role in DEFINING for word in vocabulary.roles[role]}
@@ -47,26 +63,31 @@ def find_definitions(text: Words, vocabulary: Vocabulary, facts: Container[int] 
     for indent, first, last in statements(text):
         if first in facts or defining.isdisjoint(text.words[first:last]):
             continue
-        header = _header(text, first, last, vocabulary, found.problems)
+        header = _header(text, first, last, vocabulary, variables, found.problems)
         if header is None:
             continue
         if indent > margin:
             found.problems.append(diagnostic("BT033", header.span))
         found.headers[first] = header
-        if header.name:
-            _add_name(header, found, vocabulary)
+        if header.name and not header.parameters:
+            add_name(header, found, vocabulary, {})
     return found
 
 
-def _add_name(header: Header, found: Definitions, vocabulary: Vocabulary) -> None:
-    words = tuple(header.name.split())
-    before = add(found.trie, words, {}, Meaning("name", value=0))
-    if before is not None:
+def add_name(header: Header, found: Definitions, vocabulary: Vocabulary, types: Mapping[str, str]) -> None:
+    """Makes a name known, with the types of its parameters (BT017, BT018)."""
+    words = name_form(header.name)
+    found.types[header.body] = tuple(types.items())
+    slots = tuple(SlotSpec(key, kind) for key, kind in types.items())
+    if (
+        add(found.trie, words, types, Meaning("name", Entry("name", header.name, (header.name,), slots=slots)))
+        is not None
+    ):
         found.problems.append(diagnostic("BT017", header.span, name=header.name))
         return
     node: TrieNode | None = vocabulary.trie
-    for word in words:
-        node = node.get(word) if node is not None else None
+    for part in words:
+        node = node.get(part) if node is not None and isinstance(part, str) else None
     if node is not None and "\0" in node:
         found.problems.append(diagnostic("BT018", header.span, name=header.name))
 
@@ -82,7 +103,29 @@ def statements(text: Words) -> Iterator[tuple[int, int, int]]:
         yield line.indent, first, line.last
 
 
-def _header(text: Words, first: int, last: int, vocabulary: Vocabulary, problems: list[Diagnostic]) -> Header | None:
+def reach(text: Words, at: int) -> int:
+    """The word behind the statement in which a word stands, with the block below it; a bracket ends one too."""
+    number = bisect_right(text.lines, at, key=lambda line: line.first) - 1
+    line, depth = text.lines[number], 0
+    while at < line.last:
+        depth += (text.words[at] == "(") - (text.words[at] == ")")
+        if depth < 0 or (text.words[at] == END_OF_STATEMENT and depth == 0):
+            return at
+        at += 1
+    if text.words[line.last - 1] == ":":
+        below = takewhile(lambda other: other.indent > line.indent, text.lines[number + 1 :])
+        at = max((other.last for other in below), default=at)
+    return at
+
+
+def _header(
+    text: Words,
+    first: int,
+    last: int,
+    vocabulary: Vocabulary,
+    variables: Container[tuple[str, ...]],
+    problems: list[Diagnostic],
+) -> Header | None:
     at = _defining_word(text, first, last, vocabulary)
     if at is None:
         return None
@@ -94,13 +137,43 @@ def _header(text: Words, first: int, last: int, vocabulary: Vocabulary, problems
         start = polite.last
     if start == at:
         problems.append(diagnostic("BT016", text.span(at, at + 1), word=text.words[at]))
-        return Header("", text.span(at, at + 1), at + 1)
+        return Header("", text.span(at, at + 1), at + 1, at + 1)
+    if tuple(text.words[start:at]) in variables:
+        return None
     joined = _joining_word(text, start, at, vocabulary)
     if joined is not None and _starts_with_a_phrase(text, start, joined, vocabulary):
         return None  # `charge until the battery is green` is a command that says something unknown
     if joined is not None:
         problems.append(diagnostic("BT015", joined, word=joined.text))
-    return Header(" ".join(text.words[start:at]), text.span(start, at), at + 1)
+        return Header(" ".join(text.words[start:at]), text.span(start, at), at + 1, reach(text, at))
+    parts, parameters = _pattern(text.words[start:at])
+    return Header(" ".join(parts), text.span(start, at), at + 1, reach(text, at), parameters)
+
+
+def _pattern(words: list[str]) -> tuple[list[str], tuple[tuple[str, tuple[str, ...]], ...]]:
+    """The words of a name with its parameters in braces, and these."""
+    parts: list[str] = []
+    parameters: list[tuple[str, tuple[str, ...]]] = []
+    at = 0
+    while at < len(words):
+        if words[at] == "{":
+            end = words.index("}", at)
+            own = tuple(words[at + 1 : end])
+            parameters.append((key_of(own), own))
+            parts.append(f"{{{key_of(own)}}}")
+            at = end
+        else:
+            parts.append(words[at])
+        at += 1
+    return parts, tuple(parameters)
+
+
+def _slot_end(words: list[str], at: int, last: int) -> int | None:
+    """The word behind a parameter in braces that starts at a word."""
+    end = at + 1
+    while end < last and words[end][0].isalpha():
+        end += 1
+    return end + 1 if words[at] == "{" and end > at + 1 and end < last and words[end] == "}" else None
 
 
 def _defining_word(text: Words, first: int, last: int, vocabulary: Vocabulary) -> int | None:
@@ -142,6 +215,10 @@ def _starts_with_a_phrase(text: Words, start: int, joined: Span, vocabulary: Voc
 def _joining_word(text: Words, start: int, last: int, vocabulary: Vocabulary) -> Span | None:
     at = start
     while at < last:
+        slot_end = _slot_end(text.words, at, last)
+        if slot_end is not None:
+            at = slot_end
+            continue
         match = longest(vocabulary.trie, text, at, vocabulary.values)
         role = match.meaning.role if match else ""
         if not text.words[at][0].isalnum() or role in _NOT_IN_A_NAME:

@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+from bisect import bisect_right
 from collections.abc import Iterator
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.definitions import Definitions, find_definitions
 from btlang.frontends.facts import find_facts
+from btlang.frontends.remembering import read_statement
 from btlang.frontends.token import Listed, Token
-from btlang.frontends.unknown import explain_unknown
+from btlang.frontends.unknown import explain_unknown, misread_head, unknown_value
+from btlang.frontends.variables import JOINTS, Head, Variables, find_heads, span_of
 from btlang.text.source import Source, Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, split
 from btlang.vocabulary.entry import Entry
-from btlang.vocabulary.trie import Match, longest
+from btlang.vocabulary.references import keys_in, renamed
+from btlang.vocabulary.trie import SLOTS, Match, SlotValue, longest
+from btlang.vocabulary.values import key_of
 from btlang.vocabulary.vocabulary import Vocabulary
 
 _MARKS = {",": "comma", ";": "semi", ":": "colon", "(": "open", ")": "close"}
@@ -38,8 +43,12 @@ class Lexer:
         self._fact_ends = facts.ends
         if self.facts:
             self.vocabulary = vocabulary.with_places(tuple(fact.name for fact in self.facts))
-        self.definitions: Definitions = find_definitions(self.text, self.vocabulary, facts.ends)
-        self.problems += self.definitions.problems
+        self._heads = find_heads(self.text, self.vocabulary)
+        named = {words for head in self._heads.values() for words in (head.words, ("{", *head.words, "}"))}
+        self.definitions: Definitions = find_definitions(self.text, self.vocabulary, facts.ends, named)
+        self._variables = Variables(self.text, self.vocabulary, self._heads, self.definitions)
+        self._bounds = [*self._variables.bounds, len(self.text.words)]
+        self.problems += self.definitions.problems + self._variables.problems
         self.values = self.vocabulary.values.for_reading()
         self.tokens: list[Token] = []
         self._lines()
@@ -47,7 +56,7 @@ class Lexer:
         """The defined names that stand for conditions."""
         for token in self.tokens:
             if token.kind == "name":
-                token.kind = "condition" if token.value in self.conditions else "command"
+                token.kind = "condition" if called(token).id in self.conditions else "command"
 
     def _lines(self) -> None:
         """Line ends, indents and dedents around the tokens of each line, as in Python."""
@@ -84,9 +93,15 @@ class Lexer:
     def _line(self, at: int, last: int) -> None:
         text, names, trie, values = self.text, self.definitions.trie, self.vocabulary.trie, self.values
         words, starts, ends, tokens = text.words, text.starts, text.ends, self.tokens
-        headers = self.definitions.headers
+        headers, heads = self.definitions.headers, self._heads
         while at < last:
             word = words[at]
+            if at >= self._bounds[0]:
+                self._bounds = self._bounds[bisect_right(self._bounds, at) :]
+                values.set_known(self._variables.at(at))
+            if at in heads:
+                at = self._statement(heads[at], at)
+                continue
             if at in self._fact_ends:
                 at = self._fact_ends[at]
                 continue
@@ -102,16 +117,15 @@ class Lexer:
                 at += 1
                 continue
             match = longest(trie, text, at, values, names)
-            if names and word in names:
+            if names and (word in names or SLOTS in names):
                 named = longest(names, text, at, values)
                 if named is not None and (match is None or named.last >= match.last):
-                    name = " ".join(words[at : named.last])
-                    tokens.append(Token("name", name, starts[at], ends[named.last - 1]))
-                    at = named.last
-                    continue
-            if match is None:
+                    match = named
+            if match is None or match.meaning.role in JOINTS:
                 end = self._unknown_end(at, last)
-                if self._explain:
+                if self._explain and match is not None:
+                    self.problems.append(misread_head(text, at, match.meaning.role, self.vocabulary))
+                elif self._explain:
                     self.problems.append(
                         explain_unknown(text, at, end, self.vocabulary, values, self.definitions, tokens)
                     )
@@ -151,7 +165,9 @@ class Lexer:
 
     def _called(self, entry: Entry, match: Match, at: int) -> tuple[Entry, tuple[tuple[str, str], ...]] | Listed:
         """The entry with its arguments, or with several of them where one slot holds a list."""
-        arguments = tuple((value.name, value.text) for value in match.values)
+        if entry.sort == "value" and not (self.values.known and entry.id in self.values.known):
+            self.problems.append(unknown_value(self.text.span(at, match.last), entry.id, self.values.known or ()))
+        arguments = tuple((value.name, self._port_text(value)) for value in match.values)
         lists = [place for place, value in enumerate(match.values) if value.more]
         if not lists:
             return entry, arguments
@@ -164,6 +180,30 @@ class Lexer:
         texts = (value.text, *value.more)
         every = tuple((*arguments[:place], (value.name, text), *arguments[place + 1 :]) for text in texts)
         return Listed(entry, every, value.joiner)
+
+    def _port_text(self, value: SlotValue) -> str:
+        """The text of a value; the names in braces in it become keys (BT043 where nothing has such a name)."""
+        text = value.text
+        if "{" not in text or self.values.types[value.type].kind != "text":
+            return text
+        text = renamed(text, lambda name: key_of(w for w in name.lower().split() if w not in self.vocabulary.articles))
+        known = self.values.known or {}
+        for key in keys_in(text):
+            if key not in known:
+                self.problems.append(unknown_value(self.text.span(value.first, value.last), key, known))
+        return text
+
+    def _statement(self, head: Head, at: int) -> int:
+        """A statement about a value of the mission. Returns where to go on."""
+        read = read_statement(head, self.text, at, self.vocabulary, self.values, self._port_text)
+        if read is None:
+            span = span_of(self.text, at)
+            if self._explain:
+                self.problems.append(misread_head(self.text, at, head.role, self.vocabulary))
+            self.tokens.append(Token("unknown", None, span.start, span.end))
+            return bisect_right(self.text.starts, span.end - 1)
+        self.tokens.append(read[0])
+        return read[1]
 
     def _unknown_end(self, at: int, last: int) -> int:
         """Unknown words reach to the next mark or connective, or to a phrase that is more than one word."""
@@ -205,6 +245,12 @@ class Lexer:
         return conditions
 
 
+def called(token: Token) -> Entry:
+    """The entry of a token that is a phrase or a name."""
+    entry: Entry = token.value.entry if type(token.value) is Listed else token.value[0]
+    return entry
+
+
 def _bodies(tokens: list[Token]) -> Iterator[tuple[str, list[Token]]]:
     """Each definition's name and the tokens of its body, as far as the line or block goes."""
     for at, token in enumerate(tokens):
@@ -227,4 +273,4 @@ def _names_in_condition(body: list[Token]) -> set[str] | None:
     """The names that a body needs to be conditions in order to be one itself; None where it cannot be one."""
     if not body or not all(token.kind in _IN_CONDITIONS or token.kind == "name" for token in body):
         return None
-    return {token.value for token in body if token.kind == "name"}
+    return {called(token).id for token in body if token.kind == "name"}

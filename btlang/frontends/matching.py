@@ -366,7 +366,7 @@ _OPERAND: dict[str, Callable[[Matcher, Token], None]] = {
     **dict.fromkeys(("if", "unless", "while", "until"), Matcher._form),
     **dict.fromkeys(("check", "wait_until"), Matcher._test),
     **dict.fromkeys(("in_parallel", "in_order"), Matcher._joined_block),
-    **dict.fromkeys(("repeat", "try", "retry", "every", "delay"), Matcher._loop),
+    **dict.fromkeys(("repeat", "try", "retry", "every", "delay", "each"), Matcher._loop),
     "whenever": Matcher._whenever,
     "not": Matcher._not,
     "open": Matcher._open,

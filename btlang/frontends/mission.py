@@ -49,7 +49,8 @@ def read_mission(source: Source, vocabulary: Vocabulary, parser: str = DEFAULT_P
         inner = parse(unit.tokens, build)
         span = Span(source, unit.header.span.start, inner.span.end)
         definitions.pop(unit.header.name, None)  # a later definition replaces an earlier one
-        definitions[unit.header.name] = Definition(unit.header.name, inner, unit.header.span, span)
+        name, types = unit.header.name, lexer.definitions.types[unit.header.body]
+        definitions[name] = Definition(name, types, inner, unit.header.span, span)
     facts = {fact.name: fact for fact in lexer.facts}  # a later fact replaces an earlier one
     mission = Mission(body, tuple(definitions.values()), Span(source, 0, len(source.text)), tuple(facts.values()))
     return Reading(mission, tuple(problems))

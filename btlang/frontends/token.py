@@ -12,7 +12,7 @@ grouped tokens, which need no look-ahead any more:
     FORM cond DO body [ELSE body] END      if, unless, while, until before a command
     AFTER_FORM cond [ELSE body] END        the same after one command, and `provided that`
     WIDE_FORM cond END                     the same after a comma at the end: takes the whole statement
-    LOOP body [STOP cond] END              repeat, every, after 5 s, and try: LOOP body [ELSE body] END
+    LOOP body [STOP cond] END              repeat, every, after 5 s, for each, and try: LOOP body [ELSE body] END
     TEST cond END                          check, wait until
 """
 

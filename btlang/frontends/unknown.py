@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from bisect import bisect_left
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from functools import lru_cache
 from itertools import takewhile
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.definitions import Definitions
 from btlang.frontends.token import Token
+from btlang.frontends.variables import span_of
 from btlang.record import Record
 from btlang.text.source import Span
 from btlang.text.spelling import nearest, nearest_start
@@ -50,6 +51,29 @@ def explain_unknown(
     if number is not None or text.words[at][0] == '"':
         return diagnostic("BT019", text.span(at, end), example='say "hello"')
     return _unknown_phrase(text, at, end, vocabulary, definitions, before)
+
+
+def misread_head(text: Words, at: int, role: str, vocabulary: Vocabulary) -> Diagnostic:
+    """BT039 for a statement about a value of the mission that is not put together as one."""
+    word, values = vocabulary.word, vocabulary.values
+    places = values.names("place")
+    examples = {
+        "set": f"{word('set')} counter {word('set_to')} 3",
+        "increase": f"{word('increase')} counter {word('by')} 1",
+        "decrease": f"{word('decrease')} counter {word('by')} 1",
+        "remember": f"{word('remember')} 3 {word('remember_as')} counter",
+        "each": f"{word('each')} place {word('each_in')} {', '.join(places[:2]) or 'a, b'}: ...",
+    }
+    span = span_of(text, at)
+    return diagnostic("BT039", span, words=span.text, example=examples[role])
+
+
+def unknown_value(span: Span, key: str, known: Iterable[str]) -> Diagnostic:
+    """BT043: a name in braces that no value has."""
+    name, names = key.replace("_", " "), [other.replace("_", " ") for other in known]
+    near = nearest(name, names)
+    advice = _near_names(near, names) if names else "Nothing has a name in this mission yet."
+    return diagnostic("BT043", span, name=name, help=advice)
 
 
 class _Misfit(Record):

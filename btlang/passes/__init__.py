@@ -8,6 +8,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.passes.lower import lower
 from btlang.passes.names import order_of_use
 from btlang.passes.resources import check_resources
+from btlang.passes.scope import Scope
 from btlang.passes.size import check_size
 from btlang.passes.types import check_types
 from btlang.tree.ast import Mission
@@ -27,17 +28,18 @@ def compile_mission(mission: Mission, vocabulary: Vocabulary, *, needs_command: 
     ordered, problems = order_of_use(mission)
     if problems:
         raise MissionError(problems)
-    skipping: set[str] = set()
-    subtrees: list[tuple[str, Node]] = []
+    scope = Scope(definition.name for definition in ordered)
+    subtrees = scope.bodies
     for definition in ordered:
-        lowered = lower(definition.body, skipping)
+        lowered = lower(definition.body, scope)
         subtrees.append((definition.name, lowered.node))
+        scope.free[definition.name] = scope.needs(definition.body, dict(definition.parameters))
         if lowered.can_skip:
-            skipping.add(definition.name)
+            scope.skipping.add(definition.name)
     if mission.body is None and needs_command:
         example = mission.definitions[-1].name if mission.definitions else "move forward 1 m"
         raise MissionError([diagnostic("BT005", mission.span, example=example)])
-    root = Node("AlwaysSuccess") if mission.body is None else lower(mission.body, skipping).node
+    root = Node("AlwaysSuccess") if mission.body is None else lower(mission.body, scope).node
     tree = Tree(root, tuple(subtrees))
     problems = [problem for check in PASSES for problem in check(tree, vocabulary)]
     if problems:

@@ -4,16 +4,22 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
+from btlang.passes.scope import Scope
+from btlang.passes.scripts import behind, concatenated, literal, prepared, script
 from btlang.record import Record
 from btlang.text.source import Span
 from btlang.tree import ast
 from btlang.tree.node import Node
 from btlang.tree.visit import fold
+from btlang.vocabulary.entry import MEASURED
+from btlang.vocabulary.references import keys_in
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+_OPERATORS = {"below": "<", "above": ">", "at_least": ">=", "at_most": "<=", "equal": "=="}
+_ASSIGNS = {"set": ":=", "increase": "+=", "decrease": "-="}
 _CHAINS = {"sequence": "Sequence", "all": "Sequence", "fallback": "Fallback", "any": "Fallback", "parallel": "Parallel"}
 
 
@@ -24,13 +30,11 @@ class Lowered(Record):
     can_skip: bool = False
 
 
-def lower(root: ast.Ast, skipping: set[str]) -> Lowered:
-    """The tree of a command or condition. `skipping` are the defined names whose trees can end SKIPPED."""
+def lower(root: ast.Ast, scope: Scope) -> Lowered:
+    """The tree of a command or condition."""
 
     def combine(item: ast.Ast, done: list[Lowered]) -> Lowered:
-        if isinstance(item, ast.Name):
-            return Lowered(Node("SubTree", (), (("ID", item.name),), span=item.span), item.name in skipping)
-        return _LOWER[type(item)](item, done)
+        return _LOWER[type(item)](item, done, scope)
 
     return fold(root, ast.parts, combine)
 
@@ -52,25 +56,67 @@ def _negated(negated: bool, condition: Node) -> Node:
     return Node("Inverter", (condition,), span=condition.span) if negated else condition
 
 
-def _phrase(item: ast.Phrase, _done: list[Lowered]) -> Lowered:
+def _phrase(item: ast.Phrase, _done: list[Lowered], scope: Scope) -> Lowered:
     """A value that is the slot's default says nothing."""
     defaults = {slot.name: slot.default for slot in item.entry.slots}
     order = list(defaults)
     spoken = [(name, text) for name, text in item.arguments if defaults.get(name) != text]
-    ports = tuple(sorted(spoken, key=lambda port: order.index(port[0])))
-    return Lowered(Node(item.entry.id, (), ports, span=item.span))
+    scripts, ports = prepared(sorted(spoken, key=lambda port: order.index(port[0])), scope)
+    return Lowered(behind(scripts, Node(item.entry.id, (), ports, span=item.span)))
 
 
-def _chain(item: ast.Chain, done: list[Lowered]) -> Lowered:
+def _name(item: ast.Name, _done: list[Lowered], scope: Scope) -> Lowered:
+    """A subtree sees its arguments, and what it needs of the mission's values."""
+    scripts, ports = prepared(item.arguments, scope)
+    shared = tuple((key, f"{{{key}}}") for key in scope.free.get(item.name, ()))
+    node = Node("SubTree", (), (("ID", item.name), *ports, *shared), span=item.span)
+    return Lowered(behind(scripts, node), item.name in scope.skipping and not scripts)
+
+
+def _compared(item: ast.Compared, _done: list[Lowered], _scope: Scope) -> Lowered:
+    code = " && ".join(f"{item.key} {_OPERATORS[way]} {literal(text, item.kind)}" for way, text in item.arguments)
+    return Lowered(Node("ScriptCondition", (), (("code", code),), span=item.span))
+
+
+def _assign(item: ast.Assign, _done: list[Lowered], scope: Scope) -> Lowered:
+    """Texts are put together as for a port."""
+    operator = _ASSIGNS[item.operation]
+    if item.kind != "text":
+        code = f"{item.key} {operator} {literal(item.text, item.kind)}"
+        return Lowered(Node("Script", (), (("code", code),), span=item.span))
+    scripts, value = concatenated(item.text, scope)
+    return Lowered(behind(scripts, Node("Script", (), (("code", f"{item.key} {operator} {value}"),), span=item.span)))
+
+
+def _remember(item: ast.Remember, _done: list[Lowered], scope: Scope) -> Lowered:
+    scripts, ports = prepared(item.arguments, scope)
+    node = Node(item.entry.id, (), (*ports, (MEASURED, f"{{{item.key}}}")), span=item.span)
+    return Lowered(behind(scripts, node))
+
+
+def _for_each(item: ast.ForEach, done: list[Lowered], scope: Scope) -> Lowered:
+    """One instance of the body for each value."""
+    name = scope.new_name(item.key)
+    scope.bodies.append((name, done[0].node))
+    shared = tuple((key, f"{{{key}}}") for key in scope.needs(item.body, [item.key]))
+    rounds = []
+    for text in item.values:
+        scripts, ports = prepared([(item.key, text)], scope)
+        rounds.append(behind(scripts, Node("SubTree", (), (("ID", name), *ports, *shared), span=item.span)))
+    node = rounds[0] if len(rounds) == 1 else _node("Sequence", rounds, item.span)
+    return Lowered(node, done[0].can_skip)
+
+
+def _chain(item: ast.Chain, done: list[Lowered], scope: Scope) -> Lowered:
     if item.operator == "sequence" and any(isinstance(part, ast.Whenever) for part in item.items):
-        return _ruled(item, done)
+        return _ruled(item, done, scope)
     if item.operator == "parallel":
         return Lowered(_node("Parallel", [_round(part) for part in done], item.span))
     children = [part.node for part in done]
     return Lowered(_node(_CHAINS[item.operator], children, item.span), all(part.can_skip for part in done))
 
 
-def _ruled(item: ast.Chain, done: list[Lowered]) -> Lowered:
+def _ruled(item: ast.Chain, done: list[Lowered], _scope: Scope) -> Lowered:
     """Standing rules round the other commands; the first one is the outermost, so that it wins."""
     rules = [part for part, own in zip(done, item.items, strict=True) if isinstance(own, ast.Whenever)]
     others = [part for part, own in zip(done, item.items, strict=True) if not isinstance(own, ast.Whenever)]
@@ -87,17 +133,17 @@ def _ruled(item: ast.Chain, done: list[Lowered]) -> Lowered:
     return work
 
 
-def _whenever(item: ast.Whenever, done: list[Lowered]) -> Lowered:
+def _whenever(item: ast.Whenever, done: list[Lowered], _scope: Scope) -> Lowered:
     """A rule alone has nothing to interrupt."""
     nothing = _node("AlwaysSuccess", (), item.span)
     return Lowered(_node("Whenever", (done[0].node, done[1].node, nothing), item.span))
 
 
-def _not(item: ast.Not, done: list[Lowered]) -> Lowered:
+def _not(item: ast.Not, done: list[Lowered], _scope: Scope) -> Lowered:
     return Lowered(_node("Inverter", [done[0].node], item.span))
 
 
-def _if(item: ast.If, done: list[Lowered]) -> Lowered:
+def _if(item: ast.If, done: list[Lowered], _scope: Scope) -> Lowered:
     condition = _negated(item.negated, done[0].node)
     if item.otherwise is None:
         skipped = _node("AlwaysSuccess", (), item.span, _skipIf="true")
@@ -107,26 +153,26 @@ def _if(item: ast.If, done: list[Lowered]) -> Lowered:
     return Lowered(_node("IfThenElse", children, item.span), any(branch.can_skip for branch in branches))
 
 
-def _while(item: ast.While, done: list[Lowered]) -> Lowered:
+def _while(item: ast.While, done: list[Lowered], _scope: Scope) -> Lowered:
     condition = _negated(item.negated, done[0].node)
     again = _node("Repeat", [_round(done[1])], item.span, num_cycles="-1")
     otherwise = done[2] if item.otherwise is not None else Lowered(_node("AlwaysSuccess", (), item.span))
     return Lowered(_node("WhileDoElse", (condition, again, otherwise.node), item.span), otherwise.can_skip)
 
 
-def _provided(item: ast.Provided, done: list[Lowered]) -> Lowered:
+def _provided(item: ast.Provided, done: list[Lowered], _scope: Scope) -> Lowered:
     return Lowered(_node("ReactiveSequence", [part.node for part in done], item.span))
 
 
-def _repeat(item: ast.Repeat, done: list[Lowered]) -> Lowered:
-    return Lowered(_node("Repeat", [_round(done[0])], item.span, num_cycles=str(item.rounds)))
+def _repeat(item: ast.Repeat, done: list[Lowered], _scope: Scope) -> Lowered:
+    return Lowered(_node("Repeat", [_round(done[0])], item.span, num_cycles=item.rounds))
 
 
-def _retry(item: ast.Retry, done: list[Lowered]) -> Lowered:
-    return Lowered(_node("RetryUntilSuccessful", [_round(done[0])], item.span, num_attempts=str(item.attempts)))
+def _retry(item: ast.Retry, done: list[Lowered], _scope: Scope) -> Lowered:
+    return Lowered(_node("RetryUntilSuccessful", [_round(done[0])], item.span, num_attempts=item.attempts))
 
 
-def _try(item: ast.Try, done: list[Lowered]) -> Lowered:
+def _try(item: ast.Try, done: list[Lowered], _scope: Scope) -> Lowered:
     if item.otherwise is None:
         return Lowered(_node("ForceSuccess", [done[0].node], item.span), done[0].can_skip)
     tried, otherwise = done[0].node, [done[1].node]
@@ -135,58 +181,72 @@ def _try(item: ast.Try, done: list[Lowered]) -> Lowered:
     return Lowered(_node("Fallback", [tried, *otherwise], item.span), all(part.can_skip for part in done))
 
 
-def msec(seconds: str) -> str:
-    """Seconds as the whole milliseconds of a port."""
-    return str(round(float(seconds) * 1000))
+def _timed(seconds: str, scope: Scope) -> tuple[list[Node], str]:
+    """A time as whole milliseconds of a port; one that is only known when it runs is computed before."""
+    [key] = list(keys_in(seconds)) or [""]
+    if not key:
+        return [], str(round(float(seconds) * 1000))
+    made = scope.new_key()
+    return [script(f"{made} := {key} * 1000")], f"{{{made}}}"
 
 
-def _timer(seconds: str) -> Node:
+def _timer(milliseconds: str) -> Node:
     """The Sleep inside `for` and `every`: no sentence of its own, so that no log tells of it as a command."""
-    return Node("Sleep", (), (("msec", msec(seconds)),))
+    return Node("Sleep", (), (("msec", milliseconds),))
 
 
-def _within(item: ast.Within, done: list[Lowered]) -> Lowered:
-    return Lowered(_node("Timeout", [_round(done[0])], item.span, msec=msec(item.seconds)))
+def _within(item: ast.Within, done: list[Lowered], scope: Scope) -> Lowered:
+    scripts, limit = _timed(item.seconds, scope)
+    return Lowered(behind(scripts, _node("Timeout", [_round(done[0])], item.span, msec=limit)))
 
 
-def _for(item: ast.For, done: list[Lowered]) -> Lowered:
-    sleep = _timer(item.seconds)
+def _for(item: ast.For, done: list[Lowered], scope: Scope) -> Lowered:
+    scripts, time = _timed(item.seconds, scope)
     again = _node("Repeat", [_round(done[0])], item.span, num_cycles="-1")
-    return Lowered(_node("Parallel", (sleep, again), item.span, success_count="1", failure_count="1"))
+    together = _node("Parallel", (_timer(time), again), item.span, success_count="1", failure_count="1")
+    return Lowered(behind(scripts, together))
 
 
-def _every(item: ast.Every, done: list[Lowered]) -> Lowered:
-    sleep = _timer(item.seconds)
-    together = _node("Parallel", (_round(done[0]), sleep), item.span)
-    return Lowered(_node("Repeat", [together], item.span, num_cycles="-1"))
+def _every(item: ast.Every, done: list[Lowered], scope: Scope) -> Lowered:
+    scripts, time = _timed(item.seconds, scope)
+    together = _node("Parallel", (_round(done[0]), _timer(time)), item.span)
+    return Lowered(behind(scripts, _node("Repeat", [together], item.span, num_cycles="-1")))
 
 
-def _delay(item: ast.Delay, done: list[Lowered]) -> Lowered:
-    return Lowered(_node("Delay", [done[0].node], item.span, delay_msec=msec(item.seconds)), done[0].can_skip)
+def _delay(item: ast.Delay, done: list[Lowered], scope: Scope) -> Lowered:
+    scripts, time = _timed(item.seconds, scope)
+    node = _node("Delay", [done[0].node], item.span, delay_msec=time)
+    return Lowered(behind(scripts, node), done[0].can_skip and not scripts)
 
 
-def _wait(item: ast.Wait, _done: list[Lowered]) -> Lowered:
-    return Lowered(_node("Sleep", (), item.span, msec=msec(item.seconds)))
+def _wait(item: ast.Wait, _done: list[Lowered], scope: Scope) -> Lowered:
+    scripts, time = _timed(item.seconds, scope)
+    return Lowered(behind(scripts, _node("Sleep", (), item.span, msec=time)))
 
 
-def _wait_until(item: ast.WaitUntil, done: list[Lowered]) -> Lowered:
+def _wait_until(item: ast.WaitUntil, done: list[Lowered], _scope: Scope) -> Lowered:
     return Lowered(_node("RetryUntilSuccessful", [done[0].node], item.span, num_attempts="-1"))
 
 
-def _check(_item: ast.Check, done: list[Lowered]) -> Lowered:
+def _check(_item: ast.Check, done: list[Lowered], _scope: Scope) -> Lowered:
     return done[0]
 
 
-def _nothing(item: ast.Nothing, _done: list[Lowered]) -> Lowered:
+def _nothing(item: ast.Nothing, _done: list[Lowered], _scope: Scope) -> Lowered:
     return Lowered(_node("AlwaysSuccess", (), item.span))
 
 
-def _fail(item: ast.Fail, _done: list[Lowered]) -> Lowered:
+def _fail(item: ast.Fail, _done: list[Lowered], _scope: Scope) -> Lowered:
     return Lowered(_node("AlwaysFailure", (), item.span))
 
 
-_LOWER: dict[type[ast.Ast], Callable[[Any, list[Lowered]], Lowered]] = {
+_LOWER: dict[type[ast.Ast], Callable[[Any, list[Lowered], Scope], Lowered]] = {
     ast.Phrase: _phrase,
+    ast.Name: _name,
+    ast.Compared: _compared,
+    ast.Assign: _assign,
+    ast.Remember: _remember,
+    ast.ForEach: _for_each,
     ast.Chain: _chain,
     ast.Not: _not,
     ast.If: _if,

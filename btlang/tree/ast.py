@@ -1,16 +1,20 @@
 """The syntax tree of a mission, as both parsers give it: what was said, with the exact characters of each part.
 
 Commands: Phrase, Name, Chain, If, While, Provided, Repeat, Retry, Try, Within, For, Every, Delay, Wait, WaitUntil,
-Check, Nothing, Fail; Whenever in a sequence. Conditions: Phrase, Name, Chain ("all", "any"), Not. `parts` names the
-fields that hold subtrees.
-Amounts are port texts in base units (seconds); a number of rounds of -1 is without end.
+Check, Nothing, Fail, Assign, Remember, ForEach; Whenever in a sequence. Conditions: Phrase, Name, Compared,
+Chain ("all", "any"), Not. `parts` names the fields that hold subtrees.
+Amounts and values are port texts in base units (seconds); they may refer to values of the mission: `{level}`, in a
+text also `it is {level} percent` (see btlang/vocabulary/references.py).
 """
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 from btlang.record import Record
 from btlang.text.source import Span
 from btlang.vocabulary.entry import Entry
+from btlang.vocabulary.references import keys_in
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -37,10 +41,50 @@ class Phrase(Ast):
 
 
 class Name(Ast):
-    """A defined name."""
+    """A defined name (`greet {someone}`); `arguments` are (parameter, port text) in the order spoken."""
 
     name: str
+    arguments: tuple[tuple[str, str], ...]
     span: Span
+
+
+class Compared(Ast):
+    """A condition: the value of a key, which is of the type `kind`, compared as `arguments` of a quantity would be."""
+
+    key: str
+    kind: str
+    arguments: tuple[tuple[str, str], ...]
+    span: Span
+
+
+class Assign(Ast):
+    """Gives a key a value; `operation` is "set", "increase" or "decrease", `text` is a port text of the type `kind`."""
+
+    key: str
+    operation: str
+    kind: str
+    text: str
+    span: Span
+
+
+class Remember(Ast):
+    """Gives a key the number that a quantity measures now."""
+
+    key: str
+    entry: Entry
+    arguments: tuple[tuple[str, str], ...]
+    span: Span
+
+
+class ForEach(Ast):
+    """The body once for each of the values (port texts of the type `kind`), which the key has in it."""
+
+    key: str
+    kind: str
+    values: tuple[str, ...]
+    body: Ast
+    span: Span
+    parts = ("body",)
 
 
 class Chain(Ast):
@@ -98,14 +142,18 @@ class Provided(Ast):
 
 
 class Repeat(Ast):
-    rounds: int
+    """`rounds` is a port text, "-1" for without end."""
+
+    rounds: str
     body: Ast
     span: Span
     parts = ("body",)
 
 
 class Retry(Ast):
-    attempts: int
+    """`attempts` is a port text."""
+
+    attempts: str
     body: Ast
     span: Span
     parts = ("body",)
@@ -169,9 +217,10 @@ class Fail(Ast):
 
 
 class Definition(Ast):
-    """`name_span` covers the words of the name where it is defined."""
+    """`name_span` covers the words of the name where it is defined; `parameters` are (name, type)."""
 
     name: str
+    parameters: tuple[tuple[str, str], ...]
     body: Ast
     name_span: Span
     span: Span
@@ -208,3 +257,24 @@ def parts(node: Ast) -> list[Ast]:
         elif part is not None:
             found.append(part)
     return found
+
+
+def keys_of(node: Ast) -> Iterator[str]:
+    """The keys of values of the mission that a node itself uses, not those in its parts."""
+    if isinstance(node, Phrase | Name | Compared | Remember):
+        if not isinstance(node, Phrase | Name):
+            yield node.key
+        for _, text in node.arguments:
+            yield from keys_in(text)
+    elif isinstance(node, Assign):
+        yield node.key
+        yield from keys_in(node.text)
+    elif isinstance(node, ForEach):
+        for text in node.values:
+            yield from keys_in(text)
+    elif isinstance(node, Repeat):
+        yield from keys_in(node.rounds)
+    elif isinstance(node, Retry):
+        yield from keys_in(node.attempts)
+    elif isinstance(node, _Timed | Wait):
+        yield from keys_in(node.seconds)

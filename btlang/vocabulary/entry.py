@@ -23,6 +23,10 @@ COMPARISONS = ("below", "above", "at_least", "at_most", "equal")
 """The ports of a condition that compares a quantity; each holds the value to compare with."""
 
 
+MEASURED = "value"
+"""The port under whose key such a condition stores what it measured."""
+
+
 class Entry(Record, uncompared=("span",)):
     """One action or condition.
 

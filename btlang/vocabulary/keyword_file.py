@@ -22,7 +22,7 @@ NODE_IDS = frozenset((
     "Sequence", "Fallback", "AsyncSequence", "AsyncFallback", "SequenceWithMemory", "Parallel", "ParallelAll",
     "ReactiveSequence", "ReactiveFallback", "IfThenElse", "WhileDoElse", "Inverter", "ForceSuccess", "ForceFailure",
     "Repeat", "RetryUntilSuccessful", "Timeout", "Delay", "Sleep", "AlwaysSuccess", "AlwaysFailure", "SubTree",
-    "Whenever",
+    "Whenever", "SetBlackboard",
 ))  # fmt: skip
 """Ids that are not free: those of the engine."""
 _ENTRY = {"phrase", "id", "call", "ros", "slots", "resources", "topic", "help", "example"}

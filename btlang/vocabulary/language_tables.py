@@ -15,6 +15,7 @@ _NO_SLOT = (
     "then", "and", "or", "after", "otherwise", "if", "unless", "while", "until", "whenever", "provided", "not",
     "repeat", "try", "retry", "if_possible", "wait_until", "check", "nothing", "fail", "in_parallel", "in_order",
     "define_strong", "define", "fact", "facing",
+    "set", "set_to", "increase", "decrease", "by", "remember", "remember_as", "each", "each_in",
 )  # fmt: skip
 ROLES = {
     **dict.fromkeys(_NO_SLOT, ""),

@@ -119,14 +119,15 @@ def _listed(root: TrieNode, text: Words, first: SlotValue, values: Values, names
         if joined is not None and role:
             at = joined.last
         value = values.read(first.type, text, at)
-        if value is None or any(_reaches_beyond(trie, text, at, value[1], values) for trie in (root, names or {})):
+        if value is None or any(reaches_beyond(trie, text, at, value[1], values) for trie in (root, names or {})):
             break
         more.append(value[0])
         last, joiner = value[1], role
     return first.replace(more=tuple(more), joiner=joiner, last=last) if more else None
 
 
-def _reaches_beyond(root: TrieNode, text: Words, at: int, last: int, values: Values) -> bool:
+def reaches_beyond(root: TrieNode, text: Words, at: int, last: int, values: Values) -> bool:
+    """Whether a phrase starts at a word that goes on behind `last`."""
     match = longest(root, text, at, values)
     return match is not None and match.last > last
 

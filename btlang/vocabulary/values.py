@@ -5,6 +5,7 @@ A value becomes the text of a port, in the unit whose factor is 1: `half a meter
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterable, Mapping, Sequence
 from copy import copy, deepcopy
 
@@ -71,6 +72,17 @@ def insert(tree: WordTree, words: Sequence[str], value: object) -> None:
     tree[END] = value
 
 
+class Known(Record):
+    """A value that the mission names itself: its key on the blackboard, and the types that it can be used as.
+
+    Without types it can be used as any: nothing has told yet.
+    """
+
+    key: str
+    words: tuple[str, ...]
+    kinds: tuple[str, ...] = ()
+
+
 def find(tree: WordTree, words: Sequence[str], at: int) -> tuple[Any, int] | None:
     """The value of the longest sequence of the tree at a place, and where it ends."""
     found = None
@@ -102,6 +114,9 @@ class Values:
         """Words that stand for the latest value of a type, each with the types that it may be of."""
         self.latest: dict[str, str] = {}
         """Those values. Whoever reads a text sets them, on a copy of its own."""
+        self.known: Mapping[str, Known] | None = {}
+        """The values that the mission names itself, by key; None where any name in braces is one."""
+        self._known_words: WordTree = {}
         self._fractions: WordTree = {}
         for phrase, value in language["fractions"].items():
             insert(self._fractions, phrase.split(), value)
@@ -131,6 +146,19 @@ class Values:
         made = copy(self)
         made.latest = {}
         return made
+
+    def with_references(self) -> Values:
+        """The same, where any name in braces is a value of any type."""
+        made = copy(self)
+        made.known = None
+        return made
+
+    def set_known(self, known: Mapping[str, Known]) -> None:
+        """The values that the mission names where reading goes on. For a copy from `for_reading`."""
+        self.known = known
+        self._known_words = {}
+        for value in known.values():
+            insert(self._known_words, value.words, value)
 
     def names_tree(self, kind: str) -> WordTree:
         """The words of the names of a type."""
@@ -165,6 +193,10 @@ class Values:
     def read(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
         """The port text of a value of the type and where it ends, or None where there is none."""
         value_type = self.types[kind]
+        if self.known != {}:
+            known = self._known(kind, text, at)
+            if known is not None:
+                return known
         if value_type.kind == "quantity":
             quantity = self.quantity(text, at)
             if quantity is None or quantity[1] != kind or _too_small(quantity[0], value_type):
@@ -176,6 +208,47 @@ class Values:
             found = find(self._names[kind], text.words, at) or self._quoted_name(kind, text, at)
             return found or self._referred(kind, text.words[at], at)
         return self._text(text, at)
+
+    def any(self, text: Words, at: int) -> tuple[tuple[str, ...], str, int] | None:
+        """A value of any type: the types that it can be, its port text, and where it ends."""
+        reference = self._reference(text, at)
+        if reference is not None and self.known and reference[0] in self.known:
+            return self.known[reference[0]].kinds, f"{{{reference[0]}}}", reference[1]
+        quantity = self.quantity(text, at)
+        if quantity is not None:
+            return (quantity[1],), format_number(quantity[0]), quantity[2]
+        kinds = [name for sort in ("number", "names", "text") for name, kind in self.types.items() if kind.kind == sort]
+        read = [(kind, self.read(kind, text, at)) for kind in kinds]
+        found = [(kind, value) for kind, value in read if value is not None]
+        if not found:
+            return None
+        best, end = max((value for _, value in found), key=lambda value: value[1])
+        return tuple(kind for kind, (other, last) in found if last == end and other.lower() == best.lower()), best, end
+
+    def _known(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
+        """A value that the mission names: in braces, or bare where no text is wanted and no name is longer."""
+        reference = self._reference(text, at)
+        if reference is not None:
+            key, end = reference
+            if self.known is None or (key in self.known and fits(kind, self.known[key])):
+                return f"{{{key}}}", end
+        elif self.known and self.types[kind].kind != "text":
+            found = find(self._known_words, text.words, at)
+            if found is not None and fits(kind, found[0]):
+                named = find(self._names[kind], text.words, at) if kind in self._names else None
+                if named is None or named[1] <= found[1]:
+                    return f"{{{found[0].key}}}", found[1]
+        return None
+
+    def _reference(self, text: Words, at: int) -> tuple[str, int] | None:
+        """The key of a name in braces, and where it ends."""
+        words = text.words
+        if words[at] != "{":
+            return None
+        end = at + 1
+        while words[end][0].isalnum() or words[end][0] == "_":
+            end += 1
+        return (key_of(words[at + 1 : end]), end + 1) if end > at + 1 and words[end] == "}" else None
 
     def quantity(self, text: Words, at: int) -> tuple[float, str, int] | None:
         """A number with a unit: its value in the base unit, the name of the type, and where it ends."""
@@ -255,6 +328,16 @@ class Values:
         words = [*(w for w in word[1:].lower().split() if w not in self._articles), "\n"]
         found = find(self._names[kind], words, 0) if len(words) > 1 else None
         return (found[0], at + 1) if found and found[1] == len(words) - 1 else None
+
+
+def fits(kind: str, known: Known) -> bool:
+    """Whether a slot of the type takes the value; one of text takes any."""
+    return not known.kinds or kind in known.kinds or kind == "text"
+
+
+def key_of(words: Iterable[str]) -> str:
+    """The key on the blackboard of a name of several words."""
+    return re.sub(r"\W", "_", "_".join(words))
 
 
 def _too_small(value: float, value_type: ValueType) -> bool:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from copy import copy
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
@@ -24,7 +24,9 @@ if TYPE_CHECKING:
 DEFINING = ("define_strong", "define")
 """Roles whose words define a name where they are found first in a line; elsewhere they are words like any other."""
 
-NO_PHRASES = frozenset((*DEFINING, "fact", "facing"))
+NO_PHRASES = frozenset((
+    *DEFINING, "fact", "facing", "set_to", "by", "remember_as", "each_in",
+))  # fmt: skip
 """Roles whose words are looked for where definitions and facts are, and nowhere else."""
 
 
@@ -88,6 +90,12 @@ class Vocabulary:
             made.values = self.values.with_names("place", names)
             self._with_places[names] = made
         return self._with_places[names]
+
+    def with_references(self) -> Vocabulary:
+        """The same words, where any name in braces is read as a value."""
+        made = copy(self)
+        made.values = self.values.with_references()
+        return made
 
     def value(self, kind: str, written: str) -> str | None:
         """The port text of a text that as a whole is a value of the type (`half an hour`), None where it is none."""
@@ -179,11 +187,22 @@ class Vocabulary:
             self._collide(before, meaning)
 
     def _add_negations(self, phrase: str, meaning: Meaning, types: dict[str, str]) -> None:
-        """`battery is low` is also said `battery is not low`."""
         for form in forms(phrase, self.articles):
-            for at, part in enumerate(form):
-                for words in self._negations.get(part, ()) if isinstance(part, str) else ():
-                    self._add_form((*form[:at], *words.split(), *form[at + 1 :]), meaning, types)
+            for negated in self.negated(form):
+                self._add_form(negated, meaning, types)
+
+    def negated(self, form: Form) -> Iterator[Form]:
+        """`battery is low` is also said `battery is not low`."""
+        for at, part in enumerate(form):
+            for words in self._negations.get(part, ()) if isinstance(part, str) else ():
+                yield (*form[:at], *words.split(), *form[at + 1 :])
+
+    def comparing_forms(self, kind: str) -> Iterator[Form]:
+        """Ways to go on behind a quantity or name in order to compare it; names and texts can only be equal."""
+        ordered = self.types[kind].kind in ("quantity", "number")
+        for name, patterns in self.comparisons.items():
+            if ordered or name == "equal":
+                yield from (form for way in _compared(name, patterns) for form in forms(way, self.articles))
 
     def _find_collisions(self) -> None:
         for one, other in collisions(self.trie, self.values):

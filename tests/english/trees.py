@@ -45,7 +45,7 @@ conditions: Trees = st.recursive(
     max_leaves=4,
 )
 _seconds = st.sampled_from(["5", "0.2", "90"])
-_rounds = st.sampled_from([-1, 1, 2, 3])
+_rounds = st.sampled_from(["-1", "1", "2", "3"])
 _span = st.just(SPAN)
 _leaves: Trees = st.one_of(
     st.sampled_from(COMMANDS).map(phrase),
@@ -77,12 +77,12 @@ commands: Trees = st.recursive(_leaves, _forms, max_leaves=8)
 
 
 def _rule_block(rules: list[ast.Ast], work: list[ast.Ast]) -> ast.Ast:
-    return ast.Repeat(2, _chain("sequence", [*rules, *work], True), SPAN)
+    return ast.Repeat("2", _chain("sequence", [*rules, *work], True), SPAN)
 
 
 def _about(inner: Trees) -> Trees:
     """Forms round one that holds standing rules, as lines and blocks can say them."""
-    form = inner.map(lambda node: ast.Repeat(3, node, SPAN) if isinstance(node, ast.Chain) else node)
+    form = inner.map(lambda node: ast.Repeat("3", node, SPAN) if isinstance(node, ast.Chain) else node)
     perhaps = st.one_of(st.none(), commands, inner)
     few = st.lists(commands, max_size=2)
     joined = st.builds(lambda left, node, right: [*left, node, *right], few, form, few).filter(lambda all: len(all) > 1)
@@ -112,12 +112,12 @@ def missions(draw: st.DrawFn) -> ast.Mission:
     """Commands, and up to two definitions that they use."""
     bodies = draw(st.lists(st.one_of(commands, conditions, ruled), max_size=len(NAMES)))
     body = draw(st.one_of(commands, commands, ruled))
-    definitions = [ast.Definition(name, inner, SPAN, SPAN) for name, inner in zip(NAMES, bodies, strict=False)]
+    definitions = [ast.Definition(name, (), inner, SPAN, SPAN) for name, inner in zip(NAMES, bodies, strict=False)]
     used = [_use(name, inner) for name, inner in zip(NAMES, bodies, strict=False)]
     if used and not isinstance(body, ast.Chain):
         body = _chain(draw(st.sampled_from(["sequence", "fallback", "parallel"])), [*used, body], False)
     elif used:
-        body = _chain("sequence", [*used, ast.Repeat(2, body, SPAN)], False)
+        body = _chain("sequence", [*used, ast.Repeat("2", body, SPAN)], False)
     rules = draw(st.lists(_rules, max_size=2))
     if rules:
         items = list(body.items) if isinstance(body, ast.Chain) and body.operator == "sequence" else [body]
@@ -126,7 +126,7 @@ def missions(draw: st.DrawFn) -> ast.Mission:
 
 
 def _use(name: str, body: ast.Ast) -> ast.Ast:
-    used = ast.Name(name, SPAN)
+    used = ast.Name(name, (), SPAN)
     is_condition = isinstance(body, ast.Not) or (isinstance(body, ast.Chain) and body.operator in ("all", "any"))
     is_condition = is_condition or (isinstance(body, ast.Phrase) and body.entry.sort == "condition")
-    return ast.Check(used, SPAN) if is_condition else ast.Repeat(2, used, SPAN)
+    return ast.Check(used, SPAN) if is_condition else ast.Repeat("2", used, SPAN)

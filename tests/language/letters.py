@@ -37,7 +37,10 @@ def shown(node: ast.Ast | None) -> str:
         case ast.Phrase():
             return " ".join([node.entry.id, *(f"{name}={text}" for name, text in node.arguments)])
         case ast.Name():
-            return f"<{node.name}>"
+            return f"<{' '.join([node.name, *(f'{name}={text}' for name, text in node.arguments)])}>"
+        case ast.Compared() | ast.Remember():
+            what = [node.key, *([node.entry.id] if isinstance(node, ast.Remember) else [])]
+            return f"{type(node).__name__}({' '.join([*what, *(f'{name}={text}' for name, text in node.arguments)])})"
         case ast.Chain():
             kinds = {"sequence": "S", "fallback": "F", "parallel": "P", "all": "All", "any": "Any"}
             inner = ", ".join(map(shown, node.items))

@@ -141,7 +141,7 @@ def ours(node: ast.Ast | None) -> object:
         case ast.Try():
             return ("TRY", ours(node.body), ours(node.otherwise))
         case ast.Repeat():
-            return ("REP", node.rounds != -1, ours(node.body))
+            return ("REP", node.rounds != "-1", ours(node.body))
     kinds = {"Not": "Not", "Check": "Check", "WaitUntil": "Wait", "Provided": "PROV"}
     kind = kinds.get(type(node).__name__, type(node).__name__.upper())
     return (kind, *map(ours, ast.parts(node)))

@@ -1,0 +1,118 @@
+"""Statements about values of the mission: set, increase, decrease, remember, and the head of `for each`."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from btlang.frontends.token import Token
+from btlang.frontends.variables import Head
+from btlang.record import Record
+from btlang.text.words import Words
+from btlang.vocabulary.entry import Entry
+from btlang.vocabulary.trie import Match, SlotValue, longest, reaches_beyond
+from btlang.vocabulary.values import Known, Values
+from btlang.vocabulary.vocabulary import Vocabulary
+
+
+class Assigned(Record):
+    """`operation` is "set", "increase" or "decrease"; `text` is the port text of a value of the type `kind`."""
+
+    key: str
+    operation: str
+    kind: str
+    text: str
+
+
+class Remembered(Record):
+    """What a quantity measures, with the arguments of its slots, under a key."""
+
+    key: str
+    entry: Entry
+    arguments: tuple[tuple[str, str], ...]
+
+
+class Each(Record):
+    """The values, all of the type `kind`, that a key goes through."""
+
+    key: str
+    kind: str
+    values: tuple[str, ...]
+
+
+def read_statement(
+    head: Head, text: Words, at: int, vocabulary: Vocabulary, values: Values, port_text: Callable[[SlotValue], str]
+) -> tuple[Token, int] | None:
+    """The token of a statement that starts at a word, and where it ends; None where its value cannot be read.
+
+    `port_text` gives the port text of a value.
+    """
+    if head.role == "each":
+        return _each(head, text, at, vocabulary, values, port_text)
+    known = values.known.get(head.key) if values.known else None
+    if known is None:
+        return None
+    start = text.starts[at]
+    if head.role == "remember":
+        quantity = longest(vocabulary.quantities, text, head.value, values)
+        if quantity is not None and quantity.meaning.entry is not None:
+            made = Remembered(head.key, quantity.meaning.entry, _arguments(quantity, port_text))
+            return Token("command", made, start, text.ends[head.last - 1]), head.last
+    found = _value(head, known, text, vocabulary, values)
+    if found is None:
+        return None
+    operation = "set" if head.role == "remember" else head.role
+    end = max(head.last, found.last)
+    made_of = Assigned(head.key, operation, found.type, port_text(found))
+    return Token("command", made_of, start, text.ends[end - 1]), end
+
+
+def _arguments(match: Match, port_text: Callable[[SlotValue], str]) -> tuple[tuple[str, str], ...]:
+    return tuple((value.name, port_text(value)) for value in match.values)
+
+
+def _value(head: Head, known: Known, text: Words, vocabulary: Vocabulary, values: Values) -> SlotValue | None:
+    numbers = head.role in ("increase", "decrease")
+    for kind in known.kinds:
+        is_number = vocabulary.types[kind].kind in ("quantity", "number")
+        if numbers and head.value < 0 and vocabulary.types[kind].kind == "number":
+            return SlotValue("value", kind, "1", head.last, head.last)
+        value = values.read(kind, text, head.value) if head.value >= 0 and (is_number or not numbers) else None
+        if value is not None:
+            return SlotValue("value", kind, value[0], head.value, value[1])
+    return None
+
+
+def _each(
+    head: Head, text: Words, at: int, vocabulary: Vocabulary, values: Values, port_text: Callable[[SlotValue], str]
+) -> tuple[Token, int] | None:
+    inner = values.for_reading()
+    inner.set_known({key: known for key, known in (values.known or {}).items() if key != head.key})
+    first = inner.any(text, head.value)
+    kinds = (head.key,) if head.key in vocabulary.types else first[0] if first is not None else ()
+    lists = [(kind, _listed(kind, text, head.value, vocabulary, inner)) for kind in kinds]
+    if not lists or not any(found for _, found in lists):
+        return None
+    kind, found = max(lists, key=lambda one: len(one[1]))
+    made = Each(head.key, kind, tuple(port_text(value) for value in found))
+    values.latest[kind] = f"{{{head.key}}}"
+    last = found[-1].last
+    return Token("each", made, text.starts[at], text.ends[last - 1]), last
+
+
+def _listed(kind: str, text: Words, at: int, vocabulary: Vocabulary, values: Values) -> list[SlotValue]:
+    """A list goes on only while a value follows that starts no longer phrase."""
+    found: list[SlotValue] = []
+    while True:
+        value = values.read(kind, text, at)
+        bare = kind == "text" and text.words[at][0] != '"' and text.words[at] != "{"
+        if value is None or bare or (found and reaches_beyond(vocabulary.trie, text, at, value[1], values)):
+            return found
+        found.append(SlotValue("value", kind, value[0], at, value[1]))
+        at = value[1]
+        if text.words[at] == ",":
+            at += 1
+        joined = longest(vocabulary.trie, text, at, values) if text.words[at] in values.joiners else None
+        if joined is not None and joined.meaning.role == "and":
+            at = joined.last
+        if at == value[1]:
+            return found

@@ -1,0 +1,52 @@
+"""What lowering the parts of a mission shares: names, and the values of the mission that each part needs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from btlang.tree import ast
+from btlang.tree.node import Node
+
+
+class Scope:
+    """State of lowering one mission, whose defined names are given.
+
+    `skipping` are the names whose trees can end SKIPPED, `free` the keys of the mission's values that the tree of a
+    name needs from outside, in their order. `bodies` are the subtrees, used ones before their users.
+    """
+
+    def __init__(self, names: Iterable[str] = ()) -> None:
+        self.skipping: set[str] = set()
+        self.free: dict[str, tuple[str, ...]] = {}
+        self.bodies: list[tuple[str, Node]] = []
+        self._names = set(names)
+        self._keys = 0
+
+    def new_key(self) -> str:
+        """A key on the blackboard that no mission can name: its names start with a letter."""
+        self._keys += 1
+        return f"_{self._keys}"
+
+    def new_name(self, key: str) -> str:
+        """A name for the body of a loop over values."""
+        number = 1
+        while (name := f"each_{key}" + (f"_{number}" if number > 1 else "")) in self._names:
+            number += 1
+        self._names.add(name)
+        return name
+
+    def needs(self, root: ast.Ast, own: Iterable[str] = ()) -> tuple[str, ...]:
+        """The keys of values that a part needs from outside, each once, without its own."""
+        hidden = frozenset(own)
+        return tuple(dict.fromkeys(key for key in self._keys_in(root) if key not in hidden))
+
+    def _keys_in(self, root: ast.Ast) -> Iterator[str]:
+        stack: list[tuple[ast.Ast, frozenset[str]]] = [(root, frozenset())]
+        while stack:
+            item, bound = stack.pop()
+            yield from (key for key in ast.keys_of(item) if key not in bound)
+            if isinstance(item, ast.Name):
+                yield from (key for key in self.free.get(item.name, ()) if key not in bound)
+            if isinstance(item, ast.ForEach):
+                bound |= {item.key}
+            stack += [(part, bound) for part in reversed(ast.parts(item))]

@@ -1,0 +1,86 @@
+"""Texts that refer to values of the mission, as ports and as Script nodes that compute what ports cannot say.
+
+A port that is one reference stays one (`{level}`). A text with references in it is put together by a Script just before
+the node that needs it, as a BehaviorTree.CPP port holds either a text or one reference.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from btlang.passes.scope import Scope
+from btlang.tree.node import Node
+from btlang.vocabulary.references import Reference, pieces
+
+Ports = tuple[tuple[str, str], ...]
+
+
+def script(code: str) -> Node:
+    """A Script with no sentence of its own, so that no log tells of it as a command."""
+    return Node("Script", (), (("code", code),))
+
+
+def behind(scripts: Sequence[Node], node: Node) -> Node:
+    """The node after what computes its ports."""
+    return Node("Sequence", (*scripts, node), span=node.span) if scripts else node
+
+
+def prepared(arguments: Iterable[tuple[str, str]], scope: Scope) -> tuple[list[Node], Ports]:
+    """The ports of a node, and what has to be computed before it."""
+    scripts: list[Node] = []
+    ports: list[tuple[str, str]] = []
+    for name, text in arguments:
+        if "{" in text or "}" in text:
+            before, text = _port(text, scope)
+            scripts += before
+        ports.append((name, text))
+    return scripts, tuple(ports)
+
+
+def _port(text: str, scope: Scope) -> tuple[list[Node], str]:
+    parts = pieces(text)
+    if len(parts) == 1:
+        [part] = parts
+        if isinstance(part, Reference):
+            return [], f"{{{part.key}}}"
+        if not (part.startswith("{") and part.endswith("}")):
+            return [], part
+    scripts, value = concatenated(text, scope)
+    key = scope.new_key()
+    return [*scripts, script(f"{key} := {value}")], f"{{{key}}}"
+
+
+def literal(text: str, kind: str) -> str:
+    """A value of a type other than text in a script."""
+    parts = pieces(text)
+    if len(parts) == 1 and isinstance(parts[0], Reference):
+        return parts[0].key
+    return text if _is_number(text) and kind != "text" else f"'{text}'"
+
+
+def _is_number(text: str) -> bool:
+    try:
+        float(text)
+    except ValueError:
+        return False
+    return True
+
+
+def concatenated(text: str, scope: Scope) -> tuple[list[Node], str]:
+    """The expression of a text, and what it needs before it: a string of a script holds no single quote."""
+    scripts: list[Node] = []
+    quote = ""
+    terms: list[str] = []
+    for part in pieces(text):
+        if isinstance(part, Reference):
+            terms.append(part.key)
+            continue
+        for i, plain in enumerate(part.split("'")):
+            if i:
+                if not quote:
+                    quote = scope.new_key()
+                    scripts.append(Node("SetBlackboard", (), (("value", "'"), ("output_key", quote))))
+                terms.append(quote)
+            if plain:
+                terms.append(f"'{plain}'")
+    return scripts, " .. ".join(terms) or "''"
