@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from btlang.engine import branch, control, decorators, leaves, reactive, timed
+from btlang.engine import branch, control, decorators, leaves, reactive, script_nodes, timed
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.build import EngineError, Shared, Site
 from btlang.engine.leaf import ActionFailed
@@ -56,6 +56,8 @@ NODE_TYPES = {
     "Sleep": NodeType(timed.sleep, 0, 0, ("msec",)),
     "AlwaysSuccess": NodeType(leaves.always_success, 0, 0),
     "AlwaysFailure": NodeType(leaves.always_failure, 0, 0),
+    "Script": NodeType(script_nodes.script, 0, 0, ("code",)),
+    "ScriptCondition": NodeType(script_nodes.script_condition, 0, 0, ("code",)),
 }
 _SUBTREE = NodeType(subtree, 1, 1)
 
