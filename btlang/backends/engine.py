@@ -10,7 +10,7 @@ from btlang.backends.comparing import comparing
 from btlang.engine.build import EngineError
 from btlang.engine.leaf import LeafBinding
 from btlang.tree.node import Node
-from btlang.vocabulary.entry import Entry, SlotSpec
+from btlang.vocabulary.entry import MEASURED, Entry, SlotSpec
 from btlang.vocabulary.vocabulary import Vocabulary
 
 TYPE_CHECKING = False
@@ -28,7 +28,12 @@ def bind_leaf(node_id: str, vocabulary: Vocabulary) -> LeafBinding | None:
     converters = {name: _converter(slot, vocabulary) for name, slot in slots.items()}
     defaults = {name: slot.default for name, slot in slots.items() if slot.default is not None}
     call = _imported(entry)
-    return LeafBinding(comparing(call) if entry.measures else call, converters, defaults)
+    if not entry.measures:
+        return LeafBinding(call, converters, defaults)
+    try:
+        return LeafBinding(comparing(call), converters, defaults, (MEASURED,))
+    except (TypeError, ValueError) as error:
+        raise EngineError(f"{entry.call} cannot be a quantity: {error}", Node(entry.id, span=entry.span)) from error
 
 
 def _converter(slot: SlotSpec, vocabulary: Vocabulary) -> Callable[[str], Any]:

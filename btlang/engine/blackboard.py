@@ -10,19 +10,29 @@ if TYPE_CHECKING:
 
 
 class Blackboard:
-    """One scope of named values. A subtree has its own scope and sees of its parent's only the keys remapped to it."""
+    """One scope of named values. A subtree has its own scope and sees of its parent's only the keys remapped to it.
 
-    __slots__ = ("_remapped", "_values")
+    A key `@name` is the key `name` of the outermost scope, whatever is remapped, as in BehaviorTree.CPP.
+    """
 
-    def __init__(self, remapped: Mapping[str, tuple[Blackboard, str]] | None = None) -> None:
+    __slots__ = ("_outermost", "_remapped", "_values")
+
+    def __init__(
+        self, remapped: Mapping[str, tuple[Blackboard, str]] | None = None, parent: Blackboard | None = None
+    ) -> None:
         self._values: dict[str, Any] = {}
         self._remapped = dict(remapped or {})
+        self._outermost: Blackboard = self if parent is None else parent._outermost
 
     def _owner(self, key: str) -> tuple[Blackboard, str]:
         scope = self
-        while key in scope._remapped:
-            scope, key = scope._remapped[key]
-        return scope, key
+        while True:
+            if key[:1] == "@":
+                scope, key = scope._outermost, key[1:]
+            elif key in scope._remapped:
+                scope, key = scope._remapped[key]
+            else:
+                return scope, key
 
     def get(self, key: str) -> Any:
         """Raises KeyError where nothing was set."""

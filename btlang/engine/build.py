@@ -91,7 +91,7 @@ class Site:
         text = self.node.port(port)
         key = blackboard_key(port, text)
         if key is not None:
-            return lambda: _whole(_stored(self.scope, key), port, least, most)
+            return lambda: _whole(value_of(self.scope, key), port, least, most)
         if not text and default is None:
             raise self.error(f"{self.node.id} needs a port {port}")
         try:
@@ -133,6 +133,14 @@ def blackboard_key(port: str, text: str) -> str | None:
     return port if key == "=" else key
 
 
+def value_of(scope: Blackboard, key: str) -> Any:
+    """The value that a `{key}` stands for; raises ActionFailed where there is none."""
+    try:
+        return scope.get(key)
+    except KeyError:
+        raise ActionFailed(f"{{{key}}} has no value") from None
+
+
 def halt_nothing(keep: bool) -> None:
     """The `halt` of a leaf that never runs for longer than its tick."""
 
@@ -142,15 +150,8 @@ def apart(children: Sequence[Compiled]) -> tuple[tuple[Tick, ...], tuple[Halt, .
     return tuple(tick for tick, _ in children), tuple(halt for _, halt in children)
 
 
-def _stored(scope: Blackboard, key: str) -> Any:
-    try:
-        return scope.get(key)
-    except KeyError:
-        raise ActionFailed(f"{{{key}}} has no value") from None
-
-
 def _convert(scope: Blackboard, port: str, key: str, convert: Callable[[str], Any]) -> Any:
-    value = _stored(scope, key)
+    value = value_of(scope, key)
     if not isinstance(value, str):
         return value
     try:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from btlang.engine import branch, control, decorators, leaves, reactive, timed
+from btlang.engine import branch, control, decorators, leaves, reactive, script_nodes, timed
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.build import EngineError, Shared, Site
 from btlang.engine.leaf import ActionFailed
@@ -57,6 +57,8 @@ NODE_TYPES = {
     "AlwaysSuccess": NodeType(leaves.always_success, 0, 0),
     "AlwaysFailure": NodeType(leaves.always_failure, 0, 0),
     "SetBlackboard": NodeType(leaves.set_blackboard, 0, 0, ("value", "output_key")),
+    "Script": NodeType(script_nodes.script, 0, 0, ("code",)),
+    "ScriptCondition": NodeType(script_nodes.script_condition, 0, 0, ("code",)),
 }
 _SUBTREE = NodeType(subtree, 1, 1)
 

@@ -9,6 +9,8 @@ A leaf is one of
 
 Parameters are filled by name: ports first, then services (`robot`, `clock`, `blackboard`); a class gets the services
 in its constructor and the ports in `start`.
+
+For an output port, whose text is a `{key}`, the parameter gets a function: `store(value)` writes the value to that key.
 """
 
 from __future__ import annotations
@@ -27,8 +29,12 @@ class ActionFailed(Exception):
 
 
 class LeafBinding(Record):
-    """The Python side of a leaf id: what to call, how each port's text becomes a value, and values for absent ports."""
+    """The Python side of a leaf id: what to call, how each port's text becomes a value, and values for absent ports.
+
+    `outputs` are the ports that the leaf writes instead of reading them.
+    """
 
     call: Callable[..., Any]
     converters: Mapping[str, Callable[[str], Any]] = {}
     defaults: Mapping[str, str] = {}
+    outputs: tuple[str, ...] = ()

@@ -66,16 +66,30 @@ def bound_leaf(site: Site, binding: LeafBinding) -> Compiled:
     if isclass(call):
         leaf = _make(site, call, services)
         _fill(site, leaf.start, ports, {})
-        constants, stored = site.arguments(ports, binding.converters)
+        constants, stored = _arguments(site, ports, binding)
         return _class_leaf(site, leaf, partial(leaf.start, **constants), stored)
     if iscoroutinefunction(call):
         raise site.error(f"{site.node.id} is bound to an async function; a generator does what it should do")
     given = _fill(site, call, ports, services)
-    constants, stored = site.arguments(ports, binding.converters)
+    constants, stored = _arguments(site, ports, binding)
     kind = _generator_leaf if isgeneratorfunction(call) or isgeneratorfunction(type(call).__call__) else _function_leaf
     if given or constants:
         call = partial(call, **given, **constants)
     return kind(site, call, stored)
+
+
+def _arguments(site: Site, ports: Mapping[str, str], binding: LeafBinding) -> tuple[dict[str, Any], Stored]:
+    """As Site.arguments, with a function that writes for each output port."""
+    constants, stored = site.arguments(
+        {port: text for port, text in ports.items() if port not in binding.outputs}, binding.converters
+    )
+    for port in binding.outputs:
+        if port in ports:
+            key = blackboard_key(port, ports[port])
+            if key is None:
+                raise site.error(f"{port} is an output: it must be a {{key}}, not {ports[port]!r}")
+            constants[port] = partial(site.scope.set, key)
+    return constants, stored
 
 
 def _function_leaf(site: Site, call: Callable[..., Any], stored: Stored) -> Compiled:

@@ -28,7 +28,7 @@ def child_scope(node: Node, scope: Blackboard) -> Blackboard:
         raise EngineError("_autoremap is not supported: name each key that the subtree shares", node)
     ports = [(port, text) for port, text in node.ports if port != "ID" and not port.startswith("_")]
     keys = {port: blackboard_key(port, text) for port, text in ports}
-    child = Blackboard({port: (scope, key) for port, key in keys.items() if key is not None})
+    child = Blackboard({port: (scope, key) for port, key in keys.items() if key is not None}, scope)
     for port, text in ports:
         if keys[port] is None:
             child.set(port, text)

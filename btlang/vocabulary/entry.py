@@ -21,10 +21,8 @@ class SlotSpec(Record):
 
 COMPARISONS = ("below", "above", "at_least", "at_most", "equal")
 """The ports of a condition that compares a quantity; each holds the value to compare with."""
-
-
 MEASURED = "value"
-"""The port under whose key such a condition stores what it measured."""
+"""The port of such a condition that may name the blackboard key to write what was measured to."""
 
 
 class Entry(Record, uncompared=("span",)):

@@ -8,7 +8,7 @@ import tomllib
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.record import Record
 from btlang.text.source import Source, Span
-from btlang.vocabulary.entry import Entry, SlotSpec
+from btlang.vocabulary.entry import COMPARISONS, MEASURED, Entry, SlotSpec
 from btlang.vocabulary.language_tables import TABLES, WORD_LISTS, problems
 from btlang.vocabulary.pattern import PatternError, Slot, forms
 from btlang.vocabulary.values import Unit, ValueType
@@ -22,7 +22,7 @@ NODE_IDS = frozenset((
     "Sequence", "Fallback", "AsyncSequence", "AsyncFallback", "SequenceWithMemory", "Parallel", "ParallelAll",
     "ReactiveSequence", "ReactiveFallback", "IfThenElse", "WhileDoElse", "Inverter", "ForceSuccess", "ForceFailure",
     "Repeat", "RetryUntilSuccessful", "Timeout", "Delay", "Sleep", "AlwaysSuccess", "AlwaysFailure", "SubTree",
-    "Whenever", "SetBlackboard",
+    "Whenever", "SetBlackboard", "Script", "ScriptCondition",
 ))  # fmt: skip
 """Ids that are not free: those of the engine."""
 _ENTRY = {"phrase", "id", "call", "ros", "slots", "resources", "topic", "help", "example"}
@@ -92,6 +92,9 @@ class _Reader:
         measures = table.get("type")
         if not isinstance(measures, str):
             self.wrong(f"the quantity '{near}' needs type = \"length\", or another type with values to compare", near)
+        for slot in entry.slots:
+            if slot.name in COMPARISONS or slot.name == MEASURED:
+                self.wrong(f"every quantity has a port {slot.name}; the slot of '{near}' needs another name", near)
         made: Entry = entry.replace(
             sort="condition", phrases=(), quantity=entry.phrases, measures=str(measures), resources=()
         )

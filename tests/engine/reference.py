@@ -89,6 +89,13 @@ class Reference:
                         child.reset()
             below, above = above, above.parent
 
+    def Script(self) -> int:
+        """The random trees have three scripts, one of which cannot go on."""
+        return FAILURE if self.node.port("code") == "gone" else SUCCESS
+
+    def ScriptCondition(self) -> int:
+        return SUCCESS if self.node.port("code") == "2 > 1" else FAILURE
+
     def Sleep(self) -> int:
         if self.since is None:
             self.since = self.clock.now

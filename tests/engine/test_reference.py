@@ -45,6 +45,9 @@ def _parents(children: st.SearchStrategy[Node]) -> st.SearchStrategy[Node]:
 LEAVES = st.one_of(
     st.tuples(st.sampled_from("FC"), st.text("rsfk", min_size=1, max_size=4)).map(lambda leaf: Node(":".join(leaf))),
     st.sampled_from((0, 1000, 2000)).map(lambda msec: n("Sleep", msec=msec)),
+    st.tuples(st.sampled_from(("Script", "ScriptCondition")), st.sampled_from(("2 > 1", "1 > 2", "gone"))).map(
+        lambda script: n(script[0], code=script[1])
+    ),
 )
 TREES = st.recursive(LEAVES, _parents, max_leaves=12)
 

@@ -43,6 +43,8 @@ ACTION = '[[action]]\nphrase = "hop"\nid = "Hop"\n'
         ('[[type]]\nname = "place"\nunits = [{ words = ["x"], factor = "1" }]', "of another kind"),
         ('[[action]]\nphrase = "hop"\nid = "AlwaysSuccess"', "is a node of the tree itself"),
         ('[[condition]]\nphrase = "hopped"\nid = "Wave"', "the id Wave is already that of the action"),
+        ('[[quantity]]\nphrase = "load on {value}"\nid = "Load"\ntype = "length"', "every quantity has a port value"),
+        ('[[quantity]]\nphrase = "load on {below}"\nid = "Load"\ntype = "length"', "every quantity has a port below"),
         (ACTION + "foo = 1\nbar = 2", "'foo' is not known"),
         ("action = 5", "action is written [[action]]"),
     ],

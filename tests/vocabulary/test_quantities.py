@@ -2,12 +2,19 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 import pytest
 
 import btlang
+from btlang.backends.engine import bind_leaf
 from btlang.diagnostics.diagnostic import MissionError
+from btlang.engine.build import EngineError
+from btlang.engine.clock import Clock
+from btlang.engine.engine import Engine
 from btlang.engine.status import FAILURE, SUCCESS
 from btlang.tree.dump import plain
+from btlang.tree.node import Node, Tree
 
 
 @pytest.mark.parametrize(
@@ -87,3 +94,39 @@ def test_they_stop_a_loop() -> None:
     tree = btlang.parse_tree("move forward 5 m until the distance ahead is less than 2 m")
     assert tree.run(speed="max").status == SUCCESS
     assert 1.7 < 6.0 - 0.2 - tree.robot.pose.x < 2.0  # the wall is at x = 6
+
+
+def measured(id: str, **ports: str) -> Engine:
+    """An engine of one condition, over the robot of a mission."""
+    mission = btlang.parse_tree("wave")
+    tree = Tree(Node(id, ports=tuple(ports.items())))
+    services = {"robot": mission.robot}
+    return Engine(tree, lambda id: bind_leaf(id, mission.vocabulary), clock=Clock(), services=services)
+
+
+@pytest.mark.parametrize(
+    ("ports", "status"),
+    [({}, SUCCESS), ({"below": "20"}, FAILURE), ({"above": "20", "at_most": "100"}, SUCCESS)],
+)
+def test_what_was_measured_is_remembered_before_it_is_compared(ports: dict[str, str], status: int) -> None:
+    engine = measured("Battery", value="{level}", **ports)
+    assert engine.tick() == status
+    assert engine.blackboard.get("level") == 100
+
+
+def test_a_quantity_remembers_only_under_a_key() -> None:
+    engine = measured("DistanceToPlace", value="{=}", place="lobby")
+    assert engine.tick() == SUCCESS
+    assert engine.blackboard.get("value") == 1.5
+    with pytest.raises(EngineError, match=r"value is an output: it must be a \{key\}, not '20'"):
+        measured("Battery", value="20")
+
+
+def test_a_function_that_has_such_a_parameter_itself_is_no_quantity(tmp_path: Path) -> None:
+    (tmp_path / "odd_load.py").write_text("def load(value=3):\n    return value\n", encoding="utf-8")
+    words = tmp_path / "odd.toml"
+    words.write_text(
+        '[[quantity]]\nphrase = "load"\nid = "Load"\ntype = "length"\ncall = "odd_load:load"\n', encoding="utf-8"
+    )
+    with pytest.raises(MissionError, match="odd_load:load cannot be a quantity: duplicate parameter name"):
+        btlang.parse_tree("check the load is below 3 m", keywords=[str(words)]).run(speed="max")

@@ -1,0 +1,78 @@
+"""Nodes that run scripts: script_node.h and script_condition.h of BehaviorTree.CPP 4.10.
+
+Where those raise an exception because the script cannot go on, these fail with its reason.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from btlang.engine.blackboard import Blackboard
+from btlang.engine.build import Site, blackboard_key, halt_nothing, value_of
+from btlang.engine.leaf import ActionFailed
+from btlang.engine.script import ScriptError, ScriptFailed, compile_script, truth
+from btlang.engine.status import SUCCESS
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+    from btlang.engine.build import Compiled
+
+
+def script(site: Site, children: Sequence[Compiled]) -> Compiled:
+    """Runs its code: SUCCESS."""
+    run, scope = _code(site), site.scope
+
+    def tick() -> int:
+        try:
+            run(scope)
+        except ActionFailed as failed:
+            return site.fail(str(failed))
+        return SUCCESS
+
+    return tick, halt_nothing
+
+
+def script_condition(site: Site, children: Sequence[Compiled]) -> Compiled:
+    """Runs its code: SUCCESS where the value is true, else FAILURE."""
+    run, scope = _code(site), site.scope
+
+    def tick() -> int:
+        try:
+            return SUCCESS if truth(run(scope)) else site.fail()
+        except ActionFailed as failed:
+            return site.fail(str(failed))
+
+    return tick, halt_nothing
+
+
+def _code(site: Site) -> Callable[[Blackboard], Any]:
+    """What the port `code` says, or what the text under its `{key}` says at the time."""
+    text = site.node.port("code")
+    key = blackboard_key("code", text)
+    if key is not None:
+        return _stored_code(key)
+    if not text:
+        raise site.error(f"{site.node.id} needs a port code")
+    try:
+        return compile_script(text)
+    except ScriptError as problem:
+        raise site.error(f"its code {text!r} cannot be read: {problem}") from problem
+
+
+def _stored_code(key: str) -> Callable[[Blackboard], Any]:
+    latest: object = None
+    run: Callable[[Blackboard], Any] | None = None
+
+    def run_stored(scope: Blackboard) -> Any:
+        nonlocal latest, run
+        text = value_of(scope, key)
+        if run is None or text != latest:
+            try:
+                latest, run = text, compile_script(str(text))
+            except ScriptError as problem:
+                raise ScriptFailed(f"{{{key}}} holds no script: {problem}") from problem
+        return run(scope)
+
+    return run_stored

@@ -1,0 +1,80 @@
+"""Tokens of scripts, as script_tokenizer.cpp of BehaviorTree.CPP 4.10 makes them."""
+
+from __future__ import annotations
+
+import re
+
+_TOKEN = re.compile(
+    r"""(?P<number>(?:0[xX][0-9A-Fa-f]+|[0-9]+(?:\.[0-9]+)?(?:[eE][+-]?[0-9]+)?)(?![A-Za-z0-9_@]|\.(?!\.)))
+    |(?P<text>'[^']*')
+    |(?P<name>[A-Za-z_@][A-Za-z0-9_]*)
+    |(?P<sign>:=|==|!=|<=|>=|&&|\|\||\.\.|[-+*/]=|[-+*/&|^~!<>=?:();])""",
+    re.VERBOSE,
+)
+_SPACE = re.compile(r"[ \t\r\n]*")
+_LIKE_A_NUMBER = re.compile(r"[0-9][A-Za-z0-9_.]*")
+
+
+class ScriptError(ValueError):
+    """The code is no script; `position` is the index of the character at fault."""
+
+    def __init__(self, message: str, position: int) -> None:
+        super().__init__(f"{message}, at character {position + 1}")
+        self.message = message
+        self.position = position
+
+
+class Tokens:
+    """The present token of a script, and `advance` to the next one.
+
+    `kind` is "number", "text", "name", "sign" or "end"; `sign` is its text where it is a sign, else "".
+    """
+
+    __slots__ = ("kind", "position", "sign", "source", "text")
+
+    def __init__(self, source: str) -> None:
+        self.source = source
+        self.position = 0
+        self.text = ""
+        self.advance()
+
+    def advance(self) -> None:
+        """Raises ScriptError where no token follows."""
+        start = self.position + len(self.text)
+        space = _SPACE.match(self.source, start)
+        self.position = start if space is None else space.end()
+        found = _TOKEN.match(self.source, self.position)
+        if found is not None:
+            self.kind = found.lastgroup or ""
+            self.text = found[0]
+        elif self.position == len(self.source):
+            self.kind, self.text = "end", ""
+        else:
+            raise self._unknown()
+        self.sign = self.text if self.kind == "sign" else ""
+
+    def _unknown(self) -> ScriptError:
+        rest = self.source[self.position]
+        if rest == "'":
+            return ScriptError("this quote is not closed", self.position)
+        number = _LIKE_A_NUMBER.match(self.source, self.position)
+        if number is not None:
+            return ScriptError(f"{number[0]} is no number", self.position)
+        return ScriptError(f"{rest!r} means nothing in a script", self.position)
+
+    def described(self) -> str:
+        """Where something before the present token is."""
+        return f"before {self.text}" if self.text else "at the end"
+
+    def number(self) -> float:
+        """The present token as a double; a whole number must fit 64 bits."""
+        text = self.text
+        if text[:2] in ("0x", "0X"):
+            whole = int(text, 16)
+        elif text.isdigit():
+            whole = int(text) if len(text) < 30 else 2**63
+        else:
+            return float(text)
+        if whole >= 2**63:
+            raise ScriptError("this number is too large", self.position)
+        return float(whole)
