@@ -48,8 +48,9 @@ def kept(value: Any) -> Any:
 
 
 def as_text(value: Any) -> str:
-    """A value as people read it: a whole number as `3`, any other with the fewest digits that tell it: `0.5`."""
-    return str(kept(read(value)))
+    """A value as people read it: a whole number as `3`, any other with at most six decimals: `0.5`."""
+    number = read(value)
+    return str(kept(round(number, 6) if isinstance(number, float) else number))
 
 
 # Unary operators

@@ -12,6 +12,8 @@ from functools import lru_cache
 from btlang.frontends.lexer import Lexer
 from btlang.frontends.matching import Matcher
 from btlang.frontends.token import Token
+from btlang.frontends.value_completion import value_options
+from btlang.frontends.variables import JOINTS
 from btlang.record import Record
 from btlang.text.source import Source
 from btlang.text.spelling import nearest
@@ -28,6 +30,7 @@ _MOST_CORRECTIONS = 3
 _ALIKE = {
     **dict.fromkeys(("wait", "nothing", "fail"), "command"), "negated": "condition", "unless": "if", "until": "while",
     "if_possible": "within", "retry": "try", "wait_until": "check", "delay": "every", "in_order": "in_parallel",
+    **dict.fromkeys(("set", "increase", "decrease", "remember"), "command"), "each": "every",
 }  # fmt: skip
 """Roles that stand where others stand: the matching stage is asked for one of them."""
 _LOOK_AHEAD = frozenset(("and", "or"))  # whether these are in their place depends on what follows
@@ -84,6 +87,8 @@ class Completer:
         return list(reversed(unique.values()))
 
     def _options(self, start: str) -> Iterator[Completion]:
+        for words, kind in value_options(self._words, self._last, start, self._vocabulary, self._values):
+            yield Completion(words, self._start, kind, "named in this mission" if kind == "value" else "")
         tokens = self._tokens
         joining: list[Completion] = []
         for at in range(max(0, len(tokens) - _MOST_TOKENS_BACK), len(tokens) + 1):
@@ -138,7 +143,7 @@ class Completer:
         slotted = [meaning for _, _, child in node.get(SLOTS, ()) for meaning in meanings(child)]
         for meaning in (*ends, *slotted):
             if self._may_stand(at, meaning.role):
-                more = "" if ends and meaning is ends[0] else " "
+                more = "" if ends and meaning is ends[0] and meaning.role not in JOINTS else " "
                 kind, about = self._about(meaning)
                 yield Completion(words + more, self._start, kind, about)
                 return
@@ -153,10 +158,15 @@ class Completer:
     def _named(self, names: Begun, first: int, at: int, start: str) -> Iterator[Completion]:
         for node in names.nodes:
             for way, child in ways_on(node, start):
-                name = " ".join((*self._words.words[first : self._last], *way))
-                kind = "condition" if name in self._lexer.conditions else "command"
-                if END in child and self._may_stand(at, kind):
-                    yield Completion(" ".join(way), self._start, "name", "defined in this mission")
+                if any(self._may_stand(at, self._kind_of_name(meaning)) for meaning in meanings(child)):
+                    more = "" if END in child else " "
+                    yield Completion(" ".join(way) + more, self._start, "name", "defined in this mission")
+        yield from self._slots(names.slots, at, start)
+
+    def _kind_of_name(self, meaning: Meaning) -> str:
+        if meaning.role != "name" or meaning.entry is None:
+            return meaning.role
+        return "condition" if meaning.entry.id in self._lexer.conditions else "command"
 
     def _defining(self, start: str) -> Iterator[Completion]:
         """`is` after the unknown words of a line: they may become a name."""

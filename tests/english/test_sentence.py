@@ -68,7 +68,7 @@ def test_sentences_keep_their_tree(words: str) -> None:
 
 @settings(max_examples=250)
 @given(trees.missions())
-@example(ast.Mission(ast.Every("5", ast.Repeat(1, trees.phrase("u"), trees.SPAN), trees.SPAN), (), trees.SPAN))
+@example(ast.Mission(ast.Every("5", ast.Repeat("1", trees.phrase("u"), trees.SPAN), trees.SPAN), (), trees.SPAN))
 @example(ast.Mission(ast.Try(trees.phrase("u"), trees.either("v", "w"), trees.SPAN), (), trees.SPAN))
 def test_syntax_trees_keep_their_tree(mission: ast.Mission) -> None:
     keeps_its_tree(mission, letters())

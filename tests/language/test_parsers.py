@@ -50,7 +50,8 @@ def _spans(mission: ast.Mission) -> list[tuple[int, int]]:
     return found
 
 
-_VALUES = {"POSTFIX": ("count", "2"), "LOOP": ("try", None), "ELSE": 0}
+_LEAF = ("nothing", None)
+_VALUES = {"COMMAND": _LEAF, "CONDITION": _LEAF, "POSTFIX": ("count", "2"), "LOOP": ("try", None), "ELSE": 0}
 _condition = st.recursive(
     st.just("CONDITION"),
     lambda c: st.one_of(
