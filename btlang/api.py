@@ -13,7 +13,7 @@ from btlang.passes import compile_mission
 from btlang.robots.world import Place
 from btlang.robots.world_file import WorldError, world_names
 from btlang.text.source import Source, Span
-from btlang.tree.ast import Mission
+from btlang.tree.ast import Mission, all_facts
 from btlang.tree.dump import described, outline
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.entry import Entry, SlotSpec
@@ -267,7 +267,7 @@ class RunnableTree:
         from btlang.run.runner import Runner, traced_engine
 
         stage = load_simulation(self.world) if self.stage is None else self.stage
-        for fact in self.mission.facts if self.mission is not None else ():
+        for fact in all_facts(self.mission) if self.mission is not None else ():
             stage.robot.add_place(Place(fact.name, fact.x, fact.y, fact.facing))
         stage.begin(sinks)
         try:

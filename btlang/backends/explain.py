@@ -31,7 +31,7 @@ class Statement(Record):
 
     at: int
     items: tuple[ast.Ast, ...]
-    node: Node | None = None  # a fact has none
+    node: Node | None = None  # a fact and an include have none
     joined: str = ""  # the operator of the chain that all statements make
 
 
@@ -45,7 +45,7 @@ def explain_mission(
     width = max(width, LEAST_WIDTH)
     sentences = _Sentences(mission.span.source, vocabulary)
     speaker = speaker_of(mission, vocabulary, "all")
-    facts = [Statement(sentences.number(fact.span.start), (fact,)) for fact in mission.facts]
+    facts = [Statement(sentences.number(part.span.start), (part,)) for part in (*mission.includes, *mission.facts)]
     found = [*facts, *_definitions(mission, tree, sentences), *_commands(mission.body, tree.root, sentences)]
     blocks = []
     for statement in sorted(found, key=lambda statement: statement.at):

@@ -70,6 +70,8 @@ _ALL = (
     Code("BT043", "No value has the name '{name}' here."),
     Code("BT044", "'{name}' is {kind}, and {wanted} is needed."),
     Code("BT045", "'{name}' is the name of a value of the whole mission already.", "Choose another name here."),
+    Code("BT046", "'{file}' includes itself: {circle}.", "Put what both need into a third file."),
+    Code("BT047", "I cannot read '{words}': it stands alone on its line, with the name of a file in quotes.", "Write for example: {example}"),
     Code("BT060", "This keyword file cannot be used: {reason}."),
     Code("BT061", "This phrase cannot be used: {reason}."),
     Code("BT062", "'{first}' ({first_id}, {first_file}) and '{second}' ({second_id}, {second_file}) can match the same words.",

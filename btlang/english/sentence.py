@@ -131,7 +131,7 @@ class Speaker:
     def word(self, role: str, **values: str) -> Piece:
         """The word of a role, with the value of its slot: `then`, `within 5 s`."""
         if role not in self._forms:
-            self._forms[role] = forms(self.vocabulary.roles[role][0])[-1]
+            self._forms[role] = forms(self.vocabulary.first(role))[-1]
         words = (values[part.name] if isinstance(part, Slot) else part for part in self._forms[role])
         return Piece(" ".join(words), WORD)
 
@@ -145,6 +145,13 @@ class Speaker:
     def value(self, text: str, kind: str) -> str:
         """A port text of a type as it is written."""
         return value_of(text, self.vocabulary.types[kind], self.vocabulary)
+
+    def plain_value(self, text: str, kind: str) -> str:
+        """As `value` where no slot tells the type: a text is in quotes, as a bare word may be a name or a number."""
+        value = self.value(text, kind)
+        if kind != "text" or value != text or value.startswith("{"):
+            return value
+        return f'"{value}"'
 
     def name(self, node: ast.Name) -> str:
         """A defined name with its arguments."""
@@ -215,15 +222,16 @@ def english(node: ast.Ast, vocabulary: Vocabulary, *, brackets: str = "needed", 
     if not isinstance(node, ast.Mission):
         return "\n".join(lines_of(node, Speaker(vocabulary, names, brackets)))
     speaker = speaker_of(node, vocabulary, brackets)
-    parts = [*((part, "") for part in (*node.facts, *node.definitions)), *statements(node.body)]
+    parts = [*((part, "") for part in (*node.includes, *node.facts, *node.definitions)), *statements(node.body)]
     return "\n".join(line for part, joined in parts for line in lines_of(part, speaker, joined=joined))
 
 
 def speaker_of(mission: ast.Mission, vocabulary: Vocabulary, brackets: str = "needed") -> Speaker:
     """Says the parts of a mission, where its names and places are known."""
-    if mission.facts:
-        vocabulary = vocabulary.with_places(tuple(fact.name for fact in mission.facts))
-    return Speaker(vocabulary, mission.definitions, brackets)
+    facts = ast.all_facts(mission)
+    if facts:
+        vocabulary = vocabulary.with_places(tuple(fact.name for fact in facts))
+    return Speaker(vocabulary, ast.all_definitions(mission), brackets)
 
 
 def statements(body: ast.Ast | None) -> Iterator[tuple[ast.Ast, str]]:
@@ -264,10 +272,8 @@ def _compared(node: ast.Compared, _parts: list[Said], speaker: Speaker) -> Said:
 
 def _assign(node: ast.Assign, _parts: list[Said], speaker: Speaker) -> Said:
     word, joint = speaker.vocabulary.word(node.operation), "set_to" if node.operation == "set" else "by"
-    value = speaker.value(node.text, node.kind)
-    if node.kind == "text" and value == node.text and not value.startswith("{"):
-        value = f'"{value}"'  # a bare word may also be a name or a number
-    return _unread(f"{word} {spelt(node.key)} {speaker.vocabulary.word(joint)} {value}")
+    value = speaker.plain_value(node.text, node.kind)
+    return _unread(f"{word} {spelt(node.key, speaker.vocabulary)} {speaker.vocabulary.word(joint)} {value}")
 
 
 def _remember(node: ast.Remember, _parts: list[Said], speaker: Speaker) -> Said:
@@ -277,7 +283,7 @@ def _remember(node: ast.Remember, _parts: list[Said], speaker: Speaker) -> Said:
     form = next(f for f in ways if {part.name for part in f if isinstance(part, Slot)} == ports.keys())
     quantity = " ".join(filled(form, ports))
     joint = speaker.vocabulary.word("remember_as")
-    return _unread(f"{speaker.vocabulary.word('remember')} {quantity} {joint} {spelt(node.key)}")
+    return _unread(f"{speaker.vocabulary.word('remember')} {quantity} {joint} {spelt(node.key, speaker.vocabulary)}")
 
 
 def _for_each(node: ast.ForEach, parts: list[Said], speaker: Speaker) -> Said:
@@ -287,8 +293,8 @@ def _for_each(node: ast.ForEach, parts: list[Said], speaker: Speaker) -> Said:
 def each_head(node: ast.ForEach, speaker: Speaker) -> Iterator[Piece]:
     """`for each place in lab, dock`: marks, as no phrase is looked for in it."""
     word = speaker.vocabulary.word
-    values = ", ".join(speaker.value(text, node.kind) for text in node.values)
-    yield mark(f"{word('each')} {spelt(node.key)} {word('each_in')} {values}")
+    values = ", ".join(speaker.plain_value(text, node.kind) for text in node.values)
+    yield mark(f"{word('each')} {spelt(node.key, speaker.vocabulary)} {word('each_in')} {values}")
 
 
 def filled(form: Form, values: Mapping[str, str]) -> Iterator[str]:
@@ -296,9 +302,12 @@ def filled(form: Form, values: Mapping[str, str]) -> Iterator[str]:
     return (values[part.name] if isinstance(part, Slot) else part for part in form)
 
 
-def spelt(key: str) -> str:
-    """The key of a value as words."""
-    return key.replace("_", " ")
+def spelt(key: str, vocabulary: Vocabulary) -> str:
+    """The key of a value as words; as one word where it holds one that would end the name."""
+    ends = {
+        phrase.split()[0] for role in ("set_to", "by", "remember_as", "each_in") for phrase in vocabulary.roles[role]
+    }
+    return key if ends.intersection(key.split("_")) else key.replace("_", " ")
 
 
 def _chain(node: ast.Chain, parts: list[Said], speaker: Speaker) -> Said:
@@ -410,6 +419,10 @@ def _fact(node: ast.Fact, _parts: list[Said], speaker: Speaker) -> Said:
     return Said((*place, mark(speaker.word("facing").text), mark(angle)), THEN)
 
 
+def _include(node: ast.Include, _parts: list[Said], speaker: Speaker) -> Said:
+    return Said((mark(speaker.vocabulary.word("include")), mark(f'"{node.path}"')), THEN)
+
+
 SAYS: dict[type[ast.Ast], Callable[[Any, list[Said], Speaker], Said]] = {
     ast.Phrase: _phrase,
     ast.Name: _name,
@@ -437,5 +450,6 @@ SAYS: dict[type[ast.Ast], Callable[[Any, list[Said], Speaker], Said]] = {
     ast.Fail: _single("fail"),
     ast.Definition: _definition,
     ast.Fact: _fact,
+    ast.Include: _include,
 }
 """How each class of node is said, given what is said of its parts."""

@@ -9,8 +9,9 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
 
-from btlang.frontends.lexer import Lexer
+from btlang.frontends.includes import ROLE
 from btlang.frontends.matching import Matcher
+from btlang.frontends.mission import lexed
 from btlang.frontends.token import Token
 from btlang.frontends.value_completion import value_options
 from btlang.frontends.variables import JOINTS
@@ -30,7 +31,7 @@ _MOST_CORRECTIONS = 3
 _ALIKE = {
     **dict.fromkeys(("wait", "nothing", "fail"), "command"), "negated": "condition", "unless": "if", "until": "while",
     "if_possible": "within", "retry": "try", "wait_until": "check", "delay": "every", "in_order": "in_parallel",
-    **dict.fromkeys(("set", "increase", "decrease", "remember"), "command"), "each": "every",
+    **dict.fromkeys(("set", "increase", "decrease", "remember", "include"), "command"), "each": "every",
 }  # fmt: skip
 """Roles that stand where others stand: the matching stage is asked for one of them."""
 _LOOK_AHEAD = frozenset(("and", "or"))  # whether these are in their place depends on what follows
@@ -67,7 +68,7 @@ class Completer:
         self._partial = _last_word(text)
         self._start = len(text) - len(self._partial)
         self._source = Source(text[: self._start] + "(")  # the bracket stands for what is to come
-        self._lexer = Lexer(self._source, vocabulary, explain=False)
+        self._lexer = lexed(self._source, vocabulary)
         self._values = self._lexer.values
         self._words = self._lexer.text
         self._last = len(self._words.words) - 3  # the bracket; line end and text end follow
@@ -105,7 +106,7 @@ class Completer:
 
     def _is_unknown(self) -> bool:
         """Whether the word being written belongs to nothing that is known."""
-        lexer = Lexer(Source(self._text), self._vocabulary, explain=False)
+        lexer = lexed(Source(self._text), self._vocabulary)
         return bool(lexer.tokens) and any(t.kind == "unknown" and t.end > self._start for t in lexer.tokens)
 
     def _corrections(self) -> list[Completion]:
@@ -143,7 +144,7 @@ class Completer:
         slotted = [meaning for _, _, child in node.get(SLOTS, ()) for meaning in meanings(child)]
         for meaning in (*ends, *slotted):
             if self._may_stand(at, meaning.role):
-                more = "" if ends and meaning is ends[0] and meaning.role not in JOINTS else " "
+                more = "" if ends and meaning is ends[0] and meaning.role not in (*JOINTS, ROLE) else " "
                 kind, about = self._about(meaning)
                 yield Completion(words + more, self._start, kind, about)
                 return

@@ -3,21 +3,24 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Container, Iterator, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping
 from itertools import takewhile
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.record import Record
 from btlang.text.source import Span
 from btlang.text.words import END_OF_STATEMENT, Words
+from btlang.tree.ast import Definition
 from btlang.vocabulary.entry import Entry, Meaning, SlotSpec
-from btlang.vocabulary.pattern import name_form
-from btlang.vocabulary.trie import TrieNode, add, longest
-from btlang.vocabulary.values import key_of
+from btlang.vocabulary.pattern import Part, Slot, name_form
+from btlang.vocabulary.trie import SLOTS, TrieNode, add, longest
+from btlang.vocabulary.values import END, key_of
 from btlang.vocabulary.vocabulary import DEFINING, Vocabulary
 
 # A line that starts with one of these compares; it defines nothing.
-_STARTS_NO_NAME = frozenset(("if", "unless", "while", "until", "otherwise", "then", "check", "wait_until"))
+_STARTS_NO_NAME = frozenset((
+    "if", "unless", "while", "until", "whenever", "otherwise", "then", "check", "wait_until",
+))  # fmt: skip
 _NOT_IN_A_NAME = frozenset(("if", "unless", "while", "until", "otherwise", "then", "and", "or", "after", "provided"))
 
 
@@ -49,19 +52,26 @@ class Definitions:
 
 
 def find_definitions(
-    text: Words, vocabulary: Vocabulary, facts: Container[int] = (), variables: Container[tuple[str, ...]] = ()
+    text: Words,
+    vocabulary: Vocabulary,
+    ends: Container[int] = (),
+    variables: Container[tuple[str, ...]] = (),
+    included: Iterable[Definition] = (),
 ) -> Definitions:
     """Every definition of the text. A name defined twice is listed twice; the later one counts.
 
-    `facts` are the words at which facts start, which define no command; `variables` are words that are compared.
+    `ends` are the words at which statements start that define no command; `variables` are words that are compared.
+    The `included` ones are known, too.
     """
     found = Definitions()
+    for definition in included:
+        _add(found.trie, definition.name, dict(definition.parameters))
     defining = {word for role in DEFINING for word in vocabulary.roles[role]}
     if defining.isdisjoint(text.words):
         return found
     margin = text.lines[0].indent if text.lines else 0
     for indent, first, last in statements(text):
-        if first in facts or defining.isdisjoint(text.words[first:last]):
+        if first in ends or defining.isdisjoint(text.words[first:last]):
             continue
         header = _header(text, first, last, vocabulary, variables, found.problems)
         if header is None:
@@ -78,18 +88,26 @@ def add_name(header: Header, found: Definitions, vocabulary: Vocabulary, types: 
     """Makes a name known, with the types of its parameters (BT017, BT018)."""
     words = name_form(header.name)
     found.types[header.body] = tuple(types.items())
-    slots = tuple(SlotSpec(key, kind) for key, kind in types.items())
-    if (
-        add(found.trie, words, types, Meaning("name", Entry("name", header.name, (header.name,), slots=slots)))
-        is not None
-    ):
+    if _add(found.trie, header.name, types) is not None:
         found.problems.append(diagnostic("BT017", header.span, name=header.name))
         return
-    node: TrieNode | None = vocabulary.trie
+    nodes = [vocabulary.trie]
     for part in words:
-        node = node.get(part) if node is not None and isinstance(part, str) else None
-    if node is not None and "\0" in node:
+        nodes = [child for node in nodes for child in _below(node, part)]
+    if any(END in node for node in nodes):
         found.problems.append(diagnostic("BT018", header.span, name=header.name))
+
+
+def _below(node: TrieNode, part: Part) -> list[TrieNode]:
+    if isinstance(part, Slot):
+        return [child for _, _, child in node.get(SLOTS, ())]
+    return [node[part]] if part in node else []
+
+
+def _add(trie: TrieNode, name: str, types: Mapping[str, str]) -> Meaning | None:
+    """What had the name before."""
+    slots = tuple(SlotSpec(key, kind) for key, kind in types.items())
+    return add(trie, name_form(name), types, Meaning("name", Entry("name", name, (name,), slots=slots)))
 
 
 def statements(text: Words) -> Iterator[tuple[int, int, int]]:
@@ -138,14 +156,15 @@ def _header(
     if start == at:
         problems.append(diagnostic("BT016", text.span(at, at + 1), word=text.words[at]))
         return Header("", text.span(at, at + 1), at + 1, at + 1)
-    if tuple(text.words[start:at]) in variables:
+    if any(tuple(text.words[i:at]) in variables for i in range(start, at)):
         return None
     joined = _joining_word(text, start, at, vocabulary)
     if joined is not None and _starts_with_a_phrase(text, start, joined, vocabulary):
         return None  # `charge until the battery is green` is a command that says something unknown
     if joined is not None:
         problems.append(diagnostic("BT015", joined, word=joined.text))
-        return Header(" ".join(text.words[start:at]), text.span(start, at), at + 1, reach(text, at))
+        name = " ".join(word for word in text.words[start:at] if word not in ("{", "}"))
+        return Header(name, text.span(start, at), at + 1, reach(text, at))
     parts, parameters = _pattern(text.words[start:at])
     return Header(" ".join(parts), text.span(start, at), at + 1, reach(text, at), parameters)
 

@@ -3,22 +3,33 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.definitions import Definitions, find_definitions
 from btlang.frontends.facts import find_facts
+from btlang.frontends.includes import ROLE as INCLUDE
+from btlang.frontends.includes import Included, find_includes, misplaced
 from btlang.frontends.remembering import read_statement
 from btlang.frontends.token import Listed, Token
 from btlang.frontends.unknown import explain_unknown, misread_head, unknown_value
 from btlang.frontends.variables import JOINTS, Head, Variables, find_heads, span_of
 from btlang.text.source import Source, Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, split
+from btlang.tree.ast import Include, all_definitions, all_facts
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.references import keys_in, renamed
 from btlang.vocabulary.trie import SLOTS, Match, SlotValue, longest
 from btlang.vocabulary.values import key_of
 from btlang.vocabulary.vocabulary import Vocabulary
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+    Load: TypeAlias = Callable[[str, Span], Included | None]
+else:
+    Load = None
 
 _MARKS = {",": "comma", ";": "semi", ":": "colon", "(": "open", ")": "close"}
 
@@ -26,10 +37,11 @@ _MARKS = {",": "comma", ";": "semi", ":": "colon", "(": "open", ")": "close"}
 class Lexer:
     """Reads one source. `tokens` are raw tokens, `problems` what was unknown; both are complete after construction.
 
-    With `explain` False nothing is said about unknown words, which takes time.
+    With `explain` False nothing is said about unknown words, which takes time. `load` reads the missions that this one
+    includes; without it their names are unknown.
     """
 
-    def __init__(self, source: Source, vocabulary: Vocabulary, explain: bool = True) -> None:
+    def __init__(self, source: Source, vocabulary: Vocabulary, explain: bool = True, load: Load | None = None) -> None:
         self._explain = explain
         self.text: Words = split(source, vocabulary.articles)
         self.vocabulary = vocabulary
@@ -37,22 +49,30 @@ class Lexer:
             diagnostic("BT004", span, fix=(Span(source, span.end, span.end), '"')) for span in self.text.open_quotes
         ]
         self.problems += [diagnostic("BT003", span, characters=span.text[:20]) for span in self.text.unreadable]
+        includes = find_includes(self.text, vocabulary)
+        loaded = [(path, span, load(path, span)) for path, span in includes.found] if load is not None else []
+        self.includes = [Include(path, part.mission, span) for path, span, part in loaded if part is not None]
+        parts = [part for _, _, part in loaded if part is not None]
         facts = find_facts(self.text, vocabulary)
-        self.problems += facts.problems
+        self.problems += includes.problems + facts.problems
         self.facts = facts.found
-        self._fact_ends = facts.ends
-        if self.facts:
-            self.vocabulary = vocabulary.with_places(tuple(fact.name for fact in self.facts))
+        self._ends = includes.ends | facts.ends
+        places = [*(fact for part in parts for fact in all_facts(part.mission)), *self.facts]
+        if places:
+            self.vocabulary = vocabulary.with_places(tuple(dict.fromkeys(fact.name for fact in places)))
+        shared = [definition for part in parts for definition in all_definitions(part.mission)]
         self._heads = find_heads(self.text, self.vocabulary)
         named = {words for head in self._heads.values() for words in (head.words, ("{", *head.words, "}"))}
-        self.definitions: Definitions = find_definitions(self.text, self.vocabulary, facts.ends, named)
-        self._variables = Variables(self.text, self.vocabulary, self._heads, self.definitions)
+        self.definitions: Definitions = find_definitions(self.text, self.vocabulary, self._ends, named, shared)
+        self._variables = Variables(self.text, self.vocabulary, self._heads, self.definitions, parts)
+        self.known = self._variables.everywhere
+        """The values that hold in the whole mission, by key."""
         self._bounds = [*self._variables.bounds, len(self.text.words)]
         self.problems += self.definitions.problems + self._variables.problems
         self.values = self.vocabulary.values.for_reading()
         self.tokens: list[Token] = []
         self._lines()
-        self.conditions: set[str] = self._condition_names()
+        self.conditions: set[str] = self._condition_names({name for part in parts for name in part.conditions})
         """The defined names that stand for conditions."""
         for token in self.tokens:
             if token.kind == "name":
@@ -102,8 +122,8 @@ class Lexer:
             if at in heads:
                 at = self._statement(heads[at], at)
                 continue
-            if at in self._fact_ends:
-                at = self._fact_ends[at]
+            if at in self._ends:
+                at = self._ends[at]
                 continue
             if at in headers:
                 header = headers[at]
@@ -118,12 +138,15 @@ class Lexer:
                 continue
             match = longest(trie, text, at, values, names)
             if names and (word in names or SLOTS in names):
-                named = longest(names, text, at, values)
+                named = longest(names, text, at, values, trie)
                 if named is not None and (match is None or named.last >= match.last):
                     match = named
-            if match is None or match.meaning.role in JOINTS:
+            if match is None or match.meaning.role in JOINTS or match.meaning.role == INCLUDE:
                 end = self._unknown_end(at, last)
-                if self._explain and match is not None:
+                if match is not None and match.meaning.role == INCLUDE:
+                    end += words[end][0] == '"'
+                    self.problems.append(misplaced(text.span(at, end), self.vocabulary))
+                elif self._explain and match is not None:
                     self.problems.append(misread_head(text, at, match.meaning.role, self.vocabulary))
                 elif self._explain:
                     self.problems.append(
@@ -161,7 +184,8 @@ class Lexer:
             return Token(kind, self._called(meaning.entry, match, at), start, end)
         if match.values:
             return Token(meaning.role, match.values[0].text, start, end)
-        return Token(meaning.role, str(meaning.value) if meaning.role == "count" else None, start, end)
+        value = str(meaning.value) if meaning.role == "count" else meaning.between or None
+        return Token(meaning.role, value, start, end)
 
     def _called(self, entry: Entry, match: Match, at: int) -> tuple[Entry, tuple[tuple[str, str], ...]] | Listed:
         """The entry with its arguments, or with several of them where one slot holds a list."""
@@ -224,9 +248,10 @@ class Lexer:
         last = self.tokens[-1]
         return Span(self.text.source, last.start, last.end)
 
-    def _condition_names(self) -> set[str]:
+    def _condition_names(self, included: set[str]) -> set[str]:
         """A name is a condition where its body holds only conditions, `not`, `and`, `or` and condition names."""
         needs = {name: _names_in_condition(body) for name, body in _bodies(self.tokens)}
+        needs |= {name: set() for name in included if name not in needs}
         users: dict[str, list[str]] = {}
         for name, needed in needs.items():
             for other in needed or ():

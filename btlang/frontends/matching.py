@@ -212,18 +212,18 @@ class Matcher(ConditionScan):
     # -- after a command
 
     def _connective(self, token: Token) -> None:
-        self._frames[-1].connective(self._emit(token.kind.upper(), token))
+        self._frames[-1].connective(self._emit((token.value or token.kind).upper(), token))
         self._next(token, True)
         if token.kind == "then" and self._raw[self._at].kind == "comma":
             self._at += 1
 
     def _comma(self, token: Token) -> None:
         following = self._raw[self._at + 1]
-        if following.kind in ("and", "or"):
+        if following.kind in ("and", "or") and not following.value:
             self._frames[-1].connective(self._emit("WIDE_" + following.kind.upper(), following))
             self._next(token, True)
             self._next(following, True)
-        elif following.kind in ("then", "otherwise", "after"):
+        elif following.kind in ("then", "otherwise", "after", "and", "or"):
             self._at += 1
         elif following.kind in CONDITION_FORMS and self._closes_statement(self._at + 2):
             self._close_forms()

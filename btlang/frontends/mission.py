@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import os
 from importlib import import_module
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
+from btlang.diagnostics.reading import read_source
 from btlang.frontends.build import Builder
-from btlang.frontends.lexer import Lexer
+from btlang.frontends.includes import Included
+from btlang.frontends.lexer import Lexer, Load
 from btlang.frontends.matching import Matcher
 from btlang.record import Record
 from btlang.text.source import Source, Span
@@ -18,6 +21,7 @@ PARSERS = {
     "lark": "btlang.frontends.lark_parser",  # imported only when asked for: it costs more than a whole check
 }
 DEFAULT_PARSER = "shunting-yard"
+_MOST_DEEP = 50  # files that include each other
 
 
 class Reading(Record):
@@ -28,29 +32,85 @@ class Reading(Record):
 
 
 def read_mission(source: Source, vocabulary: Vocabulary, parser: str = DEFAULT_PARSER) -> Reading:
-    """Raises MissionError with all that is wrong with the text; ValueError for an unknown parser."""
+    """Raises MissionError with all that is wrong with the text and those that it includes; ValueError for an unknown
+    parser.
+    """
     if parser not in PARSERS:
         raise ValueError(f"no parser '{parser}'; there are {', '.join(PARSERS)}")
-    lexer = Lexer(source, vocabulary)
-    matcher = Matcher(source, lexer.tokens, lexer.conditions, vocabulary.word)
-    problems = lexer.problems + matcher.problems
-    if not lexer.tokens and not lexer.facts and not problems:
-        problems = [diagnostic("BT005", Span(source, 0, 0), example="move forward 1 m")]
-    if any(problem.is_error for problem in problems):
-        raise MissionError(problems)
-    parse = import_module(PARSERS[parser]).parse
-    build = Builder(source)
-    body: Ast | None = None
-    definitions: dict[str, Definition] = {}
-    for unit in matcher.units:
-        if unit.header is None:
-            body = parse(unit.tokens, build) if unit.tokens else None
-            continue
-        inner = parse(unit.tokens, build)
-        span = Span(source, unit.header.span.start, inner.span.end)
-        definitions.pop(unit.header.name, None)  # a later definition replaces an earlier one
-        name, types = unit.header.name, lexer.definitions.types[unit.header.body]
-        definitions[name] = Definition(name, types, inner, unit.header.span, span)
-    facts = {fact.name: fact for fact in lexer.facts}  # a later fact replaces an earlier one
-    mission = Mission(body, tuple(definitions.values()), Span(source, 0, len(source.text)), tuple(facts.values()))
-    return Reading(mission, tuple(problems))
+    reader = _Reader(vocabulary, parser)
+    included = reader.read(source, (os.path.realpath(source.name),))
+    if included is None or any(problem.is_error for problem in reader.problems):
+        raise MissionError(reader.problems)
+    return Reading(included.mission, tuple(reader.problems))
+
+
+def lexed(source: Source, vocabulary: Vocabulary) -> Lexer:
+    """The tokens of a text, with the names of what it includes; nothing is said of what is wrong."""
+    reader = _Reader(vocabulary, DEFAULT_PARSER)
+    return Lexer(source, vocabulary, explain=False, load=reader.loader(source, (os.path.realpath(source.name),)))
+
+
+class _Reader:
+    """Reads a text and those that it includes, each once. `problems` are those of all of them."""
+
+    def __init__(self, vocabulary: Vocabulary, parser: str) -> None:
+        self.problems: list[Diagnostic] = []
+        self._vocabulary = vocabulary
+        self._parser = parser
+        self._read: dict[str, Included | None] = {}
+
+    def loader(self, source: Source, within: tuple[str, ...]) -> Load:
+        """What reads the files that a text includes; `within` are the files that are being read, the text's last."""
+
+        def load(path: str, span: Span) -> Included | None:
+            name = os.path.join(os.path.dirname(source.name), path)
+            real = os.path.realpath(name)
+            if real in within or len(within) > _MOST_DEEP:
+                files = (*within[within.index(real) if real in within else 0 :], real)
+                circle = " -> ".join(map(os.path.basename, files))
+                self.problems.append(diagnostic("BT046", span, file=path, circle=circle))
+                return None
+            if real not in self._read:
+                self._read[real] = self._file(name, (*within, real), span)
+            return self._read[real]
+
+        return load
+
+    def _file(self, name: str, within: tuple[str, ...], span: Span) -> Included | None:
+        try:
+            return self.read(read_source(name), within)
+        except MissionError as error:
+            for problem in error.diagnostics:
+                here = problem.replace(span=span) if problem.code == "BT001" else problem
+                self.problems.append(here)
+            return None
+
+    def read(self, source: Source, within: tuple[str, ...]) -> Included | None:
+        """None where something is wrong with the text itself."""
+        lexer = Lexer(source, self._vocabulary, load=self.loader(source, within))
+        matcher = Matcher(source, lexer.tokens, lexer.conditions, self._vocabulary.word)
+        problems = lexer.problems + matcher.problems
+        if not lexer.tokens and not lexer.facts and not lexer.includes and not problems:
+            problems = [diagnostic("BT005", Span(source, 0, 0), example="move forward 1 m")]
+        self.problems += problems
+        if any(problem.is_error for problem in problems):
+            return None
+        return Included(self._mission(source, lexer, matcher), frozenset(lexer.conditions), lexer.known)
+
+    def _mission(self, source: Source, lexer: Lexer, matcher: Matcher) -> Mission:
+        parse = import_module(PARSERS[self._parser]).parse
+        build = Builder(source)
+        body: Ast | None = None
+        definitions: dict[str, Definition] = {}
+        for unit in matcher.units:
+            if unit.header is None:
+                body = parse(unit.tokens, build) if unit.tokens else None
+                continue
+            inner = parse(unit.tokens, build)
+            span = Span(source, unit.header.span.start, inner.span.end)
+            definitions.pop(unit.header.name, None)  # a later definition replaces an earlier one
+            name, types = unit.header.name, lexer.definitions.types[unit.header.body]
+            definitions[name] = Definition(name, types, inner, unit.header.span, span)
+        facts = {fact.name: fact for fact in lexer.facts}  # a later fact replaces an earlier one
+        whole = Span(source, 0, len(source.text))
+        return Mission(body, tuple(definitions.values()), whole, tuple(facts.values()), tuple(lexer.includes))

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Iterator, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.definitions import Definitions, Header, add_name, reach
+from btlang.frontends.includes import Included
 from btlang.record import Record
 from btlang.text.source import Span
 from btlang.text.words import Words
@@ -39,19 +40,27 @@ class Head(Record):
 
 
 class Variables:
-    """`heads` by the word at which they start; `problems`; which values are known `at` a word."""
+    """`problems` with names, which values are known `at` a word, and those that are known `everywhere`, by key."""
 
-    def __init__(self, text: Words, vocabulary: Vocabulary, heads: dict[int, Head], definitions: Definitions) -> None:
+    def __init__(
+        self,
+        text: Words,
+        vocabulary: Vocabulary,
+        heads: dict[int, Head],
+        definitions: Definitions,
+        included: Iterable[Included] = (),
+    ) -> None:
         self.problems: list[Diagnostic] = []
         self._text, self._vocabulary, self._definitions = text, vocabulary, definitions
         self._values = vocabulary.values.for_reading()
         self._heads = heads
-        self._global: dict[str, Known] = {}
+        self._included = {key: known for part in included for key, known in part.known.items()}
+        self.everywhere: dict[str, Known] = dict(self._included)
         self._local: list[tuple[int, int, Known]] = []
         self.bounds: list[int] = []
         """The words at which other values begin to be known, in order."""
         headers = [header for header in definitions.headers.values() if header.parameters]
-        if heads or headers:
+        if heads or headers or self._included:
             self._resolve(headers)
             self._check_names()
             self._compare()
@@ -60,7 +69,7 @@ class Variables:
     def at(self, word: int) -> dict[str, Known]:
         """What is known there, the innermost of each name, by key."""
         inner = {known.key: known for first, last, known in self._local if first <= word < last}
-        return {**self._global, **inner}
+        return {**self.everywhere, **inner}
 
     # -- types
 
@@ -96,16 +105,16 @@ class Variables:
             for header in headers
             for key, words in header.parameters
         ]
-        self._global = {}
+        self.everywhere = dict(self._included)
         for at, head in self._heads.items():
             kinds = types.get((at, head.key))
             if head.role == "each":
                 known = Known(head.key, head.words, kinds or ())
                 self._local.append((head.last, reach(self._text, at), known))
             elif kinds is not None:
-                others = self._global.get(head.key)
+                others = self.everywhere.get(head.key)
                 both = tuple(kind for kind in others.kinds if kind in kinds) if others is not None else kinds
-                self._global[head.key] = Known(head.key, head.words, both or kinds)
+                self.everywhere[head.key] = Known(head.key, head.words, both or kinds)
 
     def _infer(self, header: Header, types: dict[tuple[int, str], tuple[str, ...]]) -> None:
         """The type of a parameter is that of the first slot in which it stands, other than one of text."""
@@ -149,10 +158,10 @@ class Variables:
 
     def _check_names(self) -> None:
         for at, head in self._heads.items():
-            if head.role != "each" and self._global.get(head.key) is None:
+            if head.role != "each" and self.everywhere.get(head.key) is None:
                 self._unknown(at, head)
         for first, _, known in self._local:
-            if known.key in self._global:
+            if known.key in self.everywhere:
                 span = self._text.span(max(0, first - 1), first)
                 for header in self._definitions.headers.values():
                     span = header.span if header.body == first else span
@@ -168,8 +177,8 @@ class Variables:
 
     def _compare(self) -> None:
         """`counter is 3` becomes a condition, as for a quantity."""
-        everywhere = {known.key: known for _, _, known in self._local} | self._global
-        for known in everywhere.values():
+        named = {known.key: known for _, _, known in self._local} | self.everywhere
+        for known in named.values():
             for kind in known.kinds[:1]:
                 entry = Entry("value", known.key, (), quantity=(" ".join(known.words),), measures=kind)
                 for form in self._vocabulary.comparing_forms(kind):
@@ -186,6 +195,7 @@ def find_heads(text: Words, vocabulary: Vocabulary) -> dict[int, Head]:
     heads: dict[int, Head] = {}
     if firsts.isdisjoint(text.words):
         return heads
+    vocabulary = vocabulary.with_references()
     for at, word in enumerate(text.words):
         if word in firsts:
             match = longest(vocabulary.trie, text, at, vocabulary.values)
@@ -234,9 +244,10 @@ def _goes_on(word: str) -> bool:
 def _end_of_name(text: Words, at: int, vocabulary: Vocabulary) -> int:
     """Behind the words of a name: it ends at a mark, and before a connective."""
     first = at
-    while at < first + _MOST_WORDS + 2 and _is_part(text, at, vocabulary):
+    ends = "}" if text.words[at] == "{" else "{"
+    while at < first + _MOST_WORDS + 2 and (at == first or text.words[at] != ends) and _is_part(text, at, vocabulary):
         at += 1
-    return at
+    return at + (ends == "}" == text.words[at])
 
 
 def _name(text: Words, first: int, last: int, vocabulary: Vocabulary) -> tuple[str, ...]:

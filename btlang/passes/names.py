@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.tree.ast import Ast, Definition, Mission, Name, parts
+from btlang.tree.ast import Ast, Definition, Mission, Name, all_definitions, parts
 
 
 def order_of_use(mission: Mission) -> tuple[list[Definition], list[Diagnostic]]:
     """The definitions, used ones before their users; a name that reaches itself is a problem (BT040)."""
-    definitions = {definition.name: definition for definition in mission.definitions}
+    definitions = {definition.name: definition for definition in all_definitions(mission)}
     uses = {name: names_in(definition.body) for name, definition in definitions.items()}
     ordered: list[Definition] = []
     problems: list[Diagnostic] = []

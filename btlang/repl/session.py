@@ -11,7 +11,7 @@ from btlang.frontends.mission import DEFAULT_PARSER, Reading, read_mission
 from btlang.passes import compile_mission
 from btlang.record import Record
 from btlang.text.source import Source
-from btlang.tree.ast import Ast, Chain, Definition, Fact, parts
+from btlang.tree.ast import Ast, Chain, Definition, Fact, Include, parts
 from btlang.tree.node import Node, Tree
 
 TYPE_CHECKING = False
@@ -88,7 +88,7 @@ class Session:
         whole = f"{text}\n{above}"  # the entry first, so that places in it are those that were typed
         reading = read_mission(Source(whole, ENTRY), self.vocabulary, self._parser)
         mission = reading.mission
-        named: list[Definition | Fact] = [*mission.definitions, *mission.facts]
+        named: list[Definition | Fact | Include] = [*mission.includes, *mission.definitions, *mission.facts]
         own = [d for d in named if d.span.start < len(text)]
         tree = compile_mission(reading.mission, self.vocabulary, needs_command=False)
         entry = Entry(text, tuple((d.name, d.span.text) for d in own), reading.mission.body is not None)
@@ -138,7 +138,9 @@ class Session:
             commands = parts(body)
         groups: list[list[Ast]] = []  # those that share a line
         last = 0
-        for statement in sorted((*commands, *mission.definitions, *mission.facts), key=lambda part: part.span.start):
+        for statement in sorted(
+            (*commands, *mission.includes, *mission.definitions, *mission.facts), key=lambda part: part.span.start
+        ):
             line = source.position(statement.span.start)[0]
             if line > last:
                 groups.append([])
@@ -149,7 +151,7 @@ class Session:
         for group in groups:
             below = source.position(group[-1].span.end)[0] + 1
             end = source.offset(below) if group is not groups[-1] else len(text)
-            own = tuple((d.name, d.span.text) for d in group if isinstance(d, Definition | Fact))
+            own = tuple((d.name, d.span.text) for d in group if isinstance(d, Definition | Fact | Include))
             entries.append(Entry(text[begin:end].strip("\n"), own, len(own) < len(group)))
             begin = end
         return entries

@@ -237,14 +237,52 @@ class Fact(Ast):
     span: Span
 
 
+class Include(Ast):
+    """Another mission, whose definitions and facts hold here too; `path` as it was written."""
+
+    path: str
+    mission: Mission
+    span: Span
+
+    @property
+    def name(self) -> str:
+        """What it is called where definitions and facts have names."""
+        return self.path
+
+
 class Mission(Ast):
-    """A whole text: the sequence of its commands (None where there are none), its definitions and facts in order."""
+    """A whole text: the sequence of its commands (None where there are none), its definitions and facts in order.
+
+    `all_definitions` and `all_facts` also give those of what it includes.
+    """
 
     body: Ast | None
     definitions: tuple[Definition, ...]
     span: Span
     facts: tuple[Fact, ...] = ()
+    includes: tuple[Include, ...] = ()
     parts = ("body", "definitions")
+
+
+def all_definitions(mission: Mission) -> list[Definition]:
+    """Those of the included missions, then its own; of one name the last."""
+    found: dict[str, Definition] = {}
+    for part in _with_included(mission):
+        for definition in part.definitions:
+            found.pop(definition.name, None)
+            found[definition.name] = definition
+    return list(found.values())
+
+
+def all_facts(mission: Mission) -> list[Fact]:
+    """Those of the included missions, then its own; of one place the last."""
+    return list({fact.name: fact for part in _with_included(mission) for fact in part.facts}.values())
+
+
+def _with_included(mission: Mission) -> Iterator[Mission]:
+    for include in mission.includes:
+        yield from _with_included(include.mission)
+    yield mission
 
 
 def parts(node: Ast) -> list[Ast]:

@@ -15,7 +15,7 @@ _NO_SLOT = (
     "then", "and", "or", "after", "otherwise", "if", "unless", "while", "until", "whenever", "provided", "not",
     "repeat", "try", "retry", "if_possible", "wait_until", "check", "nothing", "fail", "in_parallel", "in_order",
     "define_strong", "define", "fact", "facing",
-    "set", "set_to", "increase", "decrease", "by", "remember", "remember_as", "each", "each_in",
+    "set", "set_to", "increase", "decrease", "by", "remember", "remember_as", "each", "each_in", "include",
 )  # fmt: skip
 ROLES = {
     **dict.fromkeys(_NO_SLOT, ""),
@@ -27,6 +27,9 @@ ROLES = {
 COMPARING = {**dict.fromkeys(COMPARISONS, "value"), "between": "low high"}
 """The ways to compare a quantity, each with the slots that its phrases hold."""
 
+BETWEEN = ("then", "and", "or", "after")
+"""The roles that a connective may have between commands."""
+
 EXPLAINED = (*ROLES, "compare", "politeness")
 """What the table `about` tells of."""
 
@@ -35,6 +38,10 @@ WORD_LISTS = frozenset(("articles", "politeness", "unit_joiner"))
 
 def _words(value: object) -> bool:
     return isinstance(value, list) and all(isinstance(item, str) and item for item in value)
+
+
+def _between(value: object) -> bool:
+    return value in BETWEEN
 
 
 def _number(value: object) -> bool:
@@ -59,6 +66,7 @@ TABLES: dict[str, tuple[Callable[[object], bool], str]] = {
     "comparisons": (_words, "a list of phrases"),
     "negations": (_words, "a list of words"),
     "pronouns": (_words, "a list of types"),
+    "meanings": (_between, "one of " + ", ".join(BETWEEN)),
     "counts": (_rounds, "a whole number from 1 on, or -1 for without end"),
     "numbers": (_number, "a number"),
     "multipliers": (_number, "a number"),

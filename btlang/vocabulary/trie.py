@@ -69,7 +69,8 @@ def add(root: TrieNode, form: Form, types: Mapping[str, str], meaning: Meaning) 
 def longest(root: TrieNode, text: Words, at: int, values: Values, names: TrieNode | None = None) -> Match | None:
     """The longest phrase at a word; where two are equally long, the one with words in place of slots.
 
-    A slot of an entry also takes a list of values. It ends before a phrase, or a name in the trie `names`.
+    A slot of an entry also takes a list of values. It ends before a phrase, also before one in the trie `names`, in
+    which connectives are looked for too.
     """
     words, joiners = text.words, values.joiners
     node: TrieNode | None = root.get(words[at])
@@ -112,7 +113,7 @@ def _listed(root: TrieNode, text: Words, first: SlotValue, values: Values, names
         at = last
         comma = text.words[at] == ","
         at += comma
-        joined = longest(root, text, at, values) if text.words[at] in values.joiners else None
+        joined = _joiner(root, names, text, at, values) if text.words[at] in values.joiners else None
         role = joined.meaning.role if joined is not None and joined.meaning.role in ("and", "or") else ""
         if (joiner and role != joiner) or not (role or comma):
             break
@@ -124,6 +125,10 @@ def _listed(root: TrieNode, text: Words, first: SlotValue, values: Values, names
         more.append(value[0])
         last, joiner = value[1], role
     return first.replace(more=tuple(more), joiner=joiner, last=last) if more else None
+
+
+def _joiner(root: TrieNode, names: TrieNode | None, text: Words, at: int, values: Values) -> Match | None:
+    return longest(root, text, at, values) or (longest(names, text, at, values) if names else None)
 
 
 def reaches_beyond(root: TrieNode, text: Words, at: int, last: int, values: Values) -> bool:

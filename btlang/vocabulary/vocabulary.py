@@ -52,6 +52,8 @@ class Vocabulary:
                     self._add_name(kind, words, name)
         self.roles: dict[str, list[str]] = {**language["roles"], "politeness": language["politeness"]}
         self.counts: dict[str, int] = language["counts"]
+        self.meanings: dict[str, str] = language["meanings"]
+        """Connectives that have another role between commands: `and` may mean `then`."""
         self.about = _about(files)
         self.quantities: TrieNode = {}
         """The phrases of quantities alone: before `is` they compare and define nothing."""
@@ -103,9 +105,13 @@ class Vocabulary:
         found = self.values.read(kind, text, 0)
         return found[0] if found and found[1] >= len(text.words) - 2 else None
 
+    def first(self, role: str) -> str:
+        """The pattern of a role that messages and canonical English use: the first in its list that means it."""
+        return next((phrase for phrase in self.roles[role] if phrase not in self.meanings), self.roles[role][0])
+
     def word(self, role: str) -> str:
-        """The word of a role that messages and canonical English use: the first in its list."""
-        words = forms(self.roles[role][0])[-1]
+        """The words of that pattern."""
+        words = forms(self.first(role))[-1]
         return " ".join(word for word in words if isinstance(word, str))
 
     def _types_of(self, files: Iterable[KeywordFile]) -> dict[str, ValueType]:
@@ -123,7 +129,7 @@ class Vocabulary:
     def _add_roles(self) -> None:
         for role, phrases in self.roles.items():
             for phrase in phrases if role not in NO_PHRASES else ():
-                self._add_phrase(phrase, Meaning(role), {})
+                self._add_phrase(phrase, Meaning(role, between=self.meanings.get(phrase, "")), {})
         for words, rounds in self.counts.items():
             self._add_phrase(words, Meaning("count", value=rounds), {})
 
@@ -243,7 +249,7 @@ def _compared(name: str, patterns: Iterable[str]) -> list[str]:
 
 _LANGUAGE: dict[str, Any] = {
     "articles": [], "politeness": [], "unit_joiner": [], "roles": {}, "about": {}, "comparisons": {}, "counts": {},
-    "negations": {}, "pronouns": {}, "numbers": {}, "multipliers": {}, "fractions": {},
+    "negations": {}, "pronouns": {}, "meanings": {}, "numbers": {}, "multipliers": {}, "fractions": {},
 }  # fmt: skip
 
 

@@ -78,7 +78,7 @@ def test_syntax_trees_keep_their_tree(mission: ast.Mission) -> None:
 @given(trees.missions(), st.sampled_from([1, 20, 50]), st.sampled_from(BRACKETS))
 def test_blocks_keep_the_tree(mission: ast.Mission, width: int, brackets: str) -> None:
     tree = compile_mission(mission, letters())
-    speaker = Speaker(letters(), trees.NAMES[: len(mission.definitions)], brackets)
+    speaker = Speaker(letters(), mission.definitions, brackets)
     lines = [line for one in mission.definitions for line in blocks.lines_of(one, speaker, width, least=0)]
     for item, joined in statements(mission.body):
         lines += blocks.lines_of(item, speaker, width, joined, least=0)

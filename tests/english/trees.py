@@ -8,6 +8,7 @@ from hypothesis import strategies as st
 
 from btlang.text.source import Source, Span
 from btlang.tree import ast
+from btlang.vocabulary.entry import Entry
 from tests.language.letters import COMMANDS, CONDITIONS, letters
 
 SPAN = Span(Source("x"), 0, 1)
@@ -39,23 +40,71 @@ def _chains(operators: list[str], inner: Trees) -> Trees:
     return st.builds(_chain, st.sampled_from(operators), st.lists(inner, min_size=2, max_size=3), st.booleans())
 
 
+def _entry(node_id: str) -> Entry:
+    entry = letters().entry(node_id)
+    assert entry is not None
+    return entry
+
+
+_texts = st.sampled_from(
+    ["{count}", "it is {count}", "it's {count} {{m}}", "hello", "{{count}}", "{gap_to_wall} {count}"]
+)
+_amounts = st.sampled_from(["3", "0.5", "{count}"])
+_span = st.just(SPAN)
+_limits = st.dictionaries(st.sampled_from(["below", "above", "equal"]), _amounts, min_size=1, max_size=1)
+compared: Trees = st.one_of(
+    st.builds(ast.Compared, st.just("count"), st.just("number"), _limits.map(lambda d: tuple(d.items())), _span),
+    st.just(ast.Phrase(_entry("Battery"), (("below", "{level}"),), SPAN)),
+)
+valued: Trees = st.one_of(
+    st.builds(
+        ast.Assign,
+        st.just("count"),
+        st.sampled_from(["set", "increase", "decrease"]),
+        st.just("number"),
+        _amounts,
+        _span,
+    ),
+    st.builds(ast.Assign, st.just("mood"), st.just("set"), st.just("text"), _texts, _span),
+    st.just(ast.Remember("level", _entry("Battery"), (), SPAN)),
+    _texts.map(lambda text: ast.Phrase(_entry("Murmur"), (("text", text),), SPAN)),
+    st.builds(ast.Wait, st.just("{pause}"), _span),
+)
+"""Commands that work with values; `defined` gives each of these a value."""
+
+_NUMBER = "number"
+defined = (
+    ast.Assign("count", "set", _NUMBER, "0", SPAN),
+    ast.Assign("gap_to_wall", "set", "length", "0.5", SPAN),
+    ast.Assign("mood", "set", "text", "fine", SPAN),
+    ast.Assign("pause", "set", "duration", "2", SPAN),
+    ast.Assign("rounds", "set", _NUMBER, "2", SPAN),
+    ast.Remember("level", _entry("Battery"), (), SPAN),
+)
+
 conditions: Trees = st.recursive(
-    st.sampled_from(CONDITIONS).map(phrase),
+    st.one_of(st.sampled_from(CONDITIONS).map(phrase), st.sampled_from(CONDITIONS).map(phrase), compared),
     lambda inner: st.one_of(_chains(["all", "any"], inner), st.builds(ast.Not, inner, st.just(SPAN))),
     max_leaves=4,
 )
-_seconds = st.sampled_from(["5", "0.2", "90"])
-_rounds = st.sampled_from(["-1", "1", "2", "3"])
-_span = st.just(SPAN)
+_seconds = st.sampled_from(["5", "0.2", "90", "{pause}"])
+_rounds = st.sampled_from(["-1", "1", "2", "3", "{rounds}"])
 _leaves: Trees = st.one_of(
     st.sampled_from(COMMANDS).map(phrase),
     st.sampled_from(COMMANDS).map(phrase),
+    valued,
     st.builds(ast.Fail, _span),
     st.builds(ast.Nothing, _span),
     st.builds(ast.Wait, _seconds, _span),
     st.builds(ast.Check, conditions, _span),
     st.builds(ast.WaitUntil, conditions, _span),
 )
+
+
+def _for_each(values: tuple[str, str, tuple[str, ...]], body: ast.Ast) -> ast.Ast:
+    """Something in the body says the value."""
+    says = ast.Phrase(_entry("Murmur"), (("text", "{item} of {count}"),), SPAN)
+    return ast.ForEach(*values, _chain("sequence", [says, body], False), SPAN)
 
 
 def _forms(inner: Trees) -> Trees:
@@ -70,6 +119,9 @@ def _forms(inner: Trees) -> Trees:
         st.builds(ast.Retry, _rounds, inner, _span),
         st.builds(ast.Try, inner, perhaps, _span),
         *(st.builds(form, _seconds, inner, _span) for form in timed),
+        st.builds(
+            _for_each, st.sampled_from([("item", _NUMBER, ("1", "{count}")), ("item", "text", ("a b", "c"))]), inner
+        ),
     )
 
 
@@ -114,10 +166,19 @@ def missions(draw: st.DrawFn) -> ast.Mission:
     body = draw(st.one_of(commands, commands, ruled))
     definitions = [ast.Definition(name, (), inner, SPAN, SPAN) for name, inner in zip(NAMES, bodies, strict=False)]
     used = [_use(name, inner) for name, inner in zip(NAMES, bodies, strict=False)]
+    if draw(st.booleans()):
+        greeting = ast.Phrase(_entry("Murmur"), (("text", "dear {who} {count}"),), SPAN)
+        body_of = _chain("sequence", [greeting, ast.Wait("{time}", SPAN)], False)
+        parameters = (("who", "text"), ("time", "duration"))
+        definitions.append(ast.Definition("greet {who} for {time}", parameters, body_of, SPAN, SPAN))
+        arguments = (("who", draw(_texts)), ("time", draw(_seconds)))
+        used.append(ast.Repeat("2", ast.Name("greet {who} for {time}", arguments, SPAN), SPAN))
     if used and not isinstance(body, ast.Chain):
         body = _chain(draw(st.sampled_from(["sequence", "fallback", "parallel"])), [*used, body], False)
     elif used:
         body = _chain("sequence", [*used, ast.Repeat("2", body, SPAN)], False)
+    items = list(body.items) if isinstance(body, ast.Chain) and body.operator == "sequence" else [body]
+    body = _chain("sequence", [*defined, *items], False)
     rules = draw(st.lists(_rules, max_size=2))
     if rules:
         items = list(body.items) if isinstance(body, ast.Chain) and body.operator == "sequence" else [body]
@@ -127,6 +188,7 @@ def missions(draw: st.DrawFn) -> ast.Mission:
 
 def _use(name: str, body: ast.Ast) -> ast.Ast:
     used = ast.Name(name, (), SPAN)
-    is_condition = isinstance(body, ast.Not) or (isinstance(body, ast.Chain) and body.operator in ("all", "any"))
-    is_condition = is_condition or (isinstance(body, ast.Phrase) and body.entry.sort == "condition")
+    chain = isinstance(body, ast.Chain) and body.operator in ("all", "any")
+    phrase = isinstance(body, ast.Phrase) and body.entry.sort == "condition"
+    is_condition = chain or phrase or isinstance(body, ast.Not | ast.Compared)
     return ast.Check(used, SPAN) if is_condition else ast.Repeat("2", used, SPAN)

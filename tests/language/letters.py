@@ -7,7 +7,7 @@ from functools import cache
 from btlang.frontends.mission import read_mission
 from btlang.text.source import Source
 from btlang.tree import ast
-from btlang.vocabulary.entry import Entry
+from btlang.vocabulary.entry import Entry, SlotSpec
 from btlang.vocabulary.load import load_vocabulary
 from btlang.vocabulary.vocabulary import Vocabulary
 
@@ -19,6 +19,7 @@ CONDITIONS = "pqrs"
 def letters() -> Vocabulary:
     entries = [Entry("action", letter.upper(), (letter,)) for letter in COMMANDS]
     entries += [Entry("condition", letter.upper(), (letter,)) for letter in CONDITIONS]
+    entries.append(Entry("action", "Murmur", ("murmur {text}",), slots=(SlotSpec("text", "text"),)))
     return load_vocabulary(entries)
 
 

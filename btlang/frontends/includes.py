@@ -1,0 +1,56 @@
+"""Finds the missions that a text includes, before anything else of it is read: `include "kitchen.txt"`."""
+
+from __future__ import annotations
+
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.frontends.definitions import statements
+from btlang.record import Record
+from btlang.text.source import Span
+from btlang.text.words import Words
+from btlang.tree.ast import Mission
+from btlang.vocabulary.trie import longest
+from btlang.vocabulary.values import Known
+from btlang.vocabulary.vocabulary import Vocabulary
+
+ROLE = "include"
+
+
+class Included(Record):
+    """Another mission, the names in it that stand for conditions, and the values that it names, by key."""
+
+    mission: Mission
+    conditions: frozenset[str]
+    known: dict[str, Known]
+
+
+class Includes:
+    """The paths that a text includes, each with its statement; `ends` are the words behind these, by their first."""
+
+    def __init__(self) -> None:
+        self.found: list[tuple[str, Span]] = []
+        self.ends: dict[int, int] = {}
+        self.problems: list[Diagnostic] = []
+
+
+def find_includes(text: Words, vocabulary: Vocabulary) -> Includes:
+    """Every include of the text. A statement that begins as one and is none has a problem (BT047)."""
+    includes = Includes()
+    firsts = {phrase.split()[0] for phrase in vocabulary.roles[ROLE]}
+    if firsts.isdisjoint(text.words):
+        return includes
+    for indent, first, last in statements(text):
+        match = longest(vocabulary.trie, text, first, vocabulary.values) if text.words[first] in firsts else None
+        if match is None or match.meaning.role != ROLE:
+            continue
+        span, word = text.span(first, last), text.words[match.last]
+        if match.last + 1 == last and word[0] == '"' and len(word) > 1 and indent == text.lines[0].indent:
+            includes.found.append((word[1:], span))
+        else:
+            includes.problems.append(misplaced(span, vocabulary))
+        includes.ends[first] = last
+    return includes
+
+
+def misplaced(span: Span, vocabulary: Vocabulary) -> Diagnostic:
+    """BT047: an include that cannot be read, or not there."""
+    return diagnostic("BT047", span, words=span.text, example=f'{vocabulary.word(ROLE)} "kitchen.txt"')
