@@ -28,7 +28,7 @@ def compile_mission(mission: Mission, vocabulary: Vocabulary, *, needs_command: 
     ordered, problems = order_of_use(mission)
     if problems:
         raise MissionError(problems)
-    scope = Scope(definition.name for definition in ordered)
+    scope = Scope((definition.name for definition in ordered), vocabulary.types)
     subtrees = scope.bodies
     for definition in ordered:
         lowered = lower(definition.body, scope)

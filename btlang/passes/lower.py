@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from btlang.passes.scope import Scope
-from btlang.passes.scripts import behind, concatenated, literal, prepared, script
+from btlang.passes.scripts import as_number, assignment, behind, comparison, prepared, script
 from btlang.record import Record
 from btlang.text.source import Span
 from btlang.tree import ast
@@ -18,8 +18,6 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-_OPERATORS = {"below": "<", "above": ">", "at_least": ">=", "at_most": "<=", "equal": "=="}
-_ASSIGNS = {"set": ":=", "increase": "+=", "decrease": "-="}
 _CHAINS = {"sequence": "Sequence", "all": "Sequence", "fallback": "Fallback", "any": "Fallback", "parallel": "Parallel"}
 
 
@@ -73,19 +71,14 @@ def _name(item: ast.Name, _done: list[Lowered], scope: Scope) -> Lowered:
     return Lowered(behind(scripts, node), item.name in scope.skipping and not scripts)
 
 
-def _compared(item: ast.Compared, _done: list[Lowered], _scope: Scope) -> Lowered:
-    code = " && ".join(f"{item.key} {_OPERATORS[way]} {literal(text, item.kind)}" for way, text in item.arguments)
-    return Lowered(Node("ScriptCondition", (), (("code", code),), span=item.span))
+def _compared(item: ast.Compared, _done: list[Lowered], scope: Scope) -> Lowered:
+    scripts, code = comparison(item.key, item.arguments, item.kind, scope)
+    return Lowered(behind(scripts, Node("ScriptCondition", (), (("code", code),), span=item.span)))
 
 
 def _assign(item: ast.Assign, _done: list[Lowered], scope: Scope) -> Lowered:
-    """Texts are put together as for a port."""
-    operator = _ASSIGNS[item.operation]
-    if item.kind != "text":
-        code = f"{item.key} {operator} {literal(item.text, item.kind)}"
-        return Lowered(Node("Script", (), (("code", code),), span=item.span))
-    scripts, value = concatenated(item.text, scope)
-    return Lowered(behind(scripts, Node("Script", (), (("code", f"{item.key} {operator} {value}"),), span=item.span)))
+    scripts, code = assignment(item.key, item.operation, item.text, item.kind, scope)
+    return Lowered(behind(scripts, Node("Script", (), (("code", code),), span=item.span)))
 
 
 def _remember(item: ast.Remember, _done: list[Lowered], scope: Scope) -> Lowered:
@@ -187,7 +180,7 @@ def _timed(seconds: str, scope: Scope) -> tuple[list[Node], str]:
     if not key:
         return [], str(round(float(seconds) * 1000))
     made = scope.new_key()
-    return [script(f"{made} := {key} * 1000")], f"{{{made}}}"
+    return [script(f"{as_number(made, key)}; {made} *= 1000")], f"{{{made}}}"
 
 
 def _timer(milliseconds: str) -> Node:

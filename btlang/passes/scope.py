@@ -2,25 +2,31 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Mapping
 
 from btlang.tree import ast
 from btlang.tree.node import Node
+from btlang.vocabulary.values import ValueType
 
 
 class Scope:
-    """State of lowering one mission, whose defined names are given.
+    """State of lowering one mission, whose defined names and types of values are given.
 
     `skipping` are the names whose trees can end SKIPPED, `free` the keys of the mission's values that the tree of a
     name needs from outside, in their order. `bodies` are the subtrees, used ones before their users.
     """
 
-    def __init__(self, names: Iterable[str] = ()) -> None:
+    def __init__(self, names: Iterable[str], types: Mapping[str, ValueType]) -> None:
+        self._types = types
         self.skipping: set[str] = set()
         self.free: dict[str, tuple[str, ...]] = {}
         self.bodies: list[tuple[str, Node]] = []
         self._names = set(names)
         self._keys = 0
+
+    def is_number(self, kind: str) -> bool:
+        """Whether values of a type are numbers."""
+        return self._types[kind].kind in ("quantity", "number")
 
     def new_key(self) -> str:
         """A key on the blackboard that no mission can name: its names start with a letter."""
