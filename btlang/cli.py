@@ -206,7 +206,7 @@ def _tree(options: argparse.Namespace) -> RunnableTree:
 def _parser() -> argparse.ArgumentParser:
     parser = argparse.ArgumentParser("btc", description="Compiles and runs robot missions in plain English.")
     parser.add_argument("--version", action="version", version=f"btc {btlang.__version__}")
-    verbs = parser.add_subparsers(dest="verb", metavar="VERB")
+    verbs = parser.add_subparsers(dest="verb", metavar="VERB", prog="btc")
     parser.set_defaults(verb="repl", keywords=[], world=None, parser=DEFAULT_PARSER, speed="real", format="text")
     words = argparse.ArgumentParser(add_help=False)
     words.add_argument(

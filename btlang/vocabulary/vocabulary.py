@@ -10,7 +10,6 @@ from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.text.source import Source, Span
 from btlang.text.words import split
 from btlang.vocabulary.entry import COMPARISONS, About, Entry, Meaning, SlotSpec
-from btlang.vocabulary.keyword_file import KeywordFile
 from btlang.vocabulary.language_tables import EXPLAINED
 from btlang.vocabulary.pattern import Form, PatternError, Slot, forms
 from btlang.vocabulary.trie import TrieNode, add, collisions
@@ -20,6 +19,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+    from btlang.vocabulary.keyword_file import KeywordFile
 
 DEFINING = ("define_strong", "define")
 """Roles whose words define a name where they are found first in a line; elsewhere they are words like any other."""
