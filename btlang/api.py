@@ -7,12 +7,10 @@ from collections.abc import Callable, Iterable, Sequence
 from functools import cache, partial
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
-from btlang.english.phrase import phrase_of
 from btlang.frontends.mission import DEFAULT_PARSER, read_mission
 from btlang.passes import compile_mission
 from btlang.text.source import Source, Span
 from btlang.tree.ast import Mission
-from btlang.tree.dump import described, outline
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.cache import kept
 from btlang.vocabulary.entry import Entry, SlotSpec
@@ -168,6 +166,8 @@ class RunnableTree:
         self._simulation: Simulation | None = None
 
     def __str__(self) -> str:
+        from btlang.tree.dump import outline
+
         return outline(self.tree, self._described)
 
     def print(self) -> None:
@@ -187,6 +187,8 @@ class RunnableTree:
 
     def label(self, node: Node) -> str:
         """The English of a leaf, `Id port=value` of any other node."""
+        from btlang.english.phrase import phrase_of
+
         return node.name or phrase_of(node, self.vocabulary)
 
     def is_action(self, node: Node) -> bool:
@@ -304,6 +306,8 @@ class RunnableTree:
         return self._runner
 
     def _described(self, node: Node) -> str:
+        from btlang.tree.dump import described
+
         if node.children or node.id not in self.vocabulary.entries:
             return described(node)
         return f"{node.id}: {self.label(node)}"

@@ -8,7 +8,6 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.definitions import Definitions, find_definitions
 from btlang.frontends.facts import find_facts
 from btlang.frontends.token import Listed, Token
-from btlang.frontends.unknown import explain_unknown
 from btlang.text.source import Source, Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, split
 from btlang.vocabulary.entry import Entry
@@ -112,6 +111,8 @@ class Lexer:
             if match is None:
                 end = self._unknown_end(at, last)
                 if self._explain:
+                    from btlang.frontends.unknown import explain_unknown  # most missions have nothing to explain
+
                     self.problems.append(
                         explain_unknown(text, at, end, self.vocabulary, values, self.definitions, tokens)
                     )

@@ -7,14 +7,19 @@ file are the user's own and nobody else can write to them. Whatever is wrong wit
 from __future__ import annotations
 
 import os
-import pickle
 import stat
 import sys
 import time
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Callable, Sequence
+from functools import cache
 from zlib import crc32
 
 from btlang.folders import user_folder
+
+try:
+    import _pickle as pickle  # the rest of the module takes as long to import as a vocabulary to load
+except ImportError:
+    import pickle  # type: ignore[no-redef]
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -22,6 +27,7 @@ if TYPE_CHECKING:
 
     Made = TypeVar("Made")
 
+_PROTOCOL = 5
 MOST_FILES = 20  # older ones are deleted
 _PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 _CODE = ("", "diagnostics", "robots", "text", "vocabulary")  # whose modules make what is kept; "" holds the version
@@ -36,7 +42,7 @@ def kept(kind: str, files: Sequence[str], make: Callable[[], Made]) -> Made:
     identity = (kind, _PACKAGE, sys.version, *files)
     try:
         folder = _own_folder()
-        state = tuple(map(_stamp, (*files, *_code())))  # before they are read: a later change makes it another one
+        state = [*map(_stamp, files), _code()]  # before they are read: a later change makes it another one
     except OSError:
         return make()
     key = repr((identity, state)).encode(errors="surrogateescape")
@@ -65,10 +71,14 @@ def _is_own(status: os.stat_result) -> bool:
     return os.name == "nt" or (status.st_uid == os.getuid() and not status.st_mode & _OTHERS_MAY_WRITE)
 
 
-def _code() -> Iterator[str]:
+@cache
+def _code() -> str:
+    """The state of the code when it was first asked for, which is the code that runs."""
+    modules: list[str] = []
     for folder in _CODE:
-        with os.scandir(os.path.join(_PACKAGE, folder)) as entries:
-            yield from sorted(entry.path for entry in entries if entry.name.endswith(".py"))
+        path = os.path.join(_PACKAGE, folder)
+        modules += [os.path.join(path, name) for name in os.listdir(path) if name.endswith(".py")]
+    return repr([_stamp(path) for path in sorted(modules)])
 
 
 def _stamp(path: str) -> tuple[str, int, int, int, int]:
@@ -100,7 +110,7 @@ def _write(path: str, key: bytes, made: object) -> None:
     """Other processes see the old file or the new one, whole."""
     new = f"{path}.{os.getpid()}-{time.time_ns()}"
     try:
-        body = pickle.dumps(made, pickle.HIGHEST_PROTOCOL)
+        body = pickle.dumps(made, _PROTOCOL)
         descriptor = os.open(new, os.O_WRONLY | os.O_CREAT | os.O_EXCL | getattr(os, "O_BINARY", 0), 0o600)
         try:
             with open(descriptor, "wb") as file:

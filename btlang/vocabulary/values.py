@@ -6,7 +6,6 @@ A value becomes the text of a port, in the unit whose factor is 1: `half a meter
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping, Sequence
-from copy import copy, deepcopy
 
 from btlang.record import Record
 from btlang.text.source import Source
@@ -120,7 +119,9 @@ class Values:
 
     def with_names(self, kind: str, names: Iterable[str]) -> Values:
         """The same with further names of a type."""
-        made = copy(self)
+        from copy import deepcopy
+
+        made = self.for_reading()
         made._names = {**self._names, kind: deepcopy(self._names[kind])}
         for name in names:
             made.add_name(kind, name, name)
@@ -128,8 +129,8 @@ class Values:
 
     def for_reading(self) -> Values:
         """The same with pronouns of its own."""
-        made = copy(self)
-        made.latest = {}
+        made = Values.__new__(Values)  # what `copy` does, which takes long to import
+        made.__dict__.update(self.__dict__, latest={})
         return made
 
     def names_tree(self, kind: str) -> WordTree:

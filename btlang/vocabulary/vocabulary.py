@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping
-from copy import copy
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.text.source import Source, Span
@@ -84,7 +83,8 @@ class Vocabulary:
     def with_places(self, names: tuple[str, ...]) -> Vocabulary:
         """The same words with further places; the same object for the same names."""
         if names not in self._with_places:
-            made = copy(self)
+            made = Vocabulary.__new__(Vocabulary)  # what `copy` does, which takes long to import
+            made.__dict__.update(self.__dict__)
             made.values = self.values.with_names("place", names)
             self._with_places[names] = made
         return self._with_places[names]

@@ -115,16 +115,26 @@ def test_a_wrong_file_is_told_each_time(pack: Path) -> None:
 
 
 def test_changed_code_makes_it_anew(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    load_vocabulary()
-    assert not is_read(load_vocabulary)
-    module = tmp_path / "pattern.py"
+    package = tmp_path / "package"
+    for folder in cache._CODE:
+        (package / folder).mkdir(exist_ok=True)
+    module = package / "vocabulary" / "pattern.py"
     module.write_text("")
-    code = [*cache._code(), str(module)]
-    monkeypatch.setattr(cache, "_code", lambda: code)
+    states = {cache._code(), code_of(package, monkeypatch)}
+    assert len(states) == 2
+    module.write_text("pass")
+    assert code_of(package, monkeypatch) not in states
+    monkeypatch.setattr(cache, "_code", lambda: "00000000")
     assert is_read(load_vocabulary)
     assert not is_read(load_vocabulary)
-    module.write_text("pass")
+    monkeypatch.setattr(cache, "_code", lambda: "00000001")
     assert is_read(load_vocabulary)
+
+
+def code_of(package: Path, monkeypatch: pytest.MonkeyPatch) -> str:
+    """The state of the code of a package as it is now."""
+    monkeypatch.setattr(cache, "_PACKAGE", str(package))
+    return cache._code.__wrapped__()
 
 
 @pytest.mark.parametrize(
