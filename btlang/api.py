@@ -8,6 +8,7 @@ from functools import cache, partial
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.frontends.mission import DEFAULT_PARSER, read_mission
+from btlang.garbage import no_collection
 from btlang.passes import compile_mission
 from btlang.text.source import Source, Span
 from btlang.tree.ast import Mission
@@ -49,9 +50,10 @@ def parse_tree(
     default the world that ships. Raises MissionError, which holds every diagnostic.
     """
     source = Source(text) if isinstance(text, str) else text
-    vocabulary = world_vocabulary(keywords, world)
-    reading = read_mission(source, vocabulary, parser)
-    tree = compile_mission(reading.mission, vocabulary)
+    with no_collection:
+        vocabulary = world_vocabulary(keywords, world)
+        reading = read_mission(source, vocabulary, parser)
+        tree = compile_mission(reading.mission, vocabulary)
     return RunnableTree(tree, vocabulary, world, reading.warnings, mission=reading.mission)
 
 
@@ -69,8 +71,9 @@ def format_mission(
     from btlang.english.layout import laid_out
 
     source = Source(text) if isinstance(text, str) else text
-    vocabulary = world_vocabulary(keywords, world)
-    compile_mission(read_mission(source, vocabulary, parser).mission, vocabulary, needs_command=False)
+    with no_collection:
+        vocabulary = world_vocabulary(keywords, world)
+        compile_mission(read_mission(source, vocabulary, parser).mission, vocabulary, needs_command=False)
     return laid_out(source, vocabulary.articles)
 
 

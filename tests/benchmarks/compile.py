@@ -27,6 +27,7 @@ from btlang.frontends.lexer import Lexer
 from btlang.frontends.matching import Matcher
 from btlang.frontends.mission import PARSERS, read_mission
 from btlang.frontends.token import Token
+from btlang.garbage import no_collection
 from btlang.text.source import Source
 from tests.benchmarks.missions import mission
 
@@ -78,7 +79,8 @@ def parsers(rounds: int) -> None:
             parse(tokens, build)
 
     def compared(works: dict[str, Callable[[], object]], what: str) -> None:
-        times = medians(works, rounds)
+        with no_collection:  # as in `parse_tree`
+            times = medians(works, rounds)
         yard, lark = times["shunting-yard"], times["lark"]
         told = f"shunting-yard {LINES / yard:,.0f} lines/s, Lark {LINES / lark:,.0f} lines/s"
         print(f"{what}, {LINES:,} lines: {told}, ratio {lark / yard:.2f}")
