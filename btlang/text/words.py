@@ -82,7 +82,7 @@ def split(source: Source, articles: frozenset[str]) -> Words:
         first = len(words)
 
     for match in _PIECE.finditer(text):
-        kind = match.lastindex
+        kind = match.lastindex or _OTHER
         word = match[kind]
         start, end = match.span(kind)
         if kind == _WORD:
