@@ -4,20 +4,19 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Iterable, Sequence
-from functools import cache
+from functools import cache, partial
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
-from btlang.english.phrase import phrase_of
 from btlang.frontends.mission import DEFAULT_PARSER, read_mission
+from btlang.garbage import no_collection
 from btlang.passes import compile_mission
-from btlang.robots.world import Place
-from btlang.robots.world_file import WorldError, world_names
 from btlang.text.source import Source, Span
 from btlang.tree.ast import Mission, all_facts
-from btlang.tree.dump import described, outline
 from btlang.tree.node import Node, Tree
+from btlang.vocabulary.cache import kept
 from btlang.vocabulary.entry import Entry, SlotSpec
 from btlang.vocabulary.load import load_vocabulary
+from btlang.vocabulary.shipped import DEFAULT_WORLD
 from btlang.vocabulary.vocabulary import Vocabulary
 
 TYPE_CHECKING = False
@@ -25,6 +24,7 @@ if TYPE_CHECKING:
     from typing import Any, TypeVar
 
     from btlang.robots.simulation import Simulation
+    from btlang.robots.world_file import WorldError
     from btlang.run.controls import Controls
     from btlang.run.events import Sink
     from btlang.run.runner import Outcome, Runner
@@ -50,9 +50,10 @@ def parse_tree(
     default the world that ships. Raises MissionError, which holds every diagnostic.
     """
     source = Source(text) if isinstance(text, str) else text
-    vocabulary = world_vocabulary(keywords, world)
-    reading = read_mission(source, vocabulary, parser)
-    tree = compile_mission(reading.mission, vocabulary)
+    with no_collection:
+        vocabulary = world_vocabulary(keywords, world)
+        reading = read_mission(source, vocabulary, parser)
+        tree = compile_mission(reading.mission, vocabulary)
     return RunnableTree(tree, vocabulary, world, reading.warnings, mission=reading.mission)
 
 
@@ -70,25 +71,32 @@ def format_mission(
     from btlang.english.layout import laid_out
 
     source = Source(text) if isinstance(text, str) else text
-    vocabulary = world_vocabulary(keywords, world)
-    compile_mission(read_mission(source, vocabulary, parser).mission, vocabulary, needs_command=False)
+    with no_collection:
+        vocabulary = world_vocabulary(keywords, world)
+        compile_mission(read_mission(source, vocabulary, parser).mission, vocabulary, needs_command=False)
     return laid_out(source, vocabulary.articles)
 
 
 def world_vocabulary(keywords: Sequence[str | Entry | Callable[..., Any]] = (), world: str | None = None) -> Vocabulary:
     """The words of the keyword files and the names of a world. Raises MissionError."""
+    file = DEFAULT_WORLD if world is None else world
+    return load_vocabulary(keywords, kept("world", [file], partial(_names_by_type, world)))
+
+
+def _names_by_type(world: str | None) -> dict[str, tuple[str, ...]]:
+    from btlang.robots.world_file import WorldError, world_names
+
     try:
         names = world_names(world)
     except WorldError as error:
         raise _world_problem(error) from None
-    kinds = {"place": names.places, "person": names.people, "object": names.objects}
-    return load_vocabulary(keywords, kinds)
+    return {"place": names.places, "person": names.people, "object": names.objects}
 
 
 def load_simulation(world: str | None = None) -> Simulation:
     """The simulated robot in the world of a file, by default the world that ships. Raises MissionError (BT070)."""
     from btlang.robots.simulation import Simulation
-    from btlang.robots.world_file import load_world
+    from btlang.robots.world_file import WorldError, load_world
 
     try:
         return Simulation(load_world(world))
@@ -161,6 +169,8 @@ class RunnableTree:
         self._simulation: Simulation | None = None
 
     def __str__(self) -> str:
+        from btlang.tree.dump import outline
+
         return outline(self.tree, self._described)
 
     def print(self) -> None:
@@ -180,6 +190,8 @@ class RunnableTree:
 
     def label(self, node: Node) -> str:
         """The English of a leaf, `Id port=value` of any other node."""
+        from btlang.english.phrase import phrase_of
+
         return node.name or phrase_of(node, self.vocabulary)
 
     def is_action(self, node: Node) -> bool:
@@ -264,6 +276,7 @@ class RunnableTree:
         """A new engine on the stage."""
         from btlang.backends.engine import bind_leaf
         from btlang.engine.engine import EngineError
+        from btlang.robots.world import Place
         from btlang.run.runner import Runner, traced_engine
 
         stage = load_simulation(self.world) if self.stage is None else self.stage
@@ -296,6 +309,8 @@ class RunnableTree:
         return self._runner
 
     def _described(self, node: Node) -> str:
+        from btlang.tree.dump import described
+
         if node.children or node.id not in self.vocabulary.entries:
             return described(node)
         return f"{node.id}: {self.label(node)}"

@@ -18,6 +18,10 @@ from btlang.diagnostics.report import FORMATS, Report
 from btlang.frontends.mission import DEFAULT_PARSER, PARSERS
 from btlang.text.source import Source
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
 SUCCESS, UNFORMATTED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
 _WIDEST = 120  # columns; longer lines are hard to read
 
@@ -204,20 +208,20 @@ def _tree(options: argparse.Namespace) -> RunnableTree:
 
 
 def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser("btc", description="Compiles and runs robot missions in plain English.")
+    parser = _Parser("btc", description="Compiles and runs robot missions in plain English.")
     parser.add_argument("--version", action="version", version=f"btc {btlang.__version__}")
-    verbs = parser.add_subparsers(dest="verb", metavar="VERB")
+    verbs = parser.add_subparsers(dest="verb", metavar="VERB", prog="btc", parser_class=_Parser)
     parser.set_defaults(verb="repl", keywords=[], world=None, parser=DEFAULT_PARSER, speed="real", format="text")
-    words = argparse.ArgumentParser(add_help=False)
+    words = _Parser(add_help=False)
     words.add_argument(
         "--keywords", action="append", default=[], metavar="FILE", help="further keyword file, or name of a pack"
     )
     words.add_argument("--world", metavar="FILE", help="world file (default: the world that ships)")
-    reading = argparse.ArgumentParser(add_help=False, parents=[words])
+    reading = _Parser(add_help=False, parents=[words])
     reading.add_argument("--parser", choices=list(PARSERS), default=DEFAULT_PARSER, help="(default: %(default)s)")
-    paced = argparse.ArgumentParser(add_help=False)
+    paced = _Parser(add_help=False)
     paced.add_argument("--speed", type=_speed, default="real", help="real, max, or a factor of real time")
-    mission = argparse.ArgumentParser(add_help=False, parents=[reading])
+    mission = _Parser(add_help=False, parents=[reading])
     mission.add_argument(
         "--format", choices=FORMATS, default="text", help="of messages: text, or json for programs (default: text)"
     )
@@ -258,6 +262,24 @@ def _parser() -> argparse.ArgumentParser:
     several.add_argument("file", nargs="*", default=[], metavar="FILE", help="mission, or - for standard input")
     several.add_argument("-c", dest="text", metavar="TEXT", help="mission as text")
     return parser
+
+
+class _Help(argparse.HelpFormatter):
+    """Asks for the width of the terminal only to print: argparse makes one for each option that it is told of."""
+
+    def __init__(self, prog: str) -> None:
+        super().__init__(prog, width=_WIDEST)
+
+    def format_help(self) -> str:
+        from shutil import get_terminal_size
+
+        self._width = get_terminal_size().columns - 2
+        return super().format_help()
+
+
+class _Parser(argparse.ArgumentParser):
+    def __init__(self, prog: str | None = None, **options: Any) -> None:
+        super().__init__(prog, formatter_class=_Help, **options)
 
 
 def _speed(text: str) -> float | str:

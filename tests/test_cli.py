@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import io
 import json
+import os
 import signal
 import subprocess
 import sys
@@ -193,6 +194,21 @@ def test_check_loads_nothing_heavy() -> None:
         "print(sorted({'lark', 'rich', 'asyncio', 'numpy', 'rclpy', 'rapidfuzz', 'dataclasses'} & set(sys.modules)))"
     )
     done = subprocess.run([sys.executable, "-c", script], cwd=REPOSITORY, text=True, capture_output=True, check=True)
+    assert done.stdout.splitlines() == ["The mission is fine.", "[]"]
+
+
+def test_a_second_check_reads_no_keyword_file(tmp_path: Path) -> None:
+    script = (
+        "import sys; before = set(sys.modules)\n"
+        "from btlang.cli import main; main(['check', '-c', 'go to the lab then wave'])\n"
+        "makers = {'tomllib', 'copy', 'shutil', 'btlang.vocabulary.keyword_file', 'btlang.robots.world_file'}\n"
+        "print(sorted(makers & sys.modules.keys() - before))"
+    )
+    environment = {**os.environ, "XDG_CACHE_HOME": str(tmp_path)}
+    for _ in range(2):
+        done = subprocess.run(
+            [sys.executable, "-c", script], cwd=REPOSITORY, env=environment, text=True, capture_output=True, check=True
+        )
     assert done.stdout.splitlines() == ["The mission is fine.", "[]"]
 
 

@@ -10,7 +10,6 @@ import sys
 from collections.abc import Iterable
 
 from btlang.diagnostics.diagnostic import Diagnostic, in_order
-from btlang.diagnostics.render import has_colour, render
 from btlang.text.source import Span
 
 TYPE_CHECKING = False
@@ -36,6 +35,8 @@ class Report:
         if self.is_json:
             self._held += problems
         else:
+            from btlang.diagnostics.render import has_colour, render  # most missions have nothing to tell of
+
             colour = has_colour(sys.stderr)
             print("\n\n".join(render(problem, colour) for problem in problems), file=sys.stderr)
 

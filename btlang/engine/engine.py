@@ -11,6 +11,7 @@ from btlang.engine.clock import Clock
 from btlang.engine.compile import compile_places, expand
 from btlang.engine.leaf import LeafBinding
 from btlang.engine.status import FAILURE, IDLE
+from btlang.garbage import no_collection
 from btlang.record import Record
 from btlang.tree.node import Node, Tree
 
@@ -54,8 +55,9 @@ class Engine:
     ) -> None:
         self.blackboard = Blackboard() if blackboard is None else blackboard
         self._shared = Shared(bind, clock, services)
-        self._places = expand(tree, self.blackboard)
-        self._tick, self._halt = compile_places(self._places, self._shared, listener)
+        with no_collection:
+            self._places = expand(tree, self.blackboard)
+            self._tick, self._halt = compile_places(self._places, self._shared, listener)
         depth = max(place.depth for place in self._places)
         self._frames = depth * _FRAMES_PER_LEVEL + _FRAMES_FOR_LEAVES
         self._busy = False

@@ -114,7 +114,7 @@ def statements(text: Words) -> Iterator[tuple[int, int, int]]:
     """(indent, first word, last word) of what stands between line ends, `;` and full stops."""
     for line in text.lines:
         first = line.first
-        for at in range(line.first, line.last):
+        for at in range(line.first, line.last) if END_OF_STATEMENT in text.words[line.first : line.last] else ():
             if text.words[at] == END_OF_STATEMENT:
                 yield line.indent, first, at
                 first = at + 1

@@ -31,7 +31,7 @@ def find_facts(text: Words, vocabulary: Vocabulary) -> Facts:
     if not any(words[0] in text.words for words in placing) or _OPEN not in text.words:
         return facts
     for _, first, last in statements(text):
-        for at in range(first, last):
+        for at in range(first, last) if _OPEN in text.words[first:last] else ():
             words = next((w for w in placing if text.words[at : at + len(w)] == w), None)
             if words is not None and text.words[at + len(words)] == _OPEN:
                 start = _after_politeness(text, first, at, vocabulary)

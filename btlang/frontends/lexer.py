@@ -12,12 +12,11 @@ from btlang.frontends.includes import ROLE as INCLUDE
 from btlang.frontends.includes import Included, find_includes, misplaced
 from btlang.frontends.remembering import read_statement
 from btlang.frontends.token import Listed, Token
-from btlang.frontends.unknown import explain_unknown, misread_head, unknown_value
 from btlang.frontends.variables import JOINTS, Head, Variables, find_heads, span_of
 from btlang.text.source import Source, Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, split
 from btlang.tree.ast import Include, all_definitions, all_facts
-from btlang.vocabulary.entry import Entry
+from btlang.vocabulary.entry import Entry, Meaning
 from btlang.vocabulary.references import keys_in, renamed
 from btlang.vocabulary.trie import SLOTS, Match, SlotValue, longest
 from btlang.vocabulary.values import key_of
@@ -145,13 +144,8 @@ class Lexer:
                 end = self._unknown_end(at, last)
                 if match is not None and match.meaning.role == INCLUDE:
                     end += words[end][0] == '"'
-                    self.problems.append(misplaced(text.span(at, end), self.vocabulary))
-                elif self._explain and match is not None:
-                    self.problems.append(misread_head(text, at, match.meaning.role, self.vocabulary))
-                elif self._explain:
-                    self.problems.append(
-                        explain_unknown(text, at, end, self.vocabulary, values, self.definitions, tokens)
-                    )
+                if self._explain:
+                    self.problems.append(self._why(at, end, match))
                 tokens.append(Token("unknown", None, starts[at], ends[end - 1]))
                 at = end
             else:
@@ -164,6 +158,18 @@ class Lexer:
                 for value in match.values:
                     values.latest[value.type] = value.text if not value.more else value.more[-1]
                 at = match.last
+
+    def _why(self, at: int, end: int, match: Match | None) -> Diagnostic:
+        """What is wrong with words that are no phrase, or one that stands where it cannot."""
+        from btlang.frontends import unknown  # most missions have nothing to explain
+
+        if match is None:
+            return unknown.explain_unknown(
+                self.text, at, end, self.vocabulary, self.values, self.definitions, self.tokens
+            )
+        if match.meaning.role == INCLUDE:
+            return misplaced(self.text.span(at, end), self.vocabulary)
+        return unknown.misread_head(self.text, at, match.meaning.role, self.vocabulary)
 
     def _politeness(self, match: Match, at: int) -> int:
         """Politeness is left out with the comma beside it: `Robot, go home, please`. Returns where to go on."""
@@ -190,7 +196,7 @@ class Lexer:
     def _called(self, entry: Entry, match: Match, at: int) -> tuple[Entry, tuple[tuple[str, str], ...]] | Listed:
         """The entry with its arguments, or with several of them where one slot holds a list."""
         if entry.sort == "value" and not (self.values.known and entry.id in self.values.known):
-            self.problems.append(unknown_value(self.text.span(at, match.last), entry.id, self.values.known or ()))
+            self._unknown_value(self.text.span(at, match.last), entry.id)
         arguments = tuple((value.name, self._port_text(value)) for value in match.values)
         lists = [place for place, value in enumerate(match.values) if value.more]
         if not lists:
@@ -214,8 +220,13 @@ class Lexer:
         known = self.values.known or {}
         for key in keys_in(text):
             if key not in known:
-                self.problems.append(unknown_value(self.text.span(value.first, value.last), key, known))
+                self._unknown_value(self.text.span(value.first, value.last), key)
         return text
+
+    def _unknown_value(self, span: Span, key: str) -> None:
+        from btlang.frontends.unknown import unknown_value
+
+        self.problems.append(unknown_value(span, key, self.values.known or ()))
 
     def _statement(self, head: Head, at: int) -> int:
         """A statement about a value of the mission. Returns where to go on."""
@@ -223,7 +234,7 @@ class Lexer:
         if read is None:
             span = span_of(self.text, at)
             if self._explain:
-                self.problems.append(misread_head(self.text, at, head.role, self.vocabulary))
+                self.problems.append(self._why(at, at, Match(Meaning(head.role), at)))
             self.tokens.append(Token("unknown", None, span.start, span.end))
             return bisect_right(self.text.starts, span.end - 1)
         self.tokens.append(read[0])

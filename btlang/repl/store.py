@@ -8,6 +8,7 @@ import time
 from pathlib import Path
 
 from btlang.diagnostics.reading import reason_of
+from btlang.folders import user_folder
 from btlang.record import Record
 
 try:
@@ -29,9 +30,7 @@ class Kept(Record):
 
 def state_folder() -> Path:
     """The platform's folder for such things, $XDG_STATE_HOME/btlang on Linux."""
-    from platformdirs import user_state_path
-
-    return user_state_path("btlang")
+    return Path(user_folder("state"))
 
 
 class Store:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import tomllib
 from collections.abc import Mapping
 from os import PathLike, fspath
-from os.path import dirname, join
 
 from btlang.robots import world_lines
 from btlang.robots.geometry import Point, Pose, segment_distance
@@ -22,12 +21,11 @@ from btlang.robots.world import (
     WorldNames,
 )
 from btlang.robots.world_table import Problem, Table
+from btlang.vocabulary.shipped import DEFAULT_WORLD
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
-
-DEFAULT_WORLD = join(dirname(__file__), "worlds", "default.toml")
 
 _FAULTS = ("blocked", "slip", "silent scanner", "weak hand")
 

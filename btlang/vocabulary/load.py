@@ -8,8 +8,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.diagnostics.reading import read_source
 from btlang.text.source import Source, Span
+from btlang.vocabulary.cache import kept
 from btlang.vocabulary.entry import Entry
-from btlang.vocabulary.keyword_file import KeywordFile, read_keyword_file
 from btlang.vocabulary.shipped import keyword_files
 from btlang.vocabulary.vocabulary import Vocabulary
 
@@ -29,21 +29,30 @@ def load_vocabulary(
     A pack is an entry point of the group `btlang.keywords` whose value is a module beside which, or a function that
     returns the path at which, its keyword file lies. Raises MissionError (BT001, BT002, BT060 to BT063).
     """
+    paths = [_path(item) for item in keywords if isinstance(item, str)]
+    entries = [_entry(item) for item in keywords if not isinstance(item, str)]
+    files = [*keyword_files(), *paths]
+    vocabulary = _made(files, entries) if entries else kept("words", files, lambda: _made(files, ()))
+    for kind, values in (names or {}).items():
+        vocabulary.add_names(kind, values)
+    return vocabulary
+
+
+def _made(paths: Sequence[str], entries: Iterable[Entry]) -> Vocabulary:
+    """The vocabulary of keyword files, the shipped ones among them, and of entries."""
+    from btlang.vocabulary.keyword_file import KeywordFile, read_keyword_file  # not where the cache has it
+
+    shown = {path: "keywords/" + os.path.basename(path) for path in keyword_files()}
     files: list[KeywordFile] = []
     problems = []
-    shown = {path: "keywords/" + os.path.basename(path) for path in keyword_files()}
-    for path in (*shown, *(_path(item) for item in keywords if isinstance(item, str))):
+    for path in paths:
         try:
             files.append(read_keyword_file(Source(read_source(path).text, shown.get(path, path))))
         except MissionError as error:
             problems += error.diagnostics
     if problems:
         raise MissionError(problems)
-    entries = [_entry(item) for item in keywords if not isinstance(item, str)]
-    vocabulary = Vocabulary(files, entries)
-    for kind, values in (names or {}).items():
-        vocabulary.add_names(kind, values)
-    return vocabulary
+    return Vocabulary(files, entries)
 
 
 def _entry(word: Entry | Callable[..., Any]) -> Entry:

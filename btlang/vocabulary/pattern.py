@@ -31,16 +31,14 @@ class PatternError(ValueError):
     """The pattern cannot be read; the message says what to write instead."""
 
 
-_PIECE = re.compile(
-    r"(?P<slot>\{[^{}]*\})|(?P<open>\[)|(?P<close>\])|(?P<text>(?:\\.|\([^()]*\)|[^\s\[\]{}\\()])+)|(?P<bad>\S)"
-)
+_PIECE = r"(?P<slot>\{[^{}]*\})|(?P<open>\[)|(?P<close>\])|(?P<text>(?:\\.|\([^()]*\)|[^\s\[\]{}\\()])+)|(?P<bad>\S)"
 
 
 @lru_cache(maxsize=4096)  # asked for at each load several times, and for each leaf that is named
 def forms(pattern: str, articles: frozenset[str] = frozenset()) -> tuple[Form, ...]:
     """Every way to say the pattern, without articles, longest first. Raises PatternError."""
     ways: list[list[Form]] = [[()]]  # a stack: the innermost open `[` is the last
-    for match in _PIECE.finditer(pattern):
+    for match in re.finditer(_PIECE, pattern):
         kind, piece = match.lastgroup, match.group()
         if kind == "open":
             ways.append([()])

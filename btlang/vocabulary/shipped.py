@@ -6,6 +6,9 @@ import os
 
 _PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 
+DEFAULT_WORLD = os.path.join(_PACKAGE, "robots", "worlds", "default.toml")
+"""The world that a mission runs in where none is named."""
+
 
 def shipped(*parts: str) -> str:
     """The path of a shipped file: inside an installed package, else beside the package in a checkout."""

@@ -81,10 +81,11 @@ def longest(root: TrieNode, text: Words, at: int, values: Values, names: TrieNod
     paths: list[tuple[TrieNode, int, Any]] = [(root, at, ())]
     while paths:
         node, i, found = paths.pop()
-        while True:
-            if END in node and (i > best_last or best is None):
-                if node[END].entry is not None or not any(value.more for value in found):
-                    best, best_last, best_values = node[END], i, found
+        while node is not None:
+            meaning: Meaning | None = node.get(END)
+            if meaning is not None and (i > best_last or best is None):
+                if meaning.entry is not None or not any(value.more for value in found):
+                    best, best_last, best_values = meaning, i, found
             if SLOTS in node:
                 for name, kind, child in node[SLOTS]:
                     value = values.read(kind, text, i)
@@ -97,8 +98,6 @@ def longest(root: TrieNode, text: Words, at: int, values: Values, names: TrieNod
                         if listed is not None:
                             paths.append((child, listed.last, (*found, listed)))
             node = node.get(words[i])
-            if node is None:
-                break
             i += 1
     return Match(best, best_last, best_values) if best is not None else None
 

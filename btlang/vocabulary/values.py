@@ -7,7 +7,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
-from copy import copy, deepcopy
 
 from btlang.record import Record
 from btlang.text.source import Source
@@ -120,6 +119,7 @@ class Values:
         self._fractions: WordTree = {}
         for phrase, value in language["fractions"].items():
             insert(self._fractions, phrase.split(), value)
+        self._number_starts = frozenset((*self._numbers, *self._multipliers, *self._fractions))
         self._units: WordTree = {}
         self._names: dict[str, WordTree] = {}
         for kind in types.values():
@@ -135,7 +135,9 @@ class Values:
 
     def with_names(self, kind: str, names: Iterable[str]) -> Values:
         """The same with further names of a type."""
-        made = copy(self)
+        from copy import deepcopy
+
+        made = self.for_reading()
         made._names = {**self._names, kind: deepcopy(self._names[kind])}
         for name in names:
             made.add_name(kind, name, name)
@@ -143,13 +145,13 @@ class Values:
 
     def for_reading(self) -> Values:
         """The same with pronouns of its own."""
-        made = copy(self)
-        made.latest = {}
+        made = Values.__new__(Values)  # what `copy` does, which takes long to import
+        made.__dict__.update(self.__dict__, latest={})
         return made
 
     def with_references(self) -> Values:
         """The same, where any name in braces is a value of any type."""
-        made = copy(self)
+        made = self.for_reading()
         made.known = None
         return made
 
@@ -205,8 +207,11 @@ class Values:
         if value_type.kind == "number":
             return self._plain_number(value_type, text, at)
         if value_type.kind == "names":
-            found = find(self._names[kind], text.words, at) or self._quoted_name(kind, text, at)
-            return found or self._referred(kind, text.words[at], at)
+            word = text.words[at]
+            found = find(self._names[kind], text.words, at)
+            if found is None and word[0] == '"':
+                found = self._quoted_name(kind, text, at)
+            return self._referred(kind, word, at) if found is None and word in self.pronouns else found
         return self._text(text, at)
 
     def any(self, text: Words, at: int) -> tuple[tuple[str, ...], str, int] | None:
@@ -270,6 +275,9 @@ class Values:
     def number(self, text: Words, at: int) -> tuple[float, int] | None:
         """A number in figures or words, fractions included, and where it ends."""
         words = text.words
+        word = words[at]
+        if not (word in self._number_starts or word[0].isdecimal() or "-" in word):
+            return None  # as nearly always
         value, start = self._whole_number(words, at)
         fraction = find(self._fractions, words, start)
         if fraction is not None:
@@ -323,8 +331,6 @@ class Values:
 
     def _quoted_name(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
         word = text.words[at]
-        if word[0] != '"':
-            return None
         words = [*(w for w in word[1:].lower().split() if w not in self._articles), "\n"]
         found = find(self._names[kind], words, 0) if len(words) > 1 else None
         return (found[0], at + 1) if found and found[1] == len(words) - 1 else None

@@ -4,13 +4,11 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Iterator, Mapping
-from copy import copy
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.text.source import Source, Span
 from btlang.text.words import split
 from btlang.vocabulary.entry import COMPARISONS, About, Entry, Meaning, SlotSpec
-from btlang.vocabulary.keyword_file import KeywordFile
 from btlang.vocabulary.language_tables import EXPLAINED
 from btlang.vocabulary.pattern import Form, PatternError, Slot, forms
 from btlang.vocabulary.trie import TrieNode, add, collisions
@@ -20,6 +18,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+    from btlang.vocabulary.keyword_file import KeywordFile
 
 DEFINING = ("define_strong", "define")
 """Roles whose words define a name where they are found first in a line; elsewhere they are words like any other."""
@@ -88,15 +87,16 @@ class Vocabulary:
     def with_places(self, names: tuple[str, ...]) -> Vocabulary:
         """The same words with further places; the same object for the same names."""
         if names not in self._with_places:
-            made = copy(self)
-            made.values = self.values.with_names("place", names)
-            self._with_places[names] = made
+            self._with_places[names] = self._with(self.values.with_names("place", names))
         return self._with_places[names]
 
     def with_references(self) -> Vocabulary:
         """The same words, where any name in braces is read as a value."""
-        made = copy(self)
-        made.values = self.values.with_references()
+        return self._with(self.values.with_references())
+
+    def _with(self, values: Values) -> Vocabulary:
+        made = Vocabulary.__new__(Vocabulary)  # what `copy` does, which takes long to import
+        made.__dict__.update(self.__dict__, values=values)
         return made
 
     def value(self, kind: str, written: str) -> str | None:
