@@ -43,7 +43,7 @@ class Line(Record):
 class Words:
     """The words of a source as parallel lists, with a `\\n` word at the end of each line that is not blank."""
 
-    __slots__ = ("articles", "ends", "lines", "open_quotes", "source", "starts", "unreadable", "words")
+    __slots__ = ("articles", "comments", "ends", "lines", "open_quotes", "source", "starts", "unreadable", "words")
 
     def __init__(self, source: Source) -> None:
         self.source = source
@@ -53,6 +53,8 @@ class Words:
         self.lines: list[Line] = []
         self.articles: dict[int, tuple[int, int]] = {}
         """Where an article stood: index of the word that follows it -> its characters."""
+        self.comments: list[Span] = []
+        """From each `#` to the end of its line."""
         self.open_quotes: list[Span] = []
         self.unreadable: list[Span] = []
 
@@ -81,9 +83,12 @@ def split(source: Source, articles: frozenset[str]) -> Words:
 
     for match in _WORD.finditer(text):
         kind = match.lastgroup
-        if kind == "space" or kind == "comment":
+        if kind == "space":
             continue
         start, end = match.span()
+        if kind == "comment":
+            result.comments.append(Span(source, start, end))
+            continue
         word = match.group()
         if kind == "word":
             word = word.lower()
