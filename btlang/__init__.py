@@ -1,6 +1,6 @@
 """Robot missions in plain English, compiled to behavior trees and run.
 
-tree = btlang.parse_tree("move forward then twist right and print hello")
+tree = btlang.parse_tree("move forward, then twist right and print hello")
 print(tree)
 tree.run()
 """

@@ -10,6 +10,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.frontends.mission import DEFAULT_PARSER, read_mission
 from btlang.garbage import no_collection
 from btlang.passes import compile_mission
+from btlang.passes.lint import lint
 from btlang.text.source import Source, Span
 from btlang.tree.ast import Mission, all_facts
 from btlang.tree.node import Node, Tree
@@ -54,7 +55,8 @@ def parse_tree(
         vocabulary = world_vocabulary(keywords, world)
         reading = read_mission(source, vocabulary, parser)
         tree = compile_mission(reading.mission, vocabulary)
-    return RunnableTree(tree, vocabulary, world, reading.warnings, mission=reading.mission)
+        warnings = lint(reading.mission, tree, vocabulary, reading.warnings)
+    return RunnableTree(tree, vocabulary, world, warnings, mission=reading.mission)
 
 
 def format_mission(

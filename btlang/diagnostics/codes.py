@@ -1,8 +1,10 @@
 """Every code that a message can have, with its texts. Codes are a contract: they are never given a new meaning.
 
-BT00x reading, BT01x words, BT02x and BT03x how a sentence is put together, BT04x what it means, BT06x keyword files,
+BT00x reading, BT01x words, BT02x and BT03x how a sentence is put together, BT04x what it means,
+BT05x what is allowed but probably not meant, BT06x keyword files,
 BT07x worlds, BT08x the Python behind the words and what else has to be installed, BT09x the codes themselves.
 
+BT05x and others that are warnings have a `name`, by which a mission silences them: `# allow: two readings`.
 Each code has a page in `pages/`, which `btc explain` prints.
 """
 
@@ -18,6 +20,7 @@ class Code(Record):
     message: str
     hint: str = ""
     severity: str = "error"
+    name: str = ""
 
 
 _ALL = (
@@ -39,8 +42,8 @@ _ALL = (
     Code("BT014", "'{words}' is out of range: {wanted}."),
     Code("BT015", "A name cannot hold the word '{word}': it joins commands.", "Choose a name without it."),
     Code("BT016", "There is no name before '{word}'.", "A definition reads: patrol {word} go to the lobby"),
-    Code("BT017", "'{name}' is defined again; this definition replaces the one above.", severity="warning"),
-    Code("BT018", "'{name}' hides words that I know already: they now mean this definition.", severity="warning"),
+    Code("BT017", "'{name}' is defined again; this definition replaces the one above.", severity="warning", name="redefined name"),
+    Code("BT018", "'{name}' hides words that I know already: they now mean this definition.", severity="warning", name="hiding name"),
     Code("BT019", "This is a value, but I do not know what to do with it.", "A command starts with what to do, such as: {example}"),
     Code("BT020", "A {wanted} must follow '{word}', but {found}."),
     Code("BT021", "Two commands stand side by side; a word between them must say how they go together.",
@@ -72,6 +75,19 @@ _ALL = (
     Code("BT045", "'{name}' is the name of a value of the whole mission already.", "Choose another name here."),
     Code("BT046", "'{file}' includes itself: {circle}.", "Put what both need into a third file."),
     Code("BT047", "I cannot read '{words}': it stands alone on its line, with the name of a file in quotes.", "Write for example: {example}"),
+    Code("BT050", "This can be read in two ways.",
+         "I read: {taken}\nIt could also be read: {other}\nA comma or brackets decide, for example: {fixed}",
+         "warning", "two readings"),
+    Code("BT051", "No command uses '{name}'.", "Use it, or take it away.", "warning", "unused name"),
+    Code("BT052", "This never runs, because what comes before it {reason}.", "", "warning", "never runs"),
+    Code("BT053", "This loop does not wait: a round of it takes no time, so it goes round at every tick.", "{advice}",
+         "warning", "busy loop"),
+    Code("BT054", "'{words}' should not be stopped half-way, but it is stopped {when}.",
+         "Leave it outside: put it before or after the form, with '{then}'.", "warning", "cut off"),
+    Code("BT055", "This is no part of '{name}': its definition ends where the sentence ends.",
+         "Join the commands with '{then}', or write them as indented lines below '{head}'.",
+         "warning", "line end in a definition"),
+    Code("BT056", "There is no warning '{name}'.", "The nearest: {near}", "warning", "unknown warning"),
     Code("BT060", "This keyword file cannot be used: {reason}."),
     Code("BT061", "This phrase cannot be used: {reason}."),
     Code("BT062", "'{first}' ({first_id}, {first_file}) and '{second}' ({second_id}, {second_file}) can match the same words.",
@@ -84,3 +100,5 @@ _ALL = (
 )  # fmt: skip
 
 CODES = {entry.code: entry for entry in _ALL}
+NAMES = {entry.name: entry.code for entry in _ALL if entry.name}
+"""The code of each warning by its name."""

@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import re
 
-from btlang.diagnostics.codes import CODES
+from btlang.diagnostics.codes import CODES, NAMES
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.text.source import Source, Span
 
@@ -18,12 +18,16 @@ _CODE = re.compile(r"bt(\d+)", re.IGNORECASE | re.ASCII)
 
 
 def is_code(text: str) -> bool:
-    """Whether a text looks like a code, known or not: BT and digits, in any case."""
-    return _CODE.fullmatch(text) is not None
+    """Whether a text looks like a code, known or not: BT and digits, in any case; or is the name of a warning."""
+    return _CODE.fullmatch(text) is not None or _plain(text) in NAMES
 
 
 def explain_code(code: str) -> str:
-    """The page of a code without its last line end; `bt13` is BT013. Raises MissionError (BT090)."""
+    """The page of a code without its last line end; `bt13` is BT013, and a warning has a name: `two readings`.
+
+    Raises MissionError (BT090).
+    """
+    code = NAMES.get(_plain(code), code)
     match = _CODE.fullmatch(code)
     known = f"BT{match[1].lstrip('0'):0>3}" if match else code
     if known not in CODES:
@@ -35,6 +39,10 @@ def all_codes() -> str:
     """A line for each code with the title of its page, then how to read one."""
     titles = [_page(code).partition("\n")[0].removeprefix("# ") for code in sorted(CODES)]
     return "\n".join([*(title.replace(":", " ", 1) for title in titles), "", "To read one: btc explain CODE"])
+
+
+def _plain(name: str) -> str:
+    return " ".join(name.lower().split())
 
 
 def _page(code: str) -> str:

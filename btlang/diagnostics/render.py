@@ -40,7 +40,7 @@ def render(diagnostic: Diagnostic, colour: bool = False) -> str:
 
 def mended_line(diagnostic: Diagnostic) -> str:
     """The line with the fix of this diagnostic alone; "" where the hint shows it already or it is long."""
-    if diagnostic.fix is None:
+    if diagnostic.fix is None or any(name == "fixed" for name, _ in diagnostic.arguments):
         return ""
     span, words = diagnostic.fix
     number, column = span.source.position(span.start)

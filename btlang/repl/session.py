@@ -6,12 +6,14 @@ from collections.abc import Sequence
 from textwrap import indent
 
 from btlang.api import RunnableTree, load_simulation, world_vocabulary
+from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.frontends.lexer import Lexer
-from btlang.frontends.mission import DEFAULT_PARSER, Reading, read_mission
+from btlang.frontends.mission import DEFAULT_PARSER, read_mission
 from btlang.passes import compile_mission
+from btlang.passes.lint import lint
 from btlang.record import Record
 from btlang.text.source import Source
-from btlang.tree.ast import Ast, Chain, Definition, Fact, Include, parts
+from btlang.tree.ast import Ast, Chain, Definition, Fact, Include, Mission, parts
 from btlang.tree.node import Node, Tree
 
 TYPE_CHECKING = False
@@ -93,12 +95,15 @@ class Session:
         tree = compile_mission(reading.mission, self.vocabulary, needs_command=False)
         entry = Entry(text, tuple((d.name, d.span.text) for d in own), reading.mission.body is not None)
         shown = Tree(tree.root, _used(tree, [name for name, _ in entry.definitions]))
-        return Compiled(entry, self._runnable(shown, reading))
+        warnings = lint(mission, tree, self.vocabulary, reading.warnings, grows=True)
+        own_warnings = [warning for warning in warnings if warning.span.start < len(text)]
+        return Compiled(entry, self._runnable(shown, reading.mission, own_warnings))
 
     def compile_all(self) -> RunnableTree:
         """The whole mission. Raises MissionError, also where it holds no command."""
         reading = read_mission(Source(self.text, self.file or "<session>"), self.vocabulary, self._parser)
-        return self._runnable(compile_mission(reading.mission, self.vocabulary), reading)
+        tree = compile_mission(reading.mission, self.vocabulary)
+        return self._runnable(tree, reading.mission, reading.warnings)
 
     def add(self, entry: Entry) -> None:
         """A definition takes the place of an older one of the same name."""
@@ -156,10 +161,8 @@ class Session:
             begin = end
         return entries
 
-    def _runnable(self, tree: Tree, reading: Reading) -> RunnableTree:
-        return RunnableTree(
-            tree, self.vocabulary, self.world, reading.warnings, stage=self.simulation, mission=reading.mission
-        )
+    def _runnable(self, tree: Tree, mission: Mission, warnings: Sequence[Diagnostic]) -> RunnableTree:
+        return RunnableTree(tree, self.vocabulary, self.world, warnings, stage=self.simulation, mission=mission)
 
 
 def _used(tree: Tree, names: Sequence[str]) -> tuple[tuple[str, Node], ...]:

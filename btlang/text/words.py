@@ -45,7 +45,7 @@ class Line(Record):
 class Words:
     """The words of a source as parallel lists, with a `\\n` word at the end of each line that is not blank."""
 
-    __slots__ = ("articles", "ends", "lines", "open_quotes", "source", "starts", "unreadable", "words")
+    __slots__ = ("articles", "comments", "ends", "lines", "open_quotes", "source", "starts", "unreadable", "words")
 
     def __init__(self, source: Source) -> None:
         self.source = source
@@ -55,6 +55,8 @@ class Words:
         self.lines: list[Line] = []
         self.articles: dict[int, tuple[int, int]] = {}
         """Where an article stood: index of the word that follows it -> its characters."""
+        self.comments: list[Span] = []
+        """From each `#` to the end of its line."""
         self.open_quotes: list[Span] = []
         self.unreadable: list[Span] = []
 
@@ -99,6 +101,8 @@ def split(source: Source, articles: frozenset[str]) -> Words:
                 continue
             word = END_OF_STATEMENT
         elif kind == _COMMENT:
+            if start < end:
+                result.comments.append(Span(source, start, end))
             continue
         elif kind == _QUOTE:
             word = '"' + source.text[start + 1 : end - 1]

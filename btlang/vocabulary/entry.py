@@ -31,6 +31,8 @@ class Entry(Record, uncompared=("span",)):
     `call` is "module:name" or the Python object itself; `phrases` are patterns, the first is the one printed back;
     `span` is the place of its first phrase in its keyword file. Where `measures` names a type, the `call` gives a
     quantity of it; the vocabulary makes the phrases that compare it of the `quantity` ones and the words for comparing.
+    `instant` and `uninterruptible` are what an action says of itself: that it ends in the tick in which it starts, and
+    that it should not be halted half-way. Warnings are made of them; they change nothing in a run.
     """
 
     sort: str  # "action" or "condition"
@@ -44,6 +46,8 @@ class Entry(Record, uncompared=("span",)):
     example: str = ""
     quantity: tuple[str, ...] = ()
     measures: str = ""
+    instant: bool = False
+    uninterruptible: bool = False
     span: Span | None = None
 
     def slot(self, name: str) -> SlotSpec:

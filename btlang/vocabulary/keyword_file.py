@@ -26,6 +26,9 @@ NODE_IDS = frozenset((
 ))  # fmt: skip
 """Ids that are not free: those of the engine."""
 _ENTRY = {"phrase", "id", "call", "ros", "slots", "resources", "topic", "help", "example"}
+_FLAGS = {"instant", "uninterruptible"}
+_MORE = {"action": _FLAGS, "condition": set[str](), "quantity": {"type"}}
+"""The keys that an entry of one sort has beside those of all."""
 _TYPE = {"name", "units", "whole", "least", "open", "values"}
 
 
@@ -69,7 +72,7 @@ class _Reader:
         if not isinstance(name, str) or not re.fullmatch(r"[A-Za-z]\w*", name):
             self.wrong(f"the {sort} '{near}' needs id = \"...\", one word that starts with a letter", near)
             return None
-        keys = _ENTRY | {"type"} if sort == "quantity" else _ENTRY
+        keys = _ENTRY | _MORE[sort]
         for key in [key for key in table if key not in keys]:
             self.wrong(f"'{key}' is not known in [[{sort}]]; known are {', '.join(sorted(keys))}", near)
         if name in NODE_IDS:
@@ -80,11 +83,14 @@ class _Reader:
         if not _strings(resources):
             self.wrong(f"resources of '{near}' is a list of names", near)
             resources = []
+        for key in [key for key in _FLAGS if not isinstance(table.get(key, False), bool)]:
+            self.wrong(f"{key} of '{near}' is true or false", near)
         topic, help, example = (str(table.get(key, "")) for key in ("topic", "help", "example"))
         slots = self.slots(phrases, table.get("slots", {}), near)
         made = Entry(
-            sort, name, tuple(phrases), str(call), slots, tuple(resources), topic, help, example, span=self.span(near)
-        )
+            sort, name, tuple(phrases), str(call), slots, tuple(resources), topic, help, example, span=self.span(near),
+            instant=table.get("instant") is True, uninterruptible=table.get("uninterruptible") is True,
+        )  # fmt: skip
         return self.quantity(made, table, near) if sort == "quantity" else made
 
     def quantity(self, entry: Entry, table: dict[str, Any], near: str) -> Entry:

@@ -11,6 +11,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, MissionError
 from btlang.diagnostics.reading import read_source
 from btlang.frontends.mission import DEFAULT_PARSER, read_mission
 from btlang.passes import compile_mission
+from btlang.passes.lint import lint
 from btlang.text.source import Source
 from btlang.vocabulary.vocabulary import Vocabulary
 
@@ -24,10 +25,10 @@ def told(source: Source, command: str = "") -> list[Diagnostic]:
     try:
         vocabulary = words_of(options.get("--keywords"), options.get("--world"))
         reading = read_mission(source, vocabulary, DEFAULT_PARSER)
-        compile_mission(reading.mission, vocabulary)
+        tree = compile_mission(reading.mission, vocabulary)
     except MissionError as error:
         return error.diagnostics
-    return list(reading.warnings)
+    return list(lint(reading.mission, tree, vocabulary, reading.warnings))
 
 
 @cache

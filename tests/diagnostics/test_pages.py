@@ -16,7 +16,7 @@ from typing import NamedTuple
 import pytest
 
 from btlang.cli import main
-from btlang.diagnostics.codes import CODES
+from btlang.diagnostics.codes import CODES, NAMES
 from btlang.diagnostics.explain import PAGES
 
 TEXTS = {path.stem: path.read_text(encoding="utf-8") for path in Path(PAGES).iterdir()}
@@ -120,3 +120,15 @@ def test_an_unknown_code_is_told(written: str, told: str, capsys: pytest.Capture
     errors = capsys.readouterr().err
     assert "error BT090" in errors
     assert told in errors
+
+
+def test_every_warning_has_a_name_that_its_page_tells() -> None:
+    for code, kind in CODES.items():
+        assert (kind.name != "") == (kind.severity == "warning")
+        assert not kind.name or f"`# allow: {kind.name}`" in TEXTS[code]
+
+
+@pytest.mark.parametrize("written", ["two readings", "Two  Readings", "never runs"])
+def test_explain_knows_the_names_of_warnings(written: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["explain", written]) == 0
+    assert capsys.readouterr() == (TEXTS[NAMES[" ".join(written.lower().split())]], "")

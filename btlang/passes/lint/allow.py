@@ -1,0 +1,73 @@
+"""Comments that silence warnings: `# allow: two readings`, with commas between several names.
+
+Behind a statement such a comment counts for that statement, with the block that it opens; on a line of its own it
+counts for the whole mission.
+"""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect
+from collections.abc import Iterable
+
+from btlang.diagnostics.codes import NAMES
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.text.source import Source, Span
+from btlang.text.spelling import nearest
+from btlang.text.words import Words, split
+from btlang.vocabulary.trie import longest
+from btlang.vocabulary.vocabulary import Vocabulary
+
+_ALLOW = re.compile(r"#\s*allow\s*:(?P<names>[^\n]*)", re.IGNORECASE)
+_NAME = re.compile(r"[^,\s](?:[^,]*[^,\s])?")
+
+
+def heard(warnings: Iterable[Diagnostic], source: Source, vocabulary: Vocabulary) -> list[Diagnostic]:
+    """The warnings that no comment of the source silences, and BT056 for names in such comments that no warning has."""
+    warnings = list(warnings)
+    if not _ALLOW.search(source.text):
+        return warnings
+    words = split(source, vocabulary.articles)
+    silent: dict[str, list[tuple[int, int]]] = {}
+    for comment in words.comments:
+        match = _ALLOW.fullmatch(comment.text.rstrip())
+        for name in _NAME.finditer(match["names"]) if match else ():
+            start = comment.start + match.start("names") + name.start() if match else 0
+            span = Span(source, start, start + len(name[0]))
+            code = NAMES.get(" ".join(name[0].lower().split()))
+            if code is None:
+                near = nearest(name[0].lower(), NAMES)
+                fix = (span, near[0]) if near else None
+                known = ", ".join(near or sorted(NAMES))
+                warnings.append(diagnostic("BT056", span, fix=fix, name=name[0], near=known))
+            else:
+                silent.setdefault(code, []).append(_scope(comment, words, vocabulary))
+    return [
+        warning
+        for warning in warnings
+        if warning.span.source is not source
+        or not any(start <= warning.span.start < end for start, end in silent.get(warning.code, ()))
+    ]
+
+
+def _scope(comment: Span, words: Words, vocabulary: Vocabulary) -> tuple[int, int]:
+    """The characters that a comment counts for."""
+    source = words.source
+    lines = words.lines
+    own = bisect(lines, comment.start, key=lambda line: words.starts[line.first]) - 1
+    if own < 0 or "\n" in source.text[words.starts[lines[own].first] : comment.start]:
+        return 0, len(source.text) + 1
+    last = own
+    while last + 1 < len(lines):
+        following = lines[last + 1]
+        if following.indent < lines[own].indent:
+            break
+        if following.indent == lines[own].indent and not _continues(following.first, words, vocabulary):
+            break
+        last += 1
+    return words.starts[lines[own].first], words.ends[lines[last].last]
+
+
+def _continues(at: int, words: Words, vocabulary: Vocabulary) -> bool:
+    match = longest(vocabulary.trie, words, at, vocabulary.values)
+    return match is not None and match.meaning.role == "otherwise"

@@ -1,0 +1,75 @@
+"""BT054: actions that say that they should not be halted half-way, in a form that will halt them.
+
+A standing rule halts too, but what it interrupts starts anew, so nothing is told of it; nor of a parallel, which
+halts a part only where another one fails.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.passes.lint.subject import Subject, fold_tree
+from btlang.record import Record
+from btlang.tree.node import Node
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+
+class Exposed(Record):
+    """An action that no form has been told for, and the leaf or name that stands for it in this tree."""
+
+    leaf: Node
+    place: Node
+
+
+Found: TypeAlias = "Exposed | None"
+
+
+def cut_off(subject: Subject) -> list[Diagnostic]:
+    """The first such action of each form; each action for its innermost form only."""
+    unsafe = {
+        node_id for node_id, entries in subject.vocabulary.entries.items() if any(e.uninterruptible for e in entries)
+    }
+    found: list[Diagnostic] = []
+
+    def combine(node: Node, children: Sequence[Found], named: dict[str, Found]) -> Found:
+        if node.id == "SubTree":
+            inner = named.get(node.port("ID"))
+            return inner and Exposed(inner.leaf, node)
+        if node.id in unsafe:
+            return Exposed(node, node)
+        exposed = next((child for child in children if child is not None), None)
+        when = _when(node)
+        if exposed is None or not when:
+            return exposed
+        found.extend(_told(exposed, when, subject))
+        return None
+
+    if unsafe:
+        fold_tree(subject.tree, combine)
+    return found
+
+
+def _when(node: Node) -> str:
+    """When a node halts what is in it, "" where it does not."""
+    if node.id == "Parallel":
+        return "when the time is over" if node.port("success_count") == "1" else ""
+    return _HALTING.get(node.id, "")
+
+
+_HALTING = {
+    "Timeout": "when the time is over",
+    "WhileDoElse": "as soon as the condition changes",
+    "ReactiveSequence": "as soon as the condition does not hold",
+}
+
+
+def _told(exposed: Exposed, when: str, subject: Subject) -> list[Diagnostic]:
+    leaf, place = exposed.leaf.span, exposed.place.span
+    if leaf is None or place is None:
+        return []
+    notes = () if exposed.leaf is exposed.place else ((leaf, f"'{leaf.text}' stands here"),)
+    return [diagnostic("BT054", place, notes, words=leaf.text, when=when, then=subject.vocabulary.word("then"))]

@@ -1,0 +1,223 @@
+"""The places where a sentence can be read in another way, each with both readings as syntax trees.
+
+The other reading is the one that brackets in the text would give. It is made of the parts of the tree, not by reading
+the text once more: parts keep what their names and pronouns mean, and a long mission stays quick.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Sequence
+from functools import cached_property, partial
+
+from btlang.passes.lint.gaps import Gaps, balanced
+from btlang.record import Record
+from btlang.text.source import Span
+from btlang.tree import ast
+from btlang.vocabulary.vocabulary import Vocabulary
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+MIXED, POSTFIX, LIST, OTHERWISE = "mixed", "postfix", "list", "otherwise"
+
+
+class Readings(Record):
+    """`span` is what both readings are about; `fix` is a change of the text that leaves only the one that was taken."""
+
+    taken: ast.Ast
+    other: ast.Ast
+    span: Span
+    fix: tuple[Span, str]
+
+
+class Attachment(Record):
+    """A place of one of the four kinds. Its readings are made when they are asked for: most are never told."""
+
+    kind: str
+    start: int
+    readings: Callable[[], Readings]
+
+
+def in_chain(chain: ast.Chain, is_part: bool, vocabulary: Vocabulary) -> Iterator[Attachment]:
+    """Those between the parts of a chain; `is_part`: it is itself a part of another one, without brackets.
+
+    Only neighbours that could be read otherwise are looked at, so that a long chain of plain commands costs little.
+    """
+    items = in_order(chain.items)
+    if is_list(chain):
+        return
+    gaps: Gaps | None = None
+    for at in range(len(items) - 1):
+        left, right = items[at], items[at + 1]
+        wrapped = _after_its_body(right)
+        lists = chain.operator == "parallel" and (_is_sequence(left) or _is_sequence(right))
+        if not (wrapped or lists or _is_open(left) or _is_open(right)):
+            continue
+        gaps = gaps or Gaps(items, vocabulary)
+        if not gaps.is_open(at):
+            continue
+        place, start, gap = _Place(chain, gaps, at, is_part), left.span.start, gaps.text(at)
+        if _is_open(right):
+            yield Attachment(MIXED, start, partial(place.mixed_right, right))
+        elif _is_open(left):
+            yield Attachment(MIXED, start, partial(place.mixed_left, left))
+        if wrapped and "(" not in gap:
+            yield Attachment(POSTFIX, start, partial(place.postfix, right, wrapped))
+        if lists and _is_sequence(left) and ")" not in gap:
+            yield Attachment(LIST, start, partial(place.list_left, left))
+        elif lists and _is_sequence(right) and "(" not in gap:
+            yield Attachment(LIST, start, partial(place.list_right, right))
+
+
+def in_form(node: ast.Ast) -> Iterator[Attachment]:
+    """An `otherwise` that both this form and one at the end of its body could have."""
+    if not isinstance(node, ast.If | ast.Try) or node.otherwise is not None or node.body.span.start <= node.span.start:
+        return
+    path: list[ast.Ast] = [node]
+    part: Any = node.body
+    while not _has_otherwise(part):
+        path.append(part)
+        if isinstance(part, ast.Chain) and not part.bracketed and not is_list(part):
+            part = in_order(part.items)[-1]
+        elif isinstance(part, ast.If | ast.Try | ast.Chain) or _in_brackets(part.span):
+            return
+        elif getattr(part, "body", None) is not None and part.body.span.start > part.span.start:
+            part = part.body
+        else:
+            return
+    text = part.span.source.text
+    if _in_brackets(part.span) or "\n" in text[node.span.start : part.span.start]:
+        return
+    yield Attachment(OTHERWISE, node.span.start, partial(_moved, node, path, part))
+
+
+def _moved(node: Any, path: Sequence[ast.Ast], part: Any) -> Readings:
+    """`if C, if D, A otherwise B`: if C, (if D, A) otherwise B."""
+    tried = isinstance(part, ast.Try) and part.body.span.start == part.span.start
+    changed: ast.Ast = part.body if tried else part.replace(otherwise=None)
+    for inner, outer in zip([part, *path[:0:-1]], path[::-1], strict=True):
+        changed = _with(outer, inner, changed)
+    return Readings(node, changed.replace(otherwise=part.otherwise), node.span, _bracketed(part.span))
+
+
+class _Place:
+    """A gap in a chain, in what hangs together around it."""
+
+    def __init__(self, chain: ast.Chain, gaps: Gaps, at: int, is_part: bool) -> None:
+        self.chain, self.gaps, self.at, self.is_part = chain, gaps, at, is_part
+        self.items = gaps.items
+
+    @cached_property
+    def first(self) -> int:
+        """The first part of what hangs together."""
+        return self.gaps.run(self.at)[0]
+
+    @cached_property
+    def last(self) -> int:
+        """The last one."""
+        return self.gaps.run(self.at)[1]
+
+    def mixed_right(self, right: Any) -> Readings:
+        """`A then B and C`: (A then B) and C."""
+        first = in_order(right.items)[0]
+        group = self._joined(self.first, self.at + 1, {self.at + 1: first})
+        return self._readings(self.first, self.at + 1, _with(right, first, group), self.at + 1)
+
+    def mixed_left(self, left: Any) -> Readings:
+        """`A and B then C`: A and (B then C)."""
+        last = in_order(left.items)[-1]
+        group = self._joined(self.at, self.last, {self.at: last})
+        return self._readings(self.at, self.last, _with(left, last, group), self.at)
+
+    def postfix(self, right: Any, wrapped: Sequence[Any]) -> Readings:
+        """`A then B 3 times`: (A then B) 3 times."""
+        group: ast.Ast = self._joined(self.first, self.at + 1, {self.at + 1: wrapped[-1].body})
+        for form in reversed(wrapped):
+            group = form.replace(body=group)
+        return self._readings(self.first, self.at + 1, group, self.at + 1)
+
+    def list_left(self, left: Any) -> Readings:
+        """`go to A and B and wave`: go to A, and then go to B and wave."""
+        group = self._joined(self.at, self.last, {self.at: left.items[-1]})
+        other = left.replace(items=(*left.items[:-1], group))
+        return self._readings(self.at, self.last, other, self.at)
+
+    def list_right(self, right: Any) -> Readings:
+        """`wave and go to A and B`: wave and go to A, and then go to B."""
+        group = self._joined(self.first, self.at + 1, {self.at + 1: right.items[0]})
+        other = right.replace(items=(group, *right.items[1:]))
+        return self._readings(self.first, self.at + 1, other, self.at + 1)
+
+    def _joined(self, first: int, last: int, changed: dict[int, ast.Ast]) -> ast.Ast:
+        """These parts as a chain of their own, some of them changed."""
+        spoken: Sequence[int] = range(first, last + 1)
+        if self.items is not self.chain.items:
+            order = {id(self.items[at]): at for at in spoken}
+            spoken = [order[id(item)] for item in self.chain.items if id(item) in order]
+        items = tuple(changed.get(at, self.items[at]) for at in spoken)
+        return ast.Chain(self.chain.operator, items, True, self.chain.span) if len(items) > 1 else items[0]
+
+    def _readings(self, first: int, last: int, other: ast.Ast, place: int) -> Readings:
+        """`other` takes the place of one part, and those from `first` to `last` are in it."""
+        part = self.items[place].span
+        whole = self._joined(self.first, self.last, {})
+        gone = {id(self.items[at]) for at in range(first, last + 1) if at != place}
+        items = [other if item is self.items[place] else item for item in ast.parts(whole) if id(item) not in gone]
+        changed = ast.Chain(self.chain.operator, tuple(items), True, self.chain.span) if len(items) > 1 else other
+        commas = self.chain.operator == "sequence" or not self.is_part
+        fix = (self.gaps.comma(self.at), ",") if commas else _bracketed(part)
+        span = Span(part.source, self.items[self.first].span.start, self.items[self.last].span.end)
+        return Readings(whole, changed, balanced(span), fix)
+
+
+def is_list(node: ast.Ast) -> bool:
+    """Whether it is a list of values in one phrase, whose parts all stand for the same words."""
+    return isinstance(node, ast.Chain) and all(item.span == node.span for item in node.items)
+
+
+def _is_sequence(node: ast.Ast) -> bool:
+    return is_list(node) and getattr(node, "operator", "") == "sequence"
+
+
+def _is_open(node: ast.Ast) -> bool:
+    return isinstance(node, ast.Chain) and not node.bracketed
+
+
+def _has_otherwise(node: ast.Ast) -> bool:
+    return getattr(node, "otherwise", None) is not None
+
+
+def _after_its_body(node: ast.Ast) -> list[Any]:
+    """The forms that stand behind one command, the outermost first; none where brackets decide what they are about."""
+    forms: list[Any] = []
+    body: Any = getattr(node, "body", None)
+    while body is not None and body.span.start == node.span.start:
+        forms.append(node)
+        node, body = body, getattr(body, "body", None)
+    return [] if isinstance(node, ast.Chain) and node.bracketed and not is_list(node) else forms
+
+
+def in_order(items: Sequence[ast.Ast]) -> Sequence[ast.Ast]:
+    """In the order of the text: `A after B` holds its parts the other way round."""
+    starts = [item.span.start for item in items]
+    return items if starts == sorted(starts) else sorted(items, key=lambda item: item.span.start)
+
+
+def _in_brackets(span: Span) -> bool:
+    text = span.source.text
+    before, behind = text[: span.start].rstrip(" \t"), text[span.end :].lstrip(" \t")
+    return before.endswith("(") and behind.startswith(")")
+
+
+def _bracketed(span: Span) -> tuple[Span, str]:
+    return span, f"({span.text})"
+
+
+def _with(outer: Any, part: ast.Ast, changed: ast.Ast) -> ast.Ast:
+    """A node with another part in the place of one."""
+    if isinstance(outer, ast.Chain):
+        made: ast.Ast = outer.replace(items=tuple(changed if item is part else item for item in outer.items))
+    else:
+        made = outer.replace(body=changed)
+    return made

@@ -1,0 +1,82 @@
+"""BT050: sentences that two people could read in two ways, where no comma, bracket or block decides.
+
+- `then`, `and` and `or` mixed: `A then B and C`;
+- a form behind a chain: `A then B 3 times`;
+- an `otherwise` that two forms could have: `if C, if D, A otherwise B`;
+- a list beside `and`: `go to the lobby and the lab and wave`.
+"""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect
+from collections.abc import Iterator
+
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.english.sentence import Speaker, speaker_of
+from btlang.passes.lint.gaps import Gaps
+from btlang.passes.lint.other_reading import Attachment, Readings, in_chain, in_form, in_order, is_list
+from btlang.passes.lint.subject import Subject
+from btlang.text.source import Source, Span
+from btlang.tree import ast
+
+_SENTENCE_END = re.compile(r"[\n;]|[.!?](?=\s)")
+
+
+def two_readings(subject: Subject) -> Iterator[Diagnostic]:
+    """At most one of each kind for each sentence: the first."""
+    mission, told = subject.mission, set[tuple[str, int, str]]()
+    speaker: Speaker | None = None
+    ends: dict[str, list[int]] = {}
+    for root in (*mission.definitions, *([mission.body] if mission.body is not None else [])):
+        source = root.span.source
+        for found in _attachments(root, subject):
+            if source.name not in ends:
+                ends[source.name] = _sentence_ends(source)
+            key = source.name, bisect(ends[source.name], found.start), found.kind
+            if key in told:
+                continue
+            told.add(key)
+            speaker = speaker or speaker_of(mission, subject.vocabulary, "all")
+            readings = found.readings()
+            if not speaker.say(readings.taken).in_lines:
+                yield _told(readings, speaker)
+
+
+def _attachments(root: ast.Ast, subject: Subject) -> Iterator[Attachment]:
+    """Outer ones first, in the order of the text."""
+    stack = [(root, False)]
+    while stack:
+        node, is_part = stack.pop()
+        if isinstance(node, ast.Chain):
+            if is_list(node):
+                continue
+            yield from in_chain(node, is_part, subject.vocabulary)
+            stack += reversed(list(_parts(node, subject)))
+            continue
+        yield from in_form(node)
+        stack += [(part, False) for part in reversed(ast.parts(node))]
+
+
+def _parts(chain: ast.Chain, subject: Subject) -> Iterator[tuple[ast.Ast, bool]]:
+    """The parts of a chain, and whether each has something beside it in its statement."""
+    items = in_order(chain.items)
+    gaps = Gaps(items, subject.vocabulary)
+    for at, item in enumerate(items):
+        yield item, isinstance(item, ast.Chain) and not gaps.is_alone(at)
+
+
+def _sentence_ends(source: Source) -> list[int]:
+    return [match.start() for match in _SENTENCE_END.finditer(source.text)]
+
+
+def _told(found: Readings, speaker: Speaker) -> Diagnostic:
+    taken, other = speaker.statement(found.taken), speaker.statement(found.other)
+    fix = None if "\n" in found.fix[0].text else found.fix
+    fixed = taken if fix is None or "\n" in found.span.text else _changed(found.span, *found.fix)
+    return diagnostic("BT050", found.span, (), fix, taken=taken, other=other, fixed=fixed)
+
+
+def _changed(span: Span, part: Span, words: str) -> str:
+    text = span.source.text
+    return " ".join((text[span.start : part.start] + words + text[part.end : span.end]).split())

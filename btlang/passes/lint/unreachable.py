@@ -1,0 +1,43 @@
+"""BT052: commands that never run, because what is before them never lets the mission come to them."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.passes.lint.endings import NEVER, Ends, ends_of, goes_on
+from btlang.passes.lint.subject import Subject, fold_tree
+from btlang.text.source import Span
+from btlang.tree.node import Node
+
+
+def never_runs(subject: Subject) -> list[Diagnostic]:
+    """The first such command of each Sequence and Fallback."""
+    found: list[Diagnostic] = []
+
+    def combine(node: Node, children: Sequence[Ends], named: dict[str, Ends]) -> Ends:
+        if node.id in ("Sequence", "Fallback"):
+            for at in range(len(children) - 1):
+                if not goes_on(node, children[at]):
+                    found.extend(_told(node, node.children[at], children[at], node.children[at + 1]))
+                    break
+        return ends_of(node, children, named)
+
+    fold_tree(subject.tree, combine)
+    return found
+
+
+def _told(parent: Node, before: Node, ends: Ends, behind: Node) -> list[Diagnostic]:
+    """Nothing where both stand for the same words: then a form has put one of them there."""
+    if before.span is None or behind.span is None or _overlap(before.span, behind.span):
+        return []
+    if NEVER in ends:
+        how = "fails" if parent.id == "Sequence" else "succeeds"
+        reason = "never ends" if ends == {NEVER} else f"goes on until it {how}"
+    else:
+        reason = "always fails" if parent.id == "Sequence" else "always succeeds"
+    return [diagnostic("BT052", behind.span, ((before.span, f"this {reason}"),), reason=reason)]
+
+
+def _overlap(first: Span, second: Span) -> bool:
+    return first.source is second.source and first.start < second.end and second.start < first.end
