@@ -159,6 +159,8 @@ def _header(
     if any(tuple(text.words[i:at]) in variables for i in range(start, at)):
         return None
     joined = _joining_word(text, start, at, vocabulary)
+    if joined is not None and text.words[at - 1] == "}":
+        return None  # `wave until {counter} is 3` compares
     if joined is not None and _starts_with_a_phrase(text, start, joined, vocabulary):
         return None  # `charge until the battery is green` is a command that says something unknown
     if joined is not None:

@@ -29,11 +29,10 @@ class Includes:
     def __init__(self) -> None:
         self.found: list[tuple[str, Span]] = []
         self.ends: dict[int, int] = {}
-        self.problems: list[Diagnostic] = []
 
 
 def find_includes(text: Words, vocabulary: Vocabulary) -> Includes:
-    """Every include of the text. A statement that begins as one and is none has a problem (BT047)."""
+    """Every include of the text."""
     includes = Includes()
     firsts = {phrase.split()[0] for phrase in vocabulary.roles[ROLE]}
     if firsts.isdisjoint(text.words):
@@ -42,12 +41,10 @@ def find_includes(text: Words, vocabulary: Vocabulary) -> Includes:
         match = longest(vocabulary.trie, text, first, vocabulary.values) if text.words[first] in firsts else None
         if match is None or match.meaning.role != ROLE:
             continue
-        span, word = text.span(first, last), text.words[match.last]
+        word = text.words[match.last]
         if match.last + 1 == last and word[0] == '"' and len(word) > 1 and indent == text.lines[0].indent:
-            includes.found.append((word[1:], span))
-        else:
-            includes.problems.append(misplaced(span, vocabulary))
-        includes.ends[first] = last
+            includes.found.append((word[1:], text.span(first, last)))
+            includes.ends[first] = last
     return includes
 
 

@@ -53,7 +53,7 @@ class Lexer:
         self.includes = [Include(path, part.mission, span) for path, span, part in loaded if part is not None]
         parts = [part for _, _, part in loaded if part is not None]
         facts = find_facts(self.text, vocabulary)
-        self.problems += includes.problems + facts.problems
+        self.problems += facts.problems
         self.facts = facts.found
         self._ends = includes.ends | facts.ends
         places = [*(fact for part in parts for fact in all_facts(part.mission)), *self.facts]
@@ -61,7 +61,7 @@ class Lexer:
             self.vocabulary = vocabulary.with_places(tuple(dict.fromkeys(fact.name for fact in places)))
         shared = [definition for part in parts for definition in all_definitions(part.mission)]
         self._heads = find_heads(self.text, self.vocabulary)
-        named = {words for head in self._heads.values() for words in (head.words, ("{", *head.words, "}"))}
+        named = {head.words for head in self._heads.values()}
         self.definitions: Definitions = find_definitions(self.text, self.vocabulary, self._ends, named, shared)
         self._variables = Variables(self.text, self.vocabulary, self._heads, self.definitions, parts)
         self.known = self._variables.everywhere
@@ -233,7 +233,7 @@ class Lexer:
         read = read_statement(head, self.text, at, self.vocabulary, self.values, self._port_text)
         if read is None:
             span = span_of(self.text, at)
-            if self._explain:
+            if self._explain and (head.role == "each" or head.key in self.known):  # else that has been told
                 self.problems.append(self._why(at, at, Match(Meaning(head.role), at)))
             self.tokens.append(Token("unknown", None, span.start, span.end))
             return bisect_right(self.text.starts, span.end - 1)

@@ -58,6 +58,7 @@ class Matcher(ConditionScan):
     def _operand(self, token: Token) -> None:
         frame = self._frames[-1]
         if token.kind == "unknown":
+            self._begin_statement(token)
             self._skip_statement()
             return
         if frame.is_condition:

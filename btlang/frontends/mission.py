@@ -13,7 +13,7 @@ from btlang.frontends.lexer import Lexer, Load
 from btlang.frontends.matching import Matcher
 from btlang.record import Record
 from btlang.text.source import Source, Span
-from btlang.tree.ast import Ast, Definition, Mission
+from btlang.tree.ast import Ast, Definition, Mission, Nothing
 from btlang.vocabulary.vocabulary import Vocabulary
 
 PARSERS = {
@@ -39,7 +39,7 @@ def read_mission(source: Source, vocabulary: Vocabulary, parser: str = DEFAULT_P
         raise ValueError(f"no parser '{parser}'; there are {', '.join(PARSERS)}")
     reader = _Reader(vocabulary, parser)
     included = reader.read(source, (os.path.realpath(source.name),))
-    if included is None or any(problem.is_error for problem in reader.problems):
+    if any(problem.is_error for problem in reader.problems):
         raise MissionError(reader.problems)
     return Reading(included.mission, tuple(reader.problems))
 
@@ -85,8 +85,8 @@ class _Reader:
                 self.problems.append(here)
             return None
 
-    def read(self, source: Source, within: tuple[str, ...]) -> Included | None:
-        """None where something is wrong with the text itself."""
+    def read(self, source: Source, within: tuple[str, ...]) -> Included:
+        """The mission; of one that has something wrong only its names, so that their uses are not wrong, too."""
         lexer = Lexer(source, self._vocabulary, load=self.loader(source, within))
         matcher = Matcher(source, lexer.tokens, lexer.conditions, self._vocabulary.word)
         problems = lexer.problems + matcher.problems
@@ -94,7 +94,7 @@ class _Reader:
             problems = [diagnostic("BT005", Span(source, 0, 0), example="move forward 1 m")]
         self.problems += problems
         if any(problem.is_error for problem in problems):
-            return None
+            return Included(_names_only(source, lexer), frozenset(lexer.conditions), lexer.known)
         return Included(self._mission(source, lexer, matcher), frozenset(lexer.conditions), lexer.known)
 
     def _mission(self, source: Source, lexer: Lexer, matcher: Matcher) -> Mission:
@@ -114,3 +114,15 @@ class _Reader:
         facts = {fact.name: fact for fact in lexer.facts}  # a later fact replaces an earlier one
         whole = Span(source, 0, len(source.text))
         return Mission(body, tuple(definitions.values()), whole, tuple(facts.values()), tuple(lexer.includes))
+
+
+def _names_only(source: Source, lexer: Lexer) -> Mission:
+    """The names that a text defines; their bodies do nothing."""
+    whole = Span(source, 0, len(source.text))
+    types, headers = lexer.definitions.types, lexer.definitions.headers.values()
+    definitions = {
+        header.name: Definition(header.name, types[header.body], Nothing(whole), header.span, whole)
+        for header in headers
+        if header.body in types
+    }
+    return Mission(None, tuple(definitions.values()), whole, tuple(lexer.facts), tuple(lexer.includes))

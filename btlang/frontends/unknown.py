@@ -17,7 +17,7 @@ from btlang.text.spelling import nearest, nearest_start
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.pattern import Slot, forms
 from btlang.vocabulary.trie import SLOTS, TrieNode, longest
-from btlang.vocabulary.values import Values, ValueType, with_unit
+from btlang.vocabulary.values import Known, Values, ValueType, with_unit
 from btlang.vocabulary.vocabulary import Vocabulary
 
 _NOT_A_VALUE = frozenset((END_OF_TEXT, END_OF_STATEMENT, ",", ":", "(", ")"))
@@ -36,6 +36,11 @@ def explain_unknown(
 
     `values` read the values of this text, with its pronouns.
     """
+    unnamed = next((i for i in range(at, end) if text.words[i] == "{" and values.named(text, i) == (None, i + 1)), None)
+    if unnamed is not None:
+        last = next((i for i in range(unnamed, end) if text.words[i] == "}"), unnamed)
+        name = " ".join(text.words[unnamed + 1 : last])
+        return unknown_value(text.span(unnamed, last + 1), name, values.known or ())
     start, misfits = at, list(_misfits(text, at, vocabulary, values))
     if before and before[-1].kind not in ("comma", "newline", "indent", "dedent", "open", "semi"):
         phrase = bisect_left(text.starts, before[-1].start)  # `move forward 5 s`: read that far, and no further
@@ -43,7 +48,7 @@ def explain_unknown(
         if longer and (not misfits or longer[0].at >= misfits[0].at):
             start, misfits = phrase, longer
     if misfits:
-        return _misfit(text, start, end, misfits, vocabulary, definitions)
+        return _misfit(text, start, end, misfits, vocabulary, values, definitions)
     number = vocabulary.values.number(text, at)
     for _, kind, child in vocabulary.trie.get(SLOTS, ()):
         if number is not None and text.words[number[1]] in child:  # `0 times`
@@ -55,13 +60,13 @@ def explain_unknown(
 
 def misread_head(text: Words, at: int, role: str, vocabulary: Vocabulary) -> Diagnostic:
     """BT039 for a statement about a value of the mission that is not put together as one."""
-    word, values = vocabulary.word, vocabulary.values
-    places = values.names("place")
+    word, places = vocabulary.word, vocabulary.values.names("place")
+    measured = (entry.quantity[0] for entries in vocabulary.entries.values() for entry in entries if entry.measures)
     examples = {
         "set": f"{word('set')} counter {word('set_to')} 3",
         "increase": f"{word('increase')} counter {word('by')} 1",
         "decrease": f"{word('decrease')} counter {word('by')} 1",
-        "remember": f"{word('remember')} 3 {word('remember_as')} counter",
+        "remember": f"{word('remember')} {next(measured, 3)} {word('remember_as')} level",
         "each": f"{word('each')} place {word('each_in')} {', '.join(places[:2]) or 'a, b'}: ...",
     }
     span = span_of(text, at)
@@ -73,7 +78,8 @@ def unknown_value(span: Span, key: str, known: Iterable[str]) -> Diagnostic:
     name, names = key.replace("_", " "), [other.replace("_", " ") for other in known]
     near = nearest(name, names)
     advice = _near_names(near, names) if names else "Nothing has a name in this mission yet."
-    return diagnostic("BT043", span, name=name, help=advice)
+    fix = (span, span.text.replace(name, near[0])) if near and name in span.text else None
+    return diagnostic("BT043", span, fix=fix, name=name, help=advice)
 
 
 class _Misfit(Record):
@@ -106,7 +112,13 @@ def _misfits(text: Words, at: int, vocabulary: Vocabulary, values: Values) -> It
 
 
 def _misfit(
-    text: Words, first: int, end: int, misfits: list[_Misfit], vocabulary: Vocabulary, definitions: Definitions
+    text: Words,
+    first: int,
+    end: int,
+    misfits: list[_Misfit],
+    vocabulary: Vocabulary,
+    values: Values,
+    definitions: Definitions,
 ) -> Diagnostic:
     at = misfits[0].at
     types = [vocabulary.types[misfit.kind] for misfit in misfits]
@@ -115,6 +127,9 @@ def _misfit(
     example = f"{head} {_value_example(types[0], vocabulary)}"
     if text.words[at] in _NOT_A_VALUE or _is_connective(text, at, vocabulary):
         return diagnostic("BT012", text.span(first, at), words=head, wanted=wanted, example=example)
+    mentioned = values.named(text, at)
+    if mentioned is not None and mentioned[0] is not None:
+        return _wrong_type(text.span(at, mentioned[1]), mentioned[0], wanted)
     quantity, number = vocabulary.values.quantity(text, at), vocabulary.values.number(text, at)
     if quantity is not None:
         span = text.span(at, quantity[2])
@@ -147,6 +162,11 @@ def _misfit(
     if text.words[at][0] != '"':  # `turn leftt` lacks no angle
         return _unknown_phrase(text, first, max(end, at + 1), vocabulary, definitions, [])
     return diagnostic("BT011", span, words=span.text, wanted=f"{wanted} is needed", example=example)
+
+
+def _wrong_type(span: Span, known: Known, wanted: str) -> Diagnostic:
+    kind = known.kinds[0]
+    return diagnostic("BT044", span, name=" ".join(known.words), kind=f"{_article(kind)} {kind}", wanted=wanted)
 
 
 def _is_connective(text: Words, at: int, vocabulary: Vocabulary) -> bool:

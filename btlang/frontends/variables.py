@@ -160,12 +160,13 @@ class Variables:
         for at, head in self._heads.items():
             if head.role != "each" and self.everywhere.get(head.key) is None:
                 self._unknown(at, head)
-        for first, _, known in self._local:
-            if known.key in self.everywhere:
-                span = self._text.span(max(0, first - 1), first)
-                for header in self._definitions.headers.values():
-                    span = header.span if header.body == first else span
-                self.problems.append(diagnostic("BT045", span, name=" ".join(known.words)))
+        each = [(self._text.span(at, head.last), head) for at, head in self._heads.items() if head.role == "each"]
+        headers = [(header.span, header) for header in self._definitions.headers.values()]
+        local = [(span, head.key, head.words) for span, head in each]
+        local += [(span, key, words) for span, header in headers for key, words in header.parameters]
+        for span, key, words in local:
+            if key in self.everywhere:
+                self.problems.append(diagnostic("BT045", span, name=" ".join(words)))
 
     def _unknown(self, at: int, head: Head) -> None:
         vocabulary = self._vocabulary

@@ -230,6 +230,14 @@ class Values:
         best, end = max((value for _, value in found), key=lambda value: value[1])
         return tuple(kind for kind, (other, last) in found if last == end and other.lower() == best.lower()), best, end
 
+    def named(self, text: Words, at: int) -> tuple[Known | None, int] | None:
+        """The value that the mission names at a place, None for an unknown one in braces, and where its name ends."""
+        reference = self._reference(text, at)
+        if reference is not None:
+            known = self.known.get(reference[0]) if self.known else None
+            return known, reference[1] if known is not None else at + 1
+        return find(self._known_words, text.words, at)
+
     def _known(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
         """A value that the mission names: in braces, or bare where no text is wanted and no name is longer."""
         reference = self._reference(text, at)
