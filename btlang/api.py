@@ -24,6 +24,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, TypeVar
 
+    from btlang.engine.blackboard import Blackboard
     from btlang.robots.simulation import Simulation
     from btlang.robots.world_file import WorldError
     from btlang.run.controls import Controls
@@ -146,7 +147,7 @@ class RunnableTree:
 
     `tree` is the tree itself; `warnings` are diagnostics that do not keep it from running; `mission` is the syntax tree
     that it was compiled from, where there is one. Each run takes place in a fresh world, or on the `stage` where one is
-    given, which goes on from run to run.
+    given, which goes on from run to run; so does a `blackboard` with the values of the mission.
     """
 
     def __init__(
@@ -157,6 +158,7 @@ class RunnableTree:
         warnings: Sequence[Diagnostic] = (),
         stage: Simulation | None = None,
         mission: Mission | None = None,
+        blackboard: Blackboard | None = None,
     ) -> None:
         self.tree = tree
         self.mission = mission
@@ -164,6 +166,7 @@ class RunnableTree:
         self.world = world
         self.warnings = tuple(warnings)
         self.stage = stage
+        self._blackboard = blackboard
         self.sink_errors: list[Exception] = []
         """What sinks of the latest run raised; such a sink gets no more events, and the mission goes on."""
         self._controls: Controls | None = None
@@ -292,6 +295,7 @@ class RunnableTree:
                 clock=stage.clock,
                 events=stage.events,
                 services={"robot": stage.robot},
+                blackboard=self._blackboard,
             )
         except EngineError as error:
             span = error.node.span or Span(Source(""), 0, 0)

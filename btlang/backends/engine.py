@@ -9,6 +9,7 @@ from importlib import import_module
 from btlang.backends.comparing import comparing
 from btlang.engine.build import EngineError
 from btlang.engine.leaf import LeafBinding
+from btlang.engine.script_values import as_text
 from btlang.tree.node import Node
 from btlang.vocabulary.entry import MEASURED, Entry, SlotSpec
 from btlang.vocabulary.vocabulary import Vocabulary
@@ -40,7 +41,7 @@ def _converter(slot: SlotSpec, vocabulary: Vocabulary) -> Callable[[str], Any]:
     kind = vocabulary.types[slot.type]
     if kind.kind == "quantity" or kind.kind == "number":
         return int if kind.whole else float
-    return str
+    return as_text
 
 
 def _search_beside(entry: Entry) -> None:

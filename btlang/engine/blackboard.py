@@ -44,6 +44,11 @@ class Blackboard:
         scope, key = self._owner(key)
         scope._values[key] = value
 
+    def unset(self, key: str) -> None:
+        """Nothing is set any more in the scope that owns the key."""
+        scope, key = self._owner(key)
+        scope._values.pop(key, None)
+
     def __contains__(self, key: str) -> bool:
         scope, key = self._owner(key)
         return key in scope._values

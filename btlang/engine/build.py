@@ -14,6 +14,7 @@ from collections.abc import Callable, Mapping, Sequence
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.clock import Clock
 from btlang.engine.leaf import ActionFailed, LeafBinding
+from btlang.engine.script_values import as_text
 from btlang.engine.status import FAILURE
 from btlang.record import Record
 from btlang.tree.node import Node
@@ -152,7 +153,7 @@ def apart(children: Sequence[Compiled]) -> tuple[tuple[Tick, ...], tuple[Halt, .
 
 def _convert(scope: Blackboard, port: str, key: str, convert: Callable[[str], Any]) -> Any:
     value = value_of(scope, key)
-    if not isinstance(value, str):
+    if not isinstance(value, str) and convert is not as_text:
         return value
     try:
         return convert(value)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.definitions import Definitions, find_definitions
@@ -19,7 +19,7 @@ from btlang.tree.ast import Include, all_definitions, all_facts
 from btlang.vocabulary.entry import Entry, Meaning
 from btlang.vocabulary.references import keys_in, renamed
 from btlang.vocabulary.trie import SLOTS, Match, SlotValue, longest
-from btlang.vocabulary.values import key_of
+from btlang.vocabulary.values import Known, key_of
 from btlang.vocabulary.vocabulary import Vocabulary
 
 TYPE_CHECKING = False
@@ -37,10 +37,17 @@ class Lexer:
     """Reads one source. `tokens` are raw tokens, `problems` what was unknown; both are complete after construction.
 
     With `explain` False nothing is said about unknown words, which takes time. `load` reads the missions that this one
-    includes; without it their names are unknown.
+    includes; without it their names are unknown. `known` are values that it may use though it does not set them.
     """
 
-    def __init__(self, source: Source, vocabulary: Vocabulary, explain: bool = True, load: Load | None = None) -> None:
+    def __init__(
+        self,
+        source: Source,
+        vocabulary: Vocabulary,
+        explain: bool = True,
+        load: Load | None = None,
+        known: Mapping[str, Known] | None = None,
+    ) -> None:
         self._explain = explain
         self.text: Words = split(source, vocabulary.articles)
         self.vocabulary = vocabulary
@@ -63,7 +70,9 @@ class Lexer:
         self._heads = find_heads(self.text, self.vocabulary)
         named = {head.words for head in self._heads.values()}
         self.definitions: Definitions = find_definitions(self.text, self.vocabulary, self._ends, named, shared)
-        self._variables = Variables(self.text, self.vocabulary, self._heads, self.definitions, parts)
+        self._variables = Variables(
+            self.text, self.vocabulary, self._heads, self.definitions, self._shared(parts, known)
+        )
         self.known = self._variables.everywhere
         """The values that hold in the whole mission, by key."""
         self._bounds = [*self._variables.bounds, len(self.text.words)]
@@ -76,6 +85,10 @@ class Lexer:
         for token in self.tokens:
             if token.kind == "name":
                 token.kind = "condition" if called(token).id in self.conditions else "command"
+
+    def _shared(self, parts: list[Included], known: Mapping[str, Known] | None) -> dict[str, Known]:
+        """The values that hold in the whole mission and are named elsewhere."""
+        return {key: value for named in (known or {}, *(part.known for part in parts)) for key, value in named.items()}
 
     def _lines(self) -> None:
         """Line ends, indents and dedents around the tokens of each line, as in Python."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Mapping
 from importlib import import_module
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
@@ -14,6 +15,7 @@ from btlang.frontends.matching import Matcher
 from btlang.record import Record
 from btlang.text.source import Source, Span
 from btlang.tree.ast import Ast, Definition, Mission, Nothing
+from btlang.vocabulary.values import Known
 from btlang.vocabulary.vocabulary import Vocabulary
 
 PARSERS = {
@@ -31,13 +33,16 @@ class Reading(Record):
     warnings: tuple[Diagnostic, ...]
 
 
-def read_mission(source: Source, vocabulary: Vocabulary, parser: str = DEFAULT_PARSER) -> Reading:
-    """Raises MissionError with all that is wrong with the text and those that it includes; ValueError for an unknown
-    parser.
+def read_mission(
+    source: Source, vocabulary: Vocabulary, parser: str = DEFAULT_PARSER, known: Mapping[str, Known] | None = None
+) -> Reading:
+    """Reads a text and those that it includes; `known` are values that it may use though it does not set them.
+
+    Raises MissionError with all that is wrong with them; ValueError for an unknown parser.
     """
     if parser not in PARSERS:
         raise ValueError(f"no parser '{parser}'; there are {', '.join(PARSERS)}")
-    reader = _Reader(vocabulary, parser)
+    reader = _Reader(vocabulary, parser, known or {})
     included = reader.read(source, (os.path.realpath(source.name),))
     if any(problem.is_error for problem in reader.problems):
         raise MissionError(reader.problems)
@@ -46,17 +51,18 @@ def read_mission(source: Source, vocabulary: Vocabulary, parser: str = DEFAULT_P
 
 def lexed(source: Source, vocabulary: Vocabulary) -> Lexer:
     """The tokens of a text, with the names of what it includes; nothing is said of what is wrong."""
-    reader = _Reader(vocabulary, DEFAULT_PARSER)
+    reader = _Reader(vocabulary, DEFAULT_PARSER, {})
     return Lexer(source, vocabulary, explain=False, load=reader.loader(source, (os.path.realpath(source.name),)))
 
 
 class _Reader:
     """Reads a text and those that it includes, each once. `problems` are those of all of them."""
 
-    def __init__(self, vocabulary: Vocabulary, parser: str) -> None:
+    def __init__(self, vocabulary: Vocabulary, parser: str, known: Mapping[str, Known]) -> None:
         self.problems: list[Diagnostic] = []
         self._vocabulary = vocabulary
         self._parser = parser
+        self._known = known
         self._read: dict[str, Included | None] = {}
 
     def loader(self, source: Source, within: tuple[str, ...]) -> Load:
@@ -87,7 +93,7 @@ class _Reader:
 
     def read(self, source: Source, within: tuple[str, ...]) -> Included:
         """The mission; of one that has something wrong only its names, so that their uses are not wrong, too."""
-        lexer = Lexer(source, self._vocabulary, load=self.loader(source, within))
+        lexer = Lexer(source, self._vocabulary, load=self.loader(source, within), known=self._known)
         matcher = Matcher(source, lexer.tokens, lexer.conditions, self._vocabulary.word)
         problems = lexer.problems + matcher.problems
         if not lexer.tokens and not lexer.facts and not lexer.includes and not problems:

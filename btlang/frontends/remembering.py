@@ -79,7 +79,8 @@ def _value(head: Head, known: Known, text: Words, vocabulary: Vocabulary, values
         value = values.read(kind, text, head.value) if head.value >= 0 and (is_number or not numbers) else None
         if value is not None:
             return SlotValue("value", kind, value[0], head.value, value[1])
-    return None
+    other = values.any(text, head.value) if head.value >= 0 and not numbers else None  # that it does not fit is told
+    return SlotValue("value", other[0][0], other[1], head.value, other[2]) if other is not None else None
 
 
 def _each(

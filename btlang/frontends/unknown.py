@@ -165,8 +165,7 @@ def _misfit(
 
 
 def _wrong_type(span: Span, known: Known, wanted: str) -> Diagnostic:
-    kind = known.kinds[0]
-    return diagnostic("BT044", span, name=" ".join(known.words), kind=f"{_article(kind)} {kind}", wanted=wanted)
+    return diagnostic("BT044", span, name=" ".join(known.words), kind=known.kinds[0], wanted=wanted)
 
 
 def _is_connective(text: Words, at: int, vocabulary: Vocabulary) -> bool:

@@ -6,11 +6,10 @@ parameters of a definition hold in their body.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.definitions import Definitions, Header, add_name, reach
-from btlang.frontends.includes import Included
 from btlang.record import Record
 from btlang.text.source import Span
 from btlang.text.words import Words
@@ -48,19 +47,21 @@ class Variables:
         vocabulary: Vocabulary,
         heads: dict[int, Head],
         definitions: Definitions,
-        included: Iterable[Included] = (),
+        shared: Mapping[str, Known],
     ) -> None:
+        """`shared` are values that are named elsewhere and hold here too."""
         self.problems: list[Diagnostic] = []
         self._text, self._vocabulary, self._definitions = text, vocabulary, definitions
         self._values = vocabulary.values.for_reading()
         self._heads = heads
-        self._included = {key: known for part in included for key, known in part.known.items()}
-        self.everywhere: dict[str, Known] = dict(self._included)
+        self._shared = shared
+        self.everywhere: dict[str, Known] = dict(shared)
         self._local: list[tuple[int, int, Known]] = []
+        self._types: dict[tuple[int, str], tuple[str, ...]] = {}
         self.bounds: list[int] = []
         """The words at which other values begin to be known, in order."""
         headers = [header for header in definitions.headers.values() if header.parameters]
-        if heads or headers or self._included:
+        if heads or headers or self._shared:
             self._resolve(headers)
             self._check_names()
             self._compare()
@@ -96,7 +97,8 @@ class Variables:
             types |= {(header.body, key): ("text",) for key, _ in header.parameters if (header.body, key) not in types}
             self._add(header, types)
         unread = {(at, head.key): ("text",) for at, head in self._heads.items() if head.role in ("set", "each")}
-        self._enter(headers, {**unread, **types})
+        self._types = {**unread, **types}
+        self._enter(headers, self._types)
 
     def _enter(self, headers: Iterable[Header], types: dict[tuple[int, str], tuple[str, ...]]) -> None:
         """Puts what is known of the types so far into scopes."""
@@ -105,7 +107,7 @@ class Variables:
             for header in headers
             for key, words in header.parameters
         ]
-        self.everywhere = dict(self._included)
+        self.everywhere = dict(self._shared)
         for at, head in self._heads.items():
             kinds = types.get((at, head.key))
             if head.role == "each":
@@ -113,8 +115,9 @@ class Variables:
                 self._local.append((head.last, reach(self._text, at), known))
             elif kinds is not None:
                 others = self.everywhere.get(head.key)
-                both = tuple(kind for kind in others.kinds if kind in kinds) if others is not None else kinds
-                self.everywhere[head.key] = Known(head.key, head.words, both or kinds)
+                if others is not None:
+                    kinds = tuple(kind for kind in others.kinds if kind in kinds) or others.kinds
+                self.everywhere[head.key] = Known(head.key, head.words, kinds)
 
     def _infer(self, header: Header, types: dict[tuple[int, str], tuple[str, ...]]) -> None:
         """The type of a parameter is that of the first slot in which it stands, other than one of text."""
@@ -160,6 +163,15 @@ class Variables:
         for at, head in self._heads.items():
             if head.role != "each" and self.everywhere.get(head.key) is None:
                 self._unknown(at, head)
+        held: dict[str, tuple[str, ...]] = {key: known.kinds for key, known in self._shared.items()}
+        for at, head in self._heads.items():
+            kinds = self._types.get((at, head.key), ())
+            before = held.get(head.key, kinds)
+            if kinds and head.role != "each":
+                held[head.key] = tuple(kind for kind in before if kind in kinds) or kinds
+                if not set(before) & set(kinds):
+                    span, name = self._text.span(at, head.last), " ".join(head.words)
+                    self.problems.append(diagnostic("BT048", span, name=name, kind=kinds[0], other=before[0]))
         each = [(self._text.span(at, head.last), head) for at, head in self._heads.items() if head.role == "each"]
         headers = [(header.span, header) for header in self._definitions.headers.values()]
         local = [(span, head.key, head.words) for span, head in each]

@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from textwrap import indent
 
 from btlang.api import RunnableTree, load_simulation, world_vocabulary
 from btlang.diagnostics.diagnostic import Diagnostic
+from btlang.engine.blackboard import Blackboard
 from btlang.frontends.lexer import Lexer
-from btlang.frontends.mission import DEFAULT_PARSER, read_mission
+from btlang.frontends.mission import DEFAULT_PARSER, lexed, read_mission
 from btlang.passes import compile_mission
 from btlang.passes.lint import lint
 from btlang.record import Record
 from btlang.text.source import Source
 from btlang.tree.ast import Ast, Chain, Definition, Fact, Include, Mission, parts
 from btlang.tree.node import Node, Tree
+from btlang.vocabulary.values import Known
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -40,7 +42,7 @@ class Compiled(Record):
 
 
 class Session:
-    """Entries, with undo and redo; the words; and the simulated world, which goes on from command to command."""
+    """Entries, with undo and redo; the words; the simulated world and the values, which go on from entry to entry."""
 
     def __init__(self, keywords: Sequence[str] = (), world: str | None = None, parser: str = DEFAULT_PARSER) -> None:
         """Raises MissionError where a keyword file or the world cannot be used."""
@@ -49,6 +51,8 @@ class Session:
         self._undone: list[tuple[Entry, ...]] = []
         self._before: list[tuple[Entry, ...]] = []
         self.entries: tuple[Entry, ...] = ()
+        self._known_of: tuple[str, Mapping[str, Known]] = "", {}
+        self._blackboard = Blackboard()
         self.file: str | None = None
         """The file that the mission was loaded from or saved to last."""
         self.use_world(world)
@@ -63,6 +67,7 @@ class Session:
     def reset(self) -> None:
         """The same world, as it was at the start."""
         self.simulation = load_simulation(self.world)
+        self._blackboard = Blackboard()
 
     @property
     def definitions(self) -> dict[str, str]:
@@ -88,7 +93,7 @@ class Session:
         margin = text[: len(text) - len(text.lstrip())].rpartition("\n")[2]
         above = indent(self.context(text), margin)
         whole = f"{text}\n{above}"  # the entry first, so that places in it are those that were typed
-        reading = read_mission(Source(whole, ENTRY), self.vocabulary, self._parser)
+        reading = read_mission(Source(whole, ENTRY), self.vocabulary, self._parser, self._known())
         mission = reading.mission
         named: list[Definition | Fact | Include] = [*mission.includes, *mission.definitions, *mission.facts]
         own = [d for d in named if d.span.start < len(text)]
@@ -97,13 +102,26 @@ class Session:
         shown = Tree(tree.root, _used(tree, [name for name, _ in entry.definitions]))
         warnings = lint(mission, tree, self.vocabulary, reading.warnings, grows=True)
         own_warnings = [warning for warning in warnings if warning.span.start < len(text)]
-        return Compiled(entry, self._runnable(shown, reading.mission, own_warnings))
+        return Compiled(entry, self._runnable(shown, reading.mission, own_warnings, self._values()))
+
+    def _values(self) -> Blackboard:
+        """What entries before have set, without what their scripts only computed on the way."""
+        keys = self._blackboard.keys()
+        for key in (key for key in keys if key.startswith("_")):
+            self._blackboard.unset(key)
+        return self._blackboard
+
+    def _known(self) -> Mapping[str, Known]:
+        """The values that entries before have set."""
+        if self._known_of[0] != self.text:
+            self._known_of = self.text, lexed(Source(self.text, self.file or ENTRY), self.vocabulary).known
+        return self._known_of[1]
 
     def compile_all(self) -> RunnableTree:
         """The whole mission. Raises MissionError, also where it holds no command."""
         reading = read_mission(Source(self.text, self.file or "<session>"), self.vocabulary, self._parser)
         tree = compile_mission(reading.mission, self.vocabulary)
-        return self._runnable(tree, reading.mission, reading.warnings)
+        return self._runnable(tree, reading.mission, reading.warnings, Blackboard())
 
     def add(self, entry: Entry) -> None:
         """A definition takes the place of an older one of the same name."""
@@ -161,8 +179,10 @@ class Session:
             begin = end
         return entries
 
-    def _runnable(self, tree: Tree, mission: Mission, warnings: Sequence[Diagnostic]) -> RunnableTree:
-        return RunnableTree(tree, self.vocabulary, self.world, warnings, stage=self.simulation, mission=mission)
+    def _runnable(
+        self, tree: Tree, mission: Mission, warnings: Sequence[Diagnostic], values: Blackboard
+    ) -> RunnableTree:
+        return RunnableTree(tree, self.vocabulary, self.world, warnings, self.simulation, mission, values)
 
 
 def _used(tree: Tree, names: Sequence[str]) -> tuple[tuple[str, Node], ...]:

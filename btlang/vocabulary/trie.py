@@ -121,6 +121,8 @@ def _listed(root: TrieNode, text: Words, first: SlotValue, values: Values, names
         value = values.read(first.type, text, at)
         if value is None or any(reaches_beyond(trie, text, at, value[1], values) for trie in (root, names or {})):
             break
+        if comma and not role and _is_command(root, text, at, value[1], values):
+            break
         more.append(value[0])
         last, joiner = value[1], role
     return first.replace(more=tuple(more), joiner=joiner, last=last) if more else None
@@ -128,6 +130,12 @@ def _listed(root: TrieNode, text: Words, first: SlotValue, values: Values, names
 
 def _joiner(root: TrieNode, names: TrieNode | None, text: Words, at: int, values: Values) -> Match | None:
     return longest(root, text, at, values) or (longest(names, text, at, values) if names else None)
+
+
+def _is_command(root: TrieNode, text: Words, at: int, last: int, values: Values) -> bool:
+    """Whether words without an article are a whole command, too: `if you are at the door, dock`."""
+    match = longest(root, text, at, values) if at not in text.articles else None
+    return match is not None and match.last == last and match.meaning.role == "command"
 
 
 def reaches_beyond(root: TrieNode, text: Words, at: int, last: int, values: Values) -> bool:

@@ -227,6 +227,8 @@ class Values:
         found = [(kind, value) for kind, value in read if value is not None]
         if not found:
             return None
+        if len(found) > 1 and self.types[found[0][0]].kind == "number":
+            found.pop()  # figures are a text only where one is wanted
         best, end = max((value for _, value in found), key=lambda value: value[1])
         return tuple(kind for kind, (other, last) in found if last == end and other.lower() == best.lower()), best, end
 

@@ -69,3 +69,13 @@ def test_a_list_ends_before_a_longer_phrase() -> None:
 def test_what_takes_no_list(text: str) -> None:
     with pytest.raises(btlang.MissionError):
         btlang.parse_tree(text)
+
+
+def test_a_list_ends_before_a_command_without_an_article() -> None:
+    """`dock` is a command and a place."""
+    assert plain(btlang.parse_tree("if you are at the kitchen, dock").tree).splitlines()[:3] == [
+        "IfThenElse",
+        "  AtPlace place=kitchen",
+        "  Dock",
+    ]
+    assert plain(btlang.parse_tree("go to the lab, the dock").tree) == "Sequence\n  GoTo place=lab\n  GoTo place=dock"

@@ -8,7 +8,7 @@ import pytest
 
 import btlang
 from btlang.diagnostics.diagnostic import MissionError
-from btlang.engine.status import SUCCESS
+from btlang.engine.status import FAILURE, SUCCESS
 from btlang.repl.session import Session
 from btlang.tree.dump import plain
 
@@ -110,3 +110,20 @@ def test_statements_of_a_mission() -> None:
         "bow",
     ]
     assert [tuple(name for name, _ in entry.definitions) for entry in entries] == [(), (), ("bow", "fest"), ()]
+
+
+def test_values_go_on_from_entry_to_entry() -> None:
+    session = Session()
+    said = []
+    for text in ("set counter to 3", "increase counter by 2", 'say "{counter} rounds"', "say {counter}"):
+        compiled = session.compile(text)
+        session.add(compiled.entry)
+        outcome = compiled.tree.run(
+            speed="max", sinks=[lambda event: said.append(getattr(event, "data", {}).get("text", ""))]
+        )
+        assert outcome.status == SUCCESS
+    assert [text for text in said if text and text[0].isdigit()] == ["5 rounds", "5"]
+    with pytest.raises(MissionError, match="BT048"):
+        session.compile("set counter to the lab")
+    session.reset()
+    assert session.compile("say {counter}").tree.run(speed="max").status == FAILURE
