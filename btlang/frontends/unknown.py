@@ -41,10 +41,11 @@ def explain_unknown(
         last = next((i for i in range(unnamed, end) if text.words[i] == "}"), unnamed)
         name = " ".join(text.words[unnamed + 1 : last])
         return unknown_value(text.span(unnamed, last + 1), name, values.known or ())
-    start, misfits = at, list(_misfits(text, at, vocabulary, values))
+    roots = (vocabulary.trie, definitions.trie)
+    start, misfits = at, list(_misfits(text, at, roots, values))
     if before and before[-1].kind not in ("comma", "newline", "indent", "dedent", "open", "semi"):
         phrase = bisect_left(text.starts, before[-1].start)  # `move forward 5 s`: read that far, and no further
-        longer = [found for found in _misfits(text, phrase, vocabulary, values) if found.at >= at]
+        longer = [found for found in _misfits(text, phrase, roots, values) if found.at >= at]
         if longer and (not misfits or longer[0].at >= misfits[0].at):
             start, misfits = phrase, longer
     if misfits:
@@ -90,11 +91,11 @@ class _Misfit(Record):
     following: frozenset[str]
 
 
-def _misfits(text: Words, at: int, vocabulary: Vocabulary, values: Values) -> Iterator[_Misfit]:
+def _misfits(text: Words, at: int, roots: Iterable[TrieNode], values: Values) -> Iterator[_Misfit]:
     """The slots that a phrase would have at the furthest word that its own words reach."""
     furthest = at
     found: dict[str, set[str]] = {}
-    paths: list[tuple[TrieNode, int]] = [(vocabulary.trie, at)]
+    paths: list[tuple[TrieNode, int]] = [(root, at) for root in roots]
     while paths:
         node, i = paths.pop()
         for _, kind, child in node.get(SLOTS, ()):

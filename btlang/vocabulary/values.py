@@ -245,15 +245,21 @@ class Values:
         reference = self._reference(text, at)
         if reference is not None:
             key, end = reference
-            if self.known is None or (key in self.known and fits(kind, self.known[key])):
+            if self.known is None or (key in self.known and self._fits(kind, self.known[key])):
                 return f"{{{key}}}", end
         elif self.known and self.types[kind].kind != "text":
             found = find(self._known_words, text.words, at)
-            if found is not None and fits(kind, found[0]):
+            if found is not None and self._fits(kind, found[0]):
                 named = find(self._names[kind], text.words, at) if kind in self._names else None
                 if named is None or named[1] <= found[1]:
                     return f"{{{found[0].key}}}", found[1]
         return None
+
+    def _fits(self, kind: str, known: Known) -> bool:
+        """Whether a slot of the type takes the value; one of text takes any, and a number may be a count."""
+        if not known.kinds or kind in known.kinds or kind == "text":
+            return True
+        return self.types[kind].kind == self.types[known.kinds[0]].kind == "number"
 
     def _reference(self, text: Words, at: int) -> tuple[str, int] | None:
         """The key of a name in braces, and where it ends."""
@@ -344,11 +350,6 @@ class Values:
         words = [*(w for w in word[1:].lower().split() if w not in self._articles), "\n"]
         found = find(self._names[kind], words, 0) if len(words) > 1 else None
         return (found[0], at + 1) if found and found[1] == len(words) - 1 else None
-
-
-def fits(kind: str, known: Known) -> bool:
-    """Whether a slot of the type takes the value; one of text takes any."""
-    return not known.kinds or kind in known.kinds or kind == "text"
 
 
 def key_of(words: Iterable[str]) -> str:

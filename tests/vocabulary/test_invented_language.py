@@ -106,7 +106,7 @@ def test_a_mission_in_invented_words_has_the_same_tree_and_is_said_in_them(sampl
 
 
 def _plain(tree: Tree, change: Any) -> list[object]:
-    """Every node with its port texts changed; a leaf keeps the names of its slots, `each_` is no word of the language."""
+    """Every node with its port texts changed; a leaf keeps the names of its slots."""
     return [
         (node.id, len(node.children), sorted(_port(node, name, text, change) for name, text in node.ports))
         for node in tree.walk()
