@@ -9,12 +9,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
 
+from btlang.frontends.heads import JOINTS
 from btlang.frontends.includes import ROLE
 from btlang.frontends.matching import Matcher
 from btlang.frontends.mission import lexed
 from btlang.frontends.token import Token
 from btlang.frontends.value_completion import value_options
-from btlang.frontends.variables import JOINTS
 from btlang.record import Record
 from btlang.text.source import Source
 from btlang.text.spelling import nearest

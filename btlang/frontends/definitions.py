@@ -168,6 +168,9 @@ def _header(
         name = " ".join(word for word in text.words[start:at] if word not in ("{", "}"))
         return Header(name, text.span(start, at), at + 1, reach(text, at))
     parts, parameters = _pattern(text.words[start:at])
+    if len(parts) == len(parameters):
+        problems.append(diagnostic("BT016", text.span(start, at), word=text.words[at]))
+        return Header("", text.span(start, at), at + 1, reach(text, at))
     return Header(" ".join(parts), text.span(start, at), at + 1, reach(text, at), parameters)
 
 

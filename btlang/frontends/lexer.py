@@ -8,11 +8,12 @@ from collections.abc import Callable, Iterator, Mapping
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.definitions import Definitions, find_definitions
 from btlang.frontends.facts import find_facts
+from btlang.frontends.heads import JOINTS, Head, find_heads, span_of
 from btlang.frontends.includes import ROLE as INCLUDE
 from btlang.frontends.includes import Included, find_includes, misplaced
 from btlang.frontends.remembering import read_statement
 from btlang.frontends.token import Listed, Token
-from btlang.frontends.variables import JOINTS, Head, Variables, find_heads, span_of
+from btlang.frontends.variables import Variables
 from btlang.text.source import Source, Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, split
 from btlang.tree.ast import Include, all_definitions, all_facts
@@ -58,6 +59,7 @@ class Lexer:
         includes = find_includes(self.text, vocabulary)
         loaded = [(path, span, load(path, span)) for path, span in includes.found] if load is not None else []
         self.includes = [Include(path, part.mission, span) for path, span, part in loaded if part is not None]
+        self.is_including = bool(includes.found)
         parts = [part for _, _, part in loaded if part is not None]
         facts = find_facts(self.text, vocabulary)
         self.problems += facts.problems
@@ -246,7 +248,9 @@ class Lexer:
         read = read_statement(head, self.text, at, self.vocabulary, self.values, self._port_text)
         if read is None:
             span = span_of(self.text, at)
-            if self._explain and (head.role == "each" or head.key in self.known):  # else that has been told
+            if self._explain and (
+                head.role in ("each", "remember") or head.key in self.known
+            ):  # else that has been told
                 self.problems.append(self._why(at, at, Match(Meaning(head.role), at)))
             self.tokens.append(Token("unknown", None, span.start, span.end))
             return bisect_right(self.text.starts, span.end - 1)

@@ -96,7 +96,7 @@ class _Reader:
         lexer = Lexer(source, self._vocabulary, load=self.loader(source, within), known=self._known)
         matcher = Matcher(source, lexer.tokens, lexer.conditions, self._vocabulary.word)
         problems = lexer.problems + matcher.problems
-        if not lexer.tokens and not lexer.facts and not lexer.includes and not problems:
+        if not lexer.tokens and not lexer.facts and not lexer.is_including and not problems:
             problems = [diagnostic("BT005", Span(source, 0, 0), example="move forward 1 m")]
         self.problems += problems
         if any(problem.is_error for problem in problems):

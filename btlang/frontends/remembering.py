@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from btlang.frontends.heads import Head
 from btlang.frontends.token import Token
-from btlang.frontends.variables import Head
 from btlang.record import Record
 from btlang.text.words import Words
 from btlang.vocabulary.entry import Entry
@@ -72,6 +72,10 @@ def _arguments(match: Match, port_text: Callable[[SlotValue], str]) -> tuple[tup
 
 def _value(head: Head, known: Known, text: Words, vocabulary: Vocabulary, values: Values) -> SlotValue | None:
     numbers = head.role in ("increase", "decrease")
+    named = values.named(text, head.value) if head.value >= 0 else None
+    if named is not None and named[0] is not None:
+        kind = next((kind for kind in named[0].kinds if kind in known.kinds), None)
+        return SlotValue("value", kind, f"{{{named[0].key}}}", head.value, named[1]) if kind is not None else None
     for kind in known.kinds:
         is_number = vocabulary.types[kind].kind in ("quantity", "number")
         if numbers and head.value < 0 and vocabulary.types[kind].kind == "number":
@@ -80,7 +84,9 @@ def _value(head: Head, known: Known, text: Words, vocabulary: Vocabulary, values
         if value is not None:
             return SlotValue("value", kind, value[0], head.value, value[1])
     other = values.any(text, head.value) if head.value >= 0 and not numbers else None  # that it does not fit is told
-    return SlotValue("value", other[0][0], other[1], head.value, other[2]) if other is not None else None
+    if other is None or (head.role == "remember" and other[0] == ("text",) and text.words[head.value][0] != '"'):
+        return None
+    return SlotValue("value", other[0][0], other[1], head.value, other[2])
 
 
 def _each(

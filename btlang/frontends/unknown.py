@@ -9,8 +9,8 @@ from itertools import takewhile
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.definitions import Definitions
+from btlang.frontends.heads import span_of
 from btlang.frontends.token import Token
-from btlang.frontends.variables import span_of
 from btlang.record import Record
 from btlang.text.source import Span
 from btlang.text.spelling import nearest, nearest_start

@@ -89,7 +89,9 @@ def split(source: Source, articles: frozenset[str]) -> Words:
         start, end = match.span(kind)
         if kind == _WORD:
             word = word.lower()
-            if word in articles:
+            if word in articles and not (
+                text[start - 1 : start] == "{" and text[end : end + 1] == "}"
+            ):  # a name is `{a}`
                 result.articles[len(words)] = (start, end)
                 continue
         elif kind == _LINE:
