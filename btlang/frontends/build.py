@@ -4,8 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from btlang.frontends.remembering import Assigned, Remembered
-from btlang.frontends.token import Listed, Token
+from btlang.frontends.token import Assigned, Listed, Remembered, Token
 from btlang.text.source import Source, Span
 from btlang.tree.ast import (
     Assign,

@@ -158,6 +158,10 @@ def _header(
         return Header("", text.span(at, at + 1), at + 1, at + 1)
     if any(tuple(text.words[i:at]) in variables for i in range(start, at)):
         return None
+    if text.words[at - 1] == "}" and any(tuple(text.words[i : at - 1]) in variables for i in range(start, at - 1)):
+        body = longest(vocabulary.trie, text, at + 1, vocabulary.values)
+        if body is None or body.meaning.role != "command":
+            return None
     joined = _joining_word(text, start, at, vocabulary)
     if joined is not None and text.words[at - 1] == "}":
         return None  # `wave until {counter} is 3` compares

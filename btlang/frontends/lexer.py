@@ -11,9 +11,7 @@ from btlang.frontends.facts import find_facts
 from btlang.frontends.heads import JOINTS, Head, find_heads, span_of
 from btlang.frontends.includes import ROLE as INCLUDE
 from btlang.frontends.includes import Included, find_includes, misplaced
-from btlang.frontends.remembering import read_statement
 from btlang.frontends.token import Listed, Token
-from btlang.frontends.variables import Variables
 from btlang.text.source import Source, Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, split
 from btlang.tree.ast import Include, all_definitions, all_facts
@@ -72,13 +70,12 @@ class Lexer:
         self._heads = find_heads(self.text, self.vocabulary)
         named = {head.words for head in self._heads.values()}
         self.definitions: Definitions = find_definitions(self.text, self.vocabulary, self._ends, named, shared)
-        self._variables = Variables(
-            self.text, self.vocabulary, self._heads, self.definitions, self._shared(parts, known)
-        )
-        self.known = self._variables.everywhere
+        self._bounds = [len(self.text.words)]
+        self.known = {key: value for named in (known or {}, *(p.known for p in parts)) for key, value in named.items()}
         """The values that hold in the whole mission, by key."""
-        self._bounds = [*self._variables.bounds, len(self.text.words)]
-        self.problems += self.definitions.problems + self._variables.problems
+        if self.known or self._heads or any(header.parameters for header in self.definitions.headers.values()):
+            self._name_values()
+        self.problems += self.definitions.problems
         self.values = self.vocabulary.values.for_reading()
         self.tokens: list[Token] = []
         self._lines()
@@ -88,9 +85,13 @@ class Lexer:
             if token.kind == "name":
                 token.kind = "condition" if called(token).id in self.conditions else "command"
 
-    def _shared(self, parts: list[Included], known: Mapping[str, Known] | None) -> dict[str, Known]:
-        """The values that hold in the whole mission and are named elsewhere."""
-        return {key: value for named in (known or {}, *(part.known for part in parts)) for key, value in named.items()}
+    def _name_values(self) -> None:
+        from btlang.frontends.variables import Variables  # most missions have none
+
+        self._variables = Variables(self.text, self.vocabulary, self._heads, self.definitions, self.known)
+        self.known = self._variables.everywhere
+        self._bounds = [*self._variables.bounds, *self._bounds]
+        self.problems += self._variables.problems
 
     def _lines(self) -> None:
         """Line ends, indents and dedents around the tokens of each line, as in Python."""
@@ -245,6 +246,8 @@ class Lexer:
 
     def _statement(self, head: Head, at: int) -> int:
         """A statement about a value of the mission. Returns where to go on."""
+        from btlang.frontends.remembering import read_statement  # most missions have none
+
         read = read_statement(head, self.text, at, self.vocabulary, self.values, self._port_text)
         if read is None:
             span = span_of(self.text, at)

@@ -5,38 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from btlang.frontends.heads import Head
-from btlang.frontends.token import Token
-from btlang.record import Record
+from btlang.frontends.token import Assigned, Each, Remembered, Token
 from btlang.text.words import Words
-from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.trie import Match, SlotValue, longest, reaches_beyond
 from btlang.vocabulary.values import Known, Values
 from btlang.vocabulary.vocabulary import Vocabulary
-
-
-class Assigned(Record):
-    """`operation` is "set", "increase" or "decrease"; `text` is the port text of a value of the type `kind`."""
-
-    key: str
-    operation: str
-    kind: str
-    text: str
-
-
-class Remembered(Record):
-    """What a quantity measures, with the arguments of its slots, under a key."""
-
-    key: str
-    entry: Entry
-    arguments: tuple[tuple[str, str], ...]
-
-
-class Each(Record):
-    """The values, all of the type `kind`, that a key goes through."""
-
-    key: str
-    kind: str
-    values: tuple[str, ...]
 
 
 def read_statement(

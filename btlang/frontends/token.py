@@ -34,6 +34,31 @@ class Listed(Record):
     joiner: str
 
 
+class Assigned(Record):
+    """`operation` is "set", "increase" or "decrease"; `text` is the port text of a value of the type `kind`."""
+
+    key: str
+    operation: str
+    kind: str
+    text: str
+
+
+class Remembered(Record):
+    """What a quantity measures, with the arguments of its slots, under a key."""
+
+    key: str
+    entry: Entry
+    arguments: tuple[tuple[str, str], ...]
+
+
+class Each(Record):
+    """The values, all of the type `kind`, that a key goes through."""
+
+    key: str
+    kind: str
+    values: tuple[str, ...]
+
+
 class Token:
     """One token: `value` depends on its kind; `start` and `end` are characters of the source.
 

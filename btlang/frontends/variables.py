@@ -35,10 +35,6 @@ class Variables:
         shared: Mapping[str, Known],
     ) -> None:
         self.problems: list[Diagnostic] = []
-        self.bounds: list[int] = []
-        self.everywhere: dict[str, Known] = dict(shared)
-        if not heads and not shared and not any(header.parameters for header in definitions.headers.values()):
-            return
         self._text, self._vocabulary, self._definitions = text, vocabulary, definitions
         self._heads, self._shared = heads, shared
         found = ValueTypes(text, vocabulary, heads, definitions, shared)
@@ -48,7 +44,7 @@ class Variables:
         self._compare()
 
     def at(self, word: int) -> dict[str, Known]:
-        """What is known there, by key; only where there are `bounds`."""
+        """What is known there, by key."""
         return self._scopes.at(word)
 
     def _check_names(self) -> None:
