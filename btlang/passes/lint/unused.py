@@ -1,4 +1,4 @@
-"""BT051: definitions that no command reaches."""
+"""BT051: definitions that no command reaches, parameters and values that nothing uses."""
 
 from __future__ import annotations
 
@@ -7,12 +7,17 @@ from collections.abc import Iterator
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.lint.subject import Subject
 from btlang.passes.names import names_in
+from btlang.text.source import Span
+from btlang.tree.ast import Assign, Ast, Mission, Remember, all_definitions, keys_of, parts
 
 
 def unused_names(subject: Subject) -> Iterator[Diagnostic]:
     """Nothing of a text that only defines names, nor of the names of another file: those are for others to use."""
     mission = subject.mission
-    if mission.body is None or not mission.definitions:
+    if mission.body is None:
+        return
+    yield from _values(mission)
+    if not mission.definitions:
         return
     bodies = {definition.name: definition.body for definition in mission.definitions}
     reached: set[str] = set()
@@ -25,3 +30,33 @@ def unused_names(subject: Subject) -> Iterator[Diagnostic]:
     for definition in mission.definitions:
         if definition.name not in reached and definition.span.source is mission.span.source:
             yield diagnostic("BT051", definition.name_span, name=definition.name)
+
+
+def _values(mission: Mission) -> Iterator[Diagnostic]:
+    """Values that are given and never asked for, and parameters that stand nowhere in their body."""
+    asked: set[str] = set()
+    given: dict[str, Span] = {}
+    for definition in all_definitions(mission):
+        own = set(_asked(definition.body, given))
+        asked |= own
+        for key, _ in definition.parameters:
+            if key not in own and definition.span.source is mission.span.source:
+                yield diagnostic("BT051", definition.name_span, name=f"{{{key}}}")
+    if mission.body is not None:
+        asked.update(_asked(mission.body, given))
+    for key, span in given.items():
+        if key not in asked and span.source is mission.span.source:
+            yield diagnostic("BT051", span, name=key.replace("_", " "))
+
+
+def _asked(root: Ast, given: dict[str, Span]) -> Iterator[str]:
+    """The keys of values that a tree asks for; those that it gives are noted with their first place."""
+    stack = [root]
+    while stack:
+        node = stack.pop()
+        stack.extend(reversed(parts(node)))
+        if isinstance(node, Assign | Remember):
+            given.setdefault(node.key, node.span)
+            yield from (key for key in keys_of(node) if key != node.key)
+        else:
+            yield from keys_of(node)
