@@ -9,7 +9,8 @@ from collections.abc import Callable, Iterator
 
 from btlang.english.blocks import lines_of
 from btlang.english.pieces import is_longer
-from btlang.english.sentence import Speaker, speaker_of, statements
+from btlang.english.sentence import speaker_of, statements
+from btlang.english.speaker import Speaker
 from btlang.record import Record
 from btlang.text.source import Source
 from btlang.text.words import END_OF_STATEMENT, Words, split

@@ -10,8 +10,10 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator
 
+from btlang.english.naming import each_head
 from btlang.english.pieces import COLON, Pieces, is_longer, mark
-from btlang.english.sentence import THEN, Speaker, each_head, is_flat_fallback, statements
+from btlang.english.sentence import is_flat_fallback, statements
+from btlang.english.speaker import THEN, Speaker
 from btlang.tree import ast
 
 TYPE_CHECKING = False

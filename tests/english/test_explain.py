@@ -9,6 +9,7 @@ import pytest
 
 from btlang.api import RunnableTree, parse_tree
 from btlang.cli import main
+from btlang.text.source import Source
 from tests.conftest import matches_golden
 from tests.english.test_sentence import MISSIONS, ROOT
 
@@ -43,7 +44,7 @@ def test_examples(name: str, world: str | None) -> None:
 def test_every_mission_fits(path: Path) -> None:
     text = path.read_text(encoding="utf-8-sig")
     world = re.search(r"--world (\S+)", text)
-    tree = parse_tree(text, world=str(ROOT / world[1]) if world else None)
+    tree = parse_tree(Source(text, str(path)), world=str(ROOT / world[1]) if world else None)
     for width in (60, 80, 120):
         lines = tree.explain(width).splitlines()
         assert all(len(line) <= width for line in lines)

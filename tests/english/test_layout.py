@@ -101,9 +101,10 @@ def test_missions_that_ship(path: Path) -> None:
     text = path.read_bytes().decode("utf-8")
     world = re.search(r"--world (\S+)", text)
     where = str(ROOT / world[1]) if world else None
-    done = format_mission(text, world=where)
-    assert format_mission(done, world=where) == done
-    assert parse_tree(done, world=where).tree == parse_tree(text, world=where).tree
+    done = format_mission(Source(text, str(path)), world=where)
+    assert format_mission(Source(done, str(path)), world=where) == done
+    trees = [parse_tree(Source(laid, str(path)), world=where).tree for laid in (text, done)]
+    assert trees[0] == trees[1]
     assert comments(done) == comments(text)
 
 

@@ -13,7 +13,8 @@ from hypothesis import strategies as st
 from btlang.api import world_vocabulary
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.english import blocks
-from btlang.english.sentence import SAYS, Speaker, english, statements
+from btlang.english.sentence import SAYS, english, statements
+from btlang.english.speaker import Speaker
 from btlang.frontends.mission import read_mission
 from btlang.passes import compile_mission
 from btlang.text.source import Source
@@ -33,8 +34,9 @@ ROOT = Path(__file__).parent.parent.parent
 MISSIONS = sorted([*(ROOT / "examples").glob("*.txt"), *(ROOT / "tests" / "samples" / "good").glob("*.txt")])
 
 
-def compiled(text: str, vocabulary: Vocabulary, parser: str) -> tuple[ast.Mission, Tree]:
-    mission = read_mission(Source(text), vocabulary, parser).mission
+def compiled(text: str, vocabulary: Vocabulary, parser: str, name: str = "<text>") -> tuple[ast.Mission, Tree]:
+    """`name` is the file beside which included ones lie."""
+    mission = read_mission(Source(text, name), vocabulary, parser).mission
     return mission, compile_mission(mission, vocabulary)
 
 
@@ -44,7 +46,7 @@ def keeps_its_tree(mission: ast.Mission, vocabulary: Vocabulary) -> None:
     for brackets in BRACKETS:
         text = english(mission, vocabulary, brackets=brackets)
         for parser in PARSERS:
-            again, same = compiled(text, vocabulary, parser)
+            again, same = compiled(text, vocabulary, parser, mission.span.source.name)
             assert same == tree, f"{text}\n\n{plain(tree)}\n\n{plain(same)}"
             assert english(again, vocabulary, brackets=brackets) == text
             assert list(map(_placed, again.facts)) == list(map(_placed, mission.facts))
@@ -91,7 +93,7 @@ def test_missions_that_ship_keep_their_tree(path: Path) -> None:
     text = path.read_text(encoding="utf-8-sig")
     world = re.search(r"--world (\S+)", text)
     vocabulary = world_vocabulary(world=str(ROOT / world[1]) if world else None)
-    keeps_its_tree(read_mission(Source(text), vocabulary).mission, vocabulary)
+    keeps_its_tree(read_mission(Source(text, str(path)), vocabulary).mission, vocabulary)
 
 
 def test_every_class_of_node_can_be_said() -> None:

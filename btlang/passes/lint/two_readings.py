@@ -13,7 +13,8 @@ from bisect import bisect
 from collections.abc import Iterator
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.english.sentence import Speaker, speaker_of
+from btlang.english.sentence import speaker_of
+from btlang.english.speaker import Speaker
 from btlang.passes.lint.gaps import Gaps
 from btlang.passes.lint.other_reading import Attachment, Readings, in_chain, in_form, in_order, is_list
 from btlang.passes.lint.subject import Subject

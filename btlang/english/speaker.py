@@ -1,0 +1,184 @@
+"""Says syntax trees: words of the vocabulary, values and brackets, which every form needs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from btlang.english.phrase import holds_definer, leaf_words, value_of
+from btlang.english.pieces import CLOSE, LEAF, OPEN, WORD, Piece, Pieces, flat, last_of, mark, reads_on, text_of
+from btlang.record import Record
+from btlang.tree import ast
+from btlang.tree.visit import fold
+from btlang.vocabulary.entry import Meaning
+from btlang.vocabulary.pattern import Form, Slot, forms, name_form
+from btlang.vocabulary.trie import TrieNode, add
+from btlang.vocabulary.vocabulary import Vocabulary
+
+THEN, OR, AND, FORM, WHOLE = range(5)
+"""How tightly what is said holds together, loosest first; WHOLE is a leaf or stands in brackets."""
+
+
+class Said(Record):
+    """What is said of a node, and what may not stand around it without brackets.
+
+    `reaches`: what follows it would become part of it. `takes_otherwise`: an `otherwise` right behind it would.
+    `counts`: a count in it would close a `try` or `retry` before it. `in_lines`: it holds a standing rule, which no
+    bracket can, so that it is said in lines and blocks only (see blocks.py).
+    """
+
+    pieces: Pieces
+    level: int
+    reaches: bool = False
+    takes_otherwise: bool = False
+    counts: bool = False
+    in_lines: bool = False
+
+
+class Speaker:
+    """Says nodes in the words of a vocabulary, where `names` are defined.
+
+    With `brackets` "all" each chain and form inside another one is bracketed, with "needed" only those whose reading
+    needs it (see the table of connectives in docs/language.md): what binds less tightly than what is around it,
+    a chain in an equal chain, and a form that reaches to the right where something follows it.
+    """
+
+    def __init__(
+        self, vocabulary: Vocabulary, names: Iterable[str | ast.Definition] = (), brackets: str = "needed"
+    ) -> None:
+        if brackets not in ("needed", "all"):
+            raise ValueError(f'brackets are "needed" or "all": {brackets!r}')
+        self.vocabulary = vocabulary.with_references()
+        self.all_brackets = brackets == "all"
+        self.names: TrieNode = {}
+        self._said: dict[int, tuple[ast.Ast, Said]] = {}  # with its node, whose id is then that of no other
+        self._forms: dict[str, Form] = {}
+        self._leaves: dict[tuple[str, tuple[tuple[str, str], ...]], str] = {}
+        self._reads_on: dict[tuple[Piece, Piece], bool] = {}
+        self._parameters: dict[str, dict[str, str]] = {}
+        for defined in names:
+            name, types = (
+                (defined.name, dict(defined.parameters)) if isinstance(defined, ast.Definition) else (defined, {})
+            )
+            self._parameters[name] = types
+            add(self.names, name_form(name), types, Meaning("name"))
+
+    def say(self, node: ast.Ast) -> Said:
+        """What is said of a node (any but a Mission)."""
+        from btlang.english.sentence import SAYS  # its functions need the speaker
+
+        if id(node) in self._said:
+            return self._said[id(node)][1]
+
+        def combine(item: ast.Ast, parts: list[Said]) -> Said:
+            said: Said = SAYS[type(item)](item, parts, self)
+            if any(part.in_lines for part in parts) or any(isinstance(part, ast.Whenever) for part in ast.parts(item)):
+                said = said.replace(in_lines=True)
+            self._said[id(item)] = item, said
+            return said
+
+        return fold(node, ast.parts, combine)
+
+    def statement(self, node: ast.Ast, joined: str = "") -> str:
+        """A line of its own, or one of several that make a chain of the operator `joined`."""
+        return self.line(node, self.say(node), joined)
+
+    def line(self, node: ast.Ast, said: Said, joined: str) -> str:
+        """As `statement`, of what is said of the node."""
+        if isinstance(node, ast.Chain) and node.operator == joined:
+            said = bracketed(said)
+        text = self.text(said.pieces)
+        if not isinstance(node, ast.Definition) and self._would_define(flat(said.pieces)):
+            return f"{self.vocabulary.word('then')} {text}"  # a line that begins so defines nothing
+        return text
+
+    def _would_define(self, pieces: Iterable[Piece]) -> bool:
+        """Whether a word that defines stands in a command or name; in a condition it compares."""
+        return any(piece.kind == LEAF and holds_definer(piece.text, self.vocabulary) for piece in pieces)
+
+    def text(self, pieces: Pieces) -> str:
+        """The pieces as text."""
+        return text_of(pieces, self.vocabulary, self.names)
+
+    # -- words
+
+    def word(self, role: str, **values: str) -> Piece:
+        """The word of a role, with the value of its slot: `then`, `within 5 s`."""
+        if role not in self._forms:
+            self._forms[role] = forms(self.vocabulary.first(role))[-1]
+        words = (values[part.name] if isinstance(part, Slot) else part for part in self._forms[role])
+        return Piece(" ".join(words), WORD)
+
+    def phrase(self, node_id: str, arguments: tuple[tuple[str, str], ...]) -> str:
+        """The phrase of a leaf, "" where there is none."""
+        key = node_id, arguments
+        if key not in self._leaves:
+            self._leaves[key] = leaf_words(node_id, dict(arguments), self.vocabulary, self.names)
+        return self._leaves[key]
+
+    def value(self, text: str, kind: str) -> str:
+        """A port text of a type as it is written."""
+        return value_of(text, self.vocabulary.types[kind], self.vocabulary)
+
+    def plain_value(self, text: str, kind: str) -> str:
+        """As `value` where no slot tells the type: a text is in quotes, as a bare word may be a name or a number."""
+        value = self.value(text, kind)
+        if kind != "text" or value != text or value.startswith("{"):
+            return value
+        return f'"{value}"'
+
+    def name(self, node: ast.Name) -> str:
+        """A defined name with its arguments."""
+        types, arguments = self._parameters.get(node.name, {}), dict(node.arguments)
+        parts = name_form(node.name)
+        return " ".join(
+            self.value(arguments[part.name], types.get(part.name, "text")) if isinstance(part, Slot) else part
+            for part in parts
+        )
+
+    def duration(self, role: str, seconds: str) -> Piece:
+        """The word of a role that has a duration."""
+        return self.word(role, duration=self.value(seconds, "duration"))
+
+    def rounds(self, number: str) -> Piece:
+        """`3 times`; one word for once and for a number without end."""
+        single = [word for word, rounds in self.vocabulary.counts.items() if str(rounds) == number]
+        return Piece(single[0], WORD) if single and number in ("-1", "1") else self.word("count", count=number)
+
+    # -- brackets
+
+    def inside(self, said: Said, needs_brackets: bool) -> Said:
+        """What is said inside another chain or form."""
+        if said.level < WHOLE and (needs_brackets or self.all_brackets):
+            return bracketed(said)
+        return said
+
+    def condition(self, said: Said) -> Said:
+        """The condition of a form: no reading needs brackets round it."""
+        return bracketed(said) if self.all_brackets and said.level < FORM else said
+
+    def reads_on(self, said: Said, piece: Piece) -> bool:
+        """Whether the end of what is said and a connective behind it would be read as one."""
+        key = last_of(said.pieces), piece
+        if key not in self._reads_on:
+            self._reads_on[key] = reads_on(*key, self.vocabulary, self.names)
+        return self._reads_on[key]
+
+    def behind(self, body: Said, word: Piece, *rest: Pieces, counts: bool = False) -> Said:
+        """A form that stands behind its body."""
+        body = self.inside(body, body.level < FORM or body.reaches or self.reads_on(body, word))
+        return Said((body.pieces, word, *rest), FORM, counts=counts or body.counts)
+
+    def before(self, head: Pieces, body: Said, otherwise: Said | None = None) -> Said:
+        """A form that stands before its body, and reaches to the right; its `otherwise` is as it is to be said."""
+        if otherwise is None:
+            body = self.inside(body, False)
+            return Said((*head, body.pieces), FORM, True, body.takes_otherwise, body.counts)
+        word = self.word("otherwise")
+        body = self.inside(body, body.reaches or body.takes_otherwise or self.reads_on(body, word))
+        pieces = (*head, body.pieces, word, otherwise.pieces)
+        return Said(pieces, FORM, True, otherwise.takes_otherwise, body.counts or otherwise.counts)
+
+
+def bracketed(said: Said) -> Said:
+    """The same in brackets."""
+    return Said((mark(OPEN), said.pieces, mark(CLOSE)), WHOLE)
