@@ -63,7 +63,7 @@ def test_every_layer_has_its_paragraph_in_the_architecture() -> None:
     assert [folder for folder in folders if f"**`btlang/{folder}/`**" not in page] == []
 
 
-@pytest.mark.parametrize("page", [*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")], ids=name)
+@pytest.mark.parametrize("page", [*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")], ids=name)
 def test_files_named_in_documents_exist(page: Path) -> None:
     """Every `btlang/...` or other path from the root in back quotes, and every link."""
     roots = "|".join(re.escape(folder) for folder in FOLDERS)
