@@ -7,7 +7,7 @@ import sys
 from importlib import import_module
 
 from btlang.backends.comparing import comparing
-from btlang.engine.build import EngineError
+from btlang.engine.build import EngineError, text
 from btlang.engine.leaf import LeafBinding
 from btlang.tree.node import Node
 from btlang.vocabulary.entry import MEASURED, Entry, SlotSpec
@@ -40,7 +40,7 @@ def _converter(slot: SlotSpec, vocabulary: Vocabulary) -> Callable[[str], Any]:
     kind = vocabulary.types[slot.type]
     if kind.kind == "quantity" or kind.kind == "number":
         return int if kind.whole else float
-    return str
+    return text
 
 
 def _search_beside(entry: Entry) -> None:

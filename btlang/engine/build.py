@@ -14,6 +14,7 @@ from collections.abc import Callable, Mapping, Sequence
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.clock import Clock
 from btlang.engine.leaf import ActionFailed, LeafBinding
+from btlang.engine.script_values import as_text
 from btlang.engine.status import FAILURE
 from btlang.record import Record
 from btlang.tree.node import Node
@@ -150,9 +151,14 @@ def apart(children: Sequence[Compiled]) -> tuple[tuple[Tick, ...], tuple[Halt, .
     return tuple(tick for tick, _ in children), tuple(halt for _, halt in children)
 
 
+def text(value: Any) -> str:
+    """The converter of a port that holds a text: a number of the blackboard is written as people read it."""
+    return value if isinstance(value, str) else as_text(value)
+
+
 def _convert(scope: Blackboard, port: str, key: str, convert: Callable[[str], Any]) -> Any:
     value = value_of(scope, key)
-    if not isinstance(value, str):
+    if not isinstance(value, str) and convert is not text:
         return value
     try:
         return convert(value)
