@@ -1,4 +1,4 @@
-"""One entry in a keyword file is all that a new word needs: it is listed, completed and suggested, and no code changes."""
+"""One entry in a keyword file is all that a new word needs: it is listed, completed and suggested without new code."""
 
 from __future__ import annotations
 
