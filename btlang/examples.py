@@ -22,7 +22,8 @@ _WIDTH = 80
 class Example(Record):
     """A shipped mission. `about` is the comment at its top, `world` its world file ("" for the one that ships).
 
-    `parts` are the files that it includes; they include no others. The comment ends with the command that runs it in the folder of the mission, with worlds in `worlds`.
+    `parts` are the files that it includes; these include no others. The comment ends with the command that runs it in
+    the folder of the mission, with worlds in `worlds`.
     """
 
     name: str
