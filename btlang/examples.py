@@ -1,4 +1,4 @@
-"""The missions that ship: what they are, their text, and copies of them with the worlds that they need."""
+"""The missions that ship: what they are, their text, and copies of them with the files that they need."""
 
 from __future__ import annotations
 
@@ -15,19 +15,22 @@ from btlang.vocabulary.shipped import shipped
 
 _COMMAND = re.compile(r"^#   btc .*$", re.MULTILINE)
 _WORLD = re.compile(r"--world (\S+)")
+_INCLUDE = re.compile(r'^include "(.+)"$', re.MULTILINE)
 _WIDTH = 80
 
 
 class Example(Record):
     """A shipped mission. `about` is the comment at its top, `world` its world file ("" for the one that ships).
 
-    The comment ends with the command that runs it in the folder of the mission, with worlds in `worlds`.
+    `parts` are the files that it includes; these include no others. The comment ends with the command that runs it in
+    the folder of the mission, with worlds in `worlds`.
     """
 
     name: str
     about: str
     world: str
     text: str
+    parts: tuple[str, ...] = ()
 
 
 def examples() -> list[Example]:
@@ -58,16 +61,19 @@ def listing() -> list[str]:
 
 
 def copied(folder: str, chosen: Sequence[Example]) -> list[str]:
-    """Copies missions to a folder, and the worlds that they need to `worlds` in it; returns the paths written.
+    """Copies missions to a folder, with the worlds and parts that they need in its `worlds` and `parts`.
+
+    Returns the paths written.
 
     Nothing is overwritten: raises MissionError (BT009) with every file that is there already, before any is written.
-    A world that is there with the same text stays.
+    A world or part that is there with the same text stays.
     """
     files = {os.path.join(folder, f"{example.name}.txt"): example.text.encode() for example in chosen}
-    worlds = {os.path.join(folder, example.world): example.world for example in chosen if example.world}
-    files |= {path: _data(world) for path, world in worlds.items()}
+    needed = [name for example in chosen for name in (example.world, *example.parts) if name]
+    shared = {os.path.join(folder, name): _data(name) for name in needed}
+    files |= shared
     there = [path for path in files if os.path.lexists(path)]
-    kept = [path for path in there if path in worlds and _same(path, files[path])]
+    kept = [path for path in there if path in shared and _same(path, files[path])]
     problems = [
         unwritable(path, "it is there already, and nothing is overwritten") for path in there if path not in kept
     ]
@@ -90,7 +96,7 @@ def _example(name: str) -> Example:
     assert command is not None, name
     world = _WORLD.search(command[0])
     about = " ".join(line.removeprefix("#").strip() for line in text[: command.start()].splitlines())
-    return Example(name, about, world[1] if world else "", text)
+    return Example(name, about, world[1] if world else "", text, tuple(_INCLUDE.findall(text)))
 
 
 def _data(name: str) -> bytes:

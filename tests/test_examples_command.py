@@ -21,6 +21,12 @@ def command(text: str) -> list[str]:
     return shlex.split(line.removeprefix("#   btc "))
 
 
+def test_every_part_is_included_by_a_mission() -> None:
+    parts = {f"parts/{part}.txt" for case in CASES.values() for part in case.parts}
+    assert {part for example in examples.examples() for part in example.parts} == parts
+    assert {path.relative_to(ROOT / "examples").as_posix() for path in (ROOT / "examples" / "parts").iterdir()} == parts
+
+
 def test_every_mission_is_listed(capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["examples"]) == 0
     lines = capsys.readouterr().out.splitlines()
@@ -68,8 +74,8 @@ def test_the_command_of_a_copy_runs_in_its_folder(
     monkeypatch.chdir(tmp_path)
     assert main(["examples", "--copy", ".", name]) == 0
     case = CASES[name]
-    world = {f"worlds/{case.world}.toml"} if case.world else set()
-    assert {p.relative_to(tmp_path).as_posix() for p in tmp_path.rglob("*.*")} == {f"{name}.txt"} | world
+    needed = {f"worlds/{case.world}.toml"} if case.world else {f"parts/{part}.txt" for part in case.parts}
+    assert {p.relative_to(tmp_path).as_posix() for p in tmp_path.rglob("*.*")} == {f"{name}.txt"} | needed
     words = command((tmp_path / f"{name}.txt").read_text(encoding="utf-8"))
     assert words[:2] == ["run", f"{name}.txt"]
     assert main([*words, "--speed", "max", "--quiet"]) == case.code, capsys.readouterr().err

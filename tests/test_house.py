@@ -15,7 +15,7 @@ import pytest
 
 import btlang
 from btlang.robots import world_file
-from btlang.vocabulary import keyword_file
+from btlang.vocabulary import keyword_file, language_tables
 
 ROOT = Path(__file__).parent.parent
 FOLDERS = ("btlang", "tests", "grammar", "keywords", "examples", "docs", ".ci")
@@ -28,6 +28,7 @@ FILES = sorted(
     and not {"__pycache__", "samples"} & set(path.relative_to(ROOT).parts)
     and path.suffix not in (".svg", ".png", ".gif")
 )
+PAGES = [*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")]
 MODULES = [path for path in FILES if path.suffix == ".py"]
 BORROWED = {ROOT / path for path in PROJECT["tool"]["ruff"]["extend-exclude"]}
 MOST_LINES = 400
@@ -63,7 +64,7 @@ def test_every_layer_has_its_paragraph_in_the_architecture() -> None:
     assert [folder for folder in folders if f"**`btlang/{folder}/`**" not in page] == []
 
 
-@pytest.mark.parametrize("page", [*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")], ids=name)
+@pytest.mark.parametrize("page", PAGES, ids=name)
 def test_files_named_in_documents_exist(page: Path) -> None:
     """Every `btlang/...` or other path from the root in back quotes, and every link."""
     roots = "|".join(re.escape(folder) for folder in FOLDERS)
@@ -74,10 +75,25 @@ def test_files_named_in_documents_exist(page: Path) -> None:
     assert missing == []
 
 
+@pytest.mark.parametrize("page", PAGES, ids=name)
+def test_links_lead_to_headings(page: Path) -> None:
+    linked = re.findall(r"\]\((?!https?:)([^)#\s]*)#([^)]+)\)", text(page))
+    assert [
+        (file, place) for file, place in linked if place not in headings(page.parent / file if file else page)
+    ] == []
+
+
+def headings(page: Path) -> set[str]:
+    """The headings of a page as links name them."""
+    found = re.findall(r"^#+ (.*)$", text(page), re.MULTILINE)
+    return {re.sub(r"[^\w\- ]", "", heading.lower()).replace(" ", "-") for heading in found}
+
+
 def test_documents_name_every_key() -> None:
     keywords, worlds = (text(ROOT / "docs" / page) for page in ("keywords.md", "worlds.md"))
     keys = keyword_file._TOP | keyword_file._ENTRY | keyword_file._TYPE
     assert [key for key in sorted(keys) if not re.search(rf"`\[*{key}\]*`", keywords)] == []
+    assert [role for role in language_tables.ROLES if f"`{role}`" not in keywords.partition("### Roles")[2]] == []
     assert [kind for kind in world_file._FAULTS if f'`"{kind}"`' not in worlds] == []
 
 

@@ -1,10 +1,13 @@
 """The README and `docs/` are true: their commands and snippets run, and the output that they show is what is printed.
 
-A block with a file name is that file. `UPDATE_README=1 pytest -n0` writes the shown output anew.
+A block with a file name is that file. What `btc tree` and `btc explain` show is what both parsers give.
+`UPDATE_README=1 pytest -n0` writes the shown output anew.
 """
 
 from __future__ import annotations
 
+import contextlib
+import io
 import os
 import re
 import shlex
@@ -16,9 +19,12 @@ from typing import NamedTuple
 
 import pytest
 
+from btlang.cli import main
+from btlang.frontends.mission import PARSERS
+
 ROOT = Path(__file__).parent.parent
 README = ROOT / "README.md"
-PAGES = [README, *sorted((ROOT / "docs").glob("*.md"))]
+PAGES = [README, *sorted((ROOT / "docs").rglob("*.md"))]
 SET_UP = "python3 -m venv "  # what lines start with that only `.ci/run` runs
 _BLOCK = re.compile(r"^```(\w+)(?: ([\w.]+))?\n(.*?)^```$", re.MULTILINE | re.DOTALL)
 
@@ -47,6 +53,18 @@ def blocks(language: str) -> list[Block]:
 def first_line(block: Block) -> str:
     """What a block is called in the list of tests."""
     return block.text.partition("\n")[0]
+
+
+def command_and_output(block: Block) -> tuple[str, str]:
+    """A shown command, which may be several lines in quotes, and the lines below it."""
+    assert block.text.startswith("$ "), block.text
+    lines = block.text.splitlines(keepends=True)
+    for last in range(1, len(lines) + 1):
+        command = "".join(lines[:last])
+        with contextlib.suppress(ValueError):  # the quotes are still open
+            shlex.split(command)
+            return command[2:].rstrip("\n"), "".join(lines[last:])
+    raise AssertionError(f"quotes are missing: {block.text}")
 
 
 def commands() -> list[str]:
@@ -80,6 +98,17 @@ def btc(line: str, folder: Path) -> subprocess.CompletedProcess[str]:
     return run(["-m", "btlang", *words[1:]], folder)
 
 
+def readings(line: str) -> list[str]:
+    """What a line `btc tree ...` or `btc explain ...` prints with each parser, in this process as it is quicker."""
+    found = []
+    for parser in PARSERS:
+        printed = io.StringIO()
+        with contextlib.redirect_stdout(printed), contextlib.redirect_stderr(printed):
+            main([*shlex.split(line)[1:], "--parser", parser])
+        found.append(printed.getvalue())
+    return found
+
+
 @pytest.fixture
 def folder(tmp_path: Path) -> Path:
     """A folder with the examples and the files that the pages show."""
@@ -98,17 +127,27 @@ def test_commands_run(line: str, folder: Path) -> None:
 
 
 @pytest.mark.parametrize("block", blocks("console"), ids=first_line)
-def test_shown_output_is_real(block: Block, folder: Path) -> None:
-    line, _, shown = block.text.partition("\n")
-    assert line.startswith("$ ")
-    done = btc(line[2:], folder)
-    assert "Traceback" not in done.stdout
+def test_shown_output_is_real(block: Block, folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    line, shown = command_and_output(block)
+    if is_reading(line):
+        monkeypatch.chdir(folder)
+        monkeypatch.setenv("COLUMNS", "100")
+        printed, *others = readings(line)
+        assert all(other == printed for other in others)
+    else:
+        printed = btc(line, folder).stdout
+    assert "Traceback" not in printed
     if os.environ.get("UPDATE_README"):
         page = block.page.read_text(encoding="utf-8")
-        fresh = page.replace(f"```console\n{block.text}```", f"```console\n{line}\n{done.stdout}```")
+        fresh = page.replace(f"```console\n{block.text}```", f"```console\n$ {line}\n{printed}```")
         block.page.write_text(fresh, encoding="utf-8")
     else:
-        assert without_times(done.stdout) == without_times(shown)
+        assert without_times(printed) == without_times(shown)
+
+
+def is_reading(line: str) -> bool:
+    """Whether a command shows how a mission is read."""
+    return re.match(r"btc (tree|explain) (?!BT\d)", line) is not None
 
 
 def without_times(text: str) -> str:
@@ -126,8 +165,8 @@ def test_snippets_run(block: Block, folder: Path) -> None:
 
 def commands_with(file: str) -> list[str]:
     """The shown commands that name a file."""
-    lines = [block.text.partition("\n")[0] for block in BLOCKS if block.language == "console"]
-    return [line.removeprefix("$ ") for line in lines if file in line.split()]
+    lines = [command_and_output(block)[0] for block in blocks("console")]
+    return [line for line in lines if file in line.split()]
 
 
 @pytest.mark.parametrize("block", [block for block in BLOCKS if block.language == "mission"], ids=first_line)

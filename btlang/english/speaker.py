@@ -38,7 +38,7 @@ class Speaker:
     """Says nodes in the words of a vocabulary, where `names` are defined.
 
     With `brackets` "all" each chain and form inside another one is bracketed, with "needed" only those whose reading
-    needs it (see the table of connectives in docs/language.md): what binds less tightly than what is around it,
+    needs it (see the table in docs/language/joining.md): what binds less tightly than what is around it,
     a chain in an equal chain, and a form that reaches to the right where something follows it.
     """
 

@@ -20,8 +20,8 @@ _MOST_WORDS = 4
 class Head(Record):
     """The head of a statement about a value: its name, the word at which the value stands, and the word behind it.
 
-    `value` is -1 where none is given. Of `remember ... as name` the value stands before the name, and `last` is behind
-    the name.
+    `value` is -1 where none is given. Of `remember ... as name` the value stands before the name and ends before the
+    word `value_end`, and `last` is behind the name.
     """
 
     role: str
@@ -29,6 +29,7 @@ class Head(Record):
     words: tuple[str, ...]
     value: int
     last: int
+    value_end: int = -1
 
 
 def find_heads(text: Words, vocabulary: Vocabulary) -> dict[int, Head]:
@@ -56,7 +57,7 @@ def _head(text: Words, role: str, at: int, vocabulary: Vocabulary) -> Head | Non
             return None
         last = _end_of_name(text, joint[1], vocabulary)
         words = _name(text, joint[1], last, vocabulary)
-        return Head(role, key_of(words), words, at, last) if words else None
+        return Head(role, key_of(words), words, at, last, joint[0]) if words else None
     if joint is None:
         if role not in ("increase", "decrease"):
             return None

@@ -157,11 +157,13 @@ class Matcher(ConditionScan):
         """`in parallel:`, `the first that works:` and the lines below."""
         if self._refuse_in_condition(token):
             return
+        self._begin_statement(token)
         colon = self._raw[self._at + 1]
-        if colon.kind != "colon":
+        body = self._raw[self._at + 2] if colon.kind == "colon" else colon
+        on_this_line = "\n" not in self.source.text[colon.end : body.start]
+        if colon.kind != "colon" or (on_this_line and body.kind not in ("indent", "dedent", "end")):
             self._fail("BT035", self._span(token), words=self._words(token))
             return
-        self._begin_statement(token)
         self._next(token, True)
         self._next(colon, True)
         if self._raw[self._at].kind == "indent":

@@ -25,13 +25,14 @@ def read_statement(
     if known is None:
         return None
     start = text.starts[at]
-    if head.role == "remember":
+    if head.role in ("set", "remember"):  # `set level to the battery` remembers, too
         quantity = longest(vocabulary.quantities, text, head.value, values)
-        if quantity is not None and quantity.meaning.entry is not None:
+        if quantity is not None and quantity.meaning.entry is not None and quantity.last >= head.value_end:
             made = Remembered(head.key, quantity.meaning.entry, _arguments(quantity, port_text))
-            return Token("command", made, start, text.ends[head.last - 1]), head.last
+            end = max(head.last, quantity.last)
+            return Token("command", made, start, text.ends[end - 1]), end
     found = _value(head, known, text, vocabulary, values)
-    if found is None:
+    if found is None or (head.role == "remember" and found.last != head.value_end):
         return None
     operation = "set" if head.role == "remember" else head.role
     end = max(head.last, found.last)

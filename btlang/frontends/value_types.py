@@ -150,7 +150,7 @@ class ValueTypes:
         """The types that the value of a head can have, () where that is not known yet."""
         if head.value < 0:
             return ()
-        if head.role == "remember":
+        if head.role in ("set", "remember"):
             quantity = longest(self._vocabulary.quantities, self._text, head.value, self._values)
             if quantity is not None and quantity.meaning.entry is not None:
                 return (quantity.meaning.entry.measures,)

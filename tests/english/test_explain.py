@@ -41,7 +41,8 @@ def test_examples(name: str, world: str | None) -> None:
 
 
 @pytest.mark.parametrize("path", MISSIONS, ids=lambda path: path.stem)
-def test_every_mission_fits(path: Path) -> None:
+def test_every_mission_fits(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(path.parent)  # where it includes from
     text = path.read_text(encoding="utf-8-sig")
     world = re.search(r"--world (\S+)", text)
     tree = parse_tree(Source(text, str(path)), world=str(ROOT / world[1]) if world else None)

@@ -97,7 +97,8 @@ def test_any_layout(text: str) -> None:
 
 
 @pytest.mark.parametrize("path", MISSIONS, ids=lambda path: path.stem)
-def test_missions_that_ship(path: Path) -> None:
+def test_missions_that_ship(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(path.parent)  # where it includes from
     text = path.read_bytes().decode("utf-8")
     world = re.search(r"--world (\S+)", text)
     where = str(ROOT / world[1]) if world else None

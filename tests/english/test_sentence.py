@@ -89,7 +89,8 @@ def test_blocks_keep_the_tree(mission: ast.Mission, width: int, brackets: str) -
 
 
 @pytest.mark.parametrize("path", MISSIONS, ids=lambda path: path.stem)
-def test_missions_that_ship_keep_their_tree(path: Path) -> None:
+def test_missions_that_ship_keep_their_tree(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(path.parent)  # where it includes from
     text = path.read_text(encoding="utf-8-sig")
     world = re.search(r"--world (\S+)", text)
     vocabulary = world_vocabulary(world=str(ROOT / world[1]) if world else None)

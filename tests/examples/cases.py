@@ -7,7 +7,7 @@ from dataclasses import dataclass, field
 
 @dataclass(frozen=True)
 class Case:
-    """An example and its run.
+    """An example and its run. `parts` are the missions that it includes.
 
     `done` holds the commands that succeeded in their order, as `Id` and values; where it ends in `...` more follow.
     `failed` the commands that failed, `said` and `printed` all texts in their order, `met` the kinds of the robot's
@@ -16,6 +16,7 @@ class Case:
     """
 
     world: str | None = None
+    parts: tuple[str, ...] = ()
     options: tuple[str, ...] = ()
     code: int = 0
     done: tuple[str, ...] = ()
@@ -86,6 +87,16 @@ CASES = {
         said=("I can go no further.",),
         cells=6,
     ),
+    "morning_round": Case(
+        parts=("greetings",),
+        done=("GoToPerson {person}", "..."),
+        said=(
+            "Good morning, Alice!", "Good morning, Bob!", "Good morning, Carol!", "I have greeted 3 people.",
+            "That was a long way.",
+        ),
+        at="lobby",
+        seconds=(70, 120),
+    ),
     "museum_guide": Case(
         world="museum",
         done=("TurnAround", "..."),
@@ -93,7 +104,9 @@ CASES = {
             "Good afternoon! I am your guide. Please follow me.", _QUESTION, "This statue is two thousand years old.",
             "Hush! Do not wake the mummy.", _QUESTION, "And this was a very big lizard.",
             "Excuse me, I need a little energy. I will be back.", "Where were we?", _QUESTION,
-            "There is time for one more.", _QUESTION, _QUESTION, "The tour is over. Enjoy your coffee!",
+            "There is time for two more.", _QUESTION, "Here is the fountain again.",
+            _QUESTION, "Here is the statue again.",
+            "The tour is over. Enjoy your coffee!", "I had 5 questions today.",
         ),
         met=("dock", "undock"),
         at="cafe",
