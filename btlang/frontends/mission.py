@@ -69,7 +69,7 @@ class _Reader:
         """What reads the files that a text includes; `within` are the files that are being read, the text's last."""
 
         def load(path: str, span: Span) -> Included | None:
-            name = os.path.join(os.path.dirname(source.name), path)
+            name = os.path.join(source.folder, path)
             real = os.path.realpath(name)
             if real in within or len(within) > _MOST_DEEP:
                 files = (*within[within.index(real) if real in within else 0 :], real)

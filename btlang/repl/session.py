@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping, Sequence
 from textwrap import indent
 
@@ -70,6 +71,10 @@ class Session:
         self._blackboard = Blackboard()
 
     @property
+    def _folder(self) -> str:
+        return os.path.dirname(self.file or "")
+
+    @property
     def definitions(self) -> dict[str, str]:
         """The names defined so far, each with the text of its definition."""
         return dict(definition for entry in self.entries for definition in entry.definitions)
@@ -93,7 +98,7 @@ class Session:
         margin = text[: len(text) - len(text.lstrip())].rpartition("\n")[2]
         above = indent(self.context(text), margin)
         whole = f"{text}\n{above}"  # the entry first, so that places in it are those that were typed
-        reading = read_mission(Source(whole, ENTRY), self.vocabulary, self._parser, self._known())
+        reading = read_mission(Source(whole, ENTRY, self._folder), self.vocabulary, self._parser, self._known())
         mission = reading.mission
         named: list[Definition | Fact | Include] = [*mission.includes, *mission.definitions, *mission.facts]
         own = [d for d in named if d.span.start < len(text)]
@@ -105,21 +110,21 @@ class Session:
         return Compiled(entry, self._runnable(shown, reading.mission, own_warnings, self._values()))
 
     def _values(self) -> Blackboard:
-        """What entries before have set, without what their scripts only computed on the way."""
-        keys = self._blackboard.keys()
-        for key in (key for key in keys if key.startswith("_")):
+        """What entries before have set, without what was computed on the way or belongs to another mission."""
+        known = self._known()
+        for key in [key for key in self._blackboard.keys() if key not in known]:  # noqa: SIM118 - it is no dict
             self._blackboard.unset(key)
         return self._blackboard
 
     def _known(self) -> Mapping[str, Known]:
         """The values that entries before have set."""
         if self._known_of[0] != self.text:
-            self._known_of = self.text, lexed(Source(self.text, self.file or ENTRY), self.vocabulary).known
+            self._known_of = self.text, lexed(Source(self.text, ENTRY, self._folder), self.vocabulary).known
         return self._known_of[1]
 
     def compile_all(self) -> RunnableTree:
         """The whole mission. Raises MissionError, also where it holds no command."""
-        reading = read_mission(Source(self.text, self.file or "<session>"), self.vocabulary, self._parser)
+        reading = read_mission(Source(self.text, self.file or "<session>", self._folder), self.vocabulary, self._parser)
         tree = compile_mission(reading.mission, self.vocabulary)
         return self._runnable(tree, reading.mission, reading.warnings, Blackboard())
 

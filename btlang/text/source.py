@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from bisect import bisect_right
 from itertools import accumulate
 
@@ -9,13 +10,17 @@ from btlang.record import Record
 
 
 class Source:
-    """One text to compile. `name` is what messages show: a path, `-` or `<text>`."""
+    """One text to compile. `name` is what messages show: a path, `-` or `<text>`.
 
-    __slots__ = ("_starts", "name", "text")
+    What the text includes is looked for in `folder`, by default that of the path.
+    """
 
-    def __init__(self, text: str, name: str = "<text>") -> None:
+    __slots__ = ("_starts", "folder", "name", "text")
+
+    def __init__(self, text: str, name: str = "<text>", folder: str | None = None) -> None:
         self.text = text
         self.name = name
+        self.folder = os.path.dirname(name) if folder is None else folder
         self._starts: list[int] | None = None
 
     def position(self, offset: int) -> tuple[int, int]:

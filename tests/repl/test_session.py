@@ -10,11 +10,11 @@ import btlang
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.engine.status import FAILURE, SUCCESS
 from btlang.repl.session import Session
+from btlang.text.source import Source
 from btlang.tree.dump import plain
 
 ROOT = Path(__file__).parents[2]
 EXAMPLES = sorted((ROOT / "examples").glob("*.txt"))
-WITH_VALUES = ("morning_round", "museum_guide")  # an entry alone does not know the values that other entries set
 
 
 def entered(*texts: str) -> Session:
@@ -85,18 +85,18 @@ def option(text: str, name: str) -> str | None:
 
 
 @pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
-def test_a_mission_falls_into_its_statements(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.chdir(path.parent)  # where it includes from
+def test_a_mission_falls_into_its_statements(path: Path) -> None:
     text = path.read_text()
     world = option(text, "--world ")
     keywords = [file for file in [option(text, "--keywords ")] if file]
     session = Session(keywords, world)
-    entries = session.entries_of(text)
+    entries = session.entries_of(text, str(path))
+    session.file = str(path)
     assert "\n".join(entry.text for entry in entries).split() == text.split()
     session.change(entries)
-    for entry in entries if path.stem not in WITH_VALUES else ():  # alone, with the definitions of the others
+    for entry in entries:  # alone, with the definitions and values of the others
         assert session.compile(entry.text).entry == entry
-    tree = btlang.parse_tree(text, keywords=keywords, world=world).tree
+    tree = btlang.parse_tree(Source(text, str(path)), keywords=keywords, world=world).tree
     assert plain(session.compile_all().tree) == plain(tree)
 
 
@@ -130,3 +130,13 @@ def test_values_go_on_from_entry_to_entry() -> None:
         session.compile("set counter to the lab")
     session.reset()
     assert session.compile("say {counter}").tree.run(speed="max").status == FAILURE
+
+
+def test_values_of_another_mission_are_forgotten() -> None:
+    session = Session()
+    first = session.compile("set counter to 3")
+    session.add(first.entry)
+    first.tree.run(speed="max")
+    session.change(())
+    second = session.compile('set counter to "three"')
+    assert second.tree.run(speed="max").status == SUCCESS
