@@ -8,6 +8,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.frontends.build import Builder
 from btlang.frontends.lexer import Lexer
 from btlang.frontends.matching import Matcher
+from btlang.frontends.respelling import with_respellings
 from btlang.record import Record
 from btlang.text.source import Source, Span
 from btlang.tree.ast import Ast, Definition, Mission
@@ -27,8 +28,11 @@ class Reading(Record):
     warnings: tuple[Diagnostic, ...]
 
 
-def read_mission(source: Source, vocabulary: Vocabulary, parser: str = DEFAULT_PARSER) -> Reading:
-    """Raises MissionError with all that is wrong with the text; ValueError for an unknown parser."""
+def read_mission(source: Source, vocabulary: Vocabulary, parser: str = DEFAULT_PARSER, suggest: bool = True) -> Reading:
+    """Raises MissionError with all that is wrong with the text; ValueError for an unknown parser.
+
+    With `suggest` False no corrections are tried, which takes time.
+    """
     if parser not in PARSERS:
         raise ValueError(f"no parser '{parser}'; there are {', '.join(PARSERS)}")
     lexer = Lexer(source, vocabulary)
@@ -37,7 +41,7 @@ def read_mission(source: Source, vocabulary: Vocabulary, parser: str = DEFAULT_P
     if not lexer.tokens and not lexer.facts and not problems:
         problems = [diagnostic("BT005", Span(source, 0, 0), example="move forward 1 m")]
     if any(problem.is_error for problem in problems):
-        raise MissionError(problems)
+        raise MissionError(with_respellings(lexer, problems) if suggest else problems)
     parse = import_module(PARSERS[parser]).parse
     build = Builder(source)
     body: Ast | None = None

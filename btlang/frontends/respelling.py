@@ -1,0 +1,242 @@
+"""Better corrections of what could not be read: other spellings of a word are tried, the first that helps is proposed.
+
+Tried is the statement in which a problem is, with the statements beside it and those that give names. All tries
+together read a limited number of words, so that a text full of mistakes takes hardly longer than before.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Iterable, Iterator
+from functools import lru_cache
+from itertools import chain, islice
+
+from btlang.diagnostics.diagnostic import Diagnostic
+from btlang.frontends.lexer import Lexer
+from btlang.frontends.matching import Matcher
+from btlang.frontends.unknown import nearest_known
+from btlang.frontends.variables import find_heads
+from btlang.record import Record
+from btlang.text.source import Source, Span
+from btlang.text.spelling import respellings
+from btlang.vocabulary.pattern import name_form
+from btlang.vocabulary.trie import SLOTS, TrieNode
+from btlang.vocabulary.values import END
+from btlang.vocabulary.vocabulary import NO_PHRASES, Vocabulary
+
+_MOST_WORDS = 20_000  # that all tries for a text read
+_LEAST_COST = 50  # what a try costs at least, in words
+_MOST_TRIES = 40  # for one problem
+_LONGEST = 40  # letters of a word that is respelt
+_MAY_BE_A_WORD = frozenset(f"BT0{number}" for number in (10, 11, 12, 13, 19, 21, 26, 28, 29, 39))
+_UNKNOWN = frozenset(("BT010", "BT013"))
+
+Change = tuple[int, int, str]
+
+
+class _Statement(Record):
+    """Characters of a statement at the margin with its block, and its words `first` to `last` (exclusive)."""
+
+    start: int
+    end: int
+    first: int
+    last: int
+
+
+class _Trial(Record):
+    """A text to read with a change in it: `before` and `after` are what stands around the statement there."""
+
+    statement: _Statement
+    before: str
+    after: str
+    faults: tuple[int, ...]
+    cost: int
+
+
+def with_respellings(lexer: Lexer, problems: list[Diagnostic]) -> list[Diagnostic]:
+    """The problems of a text, with a better fix where another spelling of one word makes its statement sound."""
+    if not lexer.text.lines:
+        return problems
+    return _Respelling(lexer, problems).improved()
+
+
+class _Respelling:
+    def __init__(self, lexer: Lexer, problems: list[Diagnostic]) -> None:
+        self._text, self._source = lexer.text, lexer.text.source
+        self._vocabulary = lexer.vocabulary
+        self._problems = problems
+        self._budget = _MOST_WORDS
+        self._statements = list(self._split())
+        self._starts = [statement.start for statement in self._statements]
+        self._known = _words_of(self._vocabulary) | frozenset(self._own_words(lexer))
+        named = (*lexer.definitions.headers, *find_heads(self._text, self._vocabulary))
+        places = (bisect_right(self._text.starts, fact.span.start) - 1 for fact in lexer.facts)
+        self._naming = {self._at(self._text.starts[word]) for word in (*named, *places)}
+
+    def improved(self) -> list[Diagnostic]:
+        """Each problem once, in the order given."""
+        found = []
+        for problem in self._problems:
+            change = self._cure(problem) if problem.is_error and self._budget > 0 else None
+            found.append(problem if change is None else _with_fix(problem, change))
+        return found
+
+    # -- statements
+
+    def _split(self) -> Iterator[_Statement]:
+        lines = self._text.lines
+        margin = lines[0].indent
+        first = 0
+        for number in range(1, len(lines) + 1):
+            if number == len(lines) or lines[number].indent <= margin:
+                end = len(self._source.text) if number == len(lines) else self._line_start(lines[number].first)
+                yield _Statement(self._line_start(lines[first].first), end, lines[first].first, lines[number - 1].last)
+                first = number
+
+    def _line_start(self, word: int) -> int:
+        return self._source.text.rfind("\n", 0, self._text.starts[word]) + 1
+
+    def _at(self, character: int) -> int:
+        """The number of the statement in which a character is."""
+        return max(bisect_right(self._starts, character) - 1, 0)
+
+    def _own_words(self, lexer: Lexer) -> Iterator[str]:
+        """The words of the names that the text gives."""
+        for header in lexer.definitions.headers.values():
+            yield from (part for part in name_form(header.name) if isinstance(part, str))
+            yield from (word for _, words in header.parameters for word in words)
+        for head in find_heads(self._text, self._vocabulary).values():
+            yield from head.words if head.role not in ("increase", "decrease") else ()
+        for fact in lexer.facts:
+            yield from fact.name.split()
+
+    # -- tries
+
+    def _cure(self, problem: Diagnostic) -> Change | None:
+        """The first change that leaves less wrong in the statement, where it is better than the fix that there is."""
+        trial = self._trial(problem)
+        if trial is None:
+            return None
+        suspects = self._suspects(problem, trial.statement)
+        fix = problem.fix
+        before = [] if fix is None else [(fix[0].start, fix[0].end, fix[1])]
+        strangers = (w for w in suspects if self._text.words[w] not in self._known and len(self._text.words[w]) > 1)
+        others = (w for w in suspects if problem.code in _MAY_BE_A_WORD and self._is_doubtful(w, problem.span))
+        changes = chain(self._changes(strangers), before, self._changes(others, _without_meaning(self._vocabulary)))
+        for change in islice(changes, _MOST_TRIES):
+            if trial.cost > self._budget:
+                return None
+            self._budget -= trial.cost
+            if self._helps(change, trial, problem.span):
+                return None if before and self._with(change) == self._with(before[0]) else change
+        return None
+
+    def _with(self, change: Change) -> str:
+        start, end, words = change
+        return self._source.text[:start] + words + self._source.text[end:]
+
+    def _trial(self, problem: Diagnostic) -> _Trial | None:
+        """None where the text is too long."""
+        number = self._at(problem.span.start)
+        around = sorted({*self._naming, number - 1, number, number + 1} & set(range(len(self._statements))))
+        text = self._source.text
+        statement = self._statements[number]
+        words = sum(self._statements[n].last - self._statements[n].first for n in around)
+        cost = max(words, _LEAST_COST)
+        if 2 * cost > self._budget:
+            self._budget -= max(len(around), _LEAST_COST)
+            return None
+        self._budget -= cost
+        before, after = (
+            "".join(text[self._statements[n].start : self._statements[n].end] for n in side)
+            for side in ([n for n in around if n < number], [n for n in around if n > number])
+        )
+        faults = self._faults(text[statement.start : statement.end], before, after)
+        return _Trial(statement, before, after, faults, cost)
+
+    def _suspects(self, problem: Diagnostic, statement: _Statement) -> list[int]:
+        """The words of the line of a problem, the nearest to its words first, then those of the statement."""
+        text = self._text
+        first, last = problem.span.start, problem.span.end
+        line = self._source.position(first)[0]
+
+        def far(word: int) -> tuple[bool, int, int]:
+            start, end = text.starts[word], text.ends[word]
+            return self._source.position(start)[0] != line, max(first - end, start - last, 0), word
+
+        return sorted((w for w in range(statement.first, statement.last) if text.words[w][0].isalpha()), key=far)
+
+    def _is_doubtful(self, word: int, problem: Span) -> bool:
+        """Whether a word that is known may be a slip all the same: `ten` for `then`."""
+        beside = self._text.starts[word] - 1 <= problem.end and problem.start <= self._text.ends[word] + 1
+        return beside and len(self._text.words[word]) > 2 and self._text.words[word] in self._known
+
+    def _changes(self, words: Iterable[int], never: frozenset[str] = frozenset()) -> Iterator[Change]:
+        for word in words:
+            written = self._text.words[word]
+            for other in respellings(written, self._known) if len(written) <= _LONGEST else ():
+                if other not in never:
+                    yield self._text.starts[word], self._text.ends[word], other
+
+    def _helps(self, change: Change, trial: _Trial, problem: Span) -> bool:
+        """Whether less is wrong at the problem, and not more in the rest of the statement."""
+        start, end, words = change
+        own, text = trial.statement, self._source.text
+        if not own.start <= start <= end <= own.end:
+            return False
+        changed = self._faults(text[own.start : start] + words + text[end : own.end], trial.before, trial.after)
+        if len(changed) >= len(trial.faults):
+            return False
+        longer = len(words) - (end - start)
+        first, last = problem.start - own.start, problem.end - own.start
+        there = sum(first <= place <= last for place in trial.faults)
+        still = sum(first + (start < problem.start) * longer <= place <= last + longer for place in changed)
+        return still < there or not (there or changed)
+
+    def _faults(self, statement: str, before: str, after: str) -> tuple[int, ...]:
+        """The characters of the statement at which something is wrong when it reads so."""
+        source = Source(before + statement + after)
+        first = len(before)
+        lexer = Lexer(source, self._vocabulary, explain=False)
+        matcher = Matcher(source, lexer.tokens, lexer.conditions, self._vocabulary.word)
+        unknown = [token.start for token in lexer.tokens if token.kind == "unknown"]
+        places = (p.span.start for p in (*lexer.problems, *matcher.problems) if p.is_error)
+        return tuple(place - first for place in (*unknown, *places) if 0 <= place - first <= len(statement))
+
+
+def _with_fix(problem: Diagnostic, change: Change) -> Diagnostic:
+    """The problem with the change as its fix, and as the nearest that is known where it tells of that."""
+    start, end, words = change
+    arguments = dict(problem.arguments)
+    told = arguments.get("help", "")
+    if problem.code in _UNKNOWN and words not in told and '"' not in told:
+        arguments["help"] = nearest_known([words])
+    fix = Span(problem.span.source, start, end), words
+    return Diagnostic(problem.code, problem.span, tuple(arguments.items()), problem.notes, fix)
+
+
+@lru_cache(maxsize=4)
+def _without_meaning(vocabulary: Vocabulary) -> frozenset[str]:
+    """Words that would hide a word that is known, for they change nothing."""
+    polite = (word for phrase in vocabulary.roles["politeness"] for word in phrase.split())
+    return vocabulary.articles | frozenset(polite)
+
+
+@lru_cache(maxsize=4)
+def _words_of(vocabulary: Vocabulary) -> frozenset[str]:
+    """Every word that the vocabulary knows, also those in names and values."""
+    words: set[str] = set(vocabulary.articles)
+    pending: list[TrieNode] = [vocabulary.trie, vocabulary.quantities]
+    pending += [vocabulary.values.names_tree(name) for name, kind in vocabulary.types.items() if kind.kind == "names"]
+    pending += vocabulary.values.word_trees()
+    while pending:
+        node = pending.pop()
+        for key, child in node.items():
+            if key == SLOTS:
+                pending += [below for _, _, below in child]
+            elif key != END:
+                words.add(key)
+                pending.append(child)
+    for role in NO_PHRASES:
+        words.update(word for phrase in vocabulary.roles[role] for word in phrase.split())
+    return frozenset(word for word in words if word.isalpha() and len(word) > 1)
