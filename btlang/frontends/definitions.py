@@ -145,7 +145,8 @@ def _header(
         return None  # `charge until the battery is green` is a command that says something unknown
     if joined is not None:
         problems.append(diagnostic("BT015", joined, word=joined.text))
-        return Header(" ".join(text.words[start:at]), text.span(start, at), at + 1, reach(text, at))
+        name = " ".join(word for word in text.words[start:at] if word[0].isalnum())
+        return Header(name, text.span(start, at), at + 1, reach(text, at))
     parts, parameters = _pattern(text.words[start:at])
     return Header(" ".join(parts), text.span(start, at), at + 1, reach(text, at), parameters)
 
