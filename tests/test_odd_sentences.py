@@ -18,7 +18,7 @@ import btlang
         ("until and : \n   cm show\r nan: ", "BT020"),
         ("{a} is b", "BT015"),
         ("greet {} is wave", "BT015"),
-        ('say "{level}" {} is wave', "BT015"),
+        ('x "it is {level}" is wave', "BT015"),
     ],
 )
 def test_messages(text: str, code: str, parser: str) -> None:

@@ -24,7 +24,7 @@ from btlang.vocabulary.trie import SLOTS, TrieNode
 from btlang.vocabulary.values import END
 from btlang.vocabulary.vocabulary import NO_PHRASES, Vocabulary
 
-_MOST_WORDS = 20_000  # that all tries for a text read
+_MOST_WORDS = 10_000  # that all tries for a text read
 _LEAST_COST = 50  # what a try costs at least, in words
 _MOST_TRIES = 40  # for one problem
 _LONGEST = 40  # letters of a word that is respelt
@@ -66,6 +66,7 @@ class _Respelling:
         self._vocabulary = lexer.vocabulary
         self._problems = problems
         self._budget = _MOST_WORDS
+        self._trials: dict[int, _Trial] = {}
         self._statements = list(self._split())
         self._starts = [statement.start for statement in self._statements]
         self._known = _words_of(self._vocabulary) | frozenset(self._own_words(lexer))
@@ -114,11 +115,11 @@ class _Respelling:
 
     def _cure(self, problem: Diagnostic) -> Change | None:
         """The first change that leaves less wrong in the statement, where it is better than the fix that there is."""
-        trial = self._trial(problem)
+        fix = problem.fix
+        trial = self._trial(problem) if fix is None or _changes_words(*fix) else None
         if trial is None:
             return None
         suspects = self._suspects(problem, trial.statement)
-        fix = problem.fix
         before = [] if fix is None else [(fix[0].start, fix[0].end, fix[1])]
         strangers = (w for w in suspects if self._text.words[w] not in self._known and len(self._text.words[w]) > 1)
         others = (w for w in suspects if problem.code in _MAY_BE_A_WORD and self._is_doubtful(w, problem.span))
@@ -138,6 +139,8 @@ class _Respelling:
     def _trial(self, problem: Diagnostic) -> _Trial | None:
         """None where the text is too long."""
         number = self._at(problem.span.start)
+        if number in self._trials:
+            return self._trials[number]
         around = sorted({*self._naming, number - 1, number, number + 1} & set(range(len(self._statements))))
         text = self._source.text
         statement = self._statements[number]
@@ -152,7 +155,8 @@ class _Respelling:
             for side in ([n for n in around if n < number], [n for n in around if n > number])
         )
         faults = self._faults(text[statement.start : statement.end], before, after)
-        return _Trial(statement, before, after, faults, cost)
+        self._trials[number] = _Trial(statement, before, after, faults, cost)
+        return self._trials[number]
 
     def _suspects(self, problem: Diagnostic, statement: _Statement) -> list[int]:
         """The words of the line of a problem, the nearest to its words first, then those of the statement."""
@@ -189,8 +193,10 @@ class _Respelling:
             return False
         longer = len(words) - (end - start)
         first, last = problem.start - own.start, problem.end - own.start
-        there = sum(first <= place <= last for place in trial.faults)
-        still = sum(first + (start < problem.start) * longer <= place <= last + longer for place in changed)
+        last = max(last, first + 1)
+        there = sum(first <= place < last for place in trial.faults)
+        moved, grown = longer * (start < problem.start), longer * (start < problem.end)
+        still = sum(first + moved <= place < last + grown for place in changed)
         return still < there or not (there or changed)
 
     def _faults(self, statement: str, before: str, after: str) -> tuple[int, ...]:
@@ -202,6 +208,11 @@ class _Respelling:
         unknown = [token.start for token in lexer.tokens if token.kind == "unknown"]
         places = (p.span.start for p in (*lexer.problems, *matcher.problems) if p.is_error)
         return tuple(place - first for place in (*unknown, *places) if 0 <= place - first <= len(statement))
+
+
+def _changes_words(span: Span, words: str) -> bool:
+    """Not where a fix adds or takes away a mark."""
+    return any(character.isalnum() for character in span.text + words)
 
 
 def _with_fix(problem: Diagnostic, change: Change) -> Diagnostic:
