@@ -6,7 +6,8 @@ together read a limited number of words, so that a text full of mistakes takes h
 
 from __future__ import annotations
 
-from bisect import bisect_right
+from bisect import bisect_left, bisect_right
+from collections import Counter
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
 from itertools import chain, islice
@@ -19,7 +20,6 @@ from btlang.frontends.variables import find_heads
 from btlang.record import Record
 from btlang.text.source import Source, Span
 from btlang.text.spelling import respellings
-from btlang.vocabulary.pattern import name_form
 from btlang.vocabulary.trie import SLOTS, TrieNode
 from btlang.vocabulary.values import END
 from btlang.vocabulary.vocabulary import NO_PHRASES, Vocabulary
@@ -28,6 +28,7 @@ _MOST_WORDS = 10_000  # that all tries for a text read
 _LEAST_COST = 50  # what a try costs at least, in words
 _MOST_TRIES = 40  # for one problem
 _LONGEST = 40  # letters of a word that is respelt
+_NEAR_WORDS = 12  # of a problem, that a name may have been meant to have
 _MAY_BE_A_WORD = frozenset(f"BT0{number}" for number in (10, 11, 12, 13, 19, 21, 26, 28, 29, 39))
 _UNKNOWN = frozenset(("BT010", "BT013"))
 
@@ -44,11 +45,10 @@ class _Statement(Record):
 
 
 class _Trial(Record):
-    """A text to read with a change in it: `before` and `after` are what stands around the statement there."""
+    """Statements to read with a change in one of them, `own` is that of the problem; what is wrong there without."""
 
-    statement: _Statement
-    before: str
-    after: str
+    own: _Statement
+    statements: tuple[_Statement, ...]
     faults: tuple[int, ...]
     cost: int
 
@@ -69,10 +69,11 @@ class _Respelling:
         self._trials: dict[int, _Trial] = {}
         self._statements = list(self._split())
         self._starts = [statement.start for statement in self._statements]
-        self._known = _words_of(self._vocabulary) | frozenset(self._own_words(lexer))
-        named = (*lexer.definitions.headers, *find_heads(self._text, self._vocabulary))
-        places = (bisect_right(self._text.starts, fact.span.start) - 1 for fact in lexer.facts)
-        self._naming = {self._at(self._text.starts[word]) for word in (*named, *places)}
+        known, names = _words_of(self._vocabulary), list(self._names(lexer))
+        self._naming = {self._at(self._text.starts[words[0]]) for words in names}
+        self._strange = [word for words in names for word in words if self._text.words[word] not in known]
+        self._known = known | {self._text.words[word] for words in names for word in words}
+        self._written = Counter(self._text.words) if self._strange else Counter()
 
     def improved(self) -> list[Diagnostic]:
         """Each problem once, in the order given."""
@@ -101,15 +102,20 @@ class _Respelling:
         """The number of the statement in which a character is."""
         return max(bisect_right(self._starts, character) - 1, 0)
 
-    def _own_words(self, lexer: Lexer) -> Iterator[str]:
-        """The words of the names that the text gives."""
-        for header in lexer.definitions.headers.values():
-            yield from (part for part in name_form(header.name) if isinstance(part, str))
-            yield from (word for _, words in header.parameters for word in words)
-        for head in find_heads(self._text, self._vocabulary).values():
-            yield from head.words if head.role not in ("increase", "decrease") else ()
+    def _names(self, lexer: Lexer) -> Iterator[list[int]]:
+        """The words of each place at which the text gives a name."""
+        words = self._text.words
+        named: list[tuple[int, int, tuple[str, ...] | None]]
+        named = [(at, header.body - 1, None) for at, header in lexer.definitions.headers.items()]
+        heads = find_heads(self._text, self._vocabulary).items()
+        named += [(at, head.last, head.words) for at, head in heads if head.role not in ("increase", "decrease")]
         for fact in lexer.facts:
-            yield from fact.name.split()
+            first = bisect_left(self._text.starts, fact.span.start)
+            named.append((first, bisect_left(self._text.starts, fact.span.end), tuple(fact.name.split())))
+        for first, last, own in named:
+            found = [at for at in range(first, last) if words[at][0].isalpha() and (own is None or words[at] in own)]
+            if found:
+                yield found
 
     # -- tries
 
@@ -119,11 +125,16 @@ class _Respelling:
         trial = self._trial(problem) if fix is None or _changes_words(*fix) else None
         if trial is None:
             return None
-        suspects = self._suspects(problem, trial.statement)
+        suspects = self._suspects(problem, trial.own)
         before = [] if fix is None else [(fix[0].start, fix[0].end, fix[1])]
         strangers = (w for w in suspects if self._text.words[w] not in self._known and len(self._text.words[w]) > 1)
         others = (w for w in suspects if problem.code in _MAY_BE_A_WORD and self._is_doubtful(w, problem.span))
-        changes = chain(self._changes(strangers), before, self._changes(others, _without_meaning(self._vocabulary)))
+        changes = chain(
+            self._changes_of_names(suspects),
+            self._changes(strangers),
+            before,
+            self._changes(others, _without_meaning(self._vocabulary)),
+        )
         for change in islice(changes, _MOST_TRIES):
             if trial.cost > self._budget:
                 return None
@@ -142,20 +153,14 @@ class _Respelling:
         if number in self._trials:
             return self._trials[number]
         around = sorted({*self._naming, number - 1, number, number + 1} & set(range(len(self._statements))))
-        text = self._source.text
-        statement = self._statements[number]
-        words = sum(self._statements[n].last - self._statements[n].first for n in around)
-        cost = max(words, _LEAST_COST)
+        statements = tuple(self._statements[n] for n in around)
+        cost = max(sum(statement.last - statement.first for statement in statements), _LEAST_COST)
         if 2 * cost > self._budget:
             self._budget -= max(len(around), _LEAST_COST)
             return None
         self._budget -= cost
-        before, after = (
-            "".join(text[self._statements[n].start : self._statements[n].end] for n in side)
-            for side in ([n for n in around if n < number], [n for n in around if n > number])
-        )
-        faults = self._faults(text[statement.start : statement.end], before, after)
-        self._trials[number] = _Trial(statement, before, after, faults, cost)
+        trial = _Trial(self._statements[number], statements, (), cost)
+        self._trials[number] = _Trial(trial.own, statements, self._faults(trial, None), cost)
         return self._trials[number]
 
     def _suspects(self, problem: Diagnostic, statement: _Statement) -> list[int]:
@@ -175,6 +180,16 @@ class _Respelling:
         beside = self._text.starts[word] - 1 <= problem.end and problem.start <= self._text.ends[word] + 1
         return beside and len(self._text.words[word]) > 2 and self._text.words[word] in self._known
 
+    def _changes_of_names(self, suspects: list[int]) -> Iterator[Change]:
+        """Words of names that nothing else explains, as the problem has them where that is how they mostly stand."""
+        articles = self._vocabulary.articles
+        near = articles.union(self._text.words[word] for word in suspects[:_NEAR_WORDS])
+        for word in self._strange:
+            written = self._text.words[word]
+            for other in respellings(written, near) if len(written) <= _LONGEST else ():
+                if other in articles or self._written[other] > self._written[written]:
+                    yield self._text.starts[word], self._text.ends[word], other
+
     def _changes(self, words: Iterable[int], never: frozenset[str] = frozenset()) -> Iterator[Change]:
         for word in words:
             written = self._text.words[word]
@@ -185,29 +200,34 @@ class _Respelling:
     def _helps(self, change: Change, trial: _Trial, problem: Span) -> bool:
         """Whether less is wrong at the problem, and not more in the rest of the statement."""
         start, end, words = change
-        own, text = trial.statement, self._source.text
-        if not own.start <= start <= end <= own.end:
-            return False
-        changed = self._faults(text[own.start : start] + words + text[end : own.end], trial.before, trial.after)
+        changed = self._faults(trial, change)
         if len(changed) >= len(trial.faults):
             return False
-        longer = len(words) - (end - start)
-        first, last = problem.start - own.start, problem.end - own.start
+        longer = len(words) - (end - start) if start >= trial.own.start else 0
+        first, last = problem.start - trial.own.start, problem.end - trial.own.start
         last = max(last, first + 1)
         there = sum(first <= place < last for place in trial.faults)
         moved, grown = longer * (start < problem.start), longer * (start < problem.end)
         still = sum(first + moved <= place < last + grown for place in changed)
         return still < there or not (there or changed)
 
-    def _faults(self, statement: str, before: str, after: str) -> tuple[int, ...]:
-        """The characters of the statement at which something is wrong when it reads so."""
-        source = Source(before + statement + after)
-        first = len(before)
+    def _faults(self, trial: _Trial, change: Change | None) -> tuple[int, ...]:
+        """The characters of the statement at which something is wrong after the change."""
+        first = last = 0
+        text = ""
+        for statement in trial.statements:
+            piece = self._source.text[statement.start : statement.end]
+            if change is not None and statement.start <= change[0] <= change[1] <= statement.end:
+                piece = piece[: change[0] - statement.start] + change[2] + piece[change[1] - statement.start :]
+            if statement is trial.own:
+                first, last = len(text), len(text) + len(piece)
+            text += piece
+        source = Source(text)
         lexer = Lexer(source, self._vocabulary, explain=False)
         matcher = Matcher(source, lexer.tokens, lexer.conditions, self._vocabulary.word)
         unknown = [token.start for token in lexer.tokens if token.kind == "unknown"]
         places = (p.span.start for p in (*lexer.problems, *matcher.problems) if p.is_error)
-        return tuple(place - first for place in (*unknown, *places) if 0 <= place - first <= len(statement))
+        return tuple(place - first for place in (*unknown, *places) if first <= place <= last)
 
 
 def _changes_words(span: Span, words: str) -> bool:

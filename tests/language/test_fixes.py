@@ -48,6 +48,11 @@ def mended(text: str) -> str:
         ("patrol si wave\nnod", "patrol is wave\nnod"),
         ("turn left a quarter of a flul turn", "turn left a quarter of a full turn"),
         ("trouble means bumped or hsa bumped\ncheck trouble", "trouble means bumped or has bumped\ncheck trouble"),
+        ("take teh step is nod\nwave\ntake the step twice", "take the step is nod\nwave\ntake the step twice"),
+        (
+            "set conuter to 3; check counter is 3 or counter is 4",
+            "set counter to 3; check counter is 3 or counter is 4",
+        ),
         ('set level to 3; say "it is { levle }"', 'set level to 3; say "it is {level}"'),
         ("set counter to 3; increase conuter by 1", "set counter to 3; increase counter by 1"),
         (
