@@ -32,7 +32,9 @@ def render(diagnostic: Diagnostic, colour: bool = False) -> str:
     lines += [f"  {line}" for line in diagnostic.hint.splitlines()]
     line = mended_line(diagnostic)
     if line:
-        lines.append(f"  Perhaps: {line}")
+        number = diagnostic.span.source.position(diagnostic.fix[0].start)[0] if diagnostic.fix is not None else 0
+        elsewhere = number != diagnostic.span.source.position(diagnostic.span.start)[0]
+        lines.append(f"  Perhaps{f', in line {number}' if elsewhere else ''}: {line}")
     for span, text in diagnostic.notes:
         lines += [f"  {span.place}: {text}", *underlined(span, noted)]
     return "\n".join(lines)

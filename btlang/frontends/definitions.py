@@ -169,7 +169,7 @@ def _header(
         return None  # `charge until the battery is green` is a command that says something unknown
     if joined is not None:
         problems.append(diagnostic("BT015", joined, word=joined.text))
-        name = " ".join(word for word in text.words[start:at] if word not in ("{", "}"))
+        name = " ".join(word for word in text.words[start:at] if word[0].isalnum())
         return Header(name, text.span(start, at), at + 1, reach(text, at))
     parts, parameters = _pattern(text.words[start:at])
     if len(parts) == len(parameters):

@@ -47,7 +47,7 @@ class Lexer:
         load: Load | None = None,
         known: Mapping[str, Known] | None = None,
     ) -> None:
-        self._explain = explain
+        self._explain, self._given, self._named = explain, vocabulary, known
         self.text: Words = split(source, vocabulary.articles)
         self.vocabulary = vocabulary
         self.problems: list[Diagnostic] = [
@@ -58,7 +58,8 @@ class Lexer:
         loaded = [(path, span, load(path, span)) for path, span in includes.found] if load is not None else []
         self.includes = [Include(path, part.mission, span) for path, span, part in loaded if part is not None]
         self.is_including = bool(includes.found)
-        parts = [part for _, _, part in loaded if part is not None]
+        self._parts = {path: part for path, _, part in loaded if part is not None}
+        parts = list(self._parts.values())
         facts = find_facts(self.text, vocabulary)
         self.problems += facts.problems
         self.facts = facts.found
@@ -84,6 +85,10 @@ class Lexer:
         for token in self.tokens:
             if token.kind == "name":
                 token.kind = "condition" if called(token).id in self.conditions else "command"
+
+    def again(self, source: Source) -> Lexer:
+        """Another text in the place of this one; it may include what this one does, and nothing is said about it."""
+        return Lexer(source, self._given, explain=False, load=lambda path, _: self._parts.get(path), known=self._named)
 
     def _name_values(self) -> None:
         from btlang.frontends.variables import Variables  # most missions have none

@@ -34,15 +34,20 @@ class Reading(Record):
 
 
 def read_mission(
-    source: Source, vocabulary: Vocabulary, parser: str = DEFAULT_PARSER, known: Mapping[str, Known] | None = None
+    source: Source,
+    vocabulary: Vocabulary,
+    parser: str = DEFAULT_PARSER,
+    known: Mapping[str, Known] | None = None,
+    suggest: bool = True,
 ) -> Reading:
     """Reads a text and those that it includes; `known` are values that it may use though it does not set them.
 
+    With `suggest` False no corrections of what is wrong are tried, which takes time.
     Raises MissionError with all that is wrong with them; ValueError for an unknown parser.
     """
     if parser not in PARSERS:
         raise ValueError(f"no parser '{parser}'; there are {', '.join(PARSERS)}")
-    reader = _Reader(vocabulary, parser, known or {})
+    reader = _Reader(vocabulary, parser, known or {}, suggest)
     included = reader.read(source, (os.path.realpath(source.name),))
     if any(problem.is_error for problem in reader.problems):
         raise MissionError(reader.problems)
@@ -51,18 +56,19 @@ def read_mission(
 
 def lexed(source: Source, vocabulary: Vocabulary) -> Lexer:
     """The tokens of a text, with the names of what it includes; nothing is said of what is wrong."""
-    reader = _Reader(vocabulary, DEFAULT_PARSER, {})
+    reader = _Reader(vocabulary, DEFAULT_PARSER, {}, False)
     return Lexer(source, vocabulary, explain=False, load=reader.loader(source, (os.path.realpath(source.name),)))
 
 
 class _Reader:
     """Reads a text and those that it includes, each once. `problems` are those of all of them."""
 
-    def __init__(self, vocabulary: Vocabulary, parser: str, known: Mapping[str, Known]) -> None:
+    def __init__(self, vocabulary: Vocabulary, parser: str, known: Mapping[str, Known], suggest: bool) -> None:
         self.problems: list[Diagnostic] = []
         self._vocabulary = vocabulary
         self._parser = parser
         self._known = known
+        self._suggest = suggest
         self._read: dict[str, Included | None] = {}
 
     def loader(self, source: Source, within: tuple[str, ...]) -> Load:
@@ -98,8 +104,13 @@ class _Reader:
         problems = lexer.problems + matcher.problems
         if not lexer.tokens and not lexer.facts and not lexer.is_including and not problems:
             problems = [diagnostic("BT005", Span(source, 0, 0), example="move forward 1 m")]
+        is_broken = any(problem.is_error for problem in problems)
+        if is_broken and self._suggest:
+            from btlang.frontends.respelling import with_respellings  # most missions need none
+
+            problems = with_respellings(lexer, problems)
         self.problems += problems
-        if any(problem.is_error for problem in problems):
+        if is_broken:
             return Included(_names_only(source, lexer), frozenset(lexer.conditions), lexer.known)
         return Included(self._mission(source, lexer, matcher), frozenset(lexer.conditions), lexer.known)
 

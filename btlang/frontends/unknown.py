@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from bisect import bisect_left
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
@@ -79,7 +80,10 @@ def unknown_value(span: Span, key: str, known: Iterable[str]) -> Diagnostic:
     name, names = key.replace("_", " "), [other.replace("_", " ") for other in known]
     near = nearest(name, names)
     advice = _near_names(near, names) if names else "Nothing has a name in this mission yet."
-    fix = (span, span.text.replace(name, near[0])) if near and name in span.text else None
+    braces = re.search(r"\{(\s*" + r"[\W_]+".join(map(re.escape, key.split("_"))) + r"\s*)\}", span.text, re.IGNORECASE)
+    fix = None
+    if near and braces:
+        fix = Span(span.source, span.start + braces.start(1), span.start + braces.end(1)), near[0]
     return diagnostic("BT043", span, fix=fix, name=name, help=advice)
 
 
@@ -221,8 +225,12 @@ def _unknown_phrase(
         return diagnostic("BT010", span, words=span.text, help="'btc words' lists what I know.")
     likely, words = next(iter(near.items()))
     fix = (text.span(at, min(at + words, end)), likely.partition(" {")[0])
-    advice = "The nearest that I know: " + ", ".join(near)
-    return diagnostic("BT010", span, fix=fix, words=span.text, help=advice)
+    return diagnostic("BT010", span, fix=fix, words=span.text, help=nearest_known(near))
+
+
+def nearest_known(words: Iterable[str]) -> str:
+    """The advice that lists what was probably meant."""
+    return "The nearest that I know: " + ", ".join(words)
 
 
 @lru_cache(maxsize=4)  # a text full of unknown words asks for them at each

@@ -50,10 +50,12 @@ def preview(session: Session, text: str) -> Preview:
     tokens = Lexer(Source(text), session.vocabulary, explain=False).tokens
     marks = _marks(tokens)
     try:
-        compiled = session.compile(text)
+        compiled = session.compile(text, suggest=False)
     except MissionError as error:
-        own = tuple(p for p in error.diagnostics if p.span.start <= len(text)) or tuple(error.diagnostics)
+        own = _own(error, text)
         unfinished = _is_unfinished(own, text, session.vocabulary) and _goes_on(session, text)
+        if not unfinished:
+            own = _with_corrections(session, text)
         spans = () if unfinished else tuple((p.span.start, p.span.end, "error") for p in own if p.is_error)
         midword = unfinished and text[-1:].isalnum() and own[0].code in _UNKNOWN
         return Preview(own, unfinished, midword, _tree_so_far(session, text, tokens), (*marks, *spans))
@@ -65,6 +67,19 @@ def continuations(session: Session, text: str) -> list[Completion]:
     context = session.context()
     found = completions(context + text, session.vocabulary)
     return [option.replace(start=option.start - len(context)) for option in found]
+
+
+def _own(error: MissionError, text: str) -> tuple[Diagnostic, ...]:
+    return tuple(p for p in error.diagnostics if p.span.start <= len(text)) or tuple(error.diagnostics)
+
+
+def _with_corrections(session: Session, text: str) -> tuple[Diagnostic, ...]:
+    """What is wrong with an entry that cannot be read."""
+    try:
+        session.compile(text)
+    except MissionError as error:
+        return _own(error, text)
+    return ()
 
 
 def _is_unfinished(problems: tuple[Diagnostic, ...], text: str, vocabulary: Vocabulary) -> bool:
@@ -92,7 +107,7 @@ def _tree_so_far(session: Session, text: str, tokens: list[Token]) -> tuple[str,
         if not tokens:
             break
         try:
-            return _tree_lines(session.compile(text[: tokens[-1].end]))
+            return _tree_lines(session.compile(text[: tokens[-1].end], suggest=False))
         except MissionError:
             continue
     return ()

@@ -93,12 +93,16 @@ class Session:
         anew = {header.name for header in lexer.definitions.headers.values()} | {fact.name for fact in lexer.facts}
         return "".join(f"{definition}\n" for name, definition in known.items() if name not in anew)
 
-    def compile(self, text: str) -> Compiled:
-        """Reads an entry together with the definitions above. Raises MissionError."""
+    def compile(self, text: str, suggest: bool = True) -> Compiled:
+        """Reads an entry together with the definitions above. Raises MissionError.
+
+        `suggest` is that of `read_mission`.
+        """
         margin = text[: len(text) - len(text.lstrip())].rpartition("\n")[2]
         above = indent(self.context(text), margin)
         whole = f"{text}\n{above}"  # the entry first, so that places in it are those that were typed
-        reading = read_mission(Source(whole, ENTRY, self._folder), self.vocabulary, self._parser, self._known())
+        source = Source(whole, ENTRY, self._folder)
+        reading = read_mission(source, self.vocabulary, self._parser, self._known(), suggest)
         mission = reading.mission
         named: list[Definition | Fact | Include] = [*mission.includes, *mission.definitions, *mission.facts]
         own = [d for d in named if d.span.start < len(text)]

@@ -8,6 +8,8 @@ _NEAR = 70  # of 100; below it a suggestion is noise (tried on misspelt missions
 
 _LONGER = 10  # what a further word that is near counts
 
+_SHORT, _LONG = 5, 8  # letters of a word in which two, and three, may be wrong
+
 
 def nearest(written: str, known: Iterable[str], limit: int = 3) -> list[str]:
     """Up to `limit` of the known texts that a misspelling could have meant, the likeliest first."""
@@ -31,3 +33,24 @@ def nearest_start(written: Sequence[str], known: Mapping[str, Sequence[str]]) ->
         scored[key] = fuzz.ratio(start, " ".join(words), score_cutoff=_NEAR), min(len(words), len(written))
     likely = sorted((-score - _LONGER * words, key) for key, (score, words) in scored.items() if score)
     return [key for _, key in likely]
+
+
+def respellings(written: str, known: Iterable[str], limit: int = 8) -> list[str]:
+    """Known words that a slip of a few letters turns into what was written, the likeliest first; then two run together.
+
+    Of equally small slips two letters that changed places are likeliest, then one that is not at the start or end.
+    """
+    from rapidfuzz import process
+    from rapidfuzz.distance import OSA
+
+    known = known if isinstance(known, frozenset) else frozenset(known)
+    most = 1 if len(written) < _SHORT else 2 if len(written) < _LONG else 3
+    near = process.extract(written, known, scorer=OSA.distance, score_cutoff=most, limit=None)
+    scored = sorted(
+        (distance, sorted(word) != sorted(written), word[0] != written[0], word[-1] != written[-1], word)
+        for word, distance, _ in near
+        if distance
+    )
+    halves = ((written[:at], written[at:]) for at in range(2, len(written) - 1))
+    apart = [" ".join(pair) for pair in halves if known.issuperset(pair)]
+    return ([word for *_, word in scored][:limit] + apart)[:limit]

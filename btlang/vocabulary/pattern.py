@@ -70,7 +70,7 @@ def forms(pattern: str, articles: frozenset[str] = frozenset()) -> tuple[Form, .
 
 def name_form(name: str) -> Form:
     """The form of a defined name with parameters, `greet {someone}`, in which no other character means anything."""
-    return tuple(Slot(word[1:-1]) if word[0] == "{" else word for word in name.split())
+    return tuple(Slot(word[1:-1]) if word[0] == "{" and len(word) > 2 else word for word in name.split())
 
 
 def _joined(left: list[Form], right: list[Form], pattern: str) -> list[Form]:

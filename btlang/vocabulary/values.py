@@ -166,6 +166,14 @@ class Values:
         """The words of the names of a type."""
         return self._names[kind]
 
+    def word_trees(self) -> list[WordTree]:
+        """The words of numbers and units."""
+        return [
+            self._units,
+            self._fractions,
+            *({word: {} for word in table} for table in (self._numbers, self._multipliers)),
+        ]
+
     def is_number(self, words: Sequence[str]) -> bool:
         """Whether the words are a number, and nothing else."""
         text = split(Source(" ".join(words)), frozenset())

@@ -1,0 +1,17 @@
+"""Small mistakes in sound missions: never a traceback, the same from both parsers, and mostly the right suggestion."""
+
+from __future__ import annotations
+
+from collections import Counter
+
+from tests.benchmarks.mutations import checked, mutants, repaired
+
+
+def test_mutations() -> None:
+    cures: Counter[str] = Counter()
+    for mutant in mutants(120, 3):
+        result = checked(mutant)
+        assert not result.crash, f"{mutant.where}\n{mutant.text}\n{result.crash}"
+        if mutant.kind == "misspelt" and result.tree is None:
+            cures[repaired(mutant, result.problems)] += 1
+    assert cures["repairs it"] >= 0.6 * cures.total(), cures
