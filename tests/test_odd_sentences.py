@@ -16,7 +16,7 @@ import btlang
         ("repeat 3 times:\n  please\nwave", "BT027"),
         ('say"hello" there', "BT010"),
         ("until and : \n   cm show\r nan: ", "BT020"),
-        ("{a} is b", "BT015"),
+        ("{a} is b", "BT016"),
         ("greet {} is wave", "BT015"),
         ('x "it is {level}" is wave', "BT015"),
     ],

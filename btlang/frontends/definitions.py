@@ -163,7 +163,7 @@ def _header(
         if body is None or body.meaning.role != "command":
             return None
     joined = _joining_word(text, start, at, vocabulary)
-    if joined is not None and text.words[at - 1] == "}":
+    if joined is not None and joined.text[0].isalpha() and text.words[at - 1] == "}":
         return None  # `wave until {counter} is 3` compares
     if joined is not None and _starts_with_a_phrase(text, start, joined, vocabulary):
         return None  # `charge until the battery is green` is a command that says something unknown
