@@ -38,25 +38,35 @@ class _RecordMeta(type):
         cls._defaults = defaults  # type: ignore[attr-defined]
         cls._compared = tuple(f for f in fields if f not in uncompared)  # type: ignore[attr-defined]
         if fields:
-            cls.__init__ = _make_init(cls, fields, defaults)  # type: ignore[misc]
+            open_body = {"__slots__": tuple(own), "__setattr__": object.__setattr__, "__delattr__": object.__delattr__}
+            open_class = super().__new__(mcs, f"_{name}", bases, open_body)
+            cls.__new__ = _make_new(open_class, fields, defaults)  # type: ignore[method-assign]
         return cls
 
 
-def _make_init(cls: type, fields: tuple[str, ...], defaults: dict[str, Any]) -> Any:
-    """Slot descriptors write past the frozen `__setattr__`; generated, because a loop is three times slower."""
-    scope = {f"set_{at}": getattr(cls, field).__set__ for at, field in enumerate(fields)}
-    code = _init_code(len(fields)).replace(co_varnames=("self", *fields))
-    return FunctionType(code, scope, "__init__", tuple(defaults[field] for field in fields if field in defaults))
+def _make_new(open_class: type, fields: tuple[str, ...], defaults: dict[str, Any]) -> Any:
+    """A constructor that fills an instance of a class with the same slots that is not frozen, then makes it one of the
+    frozen class: writing past a frozen `__setattr__` costs ten times as much for each field.
+    """
+    code = _new_code(len(fields))
+    names = {f"field_{at}": field for at, field in enumerate(fields)}
+    code = code.replace(
+        co_varnames=tuple(names.get(name, name) for name in code.co_varnames),
+        co_names=tuple(names.get(name, name) for name in code.co_names),
+    )
+    scope = {"make": object.__new__, "open_class": open_class}
+    return FunctionType(code, scope, "__new__", tuple(defaults[field] for field in fields if field in defaults))
 
 
 @cache
-def _init_code(count: int) -> CodeType:
+def _new_code(count: int) -> CodeType:
     """Shared by all classes with as many fields: compiling it for each would be a tenth of `btc check`."""
     arguments = "".join(f", field_{at}" for at in range(count))
-    lines = "\n".join(f"    set_{at}(self, field_{at})" for at in range(count))
+    lines = "\n".join(f"    made.field_{at} = field_{at}" for at in range(count))
     scope: dict[str, FunctionType] = {}
-    exec(f"def __init__(self{arguments}):\n{lines}", scope)
-    return scope["__init__"].__code__
+    begin, end = "    made = make(open_class)", "    made.__class__ = cls\n    return made"
+    exec(f"def __new__(cls{arguments}):\n{begin}\n{lines}\n{end}", scope)
+    return scope["__new__"].__code__
 
 
 @dataclass_transform(frozen_default=True)

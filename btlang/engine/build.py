@@ -23,6 +23,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, TypeAlias
 
+    from btlang.engine.leaves import Plan
     from btlang.engine.watch import Watch
 
     Tick: TypeAlias = Callable[[], int]
@@ -50,12 +51,14 @@ class Fault(Record):
 class Shared:
     """What all nodes of one engine share."""
 
-    __slots__ = ("bind", "clock", "fault", "halt_faults", "interrupts", "services")
+    __slots__ = ("bind", "clock", "fault", "halt_faults", "interrupts", "plans", "service_names", "services")
 
     def __init__(self, bind: Callable[[str], LeafBinding | None], clock: Clock, services: Mapping[str, Any]) -> None:
         self.bind = bind
         self.clock = clock
-        self.services = services
+        self.services = {"clock": clock, **services}
+        self.service_names = frozenset(("blackboard", *self.services))
+        self.plans: dict[str, Plan] = {}  # of the leaves that were bound so far, by id
         self.fault: Fault | None = None  # the latest failure
         self.halt_faults: list[Fault] = []  # exceptions that leaves raised while they were halted
         # what reactive nodes that are at another child want stopped before an action starts there
@@ -73,12 +76,22 @@ class Site:
         self.scope = scope
         self.shared = shared
         self.watch = watch
-        self._plain = Fault(index)
+        self._plain: Fault | None = None
 
     def fail(self, reason: str = "", exception: BaseException | None = None) -> int:
         """Records this node as what failed; returns FAILURE."""
-        self.shared.fault = Fault(self.index, reason, exception) if reason else self._plain
+        if reason:
+            self.shared.fault = Fault(self.index, reason, exception)
+        else:
+            plain = self._plain
+            if plain is None:
+                plain = self._plain = Fault(self.index)
+            self.shared.fault = plain
         return FAILURE
+
+    def service(self, name: str) -> Any:
+        """What a leaf asks for by name; a blackboard is that of its scope unless one was given to the engine."""
+        return self.shared.services.get(name, self.scope)
 
     def error(self, message: str) -> EngineError:
         """An error to raise that blames this node."""
@@ -113,8 +126,7 @@ class Site:
         stored: list[tuple[str, str, Callable[[str], Any]]] = []
         for port, text in ports.items():
             convert = converters.get(port, str)
-            key = blackboard_key(port, text)
-            if key is not None:
+            if text[:1] == "{" and (key := blackboard_key(port, text)) is not None:
                 stored.append((port, key, convert))
                 continue
             try:
@@ -148,7 +160,7 @@ def halt_nothing(keep: bool) -> None:
 
 def apart(children: Sequence[Compiled]) -> tuple[tuple[Tick, ...], tuple[Halt, ...]]:
     """The ticks and the halts of compiled children."""
-    return tuple(tick for tick, _ in children), tuple(halt for _, halt in children)
+    return tuple([tick for tick, _ in children]), tuple([halt for _, halt in children])
 
 
 def _convert(scope: Blackboard, port: str, key: str, convert: Callable[[str], Any]) -> Any:

@@ -63,14 +63,17 @@ NODE_TYPES = {
 _SUBTREE = NodeType(subtree, 1, 1)
 
 
-class Place(Record):
+class Place:
     """A node after expansion: index of its parent in preorder (-1: it is the root), and its position among siblings."""
 
-    node: Node
-    parent: int
-    position: int
-    depth: int
-    scope: Blackboard
+    __slots__ = ("depth", "node", "parent", "position", "scope")
+
+    def __init__(self, node: Node, parent: int, position: int, depth: int, scope: Blackboard) -> None:
+        self.node = node
+        self.parent = parent
+        self.position = position
+        self.depth = depth
+        self.scope = scope
 
 
 def expand(tree: Tree, blackboard: Blackboard) -> list[Place]:
@@ -99,8 +102,9 @@ def expand(tree: Tree, blackboard: Blackboard) -> list[Place]:
             within.add(name)
             stack.append(name)
             scope = child_scope(node, scope)
-        last = len(children) - 1
-        stack += [Place(child, index, last - i, place.depth + 1, scope) for i, child in enumerate(reversed(children))]
+        if children:
+            depth = place.depth + 1
+            stack += [Place(children[at], index, at, depth, scope) for at in range(len(children) - 1, -1, -1)]
     return places
 
 
@@ -114,21 +118,27 @@ def _root_of(node: Node, name: str, subtrees: dict[str, Node]) -> Node:
 
 def compile_places(places: Sequence[Place], shared: Shared, listener: Listener | None) -> Compiled:
     """Compiles from the last node to the root, so that children are there before their parents."""
-    waiting: dict[int, list[tuple[Compiled, Watch | None]]] = {}  # compiled children by parent, last child first
+    waiting: list[Compiled] = []  # compiled nodes whose parents come later, so that the last ones are the next one's
+    watches: list[Watch] = []
     for index in range(len(places) - 1, -1, -1):
         place = places[index]
-        children = waiting.pop(index, [])[::-1]
+        node = place.node
+        count = 1 if node.id == "SubTree" else len(node.children)
+        children: Sequence[Compiled] = ()
+        if count:
+            children = waiting[: -count - 1 : -1]
+            del waiting[-count:]
         watch = None
         if listener is not None:
             repeated = place.parent >= 0 and places[place.parent].node.id == "Repeat"
             watch = Watch(index, listener, repeated)
-            watch.below = [child for _, child in children if child is not None]
-        site = Site(place.node, index, place.scope, shared, watch)
-        compiled = _compile(site, [child for child, _ in children])
+            watch.below = watches[: -count - 1 : -1] if count else []
+            watches[len(watches) - count :] = [watch]
+        compiled = _compile(Site(node, index, place.scope, shared, watch), children)
         if watch is not None:
             compiled = watch.wrap(compiled)
-        waiting.setdefault(place.parent, []).append((compiled, watch))
-    [(root, _)] = waiting[-1]
+        waiting.append(compiled)
+    [root] = waiting
     return root
 
 
@@ -141,21 +151,27 @@ def _compile(site: Site, children: Sequence[Compiled]) -> Compiled:
         if not kind.least <= len(children) <= kind.most:
             raise site.error(f"{node.id} has {len(children)} children instead of {_how_many(kind)}")
         for port, _ in node.ports:
-            if kind is not _SUBTREE and port not in kind.ports and not port.startswith("_"):
+            if kind is not _SUBTREE and port not in kind.ports and port[:1] != "_":
                 raise site.error(f"{node.id} takes no port {port}")
         compiled = kind.compile(site, children)
-        if any("{" in text for port, text in node.ports if port in kind.ports):
-            compiled = _checked(site, compiled)
-    return leaves.skipped(site, ()) if _is_skipped(site) else compiled
+        for port, text in node.ports:
+            if "{" in text and port in kind.ports:
+                compiled = _checked(site, compiled)
+                break
+    return leaves.skipped(site, ()) if node.ports and _is_skipped(site) else compiled
 
 
 def _compile_leaf(site: Site, children: Sequence[Compiled]) -> Compiled:
-    binding = site.shared.bind(site.node.id)
-    if binding is None:
-        raise site.error(f"nothing is bound to {site.node.id}")
+    node_id, shared = site.node.id, site.shared
+    plan = shared.plans.get(node_id)
+    if plan is None:
+        binding = shared.bind(node_id)
+        if binding is None:
+            raise site.error(f"nothing is bound to {node_id}")
+        plan = shared.plans[node_id] = leaves.Plan(binding)
     if children:
-        raise site.error(f"{site.node.id} is a leaf, but has {len(children)} children")
-    return leaves.bound_leaf(site, binding)
+        raise site.error(f"{node_id} is a leaf, but has {len(children)} children")
+    return leaves.bound_leaf(site, plan)
 
 
 def _how_many(kind: NodeType) -> str:
@@ -166,12 +182,13 @@ def _how_many(kind: NodeType) -> str:
 
 def _is_skipped(site: Site) -> bool:
     """The value of the port _skipIf, the one pre-condition there is."""
-    for port, text in site.node.ports:
-        if port.startswith("_") and not (port == "_skipIf" and text in ("true", "false")):
+    special = [(port, text) for port, text in site.node.ports if port[:1] == "_"]
+    for port, text in special:
+        if not (port == "_skipIf" and text in ("true", "false")):
             if port == "_autoremap" and site.node.id == "SubTree":
                 continue
             raise site.error(f'{port}="{text}" is not supported, only _skipIf="true" and "false"')
-    return site.node.port("_skipIf") == "true"
+    return bool(special) and site.node.port("_skipIf") == "true"
 
 
 def _checked(site: Site, compiled: Compiled) -> Compiled:

@@ -58,7 +58,7 @@ class Engine:
         with no_collection:
             self._places = expand(tree, self.blackboard)
             self._tick, self._halt = compile_places(self._places, self._shared, listener)
-        depth = max(place.depth for place in self._places)
+        depth = max([place.depth for place in self._places])
         self._frames = depth * _FRAMES_PER_LEVEL + _FRAMES_FOR_LEAVES
         self._busy = False
         self.status = IDLE

@@ -56,30 +56,58 @@ def skipped(site: Site, children: Sequence[Compiled]) -> Compiled:
     return (lambda: SKIPPED), halt_nothing
 
 
-def bound_leaf(site: Site, binding: LeafBinding) -> Compiled:
-    """A leaf that is a Python object; raises EngineError where its parameters do not fit its ports."""
-    from inspect import isclass, iscoroutinefunction, isgeneratorfunction
+class Plan:
+    """What the leaves of one engine with the same id share, found once.
 
-    call = binding.call
-    ports = {**binding.defaults, **{port: text for port, text in site.node.ports if not port.startswith("_")}}
-    services = {"clock": site.shared.clock, "blackboard": site.scope, **site.shared.services}
-    if isclass(call):
-        leaf = _make(site, call, services)
-        _fill(site, leaf.start, ports, {})
+    `kind` is "class", "async", "generator" or "function"; `given` keeps the names of the services that the call gets,
+    by the names of the ports that a node has.
+    """
+
+    __slots__ = ("binding", "given", "kind")
+
+    def __init__(self, binding: LeafBinding) -> None:
+        from inspect import isclass, iscoroutinefunction, isgeneratorfunction
+
+        call = binding.call
+        self.binding = binding
+        self.given: dict[tuple[str, ...], list[str]] = {}
+        if isclass(call):
+            self.kind = "class"
+        elif iscoroutinefunction(call):
+            self.kind = "async"
+        else:
+            generates = isgeneratorfunction(call) or isgeneratorfunction(type(call).__call__)
+            self.kind = "generator" if generates else "function"
+
+
+def bound_leaf(site: Site, plan: Plan) -> Compiled:
+    """A leaf that is a Python object; raises EngineError where its parameters do not fit its ports."""
+    binding = plan.binding
+    call: Any = binding.call
+    ports = {**binding.defaults, **{port: text for port, text in site.node.ports if port[:1] != "_"}}
+    if plan.kind == "class":
+        leaf = _make(site, call)
+        _fill(site, leaf.start, ports, ())
         constants, stored = _arguments(site, ports, binding)
         return _class_leaf(site, leaf, partial(leaf.start, **constants), stored)
-    if iscoroutinefunction(call):
+    if plan.kind == "async":
         raise site.error(f"{site.node.id} is bound to an async function; a generator does what it should do")
-    given = _fill(site, call, ports, services)
+    names = tuple(ports)
+    given = plan.given.get(names)
+    if given is None:
+        given = plan.given[names] = _fill(site, call, names, site.shared.service_names)
     constants, stored = _arguments(site, ports, binding)
-    kind = _generator_leaf if isgeneratorfunction(call) or isgeneratorfunction(type(call).__call__) else _function_leaf
-    if given or constants:
-        call = partial(call, **given, **constants)
-    return kind(site, call, stored)
+    for name in given:
+        constants[name] = site.service(name)
+    if constants:
+        call = partial(call, **constants)
+    return _generator_leaf(site, call, stored) if plan.kind == "generator" else _function_leaf(site, call, stored)
 
 
-def _arguments(site: Site, ports: Mapping[str, str], binding: LeafBinding) -> tuple[dict[str, Any], Stored]:
+def _arguments(site: Site, ports: dict[str, str], binding: LeafBinding) -> tuple[dict[str, Any], Stored]:
     """As Site.arguments, with a function that writes for each output port."""
+    if not binding.outputs:
+        return site.arguments(ports, binding.converters)
     constants, stored = site.arguments(
         {port: text for port, text in ports.items() if port not in binding.outputs}, binding.converters
     )
@@ -209,19 +237,19 @@ def _status(site: Site, result: object) -> int:
     return site.fail(f"it returned {result!r}, which is neither True, False, None nor a status")
 
 
-def _make(site: Site, cls: type, services: Mapping[str, Any]) -> Any:
+def _make(site: Site, cls: type) -> Any:
     missing = [method for method in ("start", "tick", "halt") if not callable(getattr(cls, method, None))]
     if missing:
         raise site.error(f"{cls.__name__} has no {' and no '.join(missing)}, so it is no leaf")
-    given = _fill(site, cls, (), services)
+    given = _fill(site, cls, (), site.shared.service_names)
     try:
-        return cls(**given)
+        return cls(**{name: site.service(name) for name in given})
     except Exception as problem:
         raise site.error(f"{cls.__name__} cannot be made: {_describe(problem)}") from problem
 
 
-def _fill(site: Site, call: Callable[..., Any], ports: Collection[str], services: Mapping[str, Any]) -> dict[str, Any]:
-    """Checks that ports and services fill the parameters; returns the services that do."""
+def _fill(site: Site, call: Callable[..., Any], ports: Collection[str], services: Collection[str]) -> list[str]:
+    """Checks that ports and services fill the parameters; returns the names of the services that do."""
     try:
         parameters = _parameters(call)
     except (TypeError, ValueError) as problem:
@@ -235,7 +263,7 @@ def _fill(site: Site, call: Callable[..., Any], ports: Collection[str], services
         required = p.default is p.empty and p.kind not in (p.VAR_POSITIONAL, p.VAR_KEYWORD)
         if required and (p.name not in named or (p.name not in ports and p.name not in services)):
             raise site.error(f"{site.node.id} needs a value for {p.name}")
-    return {name: services[name] for name in named if name in services and name not in ports}
+    return [name for name in named if name in services and name not in ports]
 
 
 def _parameters(call: Callable[..., Any]) -> tuple[Parameter, ...]:

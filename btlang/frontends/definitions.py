@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Container, Iterable, Iterator, Mapping
+from collections.abc import Container, Iterable, Iterator, Mapping, Set
 from itertools import takewhile
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
@@ -70,7 +70,7 @@ def find_definitions(
     if defining.isdisjoint(text.words):
         return found
     margin = text.lines[0].indent if text.lines else 0
-    for indent, first, last in statements(text):
+    for indent, first, last in statements(text, defining):
         if first in ends or defining.isdisjoint(text.words[first:last]):
             continue
         header = _header(text, first, last, vocabulary, variables, found.problems)
@@ -110,11 +110,17 @@ def _add(trie: TrieNode, name: str, types: Mapping[str, str]) -> Meaning | None:
     return add(trie, name_form(name), types, Meaning("name", Entry("name", name, (name,), slots=slots)))
 
 
-def statements(text: Words) -> Iterator[tuple[int, int, int]]:
-    """(indent, first word, last word) of what stands between line ends, `;` and full stops."""
+def statements(text: Words, holding: Set[str]) -> Iterator[tuple[int, int, int]]:
+    """(indent, first word, last word) of what stands between line ends, `;` and full stops.
+
+    Only of the lines that hold one of some words.
+    """
     for line in text.lines:
         first = line.first
-        for at in range(line.first, line.last) if END_OF_STATEMENT in text.words[line.first : line.last] else ():
+        words = text.words[first : line.last]
+        if holding.isdisjoint(words):
+            continue
+        for at in range(line.first, line.last) if END_OF_STATEMENT in words else ():
             if text.words[at] == END_OF_STATEMENT:
                 yield line.indent, first, at
                 first = at + 1

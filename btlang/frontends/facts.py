@@ -30,7 +30,7 @@ def find_facts(text: Words, vocabulary: Vocabulary) -> Facts:
     placing = [phrase.split() for phrase in vocabulary.roles["fact"]]
     if not any(words[0] in text.words for words in placing) or _OPEN not in text.words:
         return facts
-    for _, first, last in statements(text):
+    for _, first, last in statements(text, {_OPEN}):
         for at in range(first, last) if _OPEN in text.words[first:last] else ():
             words = next((w for w in placing if text.words[at : at + len(w)] == w), None)
             if words is not None and text.words[at + len(words)] == _OPEN:

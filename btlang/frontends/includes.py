@@ -37,7 +37,7 @@ def find_includes(text: Words, vocabulary: Vocabulary) -> Includes:
     firsts = {phrase.split()[0] for phrase in vocabulary.roles[ROLE]}
     if firsts.isdisjoint(text.words):
         return includes
-    for indent, first, last in statements(text):
+    for indent, first, last in statements(text, firsts):
         match = longest(vocabulary.trie, text, first, vocabulary.values) if text.words[first] in firsts else None
         if match is None or match.meaning.role != ROLE:
             continue

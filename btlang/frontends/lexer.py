@@ -77,6 +77,8 @@ class Lexer:
         if self.known or self._heads or any(header.parameters for header in self.definitions.headers.values()):
             self._name_values()
         self.problems += self.definitions.problems
+        self._others = {*self._heads, *self._ends, *self.definitions.headers}
+        """The words at which something stands that is no phrase."""
         self.values = self.vocabulary.values.for_reading()
         self.tokens: list[Token] = []
         self._lines()
@@ -104,13 +106,12 @@ class Lexer:
         indents = [lines[0].indent] if lines else [0]
         opens_block = False
         for number, line in enumerate(lines):
-            first = Span(self.text.source, self.text.starts[line.first], self.text.ends[line.first])
             if line.indent > indents[-1]:
                 if opens_block:
                     indents.append(line.indent)
                     self._mark("indent", line.first)
                 else:
-                    self.problems.append(diagnostic("BT006", first))
+                    self.problems.append(diagnostic("BT006", self.text.span(line.first, line.first)))
             else:
                 if opens_block:
                     self.problems.append(diagnostic("BT027", self._last_span()))
@@ -118,7 +119,7 @@ class Lexer:
                     indents.pop()
                     self._mark("dedent", line.first)
                 if line.indent != indents[-1]:
-                    self.problems.append(diagnostic("BT007", first))
+                    self.problems.append(diagnostic("BT007", self.text.span(line.first, line.first)))
             if number and not opens_block:
                 self._mark("newline", line.first)
             if line.indent <= indents[0]:
@@ -133,22 +134,21 @@ class Lexer:
     def _line(self, at: int, last: int) -> None:
         text, names, trie, values = self.text, self.definitions.trie, self.vocabulary.trie, self.values
         words, starts, ends, tokens = text.words, text.starts, text.ends, self.tokens
-        headers, heads = self.definitions.headers, self._heads
+        headers, heads, others = self.definitions.headers, self._heads, self._others
         while at < last:
             word = words[at]
             if at >= self._bounds[0]:
                 self._bounds = self._bounds[bisect_right(self._bounds, at) :]
                 values.set_known(self._variables.at(at))
-            if at in heads:
-                at = self._statement(heads[at], at)
-                continue
-            if at in self._ends:
-                at = self._ends[at]
-                continue
-            if at in headers:
-                header = headers[at]
-                tokens.append(Token("define", header, starts[at], ends[header.body - 1]))
-                at = header.body
+            if at in others:
+                if at in heads:
+                    at = self._statement(heads[at], at)
+                elif at in self._ends:
+                    at = self._ends[at]
+                else:
+                    header = headers[at]
+                    tokens.append(Token("define", header, starts[at], ends[header.body - 1]))
+                    at = header.body
                 continue
             if word in _MARKS:
                 tokens.append(Token(_MARKS[word], None, starts[at], ends[at]))
@@ -161,19 +161,20 @@ class Lexer:
                 named = longest(names, text, at, values, trie)
                 if named is not None and (match is None or named.last >= match.last):
                     match = named
-            if match is None or match.meaning.role in JOINTS or match.meaning.role == INCLUDE:
+            role = match.meaning.role if match is not None else ""
+            if match is None or role in JOINTS or role == INCLUDE:
                 end = self._unknown_end(at, last)
-                if match is not None and match.meaning.role == INCLUDE:
+                if role == INCLUDE:
                     end += words[end][0] == '"'
                 if self._explain:
                     self.problems.append(self._why(at, end, match))
                 tokens.append(Token("unknown", None, starts[at], ends[end - 1]))
                 at = end
             else:
-                if match.meaning.role == "politeness":
+                if role == "politeness":
                     at = self._politeness(match, at)
                     continue
-                if match.meaning.role == "negated":
+                if role == "negated":
                     tokens.append(Token("not", None, starts[at], starts[at]))
                 tokens.append(self._phrase(match, at))
                 for value in match.values:
@@ -203,14 +204,15 @@ class Lexer:
 
     def _phrase(self, match: Match, at: int) -> Token:
         text, meaning = self.text, match.meaning
+        values = match.values
         start, end = text.starts[at], text.ends[match.last - 1]
-        if match.values and match.values[-1].first == match.last:  # the article was the value: `print a`
+        if values and values[-1].first == match.last:  # the article was the value: `print a`
             end = text.articles[match.last][1]
         if meaning.entry is not None:
             kind = "condition" if meaning.role == "negated" else meaning.role
             return Token(kind, self._called(meaning.entry, match, at), start, end)
-        if match.values:
-            return Token(meaning.role, match.values[0].text, start, end)
+        if values:
+            return Token(meaning.role, values[0].text, start, end)
         value = str(meaning.value) if meaning.role == "count" else meaning.between or None
         return Token(meaning.role, value, start, end)
 
@@ -218,7 +220,9 @@ class Lexer:
         """The entry with its arguments, or with several of them where one slot holds a list."""
         if entry.sort == "value" and not (self.values.known and entry.id in self.values.known):
             self._unknown_value(self.text.span(at, match.last), entry.id)
-        arguments = tuple((value.name, self._port_text(value)) for value in match.values)
+        if not match.values:
+            return entry, ()
+        arguments = tuple([(value.name, self._port_text(value)) for value in match.values])
         lists = [place for place, value in enumerate(match.values) if value.more]
         if not lists:
             return entry, arguments

@@ -140,7 +140,8 @@ class _Respelling:
                 return None
             self._budget -= trial.cost
             if self._helps(change, trial, problem.span):
-                return None if before and self._with(change) == self._with(before[0]) else change
+                is_same = before and self._with(change).lower() == self._with(before[0]).lower()
+                return None if is_same else change
         return None
 
     def _with(self, change: Change) -> str:

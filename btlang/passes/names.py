@@ -37,9 +37,10 @@ def names_in(node: Ast) -> list[str]:
     stack = [node]
     while stack:
         item = stack.pop()
-        if isinstance(item, Name):
+        if item.parts:
+            stack += reversed(parts(item))
+        elif isinstance(item, Name):
             found[item.name] = None
-        stack.extend(reversed(parts(item)))
     return list(found)
 
 

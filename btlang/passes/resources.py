@@ -2,38 +2,66 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping, Sequence
+
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.tree.node import Node, Tree
-from btlang.tree.visit import fold
+from btlang.tree.visit import children_first
 from btlang.vocabulary.vocabulary import Vocabulary
 
-Holders = dict[str, Node]
+Holders = Mapping[str, Node]
 """Resource -> a leaf (or name) that holds it."""
+
+_NONE: Holders = {}  # one for all
 
 
 def check_resources(tree: Tree, vocabulary: Vocabulary) -> list[Diagnostic]:
     """BT041 once for each parallel and resource that two of its children need."""
     problems: list[Diagnostic] = []
+    own = {node_id: entries[0].resources for node_id, entries in vocabulary.entries.items() if entries[0].resources}
     held_by_name: dict[str, Holders] = {}
-
-    def combine(node: Node, children: list[Holders]) -> Holders:
-        if node.id == "SubTree":
-            return dict.fromkeys(held_by_name.get(node.port("ID"), ()), node)
-        entry = vocabulary.entry(node.id)
-        held: Holders = dict.fromkeys(entry.resources, node) if entry else {}
-        told: set[str] = set()
-        for child in children:
-            if node.id.startswith("Parallel"):
-                both = sorted(held.keys() & child.keys() - told)
-                problems.extend(_conflict(resource, held[resource], child[resource]) for resource in both)
-                told.update(both)
-            held = {**child, **held}
-        return held
-
-    for name, root in tree.subtrees:  # used ones come before their users
-        held_by_name[name] = fold(root, lambda node: node.children, combine)
-    fold(tree.root, lambda node: node.children, combine)
+    for name, root in (*tree.subtrees, ("", tree.root)):  # used ones come before their users
+        results: list[Holders] = []
+        for node in children_first(root):
+            count = len(node.children)
+            if count:
+                inner = results[-count:]
+                del results[-count:]
+                if node.id.startswith("Parallel"):
+                    problems += _conflicts(inner)
+                results.append(_joined(inner))
+            elif node.id in own:
+                results.append(dict.fromkeys(own[node.id], node))
+            elif node.id == "SubTree":
+                results.append(dict.fromkeys(held_by_name.get(node.port("ID"), ()), node))
+            else:
+                results.append(_NONE)
+        held_by_name[name] = results[0]
     return problems
+
+
+def _joined(holders: Sequence[Holders]) -> Holders:
+    """What all of them hold; the first holder of each resource."""
+    some = [held for held in holders if held]
+    if len(some) < 2:
+        return some[0] if some else _NONE
+    joined: dict[str, Node] = {}
+    for held in reversed(some):
+        joined.update(held)
+    return joined
+
+
+def _conflicts(parts: Sequence[Holders]) -> list[Diagnostic]:
+    """Each resource that two of the parts hold, once."""
+    held: dict[str, Node] = {}
+    found: list[Diagnostic] = []
+    told: set[str] = set()
+    for part in parts:
+        both = sorted(held.keys() & part.keys() - told)
+        found += [_conflict(resource, held[resource], part[resource]) for resource in both]
+        told.update(both)
+        held = {**part, **held}
+    return found
 
 
 def _conflict(resource: str, first: Node, second: Node) -> Diagnostic:

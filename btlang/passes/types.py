@@ -5,11 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.text.source import Span
 from btlang.tree.node import Node, Tree
+from btlang.tree.visit import children_first
 from btlang.vocabulary.vocabulary import Vocabulary
 
 _TIMES = {"Timeout": "msec", "Delay": "delay_msec", "Sleep": "msec"}
 _COUNTS = {"Repeat": "num_cycles", "RetryUntilSuccessful": "num_attempts"}
+_LIMITED = {**_TIMES, **_COUNTS}
 _LONGEST = 2**32 - 1  # BehaviorTree.CPP holds milliseconds in an unsigned int
 _MOST = 2**31 - 1  # and rounds in an int
 
@@ -17,24 +20,32 @@ _MOST = 2**31 - 1  # and rounds in an int
 def check_types(tree: Tree, _vocabulary: Vocabulary) -> Iterator[Diagnostic]:
     """BT014 for times and numbers of rounds that a tree cannot hold."""
     for root in (tree.root, *(node for _, node in tree.subtrees)):
-        stack = [(root, root.span)]
-        while stack:
-            node, span = stack.pop()
-            span = node.span or span  # the timer of `for` has no words of its own
-            wanted = _out_of_range(node)
-            if wanted and span is not None:
-                yield diagnostic("BT014", span, words=span.text, wanted=wanted)
-            stack.extend((child, span) for child in node.children)
+        limited = [node for node in children_first(root) if node.id in _LIMITED]
+        wrong = {id(node): wanted for node in limited if (wanted := _out_of_range(node))}
+        for node, span in _with_spans(root) if wrong else ():
+            if span is not None and id(node) in wrong:
+                yield diagnostic("BT014", span, words=span.text, wanted=wrong[id(node)])
+
+
+def _with_spans(root: Node) -> Iterator[tuple[Node, Span | None]]:
+    """Every node with its words, or those around it: the timer of `for` has no words of its own."""
+    stack = [(root, root.span)]
+    while stack:
+        node, span = stack.pop()
+        span = node.span or span
+        yield node, span
+        stack.extend((child, span) for child in node.children)
 
 
 def _out_of_range(node: Node) -> str:
     """What would be in range, "" where it is."""
-    if "{" in node.port(_TIMES.get(node.id, _COUNTS.get(node.id, ""))):
+    text = node.port(_LIMITED[node.id])
+    if "{" in text:
         return ""  # only known when it runs
-    if node.id in _TIMES and int(node.port(_TIMES[node.id])) > _LONGEST:
+    if node.id in _TIMES and int(text) > _LONGEST:
         return "a time is at most 49 days"
-    if node.id == "Timeout" and int(node.port("msec")) == 0:
+    if node.id == "Timeout" and int(text) == 0:
         return "a time limit is at least 0.001 s"  # 0 would mean no limit
-    if node.id in _COUNTS and int(node.port(_COUNTS[node.id])) > _MOST:
+    if node.id in _COUNTS and int(text) > _MOST:
         return f"a number of rounds is at most {_MOST:,}"
     return ""

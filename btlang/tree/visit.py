@@ -8,6 +8,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import TypeVar
 
+    from btlang.tree.node import Node
+
     Item = TypeVar("Item")
     Result = TypeVar("Result")
 
@@ -16,16 +18,32 @@ def fold(
     root: Item, parts: Callable[[Item], Sequence[Item]], combine: Callable[[Item, list[Result]], Result]
 ) -> Result:
     """Combines each item with the results of its parts, parts first."""
+    items: list[Item] = []
+    counts: list[int] = []
+    waiting = [root]
+    while waiting:  # parents first and from right to left: backwards that is parts first and from left to right
+        item = waiting.pop()
+        inner = parts(item)
+        items.append(item)
+        counts.append(len(inner))
+        waiting += inner
     results: list[Result] = []
-    stack: list[tuple[Item, int]] = [(root, -1)]  # -1: its parts are still to be done
-    while stack:
-        item, count = stack.pop()
-        if count < 0:
-            inner = parts(item)
-            stack.append((item, len(inner)))
-            stack.extend((part, -1) for part in reversed(inner))
-        else:
-            done = results[len(results) - count :]
-            del results[len(results) - count :]
-            results.append(combine(item, done))
+    for item, count in zip(reversed(items), reversed(counts), strict=True):
+        done: list[Result] = []
+        if count:
+            done = results[-count:]
+            del results[-count:]
+        results.append(combine(item, done))
     return results[0]
+
+
+def children_first(root: Node) -> list[Node]:
+    """Every node, children before their parents, from left to right."""
+    found: list[Node] = []
+    waiting = [root]
+    while waiting:
+        node = waiting.pop()
+        found.append(node)
+        waiting += node.children
+    found.reverse()
+    return found

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from typing import Any
 
 SLOTS = "\1"
+_MARKS = frozenset((",", ";", ":", "(", ")", "\n"))
 TrieNode = dict[str, "Any"]
 
 
@@ -72,33 +73,43 @@ def longest(root: TrieNode, text: Words, at: int, values: Values, names: TrieNod
     A slot of an entry also takes a list of values. It ends before a phrase, also before one in the trie `names`, in
     which connectives are looked for too.
     """
-    words, joiners = text.words, values.joiners
-    node: TrieNode | None = root.get(words[at])
-    if node is None and SLOTS not in root:
+    words = text.words
+    if words[at] not in root and SLOTS not in root:
         return None
+    openers = values.openers
     best: Meaning | None = None
-    best_last, best_values = at, ()
-    paths: list[tuple[TrieNode, int, Any]] = [(root, at, ())]
-    while paths:
-        node, i, found = paths.pop()
+    best_last = at
+    best_values: tuple[SlotValue, ...] = ()
+    paths: list[tuple[TrieNode, int, Any]] = []
+    node: TrieNode | None = root
+    i = at
+    found: tuple[SlotValue, ...] = ()
+    while True:
         while node is not None:
-            meaning: Meaning | None = node.get(END)
-            if meaning is not None and (i > best_last or best is None):
+            word = words[i]
+            if END in node and (i > best_last or best is None):
+                meaning: Meaning = node[END]
                 if meaning.entry is not None or not any(value.more for value in found):
                     best, best_last, best_values = meaning, i, found
             if SLOTS in node:
+                plain = word.isalpha() or word in _MARKS
                 for name, kind, child in node[SLOTS]:
+                    if plain and kind in openers and word not in openers[kind]:
+                        continue  # as nearly always, without reading
                     value = values.read(kind, text, i)
                     if value is None:
                         continue
                     one = SlotValue(name, kind, value[0], i, value[1])
                     paths.append((child, value[1], (*found, one)))
-                    if words[value[1]] in joiners:
+                    if words[value[1]] in values.joiners:
                         listed = _listed(root, text, one, values, names)
                         if listed is not None:
                             paths.append((child, listed.last, (*found, listed)))
-            node = node.get(words[i])
+            node = node.get(word)
             i += 1
+        if not paths:
+            break
+        node, i, found = paths.pop()
     return Match(best, best_last, best_values) if best is not None else None
 
 

@@ -128,10 +128,12 @@ class Values:
                     insert(self._units, word.split(), (kind.name, unit))
             if kind.kind == "names":
                 self._names[kind.name] = {}
+        self._openers: dict[str, frozenset[str]] | None = None
 
     def add_name(self, kind: str, words: str, name: str) -> None:
         """Lets the words stand for a name of a type."""
         insert(self._names[kind], words.lower().split(), name)
+        self._openers = None
 
     def with_names(self, kind: str, names: Iterable[str]) -> Values:
         """The same with further names of a type."""
@@ -161,6 +163,23 @@ class Values:
         self._known_words = {}
         for value in known.values():
             insert(self._known_words, value.words, value)
+
+    @property
+    def openers(self) -> Mapping[str, frozenset[str]]:
+        """The words of letters alone, and the marks, at which a value of a type may begin: at no other one does it.
+
+        A type that is not in it may begin at any, as all may where the mission names values itself.
+        """
+        if self.known != {}:
+            return {}
+        if self._openers is None:
+            numbers = self._number_starts
+            quantities = numbers | self._joiner | self._units.keys()
+            self._openers = {kind: frozenset((*tree, *self.pronouns)) for kind, tree in self._names.items()}
+            for kind, value_type in self.types.items():
+                if value_type.kind in ("number", "quantity"):
+                    self._openers[kind] = numbers if value_type.kind == "number" else quantities
+        return self._openers
 
     def names_tree(self, kind: str) -> WordTree:
         """The words of the names of a type."""

@@ -21,7 +21,7 @@ _BASE = (
 )  # fmt: skip
 _FREE = (
     "wave at {person}", "nod", "look left", "look at the {object}", "raise your left arm", "print {text}",
-    "point at the {place}", "shake your head", "open the hand", "look around", "greet {person}",
+    "point at the {place}", "shake your head", "open the hand", "look around", "wave to {person}",
 )  # fmt: skip
 _CONDITIONS = (
     "the battery is low", "the battery is below {percent}", "the path is clear", "there is a wall in front",

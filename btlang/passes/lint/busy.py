@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.lint.subject import Subject, fold_tree
 from btlang.tree.node import Node
+from btlang.vocabulary.entry import Entry
 
 ASKS, INSTANT, TAKES_TIME = range(3)
 """What the leaves below a node are at most: conditions, things that end in the tick they start, others."""
@@ -18,20 +19,21 @@ _WAITING = frozenset(("Sleep", "Delay"))
 def busy_loops(subject: Subject) -> list[Diagnostic]:
     """Loops with no leaf that takes time. `wait until C` asks again and again, too, but that is what it is for."""
     busy: list[Node] = []
+    leaves = {node_id: _leaf(entries[0]) for node_id, entries in subject.vocabulary.entries.items()}
 
     def combine(node: Node, children: Sequence[int], named: dict[str, int]) -> int:
-        if node.id == "SubTree":
-            return named.get(node.port("ID"), TAKES_TIME)
-        if node.port("success_count") == "1":
+        if not children:
+            if node.id == "SubTree":
+                return named.get(node.port("ID"), TAKES_TIME)
+            return TAKES_TIME if node.id in _WAITING else leaves.get(node.id, INSTANT)
+        if node.id == "Parallel" and node.port("success_count") == "1":
             while busy and any(child is busy[-1] for child in node.children):
                 busy.pop()  # the loop of `for 5 s` has an end
             return TAKES_TIME
         if node.id in _WAITING:
             return TAKES_TIME
-        if not children:
-            return _leaf(node, subject)
         most = max(children)
-        if most == TAKES_TIME or node.port(_LOOPS.get(node.id, "")) != "-1":
+        if most == TAKES_TIME or node.id not in _LOOPS or node.port(_LOOPS[node.id]) != "-1":
             return most
         if node.id == "RetryUntilSuccessful" and most == ASKS:
             return TAKES_TIME
@@ -44,9 +46,8 @@ def busy_loops(subject: Subject) -> list[Diagnostic]:
     return [diagnostic("BT053", node.span, advice=advice) for node in busy if node.span is not None]
 
 
-def _leaf(node: Node, subject: Subject) -> int:
-    """What is in no keyword file is a node of the tree itself, such as a script."""
-    entry = subject.vocabulary.entry(node.id)
-    if entry is None or entry.instant:
+def _leaf(entry: Entry) -> int:
+    """What is in no keyword file is a node of the tree itself, such as a script: that is INSTANT, too."""
+    if entry.instant:
         return INSTANT
     return TAKES_TIME if entry.sort == "action" else ASKS

@@ -36,13 +36,13 @@ def cut_off(subject: Subject) -> list[Diagnostic]:
     found: list[Diagnostic] = []
 
     def combine(node: Node, children: Sequence[Found], named: dict[str, Found]) -> Found:
-        if node.id == "SubTree":
-            inner = named.get(node.port("ID"))
-            return inner and Exposed(inner.leaf, node)
         if node.id in unsafe:
             return Exposed(node, node)
-        exposed = next((child for child in children if child is not None), None)
-        when = _when(node)
+        if not children:
+            inner = named.get(node.port("ID")) if node.id == "SubTree" else None
+            return inner and Exposed(inner.leaf, node)
+        exposed = next(filter(None, children), None)
+        when = _when(node) if exposed is not None else ""
         if exposed is None or not when:
             return exposed
         found.extend(_told(exposed, when, subject))

@@ -10,18 +10,18 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import TypeAlias
 
-SUCCESS, FAILURE, SKIPPED, NEVER = "success", "failure", "skipped", "never"
-Ends: TypeAlias = frozenset[str]
-"""A set of these four; NEVER: it may run for ever."""
+SUCCESS, FAILURE, SKIPPED, NEVER = 1, 2, 4, 8
+Ends: TypeAlias = int
+"""A sum of these four; NEVER: it may run for ever."""
 
-ANY: Ends = frozenset((SUCCESS, FAILURE, SKIPPED))
-EITHER: Ends = frozenset((SUCCESS, FAILURE))
+ANY: Ends = SUCCESS | FAILURE | SKIPPED
+EITHER: Ends = SUCCESS | FAILURE
 
 
 def ends_of(node: Node, children: Sequence[Ends], named: dict[str, Ends]) -> Ends:
     """The ways in which a node can end, given those of its children and those of the defined names."""
-    if node.port("_skipIf") == "true":
-        return frozenset((SKIPPED,))
+    if node.ports and node.port("_skipIf") == "true":
+        return SKIPPED
     if node.id == "SubTree":
         return named.get(node.port("ID"), ANY)
     known = _KINDS.get(node.id)
@@ -30,25 +30,23 @@ def ends_of(node: Node, children: Sequence[Ends], named: dict[str, Ends]) -> End
     return ANY if children else EITHER
 
 
-def goes_on(node: Node, ends: Ends) -> bool:
-    """Whether a Sequence or Fallback can come to the child behind one that ends so."""
-    return bool(ends & {SKIPPED, FAILURE if node.id == "Fallback" else SUCCESS})
+def going_on(node: Node) -> Ends:
+    """The endings of a child at which a Sequence or Fallback comes to the next one."""
+    return SKIPPED | (FAILURE if node.id == "Fallback" else SUCCESS)
 
 
-def _in_turn(on: str) -> Callable[[Node, Sequence[Ends]], Ends]:
+def _in_turn(on: int) -> Callable[[Node, Sequence[Ends]], Ends]:
     """Sequence and Fallback: they go on to the next child at SKIPPED and at the status `on`."""
+    going_on = on | SKIPPED
 
     def ends(_node: Node, children: Sequence[Ends]) -> Ends:
-        found: set[str] = set()
+        some, each = 0, SKIPPED
         for child in children:
-            found |= child - {on, SKIPPED}
-            if not child & {on, SKIPPED}:
-                return frozenset(found)
-        if any(on in child for child in children):
-            found.add(on)
-        if all(SKIPPED in child for child in children):
-            found.add(SKIPPED)
-        return frozenset(found)
+            if not child & going_on:
+                return (some & ~going_on) | child
+            some |= child
+            each &= child
+        return (some & ~SKIPPED) | each
 
     return ends
 
@@ -57,48 +55,51 @@ def _at_once(node: Node, children: Sequence[Ends]) -> Ends:
     """Parallel: it succeeds with `success_count` of its children, fails with `failure_count` of them."""
     wanted = node.port("success_count")
     least = int(wanted) if wanted.isdigit() else len(children)
-    found: set[str] = set()
-    if sum(bool(child & {SUCCESS, SKIPPED}) for child in children) >= least:
-        found.add(SUCCESS)
-    if any(FAILURE in child for child in children):
-        found.add(FAILURE)
-    if sum(NEVER not in child for child in children) < least:
-        found.add(NEVER)
-    return frozenset(found)
+    found = 0
+    if sum(bool(child & (SUCCESS | SKIPPED)) for child in children) >= least:
+        found |= SUCCESS
+    if any(child & FAILURE for child in children):
+        found |= FAILURE
+    if sum(not child & NEVER for child in children) < least:
+        found |= NEVER
+    return found
 
 
-def _rounds(again: str, port: str) -> Callable[[Node, Sequence[Ends]], Ends]:
+def _rounds(again: int, port: str) -> Callable[[Node, Sequence[Ends]], Ends]:
     """Repeat and RetryUntilSuccessful: another round at the status `again`."""
 
     def ends(node: Node, children: Sequence[Ends]) -> Ends:
         if node.port(port) != "-1":
             return children[0]
-        return (children[0] - {again}) | {NEVER}
+        return (children[0] & ~again) | NEVER
 
     return ends
 
 
-def _turned(change: dict[str, str]) -> Callable[[Node, Sequence[Ends]], Ends]:
-    return lambda _node, children: frozenset(change.get(end, end) for end in children[0])
+def _turned(change: dict[int, int]) -> Callable[[Node, Sequence[Ends]], Ends]:
+    def ends(_node: Node, children: Sequence[Ends]) -> Ends:
+        return sum({change.get(end, end) for end in (SUCCESS, FAILURE, SKIPPED, NEVER) if children[0] & end})
+
+    return ends
 
 
 def _branches(node: Node, children: Sequence[Ends]) -> Ends:
     """The condition of `while` ends a branch that would not end by itself."""
-    found = frozenset().union(*children[1:]) if len(children) > 2 else children[1] | {FAILURE}
-    return found - {NEVER} if node.id == "WhileDoElse" else found
+    found = children[1] | (children[2] if len(children) > 2 else FAILURE)
+    return found & ~NEVER if node.id == "WhileDoElse" else found
 
 
-def _same(*also: str, but: str = "") -> Callable[[Node, Sequence[Ends]], Ends]:
-    return lambda _node, children: (children[0] | set(also)) - {but}
+def _same(also: int = 0, but: int = 0) -> Callable[[Node, Sequence[Ends]], Ends]:
+    return lambda _node, children: (children[0] | also) & ~but
 
 
 def _ruled(_node: Node, children: Sequence[Ends]) -> Ends:
     """Whenever: its block fails too where the reaction does."""
-    return children[2] | (children[1] & {FAILURE})
+    return children[2] | (children[1] & FAILURE)
 
 
-def _always(*ends: str) -> Callable[[Node, Sequence[Ends]], Ends]:
-    return lambda _node, _children: frozenset(ends)
+def _always(ends: Ends) -> Callable[[Node, Sequence[Ends]], Ends]:
+    return lambda _node, _children: ends
 
 
 _KINDS: dict[str, Callable[[Node, Sequence[Ends]], Ends]] = {

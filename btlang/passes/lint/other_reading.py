@@ -50,6 +50,8 @@ def in_chain(chain: ast.Chain, is_part: bool, vocabulary: Vocabulary) -> Iterato
     gaps: Gaps | None = None
     for at in range(len(items) - 1):
         left, right = items[at], items[at + 1]
+        if not left.parts and not right.parts:
+            continue  # two plain commands, as nearly always
         wrapped = _after_its_body(right)
         lists = chain.operator == "parallel" and (_is_sequence(left) or _is_sequence(right))
         if not (wrapped or lists or _is_open(left) or _is_open(right)):
@@ -72,7 +74,7 @@ def in_chain(chain: ast.Chain, is_part: bool, vocabulary: Vocabulary) -> Iterato
 
 def in_form(node: ast.Ast) -> Iterator[Attachment]:
     """An `otherwise` that both this form and one at the end of its body could have."""
-    if not isinstance(node, ast.If | ast.Try) or node.otherwise is not None or node.body.span.start <= node.span.start:
+    if not isinstance(node, (ast.If, ast.Try)) or node.otherwise is not None or node.body.span.start <= node.span.start:
         return
     path: list[ast.Ast] = [node]
     part: Any = node.body
@@ -173,7 +175,10 @@ class _Place:
 
 def is_list(node: ast.Ast) -> bool:
     """Whether it is a list of values in one phrase, whose parts all stand for the same words."""
-    return isinstance(node, ast.Chain) and all(item.span == node.span for item in node.items)
+    if not isinstance(node, ast.Chain):
+        return False
+    start, end = node.span.start, node.span.end
+    return all(item.span.start == start and item.span.end == end for item in node.items)
 
 
 def _is_sequence(node: ast.Ast) -> bool:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Sequence
 from btlang.record import Record
 from btlang.tree.ast import Mission
 from btlang.tree.node import Node, Tree
-from btlang.tree.visit import fold
+from btlang.tree.visit import children_first
 from btlang.vocabulary.vocabulary import Vocabulary
 
 TYPE_CHECKING = False
@@ -35,4 +35,12 @@ def fold_tree(tree: Tree, combine: Callable[[Node, Sequence[Result], dict[str, R
     """Combines each node with the results of its children; the third argument are those of the names so far."""
     named: dict[str, Result] = {}
     for name, root in roots(tree):
-        named[name] = fold(root, lambda node: node.children, lambda node, done: combine(node, done, named))
+        results: list[Result] = []
+        for node in children_first(root):
+            count = len(node.children)
+            done: Sequence[Result] = ()
+            if count:
+                done = results[-count:]
+                del results[-count:]
+            results.append(combine(node, done, named))
+        named[name] = results[0]

@@ -56,15 +56,16 @@ def _attachments(root: ast.Ast, subject: Subject) -> Iterator[Attachment]:
             stack += reversed(list(_parts(node, subject)))
             continue
         yield from in_form(node)
-        stack += [(part, False) for part in reversed(ast.parts(node))]
+        stack += [(part, False) for part in reversed(ast.parts(node)) if part.parts]
 
 
 def _parts(chain: ast.Chain, subject: Subject) -> Iterator[tuple[ast.Ast, bool]]:
-    """The parts of a chain, and whether each has something beside it in its statement."""
+    """The parts of a chain that have parts, and whether each has something beside it in its statement."""
     items = in_order(chain.items)
     gaps = Gaps(items, subject.vocabulary)
     for at, item in enumerate(items):
-        yield item, isinstance(item, ast.Chain) and not gaps.is_alone(at)
+        if item.parts:
+            yield item, isinstance(item, ast.Chain) and not gaps.is_alone(at)
 
 
 def _sentence_ends(source: Source) -> list[int]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.passes.lint.endings import NEVER, Ends, ends_of, goes_on
+from btlang.passes.lint.endings import NEVER, Ends, ends_of, going_on
 from btlang.passes.lint.subject import Subject, fold_tree
 from btlang.text.source import Span
 from btlang.tree.node import Node
@@ -17,8 +17,9 @@ def never_runs(subject: Subject) -> list[Diagnostic]:
 
     def combine(node: Node, children: Sequence[Ends], named: dict[str, Ends]) -> Ends:
         if node.id in ("Sequence", "Fallback"):
+            wanted = going_on(node)
             for at in range(len(children) - 1):
-                if not goes_on(node, children[at]):
+                if not children[at] & wanted:
                     found.extend(_told(node, node.children[at], children[at], node.children[at + 1]))
                     break
         return ends_of(node, children, named)
@@ -31,9 +32,9 @@ def _told(parent: Node, before: Node, ends: Ends, behind: Node) -> list[Diagnost
     """Nothing where both stand for the same words: then a form has put one of them there."""
     if before.span is None or behind.span is None or _overlap(before.span, behind.span):
         return []
-    if NEVER in ends:
+    if ends & NEVER:
         how = "fails" if parent.id == "Sequence" else "succeeds"
-        reason = "never ends" if ends == {NEVER} else f"goes on until it {how}"
+        reason = "never ends" if ends == NEVER else f"goes on until it {how}"
     else:
         reason = "always fails" if parent.id == "Sequence" else "always succeeds"
     return [diagnostic("BT052", behind.span, ((before.span, f"this {reason}"),), reason=reason)]
