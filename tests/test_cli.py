@@ -242,3 +242,10 @@ def test_closed_standard_input() -> None:
     done = subprocess.run(command, shell=True, cwd=REPOSITORY, text=True, capture_output=True, check=False)
     assert done.returncode == 2
     assert "Traceback" not in done.stderr
+
+
+def test_a_script_that_fails_is_told_with_the_sentence_that_needed_it(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["run", "-c", 'if bumped, set x to 3; say "x is {x}"', "--speed", "max"]) == 1
+    errors = capsys.readouterr().err
+    assert '<command line>:1:24: say "x is {x}"' in errors
+    assert "Script: {x} has no value" in errors

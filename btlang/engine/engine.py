@@ -13,6 +13,7 @@ from btlang.engine.leaf import LeafBinding
 from btlang.engine.status import FAILURE, IDLE
 from btlang.garbage import no_collection
 from btlang.record import Record
+from btlang.text.source import Span
 from btlang.tree.node import Node, Tree
 
 __all__ = ["Engine", "EngineError", "Failure"]
@@ -28,12 +29,16 @@ _FRAMES_FOR_LEAVES = 1000
 
 
 class Failure(Record):
-    """Why a node failed: in words ("" where a condition was just not true), with the exception where one was raised."""
+    """Why a node failed: in words ("" where a condition was just not true), with the exception where one was raised.
+
+    `span` is the sentence of the node, or of the nearest one around it that has one.
+    """
 
     node: Node
     path: str
     reason: str
     exception: BaseException | None = None
+    span: Span | None = None
 
 
 class Engine:
@@ -160,4 +165,8 @@ class Engine:
         return self._failure(self._shared.fault or Fault(0))
 
     def _failure(self, fault: Fault) -> Failure:
-        return Failure(self.node(fault.index), self.path(fault.index), fault.reason, fault.exception)
+        index = fault.index
+        while index >= 0 and self._places[index].node.span is None:
+            index = self._places[index].parent
+        span = self._places[index].node.span if index >= 0 else None
+        return Failure(self.node(fault.index), self.path(fault.index), fault.reason, fault.exception, span)

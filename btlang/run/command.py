@@ -138,9 +138,10 @@ def failure_report(outcome: Outcome, label: Callable[[Node], str], colour: str =
     lines = [f"The mission failed after {outcome.seconds:.1f} s."]
     failure = outcome.failure
     if failure is not None:
-        span = failure.node.span
+        span = failure.span
         if span is not None:
-            sentence = span.text.splitlines()[0] if failure.node.children else label(failure.node)
+            whole = failure.node.children or failure.node.span is None
+            sentence = span.text.splitlines()[0] if whole else label(failure.node)
             lines += [f"{span.place}: {sentence}", *underlined(span, colour)]
         asked = "the mission says so" if failure.node.id == "AlwaysFailure" else "it does not hold"
         lines.append(f"  {failure.node.id}: {failure.reason or asked}")
