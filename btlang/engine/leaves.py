@@ -96,7 +96,7 @@ def bound_leaf(site: Site, plan: Plan) -> Compiled:
     given = plan.given.get(names)
     if given is None:
         given = plan.given[names] = _fill(site, call, names, site.shared.service_names)
-    constants, stored = _arguments(site, ports, binding)
+    constants, stored = _arguments(site, ports, binding) if ports else ({}, None)
     for name in given:
         constants[name] = site.service(name)
     if constants:

@@ -11,15 +11,19 @@ class Frame:
     The owners are the nearest open forms of the same bracket that a count, an `until` (or `while`, `for`) or an
     `otherwise` would belong to; `after` says what follows the end of a condition. `commas` are those whose meaning
     the next connective will tell; `last` is the latest connective. `statement` of a group is "", "open" or "ended";
-    `joint` is the token between its statements.
+    `joint` is the token between its statements. `is_group`: it holds statements; `is_condition`: operands in it are
+    conditions.
     """
 
     __slots__ = (
-        "after", "commas", "count_owner", "else_owner", "joint", "kind", "last", "opener", "statement", "stop_owner",
+        "after", "commas", "count_owner", "else_owner", "is_condition", "is_group", "joint", "kind", "last", "opener",
+        "statement", "stop_owner",
     )  # fmt: skip
 
     def __init__(self, kind: str, opener: Token | None = None, outer: Frame | None = None, after: str = "") -> None:
         self.kind = kind
+        self.is_group = kind in ("top", "block", "bracket")
+        self.is_condition = kind in ("condition", "condition bracket")
         self.opener = opener
         self.after = after
         self.count_owner: Frame | None = outer.count_owner if outer else None
@@ -29,16 +33,6 @@ class Frame:
         self.last: Token | None = None
         self.statement = ""
         self.joint = "SEMI"
-
-    @property
-    def is_group(self) -> bool:
-        """Whether it holds statements."""
-        return self.kind in ("top", "block", "bracket")
-
-    @property
-    def is_condition(self) -> bool:
-        """Whether operands in it are conditions."""
-        return self.kind in ("condition", "condition bracket")
 
     def connective(self, token: Token) -> None:
         """Notes a connective: the commas before it take its meaning if it is `and` or `or`, else they mean `then`.

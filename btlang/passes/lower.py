@@ -31,10 +31,7 @@ class Lowered(Record):
 def lower(root: ast.Ast, scope: Scope) -> Lowered:
     """The tree of a command or condition."""
 
-    def combine(item: ast.Ast, done: list[Lowered]) -> Lowered:
-        return _LOWER[type(item)](item, done, scope)
-
-    return fold(root, ast.parts, combine)
+    return fold(root, ast.parts, lambda item, done: _LOWER[type(item)](item, done, scope))
 
 
 def _node(node_id: str, children: Sequence[Node], span: Span, **ports: str) -> Node:
@@ -56,10 +53,14 @@ def _negated(negated: bool, condition: Node) -> Node:
 
 def _phrase(item: ast.Phrase, _done: list[Lowered], scope: Scope) -> Lowered:
     """A value that is the slot's default says nothing."""
+    if not item.arguments:
+        return Lowered(Node(item.entry.id, (), (), "", item.span))
     defaults = {slot.name: slot.default for slot in item.entry.slots}
-    order = list(defaults)
-    spoken = [(name, text) for name, text in item.arguments if defaults.get(name) != text]
-    scripts, ports = prepared(sorted(spoken, key=lambda port: order.index(port[0])), scope)
+    spoken = [port for port in item.arguments if defaults.get(port[0]) != port[1]]
+    if len(spoken) > 1:
+        order = list(defaults)
+        spoken.sort(key=lambda port: order.index(port[0]))
+    scripts, ports = prepared(spoken, scope)
     return Lowered(behind(scripts, Node(item.entry.id, (), ports, span=item.span)))
 
 
