@@ -148,6 +148,9 @@ def _header(
         name = " ".join(word for word in text.words[start:at] if word[0].isalnum())
         return Header(name, text.span(start, at), at + 1, reach(text, at))
     parts, parameters = _pattern(text.words[start:at])
+    if len(parameters) == len(parts):  # as a phrase it would stand everywhere
+        problems.append(diagnostic("BT016", text.span(start, at), word=text.words[at]))
+        return Header("", text.span(start, at), at + 1, at + 1)
     return Header(" ".join(parts), text.span(start, at), at + 1, reach(text, at), parameters)
 
 

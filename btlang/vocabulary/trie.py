@@ -66,10 +66,13 @@ def add(root: TrieNode, form: Form, types: Mapping[str, str], meaning: Meaning) 
     return before
 
 
-def longest(root: TrieNode, text: Words, at: int, values: Values, names: TrieNode | None = None) -> Match | None:
+def longest(
+    root: TrieNode, text: Words, at: int, values: Values, names: TrieNode | None = None, lists: bool = True
+) -> Match | None:
     """The longest phrase at a word; where two are equally long, the one with words in place of slots.
 
-    A slot of an entry also takes a list of values. It ends before a phrase, or a name in the trie `names`.
+    A slot of an entry also takes a list of values, unless `lists` is False. It ends before a phrase, or a name in the
+    trie `names`.
     """
     words, joiners = text.words, values.joiners
     node: TrieNode | None = root.get(words[at])
@@ -91,7 +94,7 @@ def longest(root: TrieNode, text: Words, at: int, values: Values, names: TrieNod
                         continue
                     one = SlotValue(name, kind, value[0], i, value[1])
                     paths.append((child, value[1], (*found, one)))
-                    if words[value[1]] in joiners:
+                    if lists and words[value[1]] in joiners and _may_go_on(child, text):
                         listed = _listed(root, text, one, values, names)
                         if listed is not None:
                             paths.append((child, listed.last, (*found, listed)))
@@ -100,6 +103,11 @@ def longest(root: TrieNode, text: Words, at: int, values: Values, names: TrieNod
                 break
             i += 1
     return Match(best, best_last, best_values) if best is not None else None
+
+
+def _may_go_on(node: TrieNode, text: Words) -> bool:
+    """Whether the text has what may follow a list; long lists of bare values are read once for each value else."""
+    return END in node or SLOTS in node or not text.distinct.isdisjoint(node)
 
 
 def _listed(root: TrieNode, text: Words, first: SlotValue, values: Values, names: TrieNode | None) -> SlotValue | None:
@@ -112,7 +120,7 @@ def _listed(root: TrieNode, text: Words, first: SlotValue, values: Values, names
         at = last
         comma = text.words[at] == ","
         at += comma
-        joined = longest(root, text, at, values) if text.words[at] in values.joiners else None
+        joined = longest(root, text, at, values, lists=False) if text.words[at] in values.joiners else None
         role = joined.meaning.role if joined is not None and joined.meaning.role in ("and", "or") else ""
         if (joiner and role != joiner) or not (role or comma):
             break
@@ -128,7 +136,7 @@ def _listed(root: TrieNode, text: Words, first: SlotValue, values: Values, names
 
 def reaches_beyond(root: TrieNode, text: Words, at: int, last: int, values: Values) -> bool:
     """Whether a phrase starts at a word that goes on behind `last`."""
-    match = longest(root, text, at, values)
+    match = longest(root, text, at, values, lists=False)  # each list would look at all that follow it
     return match is not None and match.last > last
 
 
