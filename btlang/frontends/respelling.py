@@ -26,6 +26,7 @@ from btlang.vocabulary.vocabulary import NO_PHRASES, Vocabulary
 
 _MOST_WORDS = 10_000  # that all tries for a text read
 _LEAST_COST = 50  # what a try costs at least, in words
+_LONG_STATEMENT = 100  # words from which on each takes longer to read
 _MOST_TRIES = 40  # for one problem
 _LONGEST = 40  # letters of a word that is respelt
 _MOST_SUSPECTS = 40  # words that may be misspelt, for one problem
@@ -157,7 +158,8 @@ class _Respelling:
             return self._trials[number]
         around = sorted({*self._naming, number - 1, number, number + 1} & set(range(len(self._statements))))
         statements = tuple(self._statements[n] for n in around)
-        cost = max(sum(statement.last - statement.first for statement in statements), _LEAST_COST)
+        lengths = [statement.last - statement.first for statement in statements]
+        cost = max(sum(lengths) * (1 + max(lengths) // _LONG_STATEMENT), _LEAST_COST)
         if 2 * cost > self._budget:
             self._budget -= max(len(around), _LEAST_COST)
             return None
