@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import argparse
 import random
+import signal
 import sys
 import time
 import traceback
@@ -29,6 +30,7 @@ from btlang.text.source import Source
 VOCABULARY = world_vocabulary()
 LONGEST = 4000  # characters
 SLOW = 1.0  # seconds
+HANGS = 10  # seconds after which a step is broken off
 
 _MARKS = (
     ",",
@@ -167,6 +169,14 @@ def _complete(text: str, at: int) -> None:
     completions(text[:at], VOCABULARY)
 
 
+class Hanging(BaseException):
+    """A step does not end."""
+
+
+def _break_off(*_: object) -> None:
+    raise Hanging
+
+
 def failures(text: str, at: int) -> list[tuple[str, str]]:
     """The steps that fail, each with what happened; `at` is where the text is completed."""
     found, told = [], []
@@ -179,13 +189,16 @@ def failures(text: str, at: int) -> list[tuple[str, str]]:
     }
     for name, step in steps.items():
         began = time.perf_counter()
+        signal.alarm(HANGS)
         try:
             result = step()
             told += [result] if name.startswith("check") else []
         except MissionError:
             pass
-        except Exception:  # whatever it is, it must not happen
-            found.append((name, traceback.format_exc()))
+        except (Exception, Hanging):  # whatever it is, it must not happen
+            found.append((name, traceback.format_exc(limit=-20)))
+        finally:
+            signal.alarm(0)
         took = time.perf_counter() - began
         if took > SLOW:
             found.append((name, f"it took {took:.1f} s"))
@@ -199,6 +212,7 @@ def main() -> int:
     parser.add_argument("--minutes", type=float, default=10.0)
     parser.add_argument("--seed", type=int, default=0, help="the first seed; the next text has the next one")
     options = parser.parse_args()
+    signal.signal(signal.SIGALRM, _break_off)
     end = time.monotonic() + options.minutes * 60
     seed, failed = options.seed, Counter[str]()
     while time.monotonic() < end:

@@ -63,12 +63,15 @@ def test_any_words(text: str) -> None:
         ("," * 1_000_000, "BT032"),
         ('say "' + "x" * 1_000_000, "BT004"),
         ("5 " * 500_000, "BT019"),
+        ("5, " * 10_000, "BT019"),
+        ("x then " * 10_000, "BT010"),
+        ("".join(f"x{number} then " for number in range(1000)), "BT010"),
         ("\x00\x01\x02" * 1000, "BT003"),
         ("n0 is wave\n" + "".join(f"n{i} is n{i - 1} then n{i - 1}\n" for i in range(1, 100)) + "n99", "BT042"),
     ],
     ids=[
         *("empty", "blank", "junk", "words", "commas", "open"),
-        *("close", "only-commas", "quote", "numbers", "zeros", "growth"),
+        *("close", "only-commas", "quote", "numbers", "lists", "same", "other", "zeros", "growth"),
     ],
 )
 def test_hostile_texts(text: str, code: str) -> None:

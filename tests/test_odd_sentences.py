@@ -18,6 +18,7 @@ import btlang
         ("until and : \n   cm show\r nan: ", "BT020"),
         ("{a} is b", "BT016"),
         ("greet {} is wave", "BT015"),
+        ("{x} means wave the % y", "BT016"),
         ('x "it is {level}" is wave', "BT015"),
     ],
 )

@@ -67,8 +67,8 @@ def _grows_together(span: Span, words: str) -> bool:
 
 
 def _shown(text: str) -> str:
-    clean = "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in text)
-    return clean if len(clean) <= _LONGEST else clean[: _LONGEST // 2] + " ... " + clean[-_LONGEST // 2 :]
+    short = text if len(text) <= _LONGEST else text[: _LONGEST // 2] + " ... " + text[-_LONGEST // 2 :]
+    return "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in short)
 
 
 class MissionError(Exception):

@@ -15,6 +15,7 @@ from btlang.vocabulary.vocabulary import Vocabulary
 JOINTS = {"set": "set_to", "increase": "by", "decrease": "by", "remember": "remember_as", "each": "each_in"}
 """The roles that begin a statement about a value, each with the role of the words between the name and the value."""
 _MOST_WORDS = 4
+_MOST_MEASURED = 40  # words of what is remembered
 
 
 class Head(Record):
@@ -51,7 +52,7 @@ def find_heads(text: Words, vocabulary: Vocabulary) -> dict[int, Head]:
 
 def _head(text: Words, role: str, at: int, vocabulary: Vocabulary) -> Head | None:
     """None where it is not put together as such a statement is."""
-    joint = _joint(text, at, vocabulary.roles[JOINTS[role]])
+    joint = _joint(text, at, vocabulary.roles[JOINTS[role]], _MOST_MEASURED if role == "remember" else _MOST_WORDS + 2)
     if role == "remember":
         if joint is None:
             return None
@@ -68,10 +69,10 @@ def _head(text: Words, role: str, at: int, vocabulary: Vocabulary) -> Head | Non
     return Head(role, key_of(words), words, joint[1], joint[1]) if words else None
 
 
-def _joint(text: Words, at: int, phrases: Iterable[str]) -> tuple[int, int] | None:
-    """Where the words of one of the phrases stand first in the statement, and where they end."""
+def _joint(text: Words, at: int, phrases: Iterable[str], within: int) -> tuple[int, int] | None:
+    """Where the words of one of the phrases stand first in the statement, so many words on, and where they end."""
     joints = [phrase.split() for phrase in phrases]
-    for i in range(at, len(text.words)):
+    for i in range(at, min(at + within + 1, len(text.words))):
         for joint in joints:
             if text.words[i : i + len(joint)] == joint:
                 return i, i + len(joint)

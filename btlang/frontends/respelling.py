@@ -26,8 +26,10 @@ from btlang.vocabulary.vocabulary import NO_PHRASES, Vocabulary
 
 _MOST_WORDS = 10_000  # that all tries for a text read
 _LEAST_COST = 50  # what a try costs at least, in words
+_LONG_STATEMENT = 100  # words from which on each takes longer to read
 _MOST_TRIES = 40  # for one problem
 _LONGEST = 40  # letters of a word that is respelt
+_MOST_SUSPECTS = 40  # words that may be misspelt, for one problem
 _NEAR_WORDS = 12  # of a problem, that a name may have been meant to have
 _MAY_BE_A_WORD = frozenset(f"BT0{number}" for number in (10, 11, 12, 13, 19, 21, 26, 28, 29, 39))
 _UNKNOWN = frozenset(("BT010", "BT013"))
@@ -66,6 +68,7 @@ class _Respelling:
         self._vocabulary = lexer.vocabulary
         self._problems = problems
         self._budget = _MOST_WORDS
+        self._respelt: dict[str, list[str]] = {}
         self._trials: dict[int, _Trial] = {}
         self._statements = list(self._split())
         self._starts = [statement.start for statement in self._statements]
@@ -122,6 +125,7 @@ class _Respelling:
     def _cure(self, problem: Diagnostic) -> Change | None:
         """The first change that leaves less wrong in the statement, where it is better than the fix that there is."""
         fix = problem.fix
+        self._budget -= _LEAST_COST
         trial = self._trial(problem) if fix is None or _changes_words(*fix) else None
         if trial is None:
             return None
@@ -155,7 +159,8 @@ class _Respelling:
             return self._trials[number]
         around = sorted({*self._naming, number - 1, number, number + 1} & set(range(len(self._statements))))
         statements = tuple(self._statements[n] for n in around)
-        cost = max(sum(statement.last - statement.first for statement in statements), _LEAST_COST)
+        lengths = [statement.last - statement.first for statement in statements]
+        cost = max(sum(lengths) * (1 + max(lengths) // _LONG_STATEMENT), _LEAST_COST)
         if 2 * cost > self._budget:
             self._budget -= max(len(around), _LEAST_COST)
             return None
@@ -174,7 +179,9 @@ class _Respelling:
             start, end = text.starts[word], text.ends[word]
             return self._source.position(start)[0] != line, max(first - end, start - last, 0), word
 
-        return sorted((w for w in range(statement.first, statement.last) if text.words[w][0].isalpha()), key=far)
+        return sorted((w for w in range(statement.first, statement.last) if text.words[w][0].isalpha()), key=far)[
+            :_MOST_SUSPECTS
+        ]
 
     def _is_doubtful(self, word: int, problem: Span) -> bool:
         """Whether a word that is known may be a slip all the same: `ten` for `then`."""
@@ -193,10 +200,16 @@ class _Respelling:
 
     def _changes(self, words: Iterable[int], never: frozenset[str] = frozenset()) -> Iterator[Change]:
         for word in words:
-            written = self._text.words[word]
-            for other in respellings(written, self._known) if len(written) <= _LONGEST else ():
+            for other in self._near(self._text.words[word]):
                 if other not in never:
                     yield self._text.starts[word], self._text.ends[word], other
+
+    def _near(self, written: str) -> list[str]:
+        if written not in self._respelt:
+            self._budget -= _LEAST_COST
+            can_be = self._budget > 0 and len(written) <= _LONGEST
+            self._respelt[written] = respellings(written, self._known) if can_be else []
+        return self._respelt[written]
 
     def _helps(self, change: Change, trial: _Trial, problem: Span) -> bool:
         """Whether less is wrong at the problem, and not more in the rest of the statement."""

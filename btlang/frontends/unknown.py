@@ -220,7 +220,7 @@ def _unknown_phrase(
     names = [header.name for header in definitions.headers.values()]
     written = f" {' '.join(text.words[at:end])} "
     inside = [(name, end - at) for name in names if f" {name} " in written]
-    near = dict(inside) | dict(_nearest_phrases(text.words[at:end], vocabulary, names)) | dict(inside)
+    near = dict(inside) | dict(_nearest_phrases(tuple(text.words[at:end]), vocabulary, tuple(names))) | dict(inside)
     if not near:
         return diagnostic("BT010", span, words=span.text, help="'btc words' lists what I know.")
     likely, words = next(iter(near.items()))
@@ -246,10 +246,13 @@ def _phrases(vocabulary: Vocabulary) -> dict[str, tuple[str, list[str]]]:
     return {written: (id, list(start)) for start, (written, id) in known.items() if start}
 
 
-def _nearest_phrases(written: list[str], vocabulary: Vocabulary, names: list[str]) -> list[tuple[str, int]]:
+@lru_cache(maxsize=256)  # mistakes repeat
+def _nearest_phrases(
+    all_written: tuple[str, ...], vocabulary: Vocabulary, names: tuple[str, ...]
+) -> list[tuple[str, int]]:
     """Phrases and names that may have been meant, each with the number of words that stand for it; one of each id."""
     phrases = {name: (name, name.split()) for name in names} | _phrases(vocabulary)
-    written = list(takewhile(lambda word: word[0].isalpha(), written))  # a value stands for no word
+    written = list(takewhile(lambda word: word[0].isalpha(), all_written))  # a value stands for no word
     near = nearest_start(written, {key: start for key, (_, start) in phrases.items()})
     best = {phrases[key][0]: key for key in reversed(near)}
     return [(key, len(phrases[key][1])) for key in near if best[phrases[key][0]] == key][:3]

@@ -25,14 +25,17 @@ def nearest_start(written: Sequence[str], known: Mapping[str, Sequence[str]]) ->
 
     Of about equally near phrases the longer one is likelier.
     """
-    from rapidfuzz import fuzz
+    from rapidfuzz import fuzz, process
 
-    scored = {}
+    by_length: dict[int, dict[str, str]] = {}
     for key, words in known.items():
-        start = " ".join(written[: len(words)])
-        scored[key] = fuzz.ratio(start, " ".join(words), score_cutoff=_NEAR), min(len(words), len(written))
-    likely = sorted((-score - _LONGER * words, key) for key, (score, words) in scored.items() if score)
-    return [key for _, key in likely]
+        by_length.setdefault(len(words), {})[key] = " ".join(words)
+    scored = []
+    for length, phrases in by_length.items():
+        start = " ".join(written[:length])
+        near = process.extract(start, phrases, scorer=fuzz.ratio, score_cutoff=_NEAR, limit=None)
+        scored += [(-score - _LONGER * min(length, len(written)), key) for _, score, key in near]
+    return [key for _, key in sorted(scored)]
 
 
 def respellings(written: str, known: Iterable[str], limit: int = 8) -> list[str]:

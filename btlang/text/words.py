@@ -45,7 +45,18 @@ class Line(Record):
 class Words:
     """The words of a source as parallel lists, with a `\\n` word at the end of each line that is not blank."""
 
-    __slots__ = ("articles", "comments", "ends", "lines", "open_quotes", "source", "starts", "unreadable", "words")
+    __slots__ = (
+        "_distinct",
+        "articles",
+        "comments",
+        "ends",
+        "lines",
+        "open_quotes",
+        "source",
+        "starts",
+        "unreadable",
+        "words",
+    )
 
     def __init__(self, source: Source) -> None:
         self.source = source
@@ -59,6 +70,14 @@ class Words:
         """From each `#` to the end of its line."""
         self.open_quotes: list[Span] = []
         self.unreadable: list[Span] = []
+        self._distinct: frozenset[str] | None = None
+
+    @property
+    def distinct(self) -> frozenset[str]:
+        """Each word once; for a text that is complete."""
+        if self._distinct is None:
+            self._distinct = frozenset(self.words)
+        return self._distinct
 
     def span(self, first: int, last: int) -> Span:
         """The characters of words `first` to `last` (exclusive); never empty where there is a word."""

@@ -67,11 +67,13 @@ def add(root: TrieNode, form: Form, types: Mapping[str, str], meaning: Meaning) 
     return before
 
 
-def longest(root: TrieNode, text: Words, at: int, values: Values, names: TrieNode | None = None) -> Match | None:
+def longest(
+    root: TrieNode, text: Words, at: int, values: Values, names: TrieNode | None = None, lists: bool = True
+) -> Match | None:
     """The longest phrase at a word; where two are equally long, the one with words in place of slots.
 
-    A slot of an entry also takes a list of values. It ends before a phrase, also before one in the trie `names`, in
-    which connectives are looked for too.
+    A slot of an entry also takes a list of values, unless `lists` is False. It ends before a phrase, also before one in
+    the trie `names`, in which connectives are looked for too.
     """
     words = text.words
     if words[at] not in root and SLOTS not in root:
@@ -101,7 +103,7 @@ def longest(root: TrieNode, text: Words, at: int, values: Values, names: TrieNod
                         continue
                     one = SlotValue(name, kind, value[0], i, value[1])
                     paths.append((child, value[1], (*found, one)))
-                    if words[value[1]] in values.joiners:
+                    if lists and words[value[1]] in values.joiners and _may_go_on(child, text):
                         listed = _listed(root, text, one, values, names)
                         if listed is not None:
                             paths.append((child, listed.last, (*found, listed)))
@@ -111,6 +113,11 @@ def longest(root: TrieNode, text: Words, at: int, values: Values, names: TrieNod
             break
         node, i, found = paths.pop()
     return Match(best, best_last, best_values) if best is not None else None
+
+
+def _may_go_on(node: TrieNode, text: Words) -> bool:
+    """Whether the text has what may follow a list; long lists of bare values are read once for each value else."""
+    return END in node or SLOTS in node or not text.distinct.isdisjoint(node)
 
 
 def _listed(root: TrieNode, text: Words, first: SlotValue, values: Values, names: TrieNode | None) -> SlotValue | None:
@@ -140,18 +147,19 @@ def _listed(root: TrieNode, text: Words, first: SlotValue, values: Values, names
 
 
 def _joiner(root: TrieNode, names: TrieNode | None, text: Words, at: int, values: Values) -> Match | None:
-    return longest(root, text, at, values) or (longest(names, text, at, values) if names else None)
+    joiner = longest(root, text, at, values, lists=False)
+    return joiner or (longest(names, text, at, values, lists=False) if names else None)
 
 
 def _is_command(root: TrieNode, text: Words, at: int, last: int, values: Values) -> bool:
     """Whether words without an article are a whole command, too: `if you are at the door, dock`."""
-    match = longest(root, text, at, values) if at not in text.articles else None
+    match = longest(root, text, at, values, lists=False) if at not in text.articles else None
     return match is not None and match.last == last and match.meaning.role == "command"
 
 
 def reaches_beyond(root: TrieNode, text: Words, at: int, last: int, values: Values) -> bool:
     """Whether a phrase starts at a word that goes on behind `last`."""
-    match = longest(root, text, at, values)
+    match = longest(root, text, at, values, lists=False)  # each list would look at all that follow it
     return match is not None and match.last > last
 
 
