@@ -123,7 +123,7 @@ class Completer:
             return
         first = self._last if at == len(tokens) else words.starts.index(tokens[at].start)
         under_way = begun(self._vocabulary.trie, words, first, self._last, self._values)
-        names = begun(self._lexer.definitions.trie, words, first, self._last, self._values)
+        names = begun(self._lexer.names.definitions.trie, words, first, self._last, self._values)
         yield from self._named(names, first, at, start)
         for node in under_way.nodes:
             if node is self._vocabulary.trie and not start:

@@ -3,31 +3,22 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Mapping
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.frontends.definitions import Definitions, find_definitions
-from btlang.frontends.facts import find_facts
-from btlang.frontends.heads import JOINTS, Head, find_heads, span_of
+from btlang.frontends.condition_names import called, condition_names
+from btlang.frontends.heads import JOINTS, Head, span_of
 from btlang.frontends.includes import ROLE as INCLUDE
-from btlang.frontends.includes import Included, find_includes, misplaced
+from btlang.frontends.includes import misplaced
+from btlang.frontends.names import Load, Names
 from btlang.frontends.token import Listed, Token
 from btlang.text.source import Source, Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, split
-from btlang.tree.ast import Include, all_definitions, all_facts
 from btlang.vocabulary.entry import Entry, Meaning
 from btlang.vocabulary.references import keys_in, renamed
 from btlang.vocabulary.trie import SLOTS, Match, SlotValue, longest
 from btlang.vocabulary.values import Known, key_of
 from btlang.vocabulary.vocabulary import Vocabulary
-
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    from typing import TypeAlias
-
-    Load: TypeAlias = Callable[[str, Span], Included | None]
-else:
-    Load = None
 
 _MARKS = {",": "comma", ";": "semi", ":": "colon", "(": "open", ")": "close"}
 
@@ -47,42 +38,20 @@ class Lexer:
         load: Load | None = None,
         known: Mapping[str, Known] | None = None,
     ) -> None:
-        self._explain, self._given, self._named = explain, vocabulary, known
+        self._explain, self._given, self._shared = explain, vocabulary, known
         self.text: Words = split(source, vocabulary.articles)
-        self.vocabulary = vocabulary
         self.problems: list[Diagnostic] = [
             diagnostic("BT004", span, fix=(Span(source, span.end, span.end), '"')) for span in self.text.open_quotes
         ]
         self.problems += [diagnostic("BT003", span, characters=span.text[:20]) for span in self.text.unreadable]
-        includes = find_includes(self.text, vocabulary)
-        loaded = [(path, span, load(path, span)) for path, span in includes.found] if load is not None else []
-        self.includes = [Include(path, part.mission, span) for path, span, part in loaded if part is not None]
-        self.is_including = bool(includes.found)
-        self._parts = {path: part for path, _, part in loaded if part is not None}
-        parts = list(self._parts.values())
-        facts = find_facts(self.text, vocabulary)
-        self.problems += facts.problems
-        self.facts = facts.found
-        self._ends = includes.ends | facts.ends
-        places = [*(fact for part in parts for fact in all_facts(part.mission)), *self.facts]
-        if places:
-            self.vocabulary = vocabulary.with_places(tuple(dict.fromkeys(fact.name for fact in places)))
-        shared = [definition for part in parts for definition in all_definitions(part.mission)]
-        self._heads = find_heads(self.text, self.vocabulary)
-        named = {head.words for head in self._heads.values()}
-        self.definitions: Definitions = find_definitions(self.text, self.vocabulary, self._ends, named, shared)
-        self._bounds = [len(self.text.words)]
-        self.known = {key: value for named in (known or {}, *(p.known for p in parts)) for key, value in named.items()}
-        """The values that hold in the whole mission, by key."""
-        if self.known or self._heads or any(header.parameters for header in self.definitions.headers.values()):
-            self._name_values()
-        self.problems += self.definitions.problems
-        self._others = {*self._heads, *self._ends, *self.definitions.headers}
-        """The words at which something stands that is no phrase."""
+        self.names = Names(self.text, vocabulary, load, known)
+        self.problems += self.names.problems
+        self.vocabulary = self.names.vocabulary
+        self._bounds = [*self.names.bounds, len(self.text.words)]
         self.values = self.vocabulary.values.for_reading()
         self.tokens: list[Token] = []
         self._lines()
-        self.conditions: set[str] = self._condition_names({name for part in parts for name in part.conditions})
+        self.conditions = condition_names(self.tokens, self.names.included_conditions())
         """The defined names that stand for conditions."""
         for token in self.tokens:
             if token.kind == "name":
@@ -90,15 +59,8 @@ class Lexer:
 
     def again(self, source: Source) -> Lexer:
         """Another text in the place of this one; it may include what this one does, and nothing is said about it."""
-        return Lexer(source, self._given, explain=False, load=lambda path, _: self._parts.get(path), known=self._named)
-
-    def _name_values(self) -> None:
-        from btlang.frontends.variables import Variables  # most missions have none
-
-        self._variables = Variables(self.text, self.vocabulary, self._heads, self.definitions, self.known)
-        self.known = self._variables.everywhere
-        self._bounds = [*self._variables.bounds, *self._bounds]
-        self.problems += self._variables.problems
+        included = self.names.included
+        return Lexer(source, self._given, explain=False, load=lambda path, _: included.get(path), known=self._shared)
 
     def _lines(self) -> None:
         """Line ends, indents and dedents around the tokens of each line, as in Python."""
@@ -132,19 +94,19 @@ class Lexer:
             self._mark("dedent", len(self.text.words) - 1)
 
     def _line(self, at: int, last: int) -> None:
-        text, names, trie, values = self.text, self.definitions.trie, self.vocabulary.trie, self.values
+        text, names, trie, values = self.text, self.names.definitions.trie, self.vocabulary.trie, self.values
         words, starts, ends, tokens = text.words, text.starts, text.ends, self.tokens
-        headers, heads, others = self.definitions.headers, self._heads, self._others
+        headers, heads, others = self.names.definitions.headers, self.names.heads, self.names.others
         while at < last:
             word = words[at]
             if at >= self._bounds[0]:
                 self._bounds = self._bounds[bisect_right(self._bounds, at) :]
-                values.set_known(self._variables.at(at))
+                values.set_known(self.names.known_at(at))
             if at in others:
                 if at in heads:
                     at = self._statement(heads[at], at)
-                elif at in self._ends:
-                    at = self._ends[at]
+                elif at in self.names.ends:
+                    at = self.names.ends[at]
                 else:
                     header = headers[at]
                     tokens.append(Token("define", header, starts[at], ends[header.body - 1]))
@@ -187,7 +149,7 @@ class Lexer:
 
         if match is None:
             return unknown.explain_unknown(
-                self.text, at, end, self.vocabulary, self.values, self.definitions, self.tokens
+                self.text, at, end, self.vocabulary, self.values, self.names.definitions, self.tokens
             )
         if match.meaning.role == INCLUDE:
             return misplaced(self.text.span(at, end), self.vocabulary)
@@ -261,7 +223,7 @@ class Lexer:
         if read is None:
             span = span_of(self.text, at)
             if self._explain and (
-                head.role in ("each", "remember") or head.key in self.known
+                head.role in ("each", "remember") or head.key in self.names.known
             ):  # else that has been told
                 self.problems.append(self._why(at, at, Match(Meaning(head.role), at)))
             self.tokens.append(Token("unknown", None, span.start, span.end))
@@ -287,55 +249,3 @@ class Lexer:
     def _last_span(self) -> Span:
         last = self.tokens[-1]
         return Span(self.text.source, last.start, last.end)
-
-    def _condition_names(self, included: set[str]) -> set[str]:
-        """A name is a condition where its body holds only conditions, `not`, `and`, `or` and condition names."""
-        needs = {name: _names_in_condition(body) for name, body in _bodies(self.tokens)}
-        needs |= {name: set() for name in included if name not in needs}
-        users: dict[str, list[str]] = {}
-        for name, needed in needs.items():
-            for other in needed or ():
-                users.setdefault(other, []).append(name)
-        conditions: set[str] = set()
-        ready = [name for name, needed in needs.items() if needed is not None and not needed]
-        while ready:
-            name = ready.pop()
-            conditions.add(name)
-            for user in users.get(name, ()):
-                waiting = needs[user]
-                if waiting is not None:
-                    waiting.discard(name)
-                    if not waiting:
-                        ready.append(user)
-        return conditions
-
-
-def called(token: Token) -> Entry:
-    """The entry of a token that is a phrase or a name."""
-    entry: Entry = token.value.entry if type(token.value) is Listed else token.value[0]
-    return entry
-
-
-def _bodies(tokens: list[Token]) -> Iterator[tuple[str, list[Token]]]:
-    """Each definition's name and the tokens of its body, as far as the line or block goes."""
-    for at, token in enumerate(tokens):
-        if token.kind != "define":
-            continue
-        depth, body = 0, []
-        for i in range(at + 1, len(tokens)):
-            inner = tokens[i]
-            depth += (inner.kind == "indent") - (inner.kind == "dedent")
-            if depth < 0 or (depth == 0 and inner.kind in ("newline", "semi", "define")):
-                break
-            body.append(inner)
-        yield token.value.name, body
-
-
-_IN_CONDITIONS = frozenset(("condition", "not", "and", "or", "comma", "open", "close"))
-
-
-def _names_in_condition(body: list[Token]) -> set[str] | None:
-    """The names that a body needs to be conditions in order to be one itself; None where it cannot be one."""
-    if not body or not all(token.kind in _IN_CONDITIONS or token.kind == "name" for token in body):
-        return None
-    return {called(token).id for token in body if token.kind == "name"}

@@ -10,8 +10,9 @@ from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.diagnostics.reading import read_source
 from btlang.frontends.build import Builder
 from btlang.frontends.includes import Included
-from btlang.frontends.lexer import Lexer, Load
+from btlang.frontends.lexer import Lexer
 from btlang.frontends.matching import Matcher
+from btlang.frontends.names import Load
 from btlang.record import Record
 from btlang.text.source import Source, Span
 from btlang.tree.ast import Ast, Definition, Mission, Nothing
@@ -102,7 +103,7 @@ class _Reader:
         lexer = Lexer(source, self._vocabulary, load=self.loader(source, within), known=self._known)
         matcher = Matcher(source, lexer.tokens, lexer.conditions, self._vocabulary.word)
         problems = lexer.problems + matcher.problems
-        if not lexer.tokens and not lexer.facts and not lexer.is_including and not problems:
+        if not lexer.tokens and not lexer.names.facts and not lexer.names.is_including and not problems:
             problems = [diagnostic("BT005", Span(source, 0, 0), example="move forward 1 m")]
         is_broken = any(problem.is_error for problem in problems)
         if is_broken and self._suggest:
@@ -111,8 +112,8 @@ class _Reader:
             problems = with_respellings(lexer, problems)
         self.problems += problems
         if is_broken:
-            return Included(_names_only(source, lexer), frozenset(lexer.conditions), lexer.known)
-        return Included(self._mission(source, lexer, matcher), frozenset(lexer.conditions), lexer.known)
+            return Included(_names_only(source, lexer), frozenset(lexer.conditions), lexer.names.known)
+        return Included(self._mission(source, lexer, matcher), frozenset(lexer.conditions), lexer.names.known)
 
     def _mission(self, source: Source, lexer: Lexer, matcher: Matcher) -> Mission:
         parse = import_module(PARSERS[self._parser]).parse
@@ -126,20 +127,20 @@ class _Reader:
             inner = parse(unit.tokens, build)
             span = Span(source, unit.header.span.start, inner.span.end)
             definitions.pop(unit.header.name, None)  # a later definition replaces an earlier one
-            name, types = unit.header.name, lexer.definitions.types[unit.header.body]
+            name, types = unit.header.name, lexer.names.definitions.types[unit.header.body]
             definitions[name] = Definition(name, types, inner, unit.header.span, span)
-        facts = {fact.name: fact for fact in lexer.facts}  # a later fact replaces an earlier one
+        facts = {fact.name: fact for fact in lexer.names.facts}  # a later fact replaces an earlier one
         whole = Span(source, 0, len(source.text))
-        return Mission(body, tuple(definitions.values()), whole, tuple(facts.values()), tuple(lexer.includes))
+        return Mission(body, tuple(definitions.values()), whole, tuple(facts.values()), tuple(lexer.names.includes))
 
 
 def _names_only(source: Source, lexer: Lexer) -> Mission:
     """The names that a text defines; their bodies do nothing."""
     whole = Span(source, 0, len(source.text))
-    types, headers = lexer.definitions.types, lexer.definitions.headers.values()
+    types, headers = lexer.names.definitions.types, lexer.names.definitions.headers.values()
     definitions = {
         header.name: Definition(header.name, types[header.body], Nothing(whole), header.span, whole)
         for header in headers
         if header.body in types
     }
-    return Mission(None, tuple(definitions.values()), whole, tuple(lexer.facts), tuple(lexer.includes))
+    return Mission(None, tuple(definitions.values()), whole, tuple(lexer.names.facts), tuple(lexer.names.includes))

@@ -109,10 +109,10 @@ class _Respelling:
         """The words of each place at which the text gives a name."""
         words = self._text.words
         named: list[tuple[int, int, tuple[str, ...] | None]]
-        named = [(at, header.body - 1, None) for at, header in lexer.definitions.headers.items()]
+        named = [(at, header.body - 1, None) for at, header in lexer.names.definitions.headers.items()]
         heads = find_heads(self._text, self._vocabulary).items()
         named += [(at, head.last, head.words) for at, head in heads if head.role not in ("increase", "decrease")]
-        for fact in lexer.facts:
+        for fact in lexer.names.facts:
             first = bisect_left(self._text.starts, fact.span.start)
             named.append((first, bisect_left(self._text.starts, fact.span.end), tuple(fact.name.split())))
         for first, last, own in named:

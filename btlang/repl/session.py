@@ -89,8 +89,8 @@ class Session:
         known = self.definitions
         if not known:
             return ""
-        lexer = Lexer(Source(text), self.vocabulary, explain=False)
-        anew = {header.name for header in lexer.definitions.headers.values()} | {fact.name for fact in lexer.facts}
+        names = Lexer(Source(text), self.vocabulary, explain=False).names
+        anew = {header.name for header in names.definitions.headers.values()} | {fact.name for fact in names.facts}
         return "".join(f"{definition}\n" for name, definition in known.items() if name not in anew)
 
     def compile(self, text: str, suggest: bool = True) -> Compiled:
@@ -123,7 +123,7 @@ class Session:
     def _known(self) -> Mapping[str, Known]:
         """The values that entries before have set."""
         if self._known_of[0] != self.text:
-            self._known_of = self.text, lexed(Source(self.text, ENTRY, self._folder), self.vocabulary).known
+            self._known_of = self.text, lexed(Source(self.text, ENTRY, self._folder), self.vocabulary).names.known
         return self._known_of[1]
 
     def compile_all(self) -> RunnableTree:
