@@ -13,13 +13,15 @@ from bisect import bisect
 from collections.abc import Iterator
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.english.sentence import speaker_of
-from btlang.english.speaker import Speaker
 from btlang.passes.lint.gaps import Gaps
 from btlang.passes.lint.other_reading import Attachment, Readings, in_chain, in_form, in_order, is_list
 from btlang.passes.lint.subject import Subject
 from btlang.text.source import Source, Span
 from btlang.tree import ast
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.english.speaker import Speaker
 
 _SENTENCE_END = re.compile(r"[\n;]|[.!?](?=\s)")
 
@@ -38,7 +40,7 @@ def two_readings(subject: Subject) -> Iterator[Diagnostic]:
             if key in told:
                 continue
             told.add(key)
-            speaker = speaker or speaker_of(mission, subject.vocabulary, "all")
+            speaker = speaker or _speaker(subject)
             readings = found.readings()
             if not speaker.say(readings.taken).in_lines:
                 yield _told(readings, speaker)
@@ -70,6 +72,12 @@ def _parts(chain: ast.Chain, subject: Subject) -> Iterator[tuple[ast.Ast, bool]]
 
 def _sentence_ends(source: Source) -> list[int]:
     return [match.start() for match in _SENTENCE_END.finditer(source.text)]
+
+
+def _speaker(subject: Subject) -> Speaker:
+    from btlang.english.sentence import speaker_of  # most missions have nothing to tell
+
+    return speaker_of(subject.mission, subject.vocabulary, "all")
 
 
 def _told(found: Readings, speaker: Speaker) -> Diagnostic:
