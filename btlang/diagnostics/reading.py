@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from codecs import BOM_UTF8
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.text.source import Source, Span
@@ -19,8 +20,9 @@ def read_source(path: str) -> Source:
     except OSError as error:
         nowhere = Span(Source("", path), 0, 0)
         raise MissionError([diagnostic("BT001", nowhere, file=path, reason=reason_of(error))]) from None
+    data = data.removeprefix(BOM_UTF8)
     try:
-        return Source(data.decode("utf-8-sig"), path)
+        return Source(data.decode(), path)
     except UnicodeDecodeError as error:
         readable = data[: error.start].decode("utf-8")
         source = Source(readable + data[error.start :].decode("latin-1"), path)

@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator
 
 from btlang.record import Record
 
-_PIECE = re.compile(r"(?P<mark>\{\{|\}\})|\{(?P<name>[^{}]+)\}|(?P<text>[^{}]+|[{}])")
+_PIECE = r"(?P<mark>\{\{|\}\})|\{(?P<name>[^{}]+)\}|(?P<text>[^{}]+|[{}])"  # compiled when a text needs it
 
 
 class Reference(Record):
@@ -24,7 +24,7 @@ def pieces(text: str) -> list[str | Reference]:
     if "{" not in text and "}" not in text:
         return [text] if text else []
     found: list[str | Reference] = []
-    for match in _PIECE.finditer(text):
+    for match in re.finditer(_PIECE, text):
         if match["name"] is not None:
             found.append(Reference(match["name"]))
             continue
@@ -44,7 +44,7 @@ def keys_in(text: str) -> Iterator[str]:
 
 def renamed(text: str, key: Callable[[str], str]) -> str:
     """The same text with each name in braces replaced by its key."""
-    return _PIECE.sub(lambda match: f"{{{key(match['name'])}}}" if match["name"] is not None else match[0], text)
+    return re.sub(_PIECE, lambda match: f"{{{key(match['name'])}}}" if match["name"] is not None else match[0], text)
 
 
 def plain(text: str) -> str:
