@@ -51,6 +51,8 @@ class Blackboard:
 
     def get(self, key: str) -> Any:
         """Raises KeyError where nothing was set."""
+        if key in self._values:  # most keys are, and this is the quickest way to them
+            return self._values[key]
         scope, key = self._owner(key)
         return scope._values[key]
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from btlang.engine.blackboard import Blackboard
 from btlang.engine.build import Site, blackboard_key, halt_nothing, value_of
 from btlang.engine.leaf import ActionFailed
 from btlang.engine.ports import key_port
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     from typing import Any
 
     from btlang.engine.build import Compiled
+    from btlang.engine.script_values import Enums
 
 
 def set_blackboard(site: Site, children: Sequence[Compiled]) -> Compiled:
@@ -34,16 +36,27 @@ def set_blackboard(site: Site, children: Sequence[Compiled]) -> Compiled:
     def tick() -> int:
         try:
             new: Any = value if key is None else value_of(scope, key)
-            if new.__class__ is str and target in scope and read(scope.get(target)).__class__ is float:
-                new = kept(number(new, enums))
-        except ScriptFailed as failed:
-            return site.fail(f"{{{target}}} holds a number: {failed}")
+            if new.__class__ is str:
+                new = _of_kind(new, scope, target, enums)
         except ActionFailed as failed:
             return site.fail(str(failed))
         scope.set(target, new)
         return SUCCESS
 
     return tick, halt_nothing
+
+
+def _of_kind(new: str, scope: Blackboard, target: str, enums: Enums) -> Any:
+    try:
+        old = scope.get(target)
+    except KeyError:
+        return new
+    if old.__class__ is str or read(old).__class__ is not float:
+        return new
+    try:
+        return kept(number(new, enums))
+    except ScriptFailed as failed:
+        raise ActionFailed(f"{{{target}}} holds a number: {failed}") from None
 
 
 def unset_blackboard(site: Site, children: Sequence[Compiled]) -> Compiled:

@@ -89,8 +89,7 @@ def _loop(site: Site, children: Sequence[Compiled], convert: Callable[[str], Any
         status = child()
         running = status == RUNNING
         if status == FAILURE:
-            if not stays:
-                reset()
+            reset()
             return FAILURE
         return RUNNING
 
