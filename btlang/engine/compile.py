@@ -25,7 +25,7 @@ from btlang.engine.leaf import ActionFailed
 from btlang.engine.subtree import child_scope, subtree
 from btlang.engine.switch import switch, switch_ports
 from btlang.engine.try_catch import try_catch
-from btlang.engine.watch import Watch
+from btlang.engine.watch import REPEATING, Watch
 from btlang.engine.whenever import whenever
 from btlang.record import Record
 from btlang.tree.node import Node, Tree
@@ -94,7 +94,6 @@ NODE_TYPES = {
     "ScriptCondition": NodeType(script_nodes.script_condition, 0, 0, ("code",)),
 }
 _SUBTREE = NodeType(subtree, 1, 1)
-_REPEATING = {"Repeat", "KeepRunningUntilFailure", "LoopInt", "LoopBool", "LoopDouble", "LoopString"}
 
 
 class Place(Record):
@@ -148,6 +147,7 @@ def _root_of(node: Node, name: str, subtrees: dict[str, Node]) -> Node:
 
 def compile_places(places: Sequence[Place], shared: Shared, listener: Listener | None) -> Compiled:
     """Compiles from the last node to the root, so that children are there before their parents."""
+    ticks = [0]  # for the watches: the number of the tick
     waiting: dict[int, list[tuple[Compiled, Watch | None]]] = {}  # compiled children by parent, last child first
     for index in range(len(places) - 1, -1, -1):
         place = places[index]
@@ -155,7 +155,7 @@ def compile_places(places: Sequence[Place], shared: Shared, listener: Listener |
         parent = places[place.parent].node.id if place.parent >= 0 else ""
         watch = None
         if listener is not None:
-            watch = Watch(index, listener, parent in _REPEATING)
+            watch = Watch(index, listener, parent in REPEATING, ticks)
             watch.below = [child for _, child in children if child is not None]
         site = Site(place.node, index, place.scope, shared, watch, parent)
         compiled = _compile(site, [child for child, _ in children])

@@ -154,6 +154,28 @@ def test_a_condition_that_is_waited_for_is_told_once() -> None:
     assert told(n("RetryUntilSuccessful", world.fn("A", "fffs"), num_attempts=-1), world, 4) == ["1f0r", "", "", "1s0s"]
 
 
+def test_a_round_that_lasts_after_one_within_a_tick_is_told_whole() -> None:
+    world = World()
+    attempt = n("Sequence", world.fn("A", "s"), world.cls("B", "frs"), world.fn("C", "s"))
+    assert told(n("RetryUntilSuccessful", attempt, num_attempts=-1), world, 3) == ["2s3r3f1f0r", "3r2s1r", "3s4s1s0s"]
+
+
+def test_what_a_lasting_round_has_not_reached_is_told_when_it_is() -> None:
+    world = World()
+    attempt = n("Fallback", world.cls("A", "frff"), n("Inverter", world.fn("B", "s")))
+    root = n("RetryUntilSuccessful", attempt, num_attempts=-1)
+    assert told(root, world, 3) == ["2r2f4s3f1f0r", "2r1r", "2f4s3f1f2r2f4s3f"]
+
+
+def test_a_deep_tree_that_lasts_after_a_round_within_a_tick() -> None:
+    world = World()
+    root = world.fn("A", "sr")
+    for _ in range(10_000):
+        root = n("Inverter", root)
+    words = told(n("RetryUntilSuccessful", n("Inverter", root), num_attempts=-1), world, 2)
+    assert [len(word.split("r")) for word in words] == [2, 10_003]
+
+
 def test_an_interrupted_action_is_told_before_the_one_that_replaces_it() -> None:
     world = World()
     first = n("Sequence", world.fn("C", "fs"), world.cls("A", "r"))
