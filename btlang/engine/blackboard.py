@@ -10,32 +10,49 @@ if TYPE_CHECKING:
 
 
 class Blackboard:
-    """One scope of named values. A subtree has its own scope and sees of its parent's only the keys remapped to it.
+    """One scope of named values; blackboard.cpp of BehaviorTree.CPP 4.10.
 
-    A key `@name` is the key `name` of the outermost scope, whatever is remapped, as in BehaviorTree.CPP.
+    A subtree has its own scope and sees of its parent's only the keys remapped to it. With `shares`, each key is also
+    the parent's, but for those that the scope has values of its own for, and private ones, which begin with `_`.
+    A key `@name` is the key `name` of the outermost scope, whatever is remapped.
+
+    One difference: a subtree that unsets a key of its parent's unsets it there. In C++ it only forgets it itself.
     """
 
-    __slots__ = ("_outermost", "_remapped", "_values")
+    __slots__ = ("_outermost", "_remapped", "_shared", "_values", "_writes")
 
     def __init__(
-        self, remapped: Mapping[str, tuple[Blackboard, str]] | None = None, parent: Blackboard | None = None
+        self,
+        remapped: Mapping[str, tuple[Blackboard, str]] | None = None,
+        parent: Blackboard | None = None,
+        *,
+        shares: bool = False,
+        values: Mapping[str, Any] | None = None,
     ) -> None:
-        self._values: dict[str, Any] = {}
+        self._values = dict(values or {})
         self._remapped = dict(remapped or {})
         self._outermost: Blackboard = self if parent is None else parent._outermost
+        self._shared = parent if shares else None
+        self._writes: dict[str, int] = {}  # only of keys that somebody has asked for
 
     def _owner(self, key: str) -> tuple[Blackboard, str]:
         scope = self
         while True:
+            if key in scope._values:
+                return scope, key
             if key[:1] == "@":
                 scope, key = scope._outermost, key[1:]
             elif key in scope._remapped:
                 scope, key = scope._remapped[key]
+            elif scope._shared is not None and key[:1] != "_":
+                scope = scope._shared
             else:
                 return scope, key
 
     def get(self, key: str) -> Any:
         """Raises KeyError where nothing was set."""
+        if key in self._values:  # most keys are, and this is the quickest way to them
+            return self._values[key]
         scope, key = self._owner(key)
         return scope._values[key]
 
@@ -43,16 +60,30 @@ class Blackboard:
         """Sets the value in the scope that owns the key."""
         scope, key = self._owner(key)
         scope._values[key] = value
+        if key in scope._writes:
+            scope._writes[key] += 1
 
     def unset(self, key: str) -> None:
         """Nothing is set any more in the scope that owns the key."""
         scope, key = self._owner(key)
         scope._values.pop(key, None)
 
+    def writes(self, key: str) -> int:
+        """How often the key was set, to whatever value, since this was first asked of it."""
+        scope, key = self._owner(key)
+        return scope._writes.setdefault(key, 0)
+
     def __contains__(self, key: str) -> bool:
         scope, key = self._owner(key)
         return key in scope._values
 
     def keys(self) -> list[str]:
-        """The keys that can be read here: own ones, then remapped ones that have a value."""
-        return [*self._values, *(key for key in self._remapped if key in self)]
+        """The keys that can be read here: own ones, then the parent's that have a value."""
+        found = dict.fromkeys(self._values)
+        scope: Blackboard | None = self
+        while scope is not None:  # a loop: subtrees that share their keys may be nested deeply
+            found.update(dict.fromkeys(key for key in scope._remapped if key in self))
+            scope = scope._shared
+            if scope is not None:
+                found.update(dict.fromkeys(key for key in scope._values if key[:1] != "_"))
+        return list(found)

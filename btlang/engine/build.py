@@ -51,14 +51,21 @@ class Fault(Record):
 class Shared:
     """What all nodes of one engine share."""
 
-    __slots__ = ("bind", "clock", "fault", "halt_faults", "interrupts", "plans", "service_names", "services")
+    __slots__ = ("bind", "clock", "enums", "fault", "halt_faults", "interrupts", "plans", "service_names", "services")
 
-    def __init__(self, bind: Callable[[str], LeafBinding | None], clock: Clock, services: Mapping[str, Any]) -> None:
+    def __init__(
+        self,
+        bind: Callable[[str], LeafBinding | None],
+        clock: Clock,
+        services: Mapping[str, Any],
+        enums: Mapping[str, float],
+    ) -> None:
         self.bind = bind
         self.clock = clock
         self.services = {"clock": clock, **services}
         self.service_names = frozenset(("blackboard", *self.services))
         self.plans: dict[str, Plan] = {}  # of the leaves that were bound so far, by id
+        self.enums = {name: float(value) for name, value in enums.items()}  # names that scripts and Switch nodes know
         self.fault: Fault | None = None  # the latest failure
         self.halt_faults: list[Fault] = []  # exceptions that leaves raised while they were halted
         # what reactive nodes that are at another child want stopped before an action starts there
@@ -66,16 +73,22 @@ class Shared:
 
 
 class Site:
-    """Where a node is compiled: the node, its index in preorder, its blackboard, and what the engine shares."""
+    """Where a node is compiled: the node, its index in preorder, its blackboard, and what the engine shares.
 
-    __slots__ = ("_plain", "index", "node", "scope", "shared", "watch")
+    `parent` is the id of the node above, "" for the root.
+    """
 
-    def __init__(self, node: Node, index: int, scope: Blackboard, shared: Shared, watch: Watch | None) -> None:
+    __slots__ = ("_plain", "index", "node", "parent", "scope", "shared", "watch")
+
+    def __init__(
+        self, node: Node, index: int, scope: Blackboard, shared: Shared, watch: Watch | None, parent: str = ""
+    ) -> None:
         self.node = node
         self.index = index
         self.scope = scope
         self.shared = shared
         self.watch = watch
+        self.parent = parent
         self._plain: Fault | None = None
 
     def fail(self, reason: str = "", exception: BaseException | None = None) -> int:

@@ -4,12 +4,28 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from btlang.engine import branch, control, decorators, leaves, reactive, script_nodes, timed
+from btlang.engine import (
+    blackboard_nodes,
+    branch,
+    control,
+    decorators,
+    guards,
+    leaves,
+    loops,
+    nav2,
+    reactive,
+    script_nodes,
+    timed,
+    updates,
+)
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.build import EngineError, Shared, Site
+from btlang.engine.conditions import conditioned
 from btlang.engine.leaf import ActionFailed
 from btlang.engine.subtree import child_scope, subtree
-from btlang.engine.watch import Watch
+from btlang.engine.switch import switch, switch_ports
+from btlang.engine.try_catch import try_catch
+from btlang.engine.watch import REPEATING, Watch
 from btlang.engine.whenever import whenever
 from btlang.record import Record
 from btlang.tree.node import Node, Tree
@@ -45,7 +61,12 @@ NODE_TYPES = {
     "ReactiveFallback": NodeType(reactive.reactive_fallback, 1, _MANY),
     "IfThenElse": NodeType(branch.if_then_else, 2, 3),
     "WhileDoElse": NodeType(branch.while_do_else, 2, 3),
+    **{f"Switch{cases}": NodeType(switch, cases + 1, cases + 1, switch_ports(cases)) for cases in range(2, 7)},
+    "TryCatch": NodeType(try_catch, 2, _MANY, ("catch_on_halt",)),
     "Whenever": NodeType(whenever, 3, 3),
+    "PipelineSequence": NodeType(nav2.pipeline_sequence, 1, _MANY),
+    "RecoveryNode": NodeType(nav2.recovery_node, 2, 2, ("number_of_retries",)),
+    "RoundRobin": NodeType(nav2.round_robin, 1, _MANY),
     "Inverter": NodeType(decorators.inverter, 1, 1),
     "ForceSuccess": NodeType(decorators.force_success, 1, 1),
     "ForceFailure": NodeType(decorators.force_failure, 1, 1),
@@ -53,10 +74,22 @@ NODE_TYPES = {
     "RetryUntilSuccessful": NodeType(decorators.retry_until_successful, 1, 1, ("num_attempts",)),
     "Timeout": NodeType(timed.timeout, 1, 1, ("msec",)),
     "Delay": NodeType(timed.delay, 1, 1, ("delay_msec",)),
+    "RateController": NodeType(nav2.rate_controller, 1, 1, ("hz",)),
+    "KeepRunningUntilFailure": NodeType(guards.keep_running_until_failure, 1, 1),
+    "RunOnce": NodeType(guards.run_once, 1, 1, ("then_skip",)),
+    "Precondition": NodeType(guards.precondition, 1, 1, ("if", "else")),
+    "LoopInt": NodeType(loops.loop_int, 1, 1, loops.LOOP_PORTS),
+    "LoopBool": NodeType(loops.loop_bool, 1, 1, loops.LOOP_PORTS),
+    "LoopDouble": NodeType(loops.loop_double, 1, 1, loops.LOOP_PORTS),
+    "LoopString": NodeType(loops.loop_string, 1, 1, loops.LOOP_PORTS),
+    "SkipUnlessUpdated": NodeType(updates.skip_unless_updated, 1, 1, ("entry",)),
+    "WaitValueUpdate": NodeType(updates.wait_value_update, 1, 1, ("entry",)),
+    "WasEntryUpdated": NodeType(updates.was_entry_updated, 0, 0, ("entry",)),
     "Sleep": NodeType(timed.sleep, 0, 0, ("msec",)),
     "AlwaysSuccess": NodeType(leaves.always_success, 0, 0),
     "AlwaysFailure": NodeType(leaves.always_failure, 0, 0),
-    "SetBlackboard": NodeType(leaves.set_blackboard, 0, 0, ("value", "output_key")),
+    "SetBlackboard": NodeType(blackboard_nodes.set_blackboard, 0, 0, ("value", "output_key")),
+    "UnsetBlackboard": NodeType(blackboard_nodes.unset_blackboard, 0, 0, ("key",)),
     "Script": NodeType(script_nodes.script, 0, 0, ("code",)),
     "ScriptCondition": NodeType(script_nodes.script_condition, 0, 0, ("code",)),
 }
@@ -118,6 +151,7 @@ def _root_of(node: Node, name: str, subtrees: dict[str, Node]) -> Node:
 
 def compile_places(places: Sequence[Place], shared: Shared, listener: Listener | None) -> Compiled:
     """Compiles from the last node to the root, so that children are there before their parents."""
+    ticks = [0]  # for the watches: the number of the tick
     waiting: list[Compiled] = []  # compiled nodes whose parents come later, so that the last ones are the next one's
     watches: list[Watch] = []
     for index in range(len(places) - 1, -1, -1):
@@ -128,13 +162,13 @@ def compile_places(places: Sequence[Place], shared: Shared, listener: Listener |
         if count:
             children = waiting[: -count - 1 : -1]
             del waiting[-count:]
+        parent = places[place.parent].node.id if place.parent >= 0 else ""
         watch = None
         if listener is not None:
-            repeated = place.parent >= 0 and places[place.parent].node.id == "Repeat"
-            watch = Watch(index, listener, repeated)
+            watch = Watch(index, listener, parent in REPEATING, ticks)
             watch.below = watches[: -count - 1 : -1] if count else []
             watches[len(watches) - count :] = [watch]
-        compiled = _compile(Site(node, index, place.scope, shared, watch), children)
+        compiled = _compile(Site(node, index, place.scope, shared, watch, parent), children)
         if watch is not None:
             compiled = watch.wrap(compiled)
         waiting.append(compiled)
@@ -158,7 +192,7 @@ def _compile(site: Site, children: Sequence[Compiled]) -> Compiled:
             if "{" in text and port in kind.ports:
                 compiled = _checked(site, compiled)
                 break
-    return leaves.skipped(site, ()) if node.ports and _is_skipped(site) else compiled
+    return conditioned(site, compiled) if node.ports else compiled
 
 
 def _compile_leaf(site: Site, children: Sequence[Compiled]) -> Compiled:
@@ -178,17 +212,6 @@ def _how_many(kind: NodeType) -> str:
     if kind.most == _MANY:
         return f"{kind.least} or more"
     return str(kind.least) if kind.least == kind.most else f"{kind.least} or {kind.most}"
-
-
-def _is_skipped(site: Site) -> bool:
-    """The value of the port _skipIf, the one pre-condition there is."""
-    special = [(port, text) for port, text in site.node.ports if port[:1] == "_"]
-    for port, text in special:
-        if not (port == "_skipIf" and text in ("true", "false")):
-            if port == "_autoremap" and site.node.id == "SubTree":
-                continue
-            raise site.error(f'{port}="{text}" is not supported, only _skipIf="true" and "false"')
-    return bool(special) and site.node.port("_skipIf") == "true"
 
 
 def _checked(site: Site, compiled: Compiled) -> Compiled:

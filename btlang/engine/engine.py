@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
     from btlang.engine.watch import Listener
 
-_FRAMES_PER_LEVEL = 3  # a node, its watch, and the check of ports from the blackboard
+_FRAMES_PER_LEVEL = 4  # a node, its watch, its pre-conditions, and the check of ports from the blackboard
 _FRAMES_FOR_LEAVES = 1000
 
 
@@ -44,6 +44,8 @@ class Failure(Record):
 class Engine:
     """A compiled tree. `bind` gives the Python side of a leaf id, `services` what leaves may ask for by name.
 
+    `enums` are names of numbers that scripts and the cases of Switch nodes may use.
+
     Raises EngineError where the tree cannot be compiled. `listener` is called with the index of a node in preorder and
     its new status at every change, children before parents; see watch.py for what counts as one.
     """
@@ -57,9 +59,10 @@ class Engine:
         services: Mapping[str, Any] = {},
         blackboard: Blackboard | None = None,
         listener: Listener | None = None,
+        enums: Mapping[str, float] = {},
     ) -> None:
         self.blackboard = Blackboard() if blackboard is None else blackboard
-        self._shared = Shared(bind, clock, services)
+        self._shared = Shared(bind, clock, services, enums)
         with no_collection:
             self._places = expand(tree, self.blackboard)
             self._tick, self._halt = compile_places(self._places, self._shared, listener)

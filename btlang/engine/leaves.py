@@ -33,24 +33,6 @@ def always_failure(site: Site, children: Sequence[Compiled]) -> Compiled:
     return site.fail, halt_nothing
 
 
-def set_blackboard(site: Site, children: Sequence[Compiled]) -> Compiled:
-    """The port `value`, a text or a `{key}` to copy, goes under the key `output_key` (set_blackboard_node.h)."""
-    scope, value, target = site.scope, site.node.port("value"), site.node.port("output_key")
-    target = blackboard_key("output_key", target) or target
-    if not target:
-        raise site.error("SetBlackboard needs a port output_key")
-    key = blackboard_key("value", value)
-
-    def tick() -> int:
-        try:
-            scope.set(target, value if key is None else scope.get(key))
-        except KeyError:
-            return site.fail(f"{{{key}}} has no value")
-        return SUCCESS
-
-    return tick, halt_nothing
-
-
 def skipped(site: Site, children: Sequence[Compiled]) -> Compiled:
     """What a node with _skipIf="true" is: SKIPPED, and nothing below it is ticked."""
     return (lambda: SKIPPED), halt_nothing

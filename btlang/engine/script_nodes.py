@@ -5,7 +5,7 @@ Where those raise an exception because the script cannot go on, these fail with 
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.build import Site, blackboard_key, halt_nothing, value_of
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 def script(site: Site, children: Sequence[Compiled]) -> Compiled:
     """Runs its code: SUCCESS."""
-    run, scope = _code(site), site.scope
+    run, scope = script_of(site, "code"), site.scope
 
     def tick() -> int:
         try:
@@ -36,7 +36,7 @@ def script(site: Site, children: Sequence[Compiled]) -> Compiled:
 
 def script_condition(site: Site, children: Sequence[Compiled]) -> Compiled:
     """Runs its code: SUCCESS where the value is true, else FAILURE."""
-    run, scope = _code(site), site.scope
+    run, scope = script_of(site, "code"), site.scope
 
     def tick() -> int:
         try:
@@ -47,21 +47,26 @@ def script_condition(site: Site, children: Sequence[Compiled]) -> Compiled:
     return tick, halt_nothing
 
 
-def _code(site: Site) -> Callable[[Blackboard], Any]:
-    """What the port `code` says, or what the text under its `{key}` says at the time."""
-    text = site.node.port("code")
-    key = blackboard_key("code", text)
+def script_of(site: Site, port: str) -> Callable[[Blackboard], Any]:
+    """What the port says, or what the text under its `{key}` says at the time."""
+    text = site.node.port(port)
+    key = blackboard_key(port, text)
     if key is not None:
-        return _stored_code(key)
+        return _stored_code(key, site.shared.enums)
     if not text:
-        raise site.error(f"{site.node.id} needs a port code")
+        raise site.error(f"{site.node.id} needs a port {port}")
+    return read_script(site, port, text)
+
+
+def read_script(site: Site, port: str, text: str) -> Callable[[Blackboard], Any]:
+    """The compiled text; raises EngineError where it is no script."""
     try:
-        return compile_script(text)
+        return compile_script(text, site.shared.enums)
     except ScriptError as problem:
-        raise site.error(f"its code {text!r} cannot be read: {problem}") from problem
+        raise site.error(f"its {port} {text!r} cannot be read: {problem}") from problem
 
 
-def _stored_code(key: str) -> Callable[[Blackboard], Any]:
+def _stored_code(key: str, enums: Mapping[str, float]) -> Callable[[Blackboard], Any]:
     latest: object = None
     run: Callable[[Blackboard], Any] | None = None
 
@@ -70,7 +75,7 @@ def _stored_code(key: str) -> Callable[[Blackboard], Any]:
         text = value_of(scope, key)
         if run is None or text != latest:
             try:
-                latest, run = text, compile_script(str(text))
+                latest, run = text, compile_script(str(text), enums)
             except ScriptError as problem:
                 raise ScriptFailed(f"{{{key}}} holds no script: {problem}") from problem
         return run(scope)

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.build import EngineError, Site, blackboard_key
+from btlang.engine.ports import TRUTHS
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False
@@ -23,13 +24,19 @@ def child_scope(node: Node, scope: Blackboard) -> Blackboard:
     """The blackboard of a SubTree node's tree.
 
     A port `key="{other}"` makes `key` there a name for `other` here, any other text is a value set once, as in C++.
+    With `_autoremap="true"` all keys but private ones (`_name`) are shared that have no port.
     """
-    if node.port("_autoremap", "false") not in ("false", "0"):
-        raise EngineError("_autoremap is not supported: name each key that the subtree shares", node)
-    ports = [(port, text) for port, text in node.ports if port != "ID" and not port.startswith("_")]
-    keys = {port: blackboard_key(port, text) for port, text in ports}
-    child = Blackboard({port: (scope, key) for port, key in keys.items() if key is not None}, scope)
-    for port, text in ports:
-        if keys[port] is None:
-            child.set(port, text)
-    return child
+    shares = TRUTHS.get(text := node.port("_autoremap", "false"))
+    if shares is None:
+        raise EngineError(f"_autoremap must be true or false, not {text!r}", node)
+    remapped: dict[str, tuple[Blackboard, str]] = {}
+    values: dict[str, str] = {}
+    for port, text in node.ports:
+        if port == "ID" or port.startswith("_"):
+            continue
+        key = blackboard_key(port, text)
+        if key is None:
+            values[port] = text
+        else:
+            remapped[port] = (scope, key)
+    return Blackboard(remapped, scope, shares=shares, values=values)

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 _SLACK = 1e-9  # twenty ticks of 0.05 s are 1 s, whatever floating point makes of their sum
 
 
-class _Stopwatch:
+class Stopwatch:
     """Runs from its first reading; `halt(keep)` pauses or resets it."""
 
     __slots__ = ("clock", "kept", "since")
@@ -29,7 +29,7 @@ class _Stopwatch:
         self.kept = 0.0
         self.since: float | None = None
 
-    def reached(self, msec: int) -> bool:
+    def reached(self, msec: float) -> bool:
         """Whether so much time has passed."""
         if self.since is None:
             self.since = self.clock.now
@@ -46,7 +46,7 @@ class _Stopwatch:
 def sleep(site: Site, children: Sequence[Compiled]) -> Compiled:
     """RUNNING until msec have passed, then SUCCESS."""
     msec = site.number("msec")
-    watch = _Stopwatch(site.shared.clock)
+    watch = Stopwatch(site.shared.clock)
 
     def tick() -> int:
         if not watch.reached(msec()):
@@ -61,7 +61,7 @@ def delay(site: Site, children: Sequence[Compiled]) -> Compiled:
     """RUNNING until delay_msec have passed, then its child; a SKIPPED child is ticked again without a delay."""
     [(child, halt_child)] = children
     msec = site.number("delay_msec")
-    watch = _Stopwatch(site.shared.clock)
+    watch = Stopwatch(site.shared.clock)
 
     def tick() -> int:
         if not watch.reached(msec()):
@@ -82,7 +82,7 @@ def timeout(site: Site, children: Sequence[Compiled]) -> Compiled:
     """Its child; one that is still RUNNING when msec have passed is halted, not ticked again: FAILURE. 0: no limit."""
     [(child, halt_child)] = children
     msec = site.number("msec")
-    watch = _Stopwatch(site.shared.clock)
+    watch = Stopwatch(site.shared.clock)
 
     def tick() -> int:
         limit = msec()

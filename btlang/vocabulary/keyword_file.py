@@ -22,7 +22,10 @@ NODE_IDS = frozenset((
     "Sequence", "Fallback", "AsyncSequence", "AsyncFallback", "SequenceWithMemory", "Parallel", "ParallelAll",
     "ReactiveSequence", "ReactiveFallback", "IfThenElse", "WhileDoElse", "Inverter", "ForceSuccess", "ForceFailure",
     "Repeat", "RetryUntilSuccessful", "Timeout", "Delay", "Sleep", "AlwaysSuccess", "AlwaysFailure", "SubTree",
-    "Whenever", "SetBlackboard", "Script", "ScriptCondition",
+    "Whenever", "SetBlackboard", "UnsetBlackboard", "Script", "ScriptCondition", "Switch2", "Switch3", "Switch4",
+    "Switch5", "Switch6", "TryCatch", "KeepRunningUntilFailure", "RunOnce", "Precondition", "LoopInt", "LoopBool",
+    "LoopDouble", "LoopString", "SkipUnlessUpdated", "WaitValueUpdate", "WasEntryUpdated", "PipelineSequence",
+    "RecoveryNode", "RoundRobin", "RateController",
 ))  # fmt: skip
 """Ids that are not free: those of the engine."""
 _ENTRY = {"phrase", "id", "call", "ros", "slots", "resources", "topic", "help", "example"}

@@ -1,7 +1,8 @@
 """A plain interpreter of trees with the semantics of BehaviorTree.CPP 4.10, to compare the engine with.
 
 Each node has a status, as in C++; SKIPPED is returned but not kept. Before a class leaf (id `C...`) starts, each node
-above it that asks its children anew and has a running child elsewhere halts that.
+above it that asks its children anew and has a running child elsewhere halts that. A suspended leaf keeps the status
+RUNNING, but is `stopped`: it starts anew.
 """
 
 from __future__ import annotations
@@ -12,43 +13,90 @@ from btlang.engine.clock import Clock
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 from btlang.tree.node import Node
 
+from .reference_nodes import Board, MoreNodes
 from .scripted import STATUS
 
 
-class Reference:
+class Reference(MoreNodes):
     """One node and, below it, the others. `scripts` gives each leaf's letters; each call takes the next."""
 
     def __init__(
-        self, node: Node, scripts: dict[str, str], log: list[str], clock: Clock, parent: Reference | None = None
+        self,
+        node: Node,
+        scripts: dict[str, str],
+        log: list[str],
+        clock: Clock,
+        board: Board,
+        parent: Reference | None = None,
     ) -> None:
-        self.node, self.scripts, self.log, self.clock, self.parent = node, scripts, log, clock, parent
-        self.children = [Reference(child, scripts, log, clock, self) for child in node.children]
+        self.node, self.scripts, self.log, self.clock, self.board, self.parent = (
+            node,
+            scripts,
+            log,
+            clock,
+            board,
+            parent,
+        )
+        self.children = [Reference(child, scripts, log, clock, board, self) for child in node.children]
         self.status = IDLE
-        self.calls = self.at = self.count = self.skipped = 0
+        self.calls = self.at = self.count = self.skipped = self.seen = 0
         self.completed: set[int] = set()
         self.failures = self.successes = 0
         self.since: float | None = None
-        self.late = False
+        self.kept = 0.0
+        self.late = self.started = self.stopped = self.catching = self.reacting = self.working = False
+        self.armed = True
+        self.once = IDLE
+        self.queue: list[str] = []
         self.behaviour: Callable[[], int] = getattr(self, node.id, self.leaf)
 
     def execute(self) -> int:
-        if self.node.port("_skipIf") == "true":
-            return SKIPPED
-        result = self.behaviour()
+        result = self.decided()
+        if result == IDLE:
+            result = self.behaviour()
+            self.started = result == RUNNING
+        elif self.status == RUNNING:
+            self.halt()
+        result = self.afterwards(result)
         if result != SKIPPED:
             self.status = result
         return result
 
     def halt(self) -> None:
-        if self.node.id.startswith("C") and self.status == RUNNING:
+        if self.node.id.startswith("C") and self.status == RUNNING and not self.stopped:
             self.log.append(f"{self.node.id}.halt")
         self.reset_children()
         if self.node.id != "SequenceWithMemory":
             self.at = 0
         self.count = self.skipped = self.failures = self.successes = 0
         self.completed.clear()
-        self.since = None
-        self.late = False
+        self.stop_watch()
+        self.late = self.stopped = self.catching = self.reacting = self.working = False
+        self.armed = True
+        self.status = IDLE
+        if self.started:
+            self.started = False
+            self.run_script("_onHalted")
+
+    def suspend(self) -> None:
+        if self.node.id.startswith("C") and self.status == RUNNING and not self.stopped:
+            self.log.append(f"{self.node.id}.halt")
+            self.stopped = True
+        if self.since is not None:
+            self.kept += self.clock.now - self.since
+            self.since = None
+        if self.node.id == "Whenever":
+            self.working = False
+        for child in self.children:
+            child.suspend()
+
+    def passed(self) -> float:
+        if self.since is None:
+            self.since = self.clock.now
+        return self.kept + self.clock.now - self.since
+
+    def stop_watch(self) -> None:
+        self.since, self.kept = None, 0.0
 
     def reset(self) -> None:
         if self.status == RUNNING:
@@ -67,14 +115,21 @@ class Reference:
     def leaf(self) -> int:
         name = self.node.id
         if name.startswith("C"):
-            if self.status != RUNNING:
+            runs = self.status == RUNNING and not self.stopped
+            if not runs:
                 self.interrupt()
-            self.log.append(f"{name}.{'tick' if self.status == RUNNING else 'start'}")
+            self.stopped = False
+            self.log.append(f"{name}.{'tick' if runs else 'start'}")
         else:
             self.log.append(name)
         script = self.scripts[name]
-        result = STATUS[script[self.calls % len(script)]]
+        letter = script[self.calls % len(script)]
         self.calls += 1
+        if letter == "x":
+            if name.startswith("C"):
+                self.log.append(f"{name}.halt")
+            return FAILURE
+        result = STATUS[letter]
         if result == SKIPPED:
             self.status = IDLE
         return result
@@ -87,21 +142,15 @@ class Reference:
                     polled = above.node.id == "WhileDoElse" and below is not above.children[0]
                     if child is not below and child.status == RUNNING and not polled:
                         child.reset()
+            if above.node.id == "Whenever" and below is above.children[0] and above.working:
+                above.working = False
+                above.children[2].suspend()
             below, above = above, above.parent
 
-    def Script(self) -> int:
-        """The random trees have three scripts, one of which cannot go on."""
-        return FAILURE if self.node.port("code") == "gone" else SUCCESS
-
-    def ScriptCondition(self) -> int:
-        return SUCCESS if self.node.port("code") == "2 > 1" else FAILURE
-
     def Sleep(self) -> int:
-        if self.since is None:
-            self.since = self.clock.now
-        if self.clock.now - self.since < self.number("msec") / 1000:
+        if self.passed() < self.number("msec") / 1000:
             return RUNNING
-        self.since = None
+        self.stop_watch()
         return SUCCESS
 
     # in order
@@ -240,6 +289,7 @@ class Reference:
         condition = self.children[0].execute()
         if condition == RUNNING:
             return RUNNING
+        self.children[0].reset()
         if condition == SKIPPED:
             result = FAILURE
         elif condition == SUCCESS:
@@ -302,29 +352,26 @@ class Reference:
     def Timeout(self) -> int:
         [child] = self.children
         self.status = RUNNING
-        if self.since is None:
-            self.since = self.clock.now
-        elif child.status == RUNNING and self.clock.now - self.since >= self.number("msec") / 1000:
+        if self.passed() >= self.number("msec") / 1000 and child.status == RUNNING:
             child.reset()
-            self.since = None
+            self.stop_watch()
             return FAILURE
         result = child.execute()
         if result != RUNNING:
-            self.since = None
+            self.stop_watch()
+        if result in (SUCCESS, FAILURE):
             child.reset()
         return result
 
     def Delay(self) -> int:
         [child] = self.children
         self.status = RUNNING
-        if self.since is None:
-            self.since = self.clock.now
-        self.late = self.late or self.clock.now - self.since >= self.number("delay_msec") / 1000
+        self.late = self.passed() >= self.number("delay_msec") / 1000 or self.late
         if not self.late:
             return RUNNING
         result = child.execute()
         if result in (SUCCESS, FAILURE):
-            self.since = None
+            self.stop_watch()
             self.late = False
             child.reset()
         return result

@@ -21,11 +21,19 @@ def n(id: str, *children: Node, **ports: object) -> Node:
     return Node(id, children, tuple((port, str(text)) for port, text in ports.items()))
 
 
+def said(letter: str) -> int:
+    """The status of a letter."""
+    if letter == "x":
+        raise ValueError("as its script says")
+    return STATUS[letter]
+
+
 class World:
     """Binds leaf ids to scripts and logs what the engine does with them.
 
     `fn(id, "rsf")` is a function that returns RUNNING, SUCCESS, FAILURE and so on in turn, over and over.
     `cls(id, ...)` is a class whose start and tick do.
+    The letter `x` raises an exception.
     `gen(id, ...)` is a generator, each run of which ends at the next letter that is not `r`.
     The log has `id` for a function's call and `id.start`, `id.tick`, `id.halt` for the others.
     """
@@ -45,7 +53,7 @@ class World:
 
         def call() -> int:
             self.log.append(id)
-            return STATUS[next(statuses)]
+            return said(next(statuses))
 
         return self.bind(id, call)
 
@@ -55,11 +63,11 @@ class World:
         class Leaf:
             def start(self) -> int:
                 log.append(f"{id}.start")
-                return STATUS[next(statuses)]
+                return said(next(statuses))
 
             def tick(self) -> int:
                 log.append(f"{id}.tick")
-                return STATUS[next(statuses)]
+                return said(next(statuses))
 
             def halt(self) -> None:
                 log.append(f"{id}.halt")
@@ -74,7 +82,7 @@ class World:
             try:
                 while True:
                     self.log.append(f"{id}.{step}")
-                    status = STATUS[next(statuses)]
+                    status = said(next(statuses))
                     if status != RUNNING:
                         return status
                     step = "tick"

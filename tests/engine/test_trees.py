@@ -5,6 +5,7 @@ from __future__ import annotations
 import pytest
 
 from btlang.engine import compile as compiling
+from btlang.engine.blackboard import Blackboard
 from btlang.engine.build import EngineError
 from btlang.engine.status import FAILURE, RUNNING, SUCCESS
 from btlang.tree.node import Node, Tree
@@ -84,10 +85,40 @@ def test_a_tree_that_grows_too_large(monkeypatch: pytest.MonkeyPatch) -> None:
         World().engine(Tree(n("SubTree", ID="t0"), (*levels, ("t50", n("AlwaysSuccess")))))
 
 
-def test_autoremap_is_refused() -> None:
-    tree = Tree(n("SubTree", ID="a", _autoremap="true"), (("a", n("AlwaysSuccess")),))
-    with pytest.raises(EngineError, match="_autoremap is not supported"):
-        World().engine(tree)
+def test_autoremap_shares_all_but_private_keys_and_ports() -> None:
+    body = n(
+        "Sequence",
+        n("ScriptCondition", code="x == 1 && port == 'here' && other == 1"),
+        n("Script", code="x := 2; made := 3; _own := 4; port := 'there'; @top := 5"),
+        n("SubTree", ID="inner", _autoremap="1"),
+    )
+    inner = n("Sequence", n("ScriptCondition", code="made == 3 && port == 'there'"), n("Script", code="made += 1"))
+    use = n("SubTree", ID="outer", _autoremap="true", port="here", other="{x}")
+    tree = Tree(n("Sequence", n("Script", code="x := 1; port := 'up'"), use), (("outer", body), ("inner", inner)))
+    engine = World().engine(tree)
+    assert engine.tick() == SUCCESS
+    seen = engine.blackboard
+    assert {key: seen.get(key) for key in seen.keys()} == {"x": 2, "port": "up", "made": 4, "top": 5}  # noqa: SIM118
+
+
+def test_without_autoremap_nothing_is_shared() -> None:
+    body = n("Script", code="x := 2")
+    for ports in ({}, {"_autoremap": "false"}):
+        engine = World().engine(Tree(n("SubTree", ID="a", **ports), (("a", body),)))
+        assert engine.tick() == SUCCESS
+        assert engine.blackboard.keys() == []
+    with pytest.raises(EngineError, match="_autoremap must be true or false, not 'yes'"):
+        World().engine(Tree(n("SubTree", ID="a", _autoremap="yes"), (("a", body),)))
+
+
+def test_a_scope_tells_the_keys_that_it_shares() -> None:
+    above = Blackboard()
+    above.set("x", 1)
+    above.set("_private", 2)
+    below = Blackboard({"y": (above, "x"), "z": (above, "gone")}, above, shares=True, values={"port": "3"})
+    assert below.keys() == ["port", "y", "x"]
+    below.unset("x")
+    assert above.keys() == ["_private"]
 
 
 # What a listener is told
@@ -121,6 +152,28 @@ def test_actions_in_a_loop_are_told_each_time() -> None:
 def test_a_condition_that_is_waited_for_is_told_once() -> None:
     world = World()
     assert told(n("RetryUntilSuccessful", world.fn("A", "fffs"), num_attempts=-1), world, 4) == ["1f0r", "", "", "1s0s"]
+
+
+def test_a_round_that_lasts_after_one_within_a_tick_is_told_whole() -> None:
+    world = World()
+    attempt = n("Sequence", world.fn("A", "s"), world.cls("B", "frs"), world.fn("C", "s"))
+    assert told(n("RetryUntilSuccessful", attempt, num_attempts=-1), world, 3) == ["2s3r3f1f0r", "3r2s1r", "3s4s1s0s"]
+
+
+def test_what_a_lasting_round_has_not_reached_is_told_when_it_is() -> None:
+    world = World()
+    attempt = n("Fallback", world.cls("A", "frff"), n("Inverter", world.fn("B", "s")))
+    root = n("RetryUntilSuccessful", attempt, num_attempts=-1)
+    assert told(root, world, 3) == ["2r2f4s3f1f0r", "2r1r", "2f4s3f1f2r2f4s3f"]
+
+
+def test_a_deep_tree_that_lasts_after_a_round_within_a_tick() -> None:
+    world = World()
+    root = world.fn("A", "sr")
+    for _ in range(10_000):
+        root = n("Inverter", root)
+    words = told(n("RetryUntilSuccessful", n("Inverter", root), num_attempts=-1), world, 2)
+    assert [len(word.split("r")) for word in words] == [2, 10_003]
 
 
 def test_an_interrupted_action_is_told_before_the_one_that_replaces_it() -> None:

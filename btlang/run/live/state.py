@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED
+from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
+from btlang.engine.watch import REPEATING
 from btlang.record import Record
 from btlang.run.live.shape import Shape
 
@@ -41,8 +42,8 @@ def read_robot(robot: Any) -> Reading | None:
 class State:
     """Follows the status changes of a run. `statuses` holds one number for each node, in preorder.
 
-    A node that is started again keeps nothing of its earlier round: what it has not reached yet is IDLE again. (Except
-    where that round was over within a tick: then what counts as a change, see btlang/engine/watch.py, does not tell.)
+    A node that is started again keeps nothing of its earlier round: what it has not reached yet is IDLE again. Where
+    that round was over within a tick, this is so once the new one is RUNNING (see btlang/engine/watch.py).
     `ids` are the types of the nodes.
     """
 
@@ -78,6 +79,8 @@ class State:
         if self._halted:
             self._halted = []
         if status == RUNNING:
+            if before in (SUCCESS, FAILURE, SKIPPED):
+                self._clear_older(index, t)
             if before != SUSPENDED or not self._has_children(index):  # a command starts anew, what is above goes on
                 self.started[index] = t
             self.statuses[index] = RUNNING
@@ -90,7 +93,7 @@ class State:
         self.ended[index] = t
         if status == FAILURE:
             self.reasons[index] = reason
-        if before == RUNNING or (index and self._ids[self.shape.parents[index]] == "Repeat"):
+        if before == RUNNING or (index and self._ids[self.shape.parents[index]] in REPEATING):
             self._end_run(index)
 
     def _halt(self, index: int, t: float) -> None:
@@ -124,6 +127,17 @@ class State:
             end = self.shape.ends[top]
             self.statuses[top + 1 : end] = bytes(end - top - 1)
             over[top:end] = bytes(end - top)
+
+    def _clear_older(self, index: int, t: float) -> None:
+        """Nothing below a node counts any more but what has just changed."""
+        node, end = index + 1, self.shape.ends[index]
+        while node < end:
+            if self.statuses[node] == RUNNING:  # which has cleared what is below it
+                node = self.shape.ends[node]
+                continue
+            if self.ended.get(node) != t:
+                self.statuses[node] = IDLE
+            node += 1
 
     def _has_children(self, index: int) -> bool:
         return self.shape.ends[index] > index + 1

@@ -11,7 +11,7 @@ from btlang.engine.clock import Clock
 from btlang.engine.compile import expand
 from btlang.engine.engine import Engine
 from btlang.engine.leaf import LeafBinding
-from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
+from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
 from btlang.run.live.shape import Shape
 from btlang.run.live.state import State
 from btlang.tree.node import Node, Tree
@@ -47,7 +47,6 @@ class Run:
         self.places = expand(Tree(root), Blackboard())
         self.state = State(Shape([place.parent for place in self.places]), [place.node.id for place in self.places])
         self.latest: dict[int, int] = {}
-        self.at_once: set[int] = set()  # nodes whose latest round was over within a tick
         self.positions: dict[str, int] = {}
         self.engine = Engine(Tree(root), self._bind, clock=self.clock, listener=self._changed)
 
@@ -64,8 +63,6 @@ class Run:
         return bytes(self.state.statuses)
 
     def _changed(self, index: int, status: int) -> None:
-        if status not in (IDLE, RUNNING):
-            (set.discard if self.latest.get(index) == RUNNING else set.add)(self.at_once, index)
         self.latest[index] = status
         reason = self.engine.reason(index) if status == FAILURE else ""
         self.state.change(index, status, self.clock.now, reason)

@@ -1,0 +1,70 @@
+"""Leaves that write to the blackboard: set_blackboard_node.h and unset_blackboard_node.h of BehaviorTree.CPP 4.10.
+
+One difference: a port `{name}` that names an entry means the entry `name`. There it means the entry whose name is the
+text under `name`, and raises an exception where there is none.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from btlang.engine.blackboard import Blackboard
+from btlang.engine.build import Site, blackboard_key, halt_nothing, value_of
+from btlang.engine.leaf import ActionFailed
+from btlang.engine.ports import key_port
+from btlang.engine.script_values import ScriptFailed, kept, number, read
+from btlang.engine.status import SUCCESS
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+    from btlang.engine.build import Compiled
+    from btlang.engine.script_values import Enums
+
+
+def set_blackboard(site: Site, children: Sequence[Compiled]) -> Compiled:
+    """The port `value`, a text or a `{key}` to copy, goes under the key `output_key`.
+
+    A text for an entry that holds a number becomes the number that it stands for; FAILURE where it stands for none.
+    """
+    if not any(port == "value" for port, _ in site.node.ports):
+        raise site.error("SetBlackboard needs a port value")
+    scope, enums, value, target = site.scope, site.shared.enums, site.node.port("value"), key_port(site, "output_key")
+    key = blackboard_key("value", value)
+
+    def tick() -> int:
+        try:
+            new: Any = value if key is None else value_of(scope, key)
+            if new.__class__ is str:
+                new = _of_kind(new, scope, target, enums)
+        except ActionFailed as failed:
+            return site.fail(str(failed))
+        scope.set(target, new)
+        return SUCCESS
+
+    return tick, halt_nothing
+
+
+def _of_kind(new: str, scope: Blackboard, target: str, enums: Enums) -> Any:
+    try:
+        old = scope.get(target)
+    except KeyError:
+        return new
+    if old.__class__ is str or read(old).__class__ is not float:
+        return new
+    try:
+        return kept(number(new, enums))
+    except ScriptFailed as failed:
+        raise ActionFailed(f"{{{target}}} holds a number: {failed}") from None
+
+
+def unset_blackboard(site: Site, children: Sequence[Compiled]) -> Compiled:
+    """The entry `key` has no value any more."""
+    scope, key = site.scope, key_port(site, "key")
+
+    def tick() -> int:
+        scope.unset(key)
+        return SUCCESS
+
+    return tick, halt_nothing

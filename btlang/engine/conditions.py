@@ -1,0 +1,122 @@
+"""Pre- and post-conditions, scripts in ports that every node may have; tree_node.cpp of BehaviorTree.CPP 4.10.
+
+Before a node starts, in this order: `_failureIf` FAILURE, `_successIf` SUCCESS, `_skipIf` SKIPPED where it holds, and
+`_while` SKIPPED where it does not; the node is then not ticked. While it is RUNNING only `_while` is asked, and where
+it does not hold the node is halted: SKIPPED. When it has completed, also by a pre-condition, `_onSuccess` or
+`_onFailure` runs, then `_post`. `_onHalted` runs after the node was halted while RUNNING. The scripts of a SubTree see
+the blackboard around it.
+
+A suspended node has started: what is asked before a start is not asked again, and `_onHalted` waits for a real halt.
+
+Differences:
+- a script that cannot go on makes the node fail with its reason; there it raises an exception out of the tick;
+- a node that returned SKIPPED has not started: its pre-conditions are asked again, and halting it runs no `_onHalted`.
+  There this holds for leaves only;
+- a child of a PipelineSequence and the condition of a WhileDoElse start anew at each tick after they completed. There
+  their pre-conditions are not asked again;
+- halting the whole tree runs the `_onHalted` of its root only where it is RUNNING.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from btlang.engine.blackboard import Blackboard
+from btlang.engine.build import Fault, Site
+from btlang.engine.leaf import ActionFailed
+from btlang.engine.leaves import skipped
+from btlang.engine.script import truth
+from btlang.engine.script_nodes import read_script
+from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any, TypeAlias
+
+    from btlang.engine.build import Compiled
+
+    Script: TypeAlias = Callable[[Blackboard], Any]
+
+_DECIDES = {
+    "_failureIf": (True, FAILURE),
+    "_successIf": (True, SUCCESS),
+    "_skipIf": (True, SKIPPED),
+    "_while": (False, SKIPPED),
+}  # in the order in which they are asked: the answer that decides, and what it decides
+_AFTER = ("_onSuccess", "_onFailure", "_onHalted", "_post")
+
+
+def conditioned(site: Site, compiled: Compiled) -> Compiled:
+    """The node with its pre- and post-conditions; the node itself where it has none."""
+    texts: dict[str, str] = {}
+    for port, text in site.node.ports:
+        if port[:1] != "_":
+            continue
+        if port in _DECIDES or port in _AFTER:
+            texts[port] = text
+        elif port != "_autoremap" or site.node.id != "SubTree":
+            raise site.error(f"{site.node.id} takes no port {port}")
+    if texts.get("_skipIf") == "false":
+        del texts["_skipIf"]
+    if not texts:
+        return compiled
+    if texts == {"_skipIf": "true"}:
+        return skipped(site, ())
+    return _watched_by_scripts(site, compiled, texts)
+
+
+def _watched_by_scripts(site: Site, compiled: Compiled, texts: Mapping[str, str]) -> Compiled:
+    tick_node, halt_node = compiled
+    scope = site.scope
+    scripts = {port: read_script(site, port, text) for port, text in texts.items()}
+    before = [(port, scripts[port], *rule) for port, rule in _DECIDES.items() if port in scripts]
+    goes_on = scripts.get("_while")
+    after = {
+        SUCCESS: [scripts[port] for port in ("_onSuccess", "_post") if port in scripts],
+        FAILURE: [scripts[port] for port in ("_onFailure", "_post") if port in scripts],
+    }
+    on_halted = scripts.get("_onHalted")
+    running = False
+
+    def verdict() -> tuple[int, str]:
+        """What the pre-conditions decide, IDLE where nothing, and the reason of a FAILURE."""
+        try:
+            if running:
+                return (IDLE if goes_on is None or truth(goes_on(scope)) else SKIPPED), ""
+            for port, script, answer, status in before:
+                if truth(script(scope)) == answer:
+                    return status, f"{port} holds: {texts[port]}"
+        except ActionFailed as failed:
+            return FAILURE, str(failed)
+        return IDLE, ""
+
+    def tick() -> int:
+        nonlocal running
+        status, reason = verdict() if before else (IDLE, "")
+        if status == IDLE:
+            status = tick_node()
+            running = status == RUNNING
+        else:
+            halt(False)
+            if status == FAILURE:
+                site.fail(reason)
+        if status in (SUCCESS, FAILURE):
+            try:
+                for script in after[status]:
+                    script(scope)
+            except ActionFailed as failed:
+                return site.fail(str(failed))
+        return status
+
+    def halt(keep: bool) -> None:
+        nonlocal running
+        halt_node(keep)
+        if running and not keep:
+            running = False
+            if on_halted is not None:
+                try:
+                    on_halted(scope)
+                except ActionFailed as failed:
+                    site.shared.halt_faults.append(Fault(site.index, str(failed), failed))
+
+    return tick, halt

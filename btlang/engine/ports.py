@@ -1,0 +1,73 @@
+"""Ports of nodes as values: what the text says, or what is under its `{key}` whenever it is asked.
+
+A text that makes no sense raises EngineError when the tree is compiled; what is under a key raises ActionFailed.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from btlang.engine.build import Site, blackboard_key, value_of
+from btlang.engine.leaf import ActionFailed
+from btlang.engine.script_values import as_text
+from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any, TypeVar
+
+    T = TypeVar("T")
+
+TRUTHS = {"true": True, "1": True, "false": False, "0": False}
+STATUSES = {"SUCCESS": SUCCESS, "FAILURE": FAILURE, "SKIPPED": SKIPPED, "RUNNING": RUNNING}
+
+
+def value_port(site: Site, port: str, convert: Callable[[Any], T], default: str | None = None) -> Callable[[], T]:
+    """A function that gives the converted value of a port. `convert` raises ActionFailed for what it cannot take."""
+    text = site.node.port(port)
+    key = blackboard_key(port, text)
+    if key is not None:
+        return lambda: convert(value_of(site.scope, key))
+    if not text and default is None:
+        raise site.error(f"{site.node.id} needs a port {port}")
+    try:
+        value = convert(text or default)
+    except ActionFailed as problem:
+        raise site.error(str(problem)) from None
+    return lambda: value
+
+
+def choice_port(site: Site, port: str, table: Mapping[str, T], default: str) -> Callable[[], T]:
+    """As value_port, for a port that takes one of some words."""
+
+    def convert(value: Any) -> T:
+        word = as_text(value)
+        if word not in table:
+            raise ActionFailed(f"{port} must be {' or '.join(table)}, not {word!r}")
+        return table[word]
+
+    return value_port(site, port, convert, default)
+
+
+def rate_port(site: Site, port: str, default: str) -> Callable[[], float]:
+    """As value_port, for a number above 0."""
+
+    def convert(value: Any) -> float:
+        try:
+            number = float(value)
+        except (TypeError, ValueError):
+            number = 0.0
+        if not 0 < number < float("inf"):
+            raise ActionFailed(f"{port} must be a number above 0, not {str(value)!r}")
+        return number
+
+    return value_port(site, port, convert, default)
+
+
+def key_port(site: Site, port: str) -> str:
+    """The key that a port names, with or without braces."""
+    text = site.node.port(port)
+    key = blackboard_key(port, text) or text
+    if not key:
+        raise site.error(f"{site.node.id} needs a port {port}")
+    return key

@@ -1,0 +1,312 @@
+"""The rest of the reference interpreter: nodes beside the plain ones, the blackboard and what scripts decide."""
+
+from __future__ import annotations
+
+from collections import Counter, deque
+from typing import Any
+
+from btlang.engine.blackboard import Blackboard
+from btlang.engine.script import ScriptFailed, compile_script, truth
+from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
+
+STATUSES = {"SUCCESS": SUCCESS, "FAILURE": FAILURE, "SKIPPED": SKIPPED, "RUNNING": RUNNING}
+
+
+class Board(Blackboard):
+    """A blackboard that counts how often each key was set."""
+
+    def __init__(self) -> None:
+        super().__init__()
+        self.counts: Counter[str] = Counter()
+
+    def set(self, key: str, value: Any) -> None:
+        self.counts[key] += 1
+        super().set(key, value)
+
+
+class MoreNodes:
+    """The half of Reference that is here; `working` tells that the child returned RUNNING when it was last ticked."""
+
+    # scripts in ports
+
+    def run_script(self, port: str) -> Any:
+        """The value of a script; None where there is none, or where it cannot go on."""
+        text = self.node.port(port)
+        try:
+            return compile_script(text)(self.board) if text else None
+        except ScriptFailed:
+            return None
+
+    def asked(self, port: str) -> bool | None:
+        """None where the port is empty. Raises ScriptFailed."""
+        text = self.node.port(port)
+        return truth(compile_script(text)(self.board)) if text else None
+
+    def decided(self) -> int:
+        try:
+            if not self.started:
+                if self.asked("_failureIf"):
+                    return FAILURE
+                if self.asked("_successIf"):
+                    return SUCCESS
+                if self.asked("_skipIf"):
+                    return SKIPPED
+            return SKIPPED if self.asked("_while") is False else IDLE
+        except ScriptFailed:
+            return FAILURE
+
+    def afterwards(self, result: int) -> int:
+        if result in (SUCCESS, FAILURE):
+            for port in ("_onSuccess" if result == SUCCESS else "_onFailure", "_post"):
+                text = self.node.port(port)
+                try:
+                    if text:
+                        compile_script(text)(self.board)
+                except ScriptFailed:
+                    return FAILURE
+        return result
+
+    # leaves
+
+    def Script(self) -> int:
+        try:
+            compile_script(self.node.port("code"))(self.board)
+        except ScriptFailed:
+            return FAILURE
+        return SUCCESS
+
+    def ScriptCondition(self) -> int:
+        try:
+            return SUCCESS if self.asked("code") else FAILURE
+        except ScriptFailed:
+            return FAILURE
+
+    def SetBlackboard(self) -> int:
+        """The random trees set texts that stand for numbers, and x holds a number where it holds anything."""
+        key, value = self.node.port("output_key"), self.node.port("value")
+        self.board.set(key, int(value) if key in self.board and isinstance(self.board.get(key), int) else value)
+        return SUCCESS
+
+    def UnsetBlackboard(self) -> int:
+        self.board.unset(self.node.port("key"))
+        return SUCCESS
+
+    def WasEntryUpdated(self) -> int:
+        return SUCCESS if self.updated() else FAILURE
+
+    def updated(self) -> bool:
+        key = self.node.port("entry").strip("{}")
+        if key not in self.board:
+            return False
+        before, self.seen = self.seen, self.board.counts[key]
+        return bool(before != self.seen)
+
+    # one child of several
+
+    def switch(self) -> int:
+        self.status = RUNNING
+        cases = len(self.children) - 1
+        chosen = cases
+        if "x" in self.board:
+            found = str(self.board.get("x"))
+            for index in range(cases):
+                if self.node.port(f"case_{index + 1}") == found:
+                    chosen = index
+                    break
+        running = self.at - 1  # 0 is none
+        if running not in (-1, chosen):
+            self.children[running].reset()
+        result = self.children[chosen].execute()
+        self.at = chosen + 1 if result == RUNNING else 0
+        if result in (SUCCESS, FAILURE):
+            self.reset_children()
+        return int(result)
+
+    Switch2 = Switch3 = switch
+
+    def TryCatch(self) -> int:
+        self.status = RUNNING
+        last = len(self.children) - 1
+        while not self.catching and self.at < last:
+            result = self.children[self.at].execute()
+            if result == RUNNING:
+                return RUNNING
+            if result == FAILURE:
+                self.reset_children()
+                self.catching = True
+            else:
+                self.at += 1
+                self.skipped += result == SKIPPED
+        if self.catching:
+            if self.children[last].execute() == RUNNING:
+                return RUNNING
+            result = FAILURE
+        else:
+            result = SKIPPED if self.skipped == last else SUCCESS
+        self.reset_children()
+        self.at = self.skipped = 0
+        self.catching = False
+        return result
+
+    def Whenever(self) -> int:
+        condition, reaction, work = self.children
+        self.status = RUNNING
+        asked = condition.execute()
+        if asked != RUNNING:
+            condition.reset()
+        if asked != SUCCESS:
+            self.armed = True
+        elif self.armed and not self.reacting:
+            self.armed, self.reacting = False, True
+            if self.working:
+                self.working = False
+                work.suspend()
+        if self.reacting:
+            result = reaction.execute()
+            if result == RUNNING:
+                return RUNNING
+            self.reacting = False
+            reaction.reset()
+            if result == FAILURE:
+                work.reset()
+                condition.reset()
+                self.armed, self.working = True, False
+                return FAILURE
+        result = work.execute()
+        self.working = result == RUNNING
+        if result != RUNNING:
+            self.armed = True
+            condition.reset()
+            work.reset()
+        return int(result)
+
+    # decorators
+
+    def once_more(self) -> int:
+        """Executes the child, and resets it when it has completed."""
+        [child] = self.children
+        self.status = RUNNING
+        result = child.execute()
+        self.working = result == RUNNING
+        if result in (SUCCESS, FAILURE):
+            child.reset()
+        return int(result)
+
+    def KeepRunningUntilFailure(self) -> int:
+        return FAILURE if self.once_more() == FAILURE else RUNNING
+
+    def RunOnce(self) -> int:
+        if self.once != IDLE:
+            return SKIPPED if self.node.port("then_skip") == "true" else int(self.once)
+        result = self.once_more()
+        if result in (SUCCESS, FAILURE):
+            self.once = result
+        return result
+
+    def Precondition(self) -> int:
+        try:
+            if not self.working and not self.asked("if"):
+                return STATUSES[self.node.port("else")]
+        except ScriptFailed:
+            return FAILURE
+        return self.once_more()
+
+    def LoopString(self) -> int:
+        if self.status == IDLE:
+            self.queue = self.node.port("queue").split(";")
+        if not self.working:
+            source: Any = self.queue
+            if self.node.port("queue") == "{q}":
+                source = self.board.get("q") if "q" in self.board else deque()
+                if isinstance(source, str):
+                    source = deque(source.split(";"))
+                    self.board.set("q", source)
+            if not source:
+                return STATUSES[self.node.port("if_empty")]
+            self.board.set("y", source.pop(0) if isinstance(source, list) else source.popleft())
+        return FAILURE if self.once_more() == FAILURE else RUNNING
+
+    def entry(self, otherwise: int) -> int:
+        return self.once_more() if self.working or self.updated() else otherwise
+
+    def SkipUnlessUpdated(self) -> int:
+        return self.entry(SKIPPED)
+
+    def WaitValueUpdate(self) -> int:
+        return self.entry(RUNNING)
+
+    # Nav2
+
+    def PipelineSequence(self) -> int:
+        self.status = RUNNING
+        skipped = 0
+        for index, child in enumerate(self.children):
+            result = child.execute()
+            if result == FAILURE:
+                self.reset_children()
+                self.at = 0
+                return FAILURE
+            if result == RUNNING and index >= self.at:
+                self.at = index
+                return RUNNING
+            skipped += result == SKIPPED
+        self.reset_children()
+        self.at = 0
+        return SKIPPED if skipped == len(self.children) else SUCCESS
+
+    def RecoveryNode(self) -> int:
+        self.status = RUNNING
+        main, recovery = self.children
+        while True:
+            if self.at == 0:
+                result = main.execute()
+                if result == FAILURE and self.count < self.number("number_of_retries"):
+                    main.reset()
+                    self.at = 1
+                    continue
+            else:
+                result = recovery.execute()
+                if result == SUCCESS:
+                    recovery.reset()
+                    self.count += 1
+                    self.at = 0
+                    continue
+                if result == SKIPPED:
+                    result = FAILURE
+            if result != RUNNING:
+                self.reset_children()
+                self.at = self.count = 0
+            return int(result)
+
+    def RoundRobin(self) -> int:
+        self.status = RUNNING
+        size = len(self.children)
+        skipped = 0
+        while self.failures + skipped < size:
+            child = self.children[self.at]
+            result = child.execute()
+            if result == RUNNING:
+                return RUNNING
+            child.reset()
+            self.at = (self.at + 1) % size
+            if result == SUCCESS:
+                self.failures = 0
+                return SUCCESS
+            self.failures += result == FAILURE
+            skipped += result == SKIPPED
+        self.at = self.failures = 0
+        return SKIPPED if skipped == size else FAILURE
+
+    def RateController(self) -> int:
+        first = self.status == IDLE
+        if first:
+            self.stop_watch()
+        due = self.passed() >= 1 / float(self.node.port("hz"))
+        self.status = RUNNING
+        if not (first or self.working or due):
+            return RUNNING
+        result = self.once_more()
+        if result == SUCCESS:
+            self.stop_watch()
+            self.passed()
+        return result
