@@ -18,20 +18,20 @@ from btlang.text.words import Words, split
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.vocabulary import Vocabulary
 
-_ALLOW = re.compile(r"#\s*allow\s*:(?P<names>[^\n]*)", re.IGNORECASE)
-_NAME = re.compile(r"[^,\s](?:[^,]*[^,\s])?")
+_ALLOW = r"(?i)#\s*allow\s*:(?P<names>[^\n]*)"
+_NAME = r"[^,\s](?:[^,]*[^,\s])?"
 
 
 def heard(warnings: Iterable[Diagnostic], source: Source, vocabulary: Vocabulary) -> list[Diagnostic]:
     """The warnings that no comment of the source silences, and BT056 for names in such comments that no warning has."""
     warnings = list(warnings)
-    if not _ALLOW.search(source.text):
+    if "#" not in source.text or not re.search(_ALLOW, source.text):
         return warnings
     words = split(source, vocabulary.articles)
     silent: dict[str, list[tuple[int, int]]] = {}
     for comment in words.comments:
-        match = _ALLOW.fullmatch(comment.text.rstrip())
-        for name in _NAME.finditer(match["names"]) if match else ():
+        match = re.fullmatch(_ALLOW, comment.text.rstrip())
+        for name in re.finditer(_NAME, match["names"]) if match else ():
             start = comment.start + match.start("names") + name.start() if match else 0
             span = Span(source, start, start + len(name[0]))
             code = NAMES.get(" ".join(name[0].lower().split()))
