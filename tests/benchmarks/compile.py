@@ -114,7 +114,7 @@ def check(rounds: int) -> None:
 
         def start(*arguments: str) -> None:
             command = [sys.executable, "-S", *arguments]
-            subprocess.run(command, env=environment, check=True, capture_output=True)  # it warns, too
+            subprocess.run(command, env=environment, check=True, capture_output=True)
 
         works: dict[str, Callable[[], object]] = {
             "check": partial(start, "-m", "btlang", "check", str(file)),

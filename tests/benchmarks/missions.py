@@ -30,7 +30,7 @@ _CONDITIONS = (
     "the path is clear and the battery is not low", "bumped or there is something behind",
 )  # fmt: skip
 _LINES = (
-    "{base}", "{base}.", "{free}", "Please {base}", "{base}, then {free}", "{base} then {base} and {free}",
+    "{base}", "{base}.", "{free}", "Please {base}", "{base}, then {free}", "{base}, then {base} and {free}",
     "{base}, {free}, {base} and then {free}", "{free} and say {text}, then {base}", "{base} or say {text}",
     "if {condition}, {base}", "if {condition}, {base}, otherwise {free}", "{base} unless {condition}",
     "while {condition}, {base}", "{free} {count}", "repeat {base} until {condition}", "{base} within {time}",
