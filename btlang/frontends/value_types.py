@@ -79,7 +79,7 @@ class ValueTypes:
     # -- parameters
 
     def _from_body(self, header: Header) -> None:
-        """A parameter is of a type that fits all slots in which it stands, other than those of text."""
+        """A parameter is of the first type that fits all slots in which it stands, other than those of text."""
         open_keys = [key for key, _ in header.parameters if (header.body, key) not in self.types]
         if not open_keys:
             return
@@ -97,7 +97,7 @@ class ValueTypes:
                 named = self._values.named(self._text, head.value)
                 if named is not None and named[0] is not None and named[0].key in open_keys and head.key in known:
                     found.setdefault(named[0].key, known[head.key].kinds)
-        self.types |= {(header.body, key): kinds for key, kinds in found.items() if kinds}
+        self.types |= {(header.body, key): kinds[:1] for key, kinds in found.items() if kinds}
 
     def _longest(self, at: int, known: Mapping[str, Known]) -> Match | None:
         self._values.set_known(known)

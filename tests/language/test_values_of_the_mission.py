@@ -92,7 +92,9 @@ def test_running(text: str, expected: list[str]) -> None:
 
 
 def test_the_type_of_a_parameter_follows_from_its_use() -> None:
-    assert tree_of("visit {goal} is go to the goal; visit the lab")[0] == 'SubTree ID="visit {goal}" goal=lab'
+    visit = tree_of("visit {goal} is go to the goal; visit the lab")
+    assert [visit[0], visit[2]] == ['SubTree ID="visit {goal}" goal=lab', "  GoTo place={goal}"]
+    assert tree_of("meet {guest} is go to guest then wave at guest; meet Alice")[3] == "    GoToPerson person={guest}"
     assert tree_of("rest {time} is wait {time}; rest half a minute")[0] == 'SubTree ID="rest {time}" time=30'
     handed_on = "outer {a} is inner {a}; inner {b} is wave at {b}; outer Alice and Bob"
     assert tree_of(handed_on)[:3] == ["Sequence", '  SubTree ID="outer {a}" a=Alice', '  SubTree ID="outer {a}" a=Bob']
