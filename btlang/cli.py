@@ -217,8 +217,8 @@ def _parsed(arguments: Sequence[str] | None) -> argparse.Namespace:
         return parser.parse_args(words[1:])
     parser = _Parser("btc", description="Compiles and runs robot missions in plain English.")
     parser.add_argument("--version", action="version", version=f"btc {btlang.__version__}")
-    parser.set_defaults(**_DEFAULTS, verb="repl")
     verbs = parser.add_subparsers(dest="verb", metavar="VERB", prog="btc", parser_class=_Parser)
+    parser.set_defaults(**_DEFAULTS, verb="repl")  # behind the verbs, which have none as default
     for verb, (about, add) in _OPTIONS.items():
         add(verbs.add_parser(verb, help=about))
     return parser.parse_args(words)

@@ -13,6 +13,7 @@ from pathlib import Path
 
 import pytest
 
+from btlang import cli
 from btlang.cli import main
 
 REPOSITORY = Path(__file__).parent.parent
@@ -249,3 +250,11 @@ def test_a_script_that_fails_is_told_with_the_sentence_that_needed_it(capsys: py
     errors = capsys.readouterr().err
     assert '<command line>:1:24: say "x is {x}"' in errors
     assert "Script: {x} has no value" in errors
+
+
+def test_without_a_verb_it_is_the_prompt(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = []
+    monkeypatch.setitem(cli._VERBS, "repl", lambda options: asked.append(options) or 0)
+    assert main([]) == 0
+    assert main(["repl"]) == 0
+    assert vars(asked[0]) == vars(asked[1])
