@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from btlang.engine.build import Site
+from btlang.engine.gated import gated
 from btlang.engine.leaf import ActionFailed
 from btlang.engine.ports import STATUSES, TRUTHS, choice_port
 from btlang.engine.script import truth
@@ -56,29 +57,17 @@ def run_once(site: Site, children: Sequence[Compiled]) -> Compiled:
 
 def precondition(site: Site, children: Sequence[Compiled]) -> Compiled:
     """Its child where the script `if` holds when it starts, else the status in `else` (script_precondition.h)."""
-    [(child, halt_child)] = children
     condition, scope = script_of(site, "if"), site.scope
     otherwise = choice_port(site, "else", STATUSES, "FAILURE")
-    running = False  # whether the child was RUNNING at the last tick
 
-    def tick() -> int:
-        nonlocal running
-        if not running:
-            try:
-                holds = truth(condition(scope))
-            except ActionFailed as failed:
-                return site.fail(str(failed))
-            if not holds:
-                status = otherwise()
-                return site.fail() if status == FAILURE else status
-        status = child()
-        running = status == RUNNING
-        return status
+    def ask() -> int:
+        try:
+            holds = truth(condition(scope))
+        except ActionFailed as failed:
+            return site.fail(str(failed))
+        if holds:
+            return IDLE
+        status = otherwise()
+        return site.fail() if status == FAILURE else status
 
-    def halt(keep: bool) -> None:
-        nonlocal running
-        halt_child(keep)
-        if not keep:
-            running = False
-
-    return tick, halt
+    return gated(children, ask)

@@ -10,8 +10,9 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from btlang.engine.build import Site, halt_nothing
+from btlang.engine.gated import gated
 from btlang.engine.ports import key_port
-from btlang.engine.status import RUNNING, SKIPPED, SUCCESS
+from btlang.engine.status import IDLE, RUNNING, SKIPPED, SUCCESS
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -20,40 +21,20 @@ if TYPE_CHECKING:
 
 def skip_unless_updated(site: Site, children: Sequence[Compiled]) -> Compiled:
     """Its child where the entry is new, else SKIPPED; a RUNNING child is ticked on without asking."""
-    return _updated(site, children, SKIPPED)
+    is_new = _news(site)
+    return gated(children, lambda: IDLE if is_new() else SKIPPED)
 
 
 def wait_value_update(site: Site, children: Sequence[Compiled]) -> Compiled:
     """RUNNING until the entry is new, then its child."""
-    return _updated(site, children, RUNNING)
+    is_new = _news(site)
+    return gated(children, lambda: IDLE if is_new() else RUNNING)
 
 
 def was_entry_updated(site: Site, children: Sequence[Compiled]) -> Compiled:
     """SUCCESS where the entry is new, else FAILURE."""
     is_new = _news(site)
     return (lambda: SUCCESS if is_new() else site.fail()), halt_nothing
-
-
-def _updated(site: Site, children: Sequence[Compiled], otherwise: int) -> Compiled:
-    [(child, halt_child)] = children
-    is_new = _news(site)
-    running = False  # whether the child was RUNNING at the last tick
-
-    def tick() -> int:
-        nonlocal running
-        if not running and not is_new():
-            return otherwise
-        status = child()
-        running = status == RUNNING
-        return status
-
-    def halt(keep: bool) -> None:
-        nonlocal running
-        halt_child(keep)
-        if not keep:
-            running = False
-
-    return tick, halt
 
 
 def _news(site: Site) -> Callable[[], bool]:
