@@ -44,15 +44,19 @@ class Scopes:
             if head.role == "each":
                 self.local.append((head.last, reach(text, at), Known(head.key, head.words, kinds or ())))
             elif kinds is not None:
-                others = self.everywhere.get(head.key)
-                if others is not None:
-                    kinds = tuple(kind for kind in others.kinds if kind in kinds) or others.kinds
-                self.everywhere[head.key] = Known(head.key, head.words, kinds)
+                self.give(head, kinds)
+
+    def give(self, head: Head, kinds: tuple[str, ...]) -> None:
+        """A value of the whole mission is given one of these types; those that fit all that it is given remain."""
+        others = self.everywhere.get(head.key)
+        if others is not None:
+            kinds = tuple(kind for kind in others.kinds if kind in kinds) or others.kinds
+        self.everywhere[head.key] = Known(head.key, head.words, kinds)
 
     def at(self, word: int) -> dict[str, Known]:
         """What is known there, the innermost of each name, by key."""
         inner = {known.key: known for first, last, known in self.local if first <= word < last}
-        return {**self.everywhere, **inner}
+        return {**self.everywhere, **inner} if inner else self.everywhere
 
     def bounds(self) -> list[int]:
         """The words at which other values begin to be known, in order."""

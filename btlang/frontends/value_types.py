@@ -48,15 +48,17 @@ class ValueTypes:
     def _follow(self) -> None:
         before = -1
         while len(self.types) > before:
-            before = len(self.types)
+            before, scopes = len(self.types), self.scopes()
             for header in self._headers:
-                self._from_body(header)
+                self._from_body(header, scopes)
             for at, head in self._heads.items():
                 if (at, head.key) not in self.types and head.role in ("set", "remember", "each"):
                     is_type = head.role == "each" and head.key in self._vocabulary.types
-                    kinds = (head.key,) if is_type else self._given(at, head)
+                    kinds = (head.key,) if is_type else self._given(at, head, scopes)
                     if kinds:
                         self.types[at, head.key] = kinds
+                        if head.role != "each":
+                            scopes.give(head, kinds)
             for header in self._headers:
                 if all((header.body, key) in self.types for key, _ in header.parameters):
                     self._add(header)
@@ -78,12 +80,12 @@ class ValueTypes:
 
     # -- parameters
 
-    def _from_body(self, header: Header) -> None:
+    def _from_body(self, header: Header, scopes: Scopes) -> None:
         """A parameter is of the first type that fits all slots in which it stands, other than those of text."""
         open_keys = [key for key, _ in header.parameters if (header.body, key) not in self.types]
         if not open_keys:
             return
-        known = self.scopes().at(header.body)
+        known = scopes.at(header.body)
         found: dict[str, tuple[str, ...]] = {}
         at = header.body
         while at < header.last:
@@ -119,10 +121,16 @@ class ValueTypes:
 
     def _ask_uses(self) -> None:
         """Where the body of a definition does not tell, its first use does."""
+        places: dict[str, list[int]] = {}
+        for at, word in enumerate(self._text.words):
+            places.setdefault(word, []).append(at)
+        self._values.set_known(self.scopes().everywhere)
         for header in self._headers:
             open_keys = [key for key, _ in header.parameters if (header.body, key) not in self.types]
             form, own = name_form(header.name), header.span
-            for at in range(len(self._text.words)) if open_keys else ():
+            first = form[0]
+            starts = range(len(self._text.words)) if isinstance(first, Slot) else places.get(first, ())
+            for at in starts if open_keys else ():
                 use = self._use(form, at) if not own.start <= self._text.starts[at] < own.end else None
                 if use is not None:
                     self.types |= {(header.body, key): use[key] for key in open_keys if use[key]}
@@ -131,7 +139,6 @@ class ValueTypes:
     def _use(self, form: Sequence[str | Slot], at: int) -> dict[str, tuple[str, ...]] | None:
         """The types of the values with which a name is used at a word, None where it is not."""
         found: dict[str, tuple[str, ...]] = {}
-        self._values.set_known(self.scopes().everywhere if self._text.words[at] == form[0] else {})
         for part in form:
             if isinstance(part, Slot):
                 value = self._values.any(self._text, at)
@@ -146,7 +153,7 @@ class ValueTypes:
 
     # -- values that are given
 
-    def _given(self, at: int, head: Head) -> tuple[str, ...]:
+    def _given(self, at: int, head: Head, scopes: Scopes) -> tuple[str, ...]:
         """The types that the value of a head can have, () where that is not known yet."""
         if head.value < 0:
             return ()
@@ -154,7 +161,7 @@ class ValueTypes:
             quantity = longest(self._vocabulary.quantities, self._text, head.value, self._values)
             if quantity is not None and quantity.meaning.entry is not None:
                 return (quantity.meaning.entry.measures,)
-        self._values.set_known(self.scopes().at(at))
+        self._values.set_known(scopes.at(at))
         named = self._values.named(self._text, head.value)
         if named is not None:
             return named[0].kinds if named[0] is not None else ()

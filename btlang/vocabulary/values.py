@@ -115,7 +115,7 @@ class Values:
         """Those values. Whoever reads a text sets them, on a copy of its own."""
         self.known: Mapping[str, Known] | None = {}
         """The values that the mission names itself, by key; None where any name in braces is one."""
-        self._known_words: WordTree = {}
+        self._most_words = 0
         self._fractions: WordTree = {}
         for phrase, value in language["fractions"].items():
             insert(self._fractions, phrase.split(), value)
@@ -160,9 +160,7 @@ class Values:
     def set_known(self, known: Mapping[str, Known]) -> None:
         """The values that the mission names where reading goes on. For a copy from `for_reading`."""
         self.known = known
-        self._known_words = {}
-        for value in known.values():
-            insert(self._known_words, value.words, value)
+        self._most_words = max((len(value.words) for value in known.values()), default=0)
 
     @property
     def openers(self) -> Mapping[str, frozenset[str]]:
@@ -265,7 +263,7 @@ class Values:
         if reference is not None:
             known = self.known.get(reference[0]) if self.known else None
             return known, reference[1] if known is not None else at + 1
-        return find(self._known_words, text.words, at)
+        return self._bare(text.words, at)
 
     def _known(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
         """A value that the mission names: in braces, or bare where no text is wanted and no name is longer."""
@@ -275,11 +273,20 @@ class Values:
             if self.known is None or (key in self.known and self._fits(kind, self.known[key])):
                 return f"{{{key}}}", end
         elif self.known and self.types[kind].kind != "text":
-            found = find(self._known_words, text.words, at)
+            found = self._bare(text.words, at)
             if found is not None and self._fits(kind, found[0]):
                 named = find(self._names[kind], text.words, at) if kind in self._names else None
                 if named is None or named[1] <= found[1]:
                     return f"{{{found[0].key}}}", found[1]
+        return None
+
+    def _bare(self, words: Sequence[str], at: int) -> tuple[Known, int] | None:
+        """The value with the longest name that stands at a place without braces, and where it ends."""
+        for end in range(at + self._most_words if self.known else at, at, -1):
+            named = tuple(words[at:end])
+            known = self.known.get(key_of(named)) if self.known else None
+            if known is not None and known.words == named:
+                return known, end
         return None
 
     def _fits(self, kind: str, known: Known) -> bool:
