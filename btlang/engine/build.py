@@ -66,40 +66,43 @@ class Shared:
         self.service_names = frozenset(("blackboard", *self.services))
         self.plans: dict[str, Plan] = {}  # of the leaves that were bound so far, by id
         self.enums = {name: float(value) for name, value in enums.items()}  # names that scripts and Switch nodes know
-        self.fault: Fault | None = None  # the latest failure
+        self.fault: Fault | Site | None = None  # the latest failure
         self.halt_faults: list[Fault] = []  # exceptions that leaves raised while they were halted
         # what reactive nodes that are at another child want stopped before an action starts there
         self.interrupts: list[Callable[[], None]] = []
 
 
 class Site:
-    """Where a node is compiled: the node, its index in preorder, its blackboard, and what the engine shares.
+    """A node where it is used, after expansion of subtrees: what its compiler may ask, and what names it later.
 
-    `parent` is the id of the node above, "" for the root.
+    `above` is the site of its parent, None for the root, and `position` its place among the children there; `index` is
+    its number in preorder; `scope` is its blackboard. It stands for a failure of its node that has no reason.
     """
 
-    __slots__ = ("_plain", "index", "node", "parent", "scope", "shared", "watch")
+    __slots__ = ("above", "index", "node", "position", "scope", "shared", "watch")
+
+    reason = ""
+    exception = None
 
     def __init__(
-        self, node: Node, index: int, scope: Blackboard, shared: Shared, watch: Watch | None, parent: str = ""
+        self, node: Node, index: int, above: Site | None, position: int, scope: Blackboard, shared: Shared
     ) -> None:
         self.node = node
         self.index = index
+        self.above = above
+        self.position = position
         self.scope = scope
         self.shared = shared
-        self.watch = watch
-        self.parent = parent
-        self._plain: Fault | None = None
+        self.watch: Watch | None = None
+
+    @property
+    def parent(self) -> str:
+        """The id of the node above, "" for the root."""
+        return "" if self.above is None else self.above.node.id
 
     def fail(self, reason: str = "", exception: BaseException | None = None) -> int:
         """Records this node as what failed; returns FAILURE."""
-        if reason:
-            self.shared.fault = Fault(self.index, reason, exception)
-        else:
-            plain = self._plain
-            if plain is None:
-                plain = self._plain = Fault(self.index)
-            self.shared.fault = plain
+        self.shared.fault = Fault(self.index, reason, exception) if reason else self
         return FAILURE
 
     def service(self, name: str) -> Any:

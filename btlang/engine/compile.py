@@ -20,12 +20,13 @@ from btlang.engine import (
 )
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.build import EngineError, Shared, Site
+from btlang.engine.clock import Clock
 from btlang.engine.conditions import conditioned
 from btlang.engine.leaf import ActionFailed
 from btlang.engine.subtree import child_scope, subtree
 from btlang.engine.switch import switch, switch_ports
 from btlang.engine.try_catch import try_catch
-from btlang.engine.watch import REPEATING, Watch
+from btlang.engine.watch import REPEATING, Trace, Watch
 from btlang.engine.whenever import whenever
 from btlang.record import Record
 from btlang.tree.node import Node, Tree
@@ -33,7 +34,6 @@ from btlang.tree.node import Node, Tree
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.engine.build import Compiled
-    from btlang.engine.watch import Listener
 
 MAX_NODES = 1_000_000
 
@@ -96,34 +96,23 @@ NODE_TYPES = {
 _SUBTREE = NodeType(subtree, 1, 1)
 
 
-class Place:
-    """A node after expansion: index of its parent in preorder (-1: it is the root), and its position among siblings."""
-
-    __slots__ = ("depth", "node", "parent", "position", "scope")
-
-    def __init__(self, node: Node, parent: int, position: int, depth: int, scope: Blackboard) -> None:
-        self.node = node
-        self.parent = parent
-        self.position = position
-        self.depth = depth
-        self.scope = scope
-
-
-def expand(tree: Tree, blackboard: Blackboard) -> list[Place]:
+def expand(tree: Tree, blackboard: Blackboard, shared: Shared) -> list[Site]:
     """All nodes in preorder; a SubTree's only child is the root of its tree."""
     subtrees = dict(tree.subtrees)
-    places: list[Place] = []
+    sites: list[Site] = []
     within: set[str] = set()  # names of the subtrees around the present node
-    stack: list[Place | str] = [Place(tree.root, -1, 0, 0, blackboard)]  # a str: this subtree ends here
+    # what is to come: a node, the site above it, its position there and its blackboard; a str: this subtree ends here
+    stack: list[tuple[Node, Site | None, int, Blackboard] | str] = [(tree.root, None, 0, blackboard)]
     while stack:
-        place = stack.pop()
-        if isinstance(place, str):
-            within.remove(place)
+        top = stack.pop()
+        if isinstance(top, str):
+            within.remove(top)
             continue
-        node, scope, index = place.node, place.scope, len(places)
-        if index == MAX_NODES:
+        node, above, position, scope = top
+        if len(sites) == MAX_NODES:
             raise EngineError(f"the tree has more than {MAX_NODES:,} nodes", node)
-        places.append(place)
+        site = Site(node, len(sites), above, position, scope, shared)
+        sites.append(site)
         children = node.children
         if node.id == "SubTree":
             name = node.port("ID")
@@ -135,10 +124,14 @@ def expand(tree: Tree, blackboard: Blackboard) -> list[Place]:
             within.add(name)
             stack.append(name)
             scope = child_scope(node, scope)
-        if children:
-            depth = place.depth + 1
-            stack += [Place(children[at], index, at, depth, scope) for at in range(len(children) - 1, -1, -1)]
-    return places
+        stack += [(children[at], site, at, scope) for at in range(len(children) - 1, -1, -1)]
+    return sites
+
+
+def outline(tree: Tree) -> tuple[list[Node], list[int]]:
+    """All nodes in preorder, after expansion of subtrees, and the index of each one's parent, -1 for the root."""
+    sites = expand(tree, Blackboard(), Shared(lambda id: None, Clock(), {}, {}))
+    return [site.node for site in sites], [-1 if site.above is None else site.above.index for site in sites]
 
 
 def _root_of(node: Node, name: str, subtrees: dict[str, Node]) -> Node:
@@ -149,29 +142,24 @@ def _root_of(node: Node, name: str, subtrees: dict[str, Node]) -> Node:
     return subtrees[name]
 
 
-def compile_places(places: Sequence[Place], shared: Shared, listener: Listener | None) -> Compiled:
+def compile_sites(sites: Sequence[Site], trace: Trace | None) -> Compiled:
     """Compiles from the last node to the root, so that children are there before their parents."""
-    ticks = [0]  # for the watches: the number of the tick
     waiting: list[Compiled] = []  # compiled nodes whose parents come later, so that the last ones are the next one's
     watches: list[Watch] = []
-    for index in range(len(places) - 1, -1, -1):
-        place = places[index]
-        node = place.node
+    for site in reversed(sites):
+        node = site.node
         count = 1 if node.id == "SubTree" else len(node.children)
         children: Sequence[Compiled] = ()
         if count:
             children = waiting[: -count - 1 : -1]
             del waiting[-count:]
-        parent = places[place.parent].node.id if place.parent >= 0 else ""
-        watch = None
-        if listener is not None:
-            watch = Watch(index, listener, parent in REPEATING, ticks)
-            watch.below = watches[: -count - 1 : -1] if count else []
-            watches[len(watches) - count :] = [watch]
-        compiled = _compile(Site(node, index, place.scope, shared, watch, parent), children)
-        if watch is not None:
-            compiled = watch.wrap(compiled)
-        waiting.append(compiled)
+        if trace is None:
+            waiting.append(_compile(site, children))
+            continue
+        below = watches[: -count - 1 : -1] if count else []
+        site.watch = watch = Watch(site.index, site.parent in REPEATING, below, trace)
+        watches[len(watches) - count :] = [watch]
+        waiting.append(watch.wrap(_compile(site, children)))
     [root] = waiting
     return root
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from btlang.engine.build import Site, apart
+from btlang.engine.build import Site
+from btlang.engine.row import row, settle
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
 
 TYPE_CHECKING = False
@@ -42,26 +43,38 @@ def sequence_with_memory(site: Site, children: Sequence[Compiled]) -> Compiled:
 
 def _in_order(children: Sequence[Compiled], passes: int, breathe: bool = False, remember: bool = False) -> Compiled:
     """Goes on to the next child at the status `passes`, and returns it after the last child."""
-    ticks, halts = apart(children)
+    ticks, halts, leaves = row(children)
     count = len(ticks)
+    nothing = None if passes is SUCCESS else passes  # what functions return is most often nothing
     index = skipped = 0
     waiting = -1  # the child that was RUNNING at the last tick; only AsyncSequence and AsyncFallback ask
 
     def tick() -> int:
         nonlocal index, skipped, waiting
+        plain = -1  # the latest child that passed, where nothing has settled what it answered
         while index < count:
-            status = ticks[index]()
-            if status == passes:
-                index += 1
-                if breathe and index != waiting + 1 and index < count:
+            try:
+                status = ticks[index]()
+                if status is passes or status is nothing:
+                    plain = index
+                    index += 1
+                    if breathe and index != waiting + 1 and index < count:
+                        return RUNNING
+                    continue
+                if status == RUNNING:
+                    waiting = index
                     return RUNNING
-            elif status == RUNNING:
-                waiting = index
-                return RUNNING
-            elif status == SKIPPED:
+            except Exception as problem:
+                status = problem
+            if status == SKIPPED:
                 halts[index](False)
                 skipped += 1
                 index += 1
+            elif (status := settle(leaves[index], status)) is passes:
+                plain = -1
+                index += 1
+                if breathe and index != waiting + 1 and index < count:
+                    return RUNNING
             else:
                 skipped = 0
                 waiting = -1
@@ -69,6 +82,8 @@ def _in_order(children: Sequence[Compiled], passes: int, breathe: bool = False, 
                     index = 0
                 return status
         result = SKIPPED if skipped == count else passes
+        if result is FAILURE and plain >= 0:
+            settle(leaves[plain], FAILURE)
         index = skipped = 0
         waiting = -1
         return result
@@ -92,8 +107,8 @@ def parallel(site: Site, children: Sequence[Compiled]) -> Compiled:
     Ports success_count (all by default) and failure_count (1); -1 is all, -2 all but one. It fails also when too few
     are left to succeed. With a negative success_count a skipped child counts as a success (parallel_node.cpp).
     """
-    ticks, halts = apart(children)
-    count = len(ticks)
+    ticks, halts, leaves = row(children)
+    pairs, count = tuple(enumerate(ticks)), len(ticks)
     success_count = site.number("success_count", -1, -count - 1, count)
     failure_count = site.number("failure_count", 1, -count - 1, count)
     completed = [False] * count
@@ -101,21 +116,34 @@ def parallel(site: Site, children: Sequence[Compiled]) -> Compiled:
 
     def tick() -> int:
         nonlocal successes, failures
-        threshold = success_count()
-        required, allowed = _of(threshold, count), _of(failure_count(), count)
+        required, allowed = success_count(), failure_count()
+        counts_skipped = required < 0
+        if required < 0:
+            required += count + 1
+        if allowed < 0:
+            allowed += count + 1
         skipped = 0
-        for index, child in enumerate(ticks):
+        undecided = False  # after the latest child, and nothing has changed since
+        for index, child in pairs:
             if not completed[index]:
-                status = child()
-                if status == SUCCESS:
+                try:
+                    status = child()
+                    if status == RUNNING and undecided:
+                        continue
+                except Exception as problem:
+                    status = problem
+                if status is SUCCESS or (
+                    status != RUNNING and status != SKIPPED and (status := settle(leaves[index], status)) is SUCCESS
+                ):
                     completed[index] = True
                     successes += 1
-                elif status == FAILURE:
+                elif status is FAILURE:
                     completed[index] = True
                     failures += 1
                 elif status == SKIPPED:
                     skipped += 1
-            if successes >= required or (threshold < 0 and successes + skipped >= required):
+            undecided = True
+            if successes >= required or (counts_skipped and successes + skipped >= required):
                 halt(False)
                 return SUCCESS
             if count - failures < required or failures == allowed:
@@ -125,9 +153,10 @@ def parallel(site: Site, children: Sequence[Compiled]) -> Compiled:
 
     def halt(keep: bool) -> None:
         nonlocal successes, failures
-        for index, stop in enumerate(halts):
-            if not completed[index]:
-                stop(keep)
+        if successes + failures < count:
+            for index, stop in enumerate(halts):
+                if not completed[index]:
+                    stop(keep)
         if not keep:
             completed[:] = [False] * count
             successes = failures = 0
@@ -137,24 +166,31 @@ def parallel(site: Site, children: Sequence[Compiled]) -> Compiled:
 
 def parallel_all(site: Site, children: Sequence[Compiled]) -> Compiled:
     """Ticks all until each has completed; FAILURE if max_failures (1) or more failed (parallel_all_node.cpp)."""
-    ticks, halts = apart(children)
-    count = len(ticks)
+    ticks, halts, leaves = row(children)
+    pairs, count = tuple(enumerate(ticks)), len(ticks)
     max_failures = site.number("max_failures", 1, -count - 1, count)
     completed = [False] * count
     failures = 0
 
     def tick() -> int:
         nonlocal failures
-        allowed = _of(max_failures(), count)
+        allowed = max_failures()
+        if allowed < 0:
+            allowed += count + 1
         skipped = 0
-        for index, child in enumerate(ticks):
+        for index, child in pairs:
             if not completed[index]:
-                status = child()
+                try:
+                    status = child()
+                    if status == RUNNING:
+                        continue
+                except Exception as problem:
+                    status = problem
                 if status == SKIPPED:
                     skipped += 1
-                elif status != RUNNING:
+                else:
                     completed[index] = True
-                    failures += status == FAILURE
+                    failures += settle(leaves[index], status) is FAILURE
         if skipped == count:
             return SKIPPED
         if skipped + sum(completed) < count:
@@ -173,8 +209,3 @@ def parallel_all(site: Site, children: Sequence[Compiled]) -> Compiled:
             failures = 0
 
     return tick, halt
-
-
-def _of(threshold: int, count: int) -> int:
-    """How many children a threshold means; negative ones count from all of them down."""
-    return threshold if threshold >= 0 else count + threshold + 1

@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     from typing import Any, TypeAlias
 
     from btlang.engine.build import Compiled
+    from btlang.engine.watch import Watch
 
     Stored: TypeAlias = Callable[[], Mapping[str, Any]] | None  # reads ports from the blackboard
 
@@ -36,6 +37,9 @@ def always_failure(site: Site, children: Sequence[Compiled]) -> Compiled:
 def skipped(site: Site, children: Sequence[Compiled]) -> Compiled:
     """What a node with _skipIf="true" is: SKIPPED, and nothing below it is ticked."""
     return (lambda: SKIPPED), halt_nothing
+
+
+_TRUTHS = ("bool", "bool_")  # what numpy's comparisons give goes by these names
 
 
 class Plan:
@@ -71,7 +75,8 @@ def bound_leaf(site: Site, plan: Plan) -> Compiled:
         leaf = _make(site, call)
         _fill(site, leaf.start, ports, ())
         constants, stored = _arguments(site, ports, binding)
-        return _class_leaf(site, leaf, partial(leaf.start, **constants), stored)
+        start = partial(leaf.start, **constants) if constants else leaf.start
+        return _class_leaf(site, leaf, start, stored)
     if plan.kind == "async":
         raise site.error(f"{site.node.id} is bound to an async function; a generator does what it should do")
     names = tuple(ports)
@@ -102,44 +107,66 @@ def _arguments(site: Site, ports: dict[str, str], binding: LeafBinding) -> tuple
     return constants, stored
 
 
+class FunctionLeaf:
+    """A function that is called as it is: none of its values come from the blackboard.
+
+    What ticks many children calls such a function itself (see row.py) and hands on here what is no plain answer.
+    """
+
+    __slots__ = ("call", "site")
+
+    def __init__(self, site: Site, call: Callable[[], Any]) -> None:
+        self.site = site
+        self.call = call
+
+    def tick(self) -> int:
+        try:
+            result = self.call()
+        except Exception as problem:
+            return failed(self.site, problem)
+        return SUCCESS if result is True else status_of(self.site, result)
+
+
+def as_function(tick: Any) -> FunctionLeaf | None:
+    """The leaf that a tick belongs to, where that is a function that is called as it is."""
+    leaf = getattr(tick, "__self__", None)
+    return leaf if leaf.__class__ is FunctionLeaf else None
+
+
 def _function_leaf(site: Site, call: Callable[..., Any], stored: Stored) -> Compiled:
+    if stored is None:
+        return FunctionLeaf(site, call).tick, halt_nothing
+
     def tick() -> int:
         try:
-            result = call() if stored is None else call(**stored())
-        except ActionFailed as failed:
-            return site.fail(str(failed))
+            result = call(**stored())
         except Exception as problem:
-            return _crash(site, problem)
-        if result is True or result is None:
-            return SUCCESS
-        if result is False:
-            return site.fail()
-        return _status(site, result)
+            return failed(site, problem)
+        return status_of(site, result)
 
     return tick, halt_nothing
 
 
 def _generator_leaf(site: Site, call: Callable[..., Any], stored: Stored) -> Compiled:
     generator: Any = None
+    interrupts, watch = site.shared.interrupts, site.watch
 
     def tick() -> int:
         nonlocal generator
         try:
             if generator is None:
-                values = {} if stored is None else stored()
-                _begin(site)
-                generator = call(**values)
+                values = None if stored is None else stored()
+                if interrupts or watch is not None:
+                    _begin(interrupts, watch)
+                generator = call() if values is None else call(**values)
             next(generator)
             return RUNNING
         except StopIteration as stop:
             generator = None
-            return SUCCESS if stop.value is None else _status(site, stop.value)
-        except ActionFailed as failed:
-            generator = None
-            return site.fail(str(failed))
+            return status_of(site, stop.value)
         except Exception as problem:
             generator = None
-            return _crash(site, problem)
+            return failed(site, problem)
 
     def halt(keep: bool) -> None:
         nonlocal generator
@@ -151,29 +178,31 @@ def _generator_leaf(site: Site, call: Callable[..., Any], stored: Stored) -> Com
 
 
 def _class_leaf(site: Site, leaf: Any, start: Callable[..., Any], stored: Stored) -> Compiled:
+    go_on = leaf.tick
+    interrupts, watch = site.shared.interrupts, site.watch
     running = False
 
     def tick() -> int:
         nonlocal running
         try:
             if running:
-                result = leaf.tick()
+                result = go_on()
             else:
-                values = {} if stored is None else stored()
-                _begin(site)
+                values = None if stored is None else stored()
+                if interrupts or watch is not None:
+                    _begin(interrupts, watch)
                 running = True
-                result = start(**values)
-        except ActionFailed as failed:
+                result = start() if values is None else start(**values)
+            if result is None or result == RUNNING:
+                return RUNNING
+        except ActionFailed as problem:
             running = False
-            return site.fail(str(failed))
+            return failed(site, problem)
         except Exception as problem:
             halt(False)
-            return _crash(site, problem)
-        if result is None:
-            return RUNNING
-        status = _status(site, result)
-        running = status == RUNNING
-        return status
+            return failed(site, problem)
+        running = False
+        return SUCCESS if result is True else status_of(site, result)
 
     def halt(keep: bool) -> None:
         nonlocal running
@@ -184,13 +213,13 @@ def _class_leaf(site: Site, leaf: Any, start: Callable[..., Any], stored: Stored
     return tick, halt
 
 
-def _begin(site: Site) -> None:
+def _begin(interrupts: list[Callable[[], None]], watch: Watch | None) -> None:
     """To be called before a generator or class leaf starts: running actions that it replaces are halted first."""
-    interrupts = site.shared.interrupts
     while interrupts:
         interrupts.pop()()
-    if site.watch is not None:
-        site.watch.change(RUNNING)
+    if watch is not None:
+        watch.change(RUNNING)
+        watch.trace.tell()  # so that a monitor shows a leaf that hangs
 
 
 def _stop(site: Site, halt: Callable[[], object]) -> None:
@@ -200,23 +229,28 @@ def _stop(site: Site, halt: Callable[[], object]) -> None:
         site.shared.halt_faults.append(Fault(site.index, _describe(problem), problem))
 
 
-def _crash(site: Site, problem: Exception) -> int:
+def failed(site: Site, problem: Exception) -> int:
+    """FAILURE, for the reason that the leaf gave, or with the exception that it should not have raised."""
+    if isinstance(problem, ActionFailed):
+        return site.fail(str(problem))
     return site.fail(_describe(problem), problem)
+
+
+def status_of(site: Site, result: object) -> int:
+    """The status that a returned value stands for: None is SUCCESS, FAILURE comes with the leaf's blame."""
+    if result is True or result is None:
+        return SUCCESS
+    if result is False:
+        return site.fail()
+    if isinstance(result, int) and result in (RUNNING, SKIPPED):
+        return int(result)
+    if type(result).__name__ in _TRUTHS or (isinstance(result, int) and result in (FAILURE, SUCCESS)):
+        return SUCCESS if result else site.fail()
+    return site.fail(f"it returned {result!r}, which is neither True, False, None nor a status")
 
 
 def _describe(problem: Exception) -> str:
     return f"{type(problem).__name__}: {problem}"
-
-
-def _status(site: Site, result: object) -> int:
-    """The status that a returned value stands for."""
-    if result is True:
-        return SUCCESS
-    if result is False:
-        return site.fail()
-    if isinstance(result, int) and RUNNING <= result <= SKIPPED:
-        return site.fail() if result == FAILURE else int(result)
-    return site.fail(f"it returned {result!r}, which is neither True, False, None nor a status")
 
 
 def _make(site: Site, cls: type) -> Any:

@@ -9,7 +9,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from btlang.engine.build import Site, apart
+from btlang.engine.build import Site
+from btlang.engine.row import row, settle
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
 
 TYPE_CHECKING = False
@@ -29,9 +30,10 @@ def reactive_fallback(site: Site, children: Sequence[Compiled]) -> Compiled:
 
 def _reactive(site: Site, children: Sequence[Compiled], passes: int) -> Compiled:
     """Goes on to the next child at the status `passes`, and returns it after the last child. SKIPPED if all are."""
-    ticks, halts = apart(children)
-    count = len(ticks)
+    ticks, halts, leaves = row(children)
+    pairs, count = tuple(enumerate(ticks)), len(ticks)
     interrupts = site.shared.interrupts
+    fails = SUCCESS if passes is FAILURE else FAILURE
     running = -1  # the child that was RUNNING at the last tick
 
     def interrupt() -> None:
@@ -41,14 +43,25 @@ def _reactive(site: Site, children: Sequence[Compiled], passes: int) -> Compiled
 
     def tick() -> int:
         nonlocal running
-        if running > 0:  # it is on the list while children before it are ticked
+        resumed = running if running > 0 else -1
+        if resumed > 0:  # it is on the list while children before it are ticked
             interrupts.append(interrupt)
         skipped = 0
-        for index, child in enumerate(ticks):
-            if index == running > 0:
+        plain = -1  # the latest child that passed, where nothing has settled what it answered
+        for index, child in pairs:
+            if index == resumed and running > 0:
                 interrupts.pop()
-            status = child()
-            if status == passes:
+            try:
+                status = child()
+                if status is passes:
+                    plain = index
+                    continue
+                if status != RUNNING and status != SKIPPED:
+                    status = settle(leaves[index], status)
+            except Exception as problem:
+                status = settle(leaves[index], problem)
+            if status is passes:
+                plain = -1
                 continue
             if status == SKIPPED:
                 halts[index](False)
@@ -56,10 +69,14 @@ def _reactive(site: Site, children: Sequence[Compiled], passes: int) -> Compiled
                 continue
             if index < running:
                 interrupts.pop()()
-            running = index if status == RUNNING else -1
-            return status
+            running = -1 if status is fails else index
+            return fails if status is fails else RUNNING
         running = -1
-        return SKIPPED if skipped == count else passes
+        if skipped == count:
+            return SKIPPED
+        if passes is FAILURE and plain >= 0:
+            settle(leaves[plain], FAILURE)
+        return passes
 
     def halt(keep: bool) -> None:
         nonlocal running

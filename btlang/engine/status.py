@@ -1,11 +1,11 @@
-"""Statuses of BehaviorTree.CPP, as integers: comparing them is what a tick does most."""
+"""Statuses of BehaviorTree.CPP. SUCCESS and FAILURE are True and False: the answer of a function leaf is its status."""
 
 from __future__ import annotations
 
-IDLE = 0
-RUNNING = 1
-SUCCESS = 2
-FAILURE = 3
-SKIPPED = 4
+FAILURE: int = False
+SUCCESS: int = True
+RUNNING = 2
+SKIPPED = 3
+IDLE = 4
 
-NAMES = ("IDLE", "RUNNING", "SUCCESS", "FAILURE", "SKIPPED")
+NAMES = ("FAILURE", "SUCCESS", "RUNNING", "SKIPPED", "IDLE")

@@ -1,79 +1,134 @@
-"""Reports status changes of one node. Compiled in only where somebody listens."""
+"""Reports status changes. Compiled in only where somebody listens."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
-from btlang.engine.status import IDLE, RUNNING
+from btlang.engine.leaves import FunctionLeaf, as_function, failed, status_of
+from btlang.engine.status import FAILURE, IDLE, RUNNING, SUCCESS
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import TypeAlias
 
-    from btlang.engine.build import Compiled
+    from btlang.engine.build import Compiled, Fault, Halt, Shared, Site, Tick
 
-    Listener: TypeAlias = Callable[[int, int], None]
+    Change: TypeAlias = "tuple[int, int, Fault | Site | None]"
+    """Index of a node in preorder, its new status, and for a FAILURE what has failed latest, of this node or below."""
+
+    Listener: TypeAlias = Callable[[list[Change]], object]
 
 REPEATING = frozenset(("Repeat", "KeepRunningUntilFailure", "LoopInt", "LoopBool", "LoopDouble", "LoopString"))
 """The nodes whose child is run again after it has succeeded: each of its completions is told."""
 
 
+class Trace:
+    """What the watches of one engine share: the number of the tick, and the changes that have not been told yet.
+
+    They are told together, which costs a listener far less: after each tick, halt and suspension, before a leaf that
+    takes time starts, and whenever somebody calls `tell`.
+    """
+
+    __slots__ = ("changes", "listener", "shared", "tick")
+
+    def __init__(self, shared: Shared, listener: Listener) -> None:
+        self.shared = shared
+        self.listener = listener
+        self.tick = 0
+        self.changes: list[Change] = []
+
+    def tell(self) -> None:
+        """Hands the changes so far to the listener, oldest first."""
+        if self.changes:
+            told = self.changes[:]
+            self.changes.clear()
+            self.listener(told)
+
+
 class Watch:
-    """Tells a listener the index and the new status of a node; a status that it has just told is no news.
+    """Notes the new status of a node; a status that it has just noted is no news.
 
     A completion is news again after a new run: when a parent that was RUNNING ends, what is below it is forgotten.
     So a condition polled at every tick is told once, and an action in a loop is told each time. `every` tells all
     completions: what Repeat repeats may be a function that completes at once, whose rounds no status tells apart.
     Where a node that completed at once is RUNNING when it is ticked again, that is a new run as well: before it is
     told, so are the statuses below it that are those of the run before; what this run has not reached is forgotten.
-
-    `ticks` holds one number, that of the tick; the root counts it up.
     """
 
-    __slots__ = ("below", "every", "index", "last", "listener", "reached", "ticks", "told")
+    __slots__ = ("below", "every", "index", "last", "reached", "told", "trace")
 
-    def __init__(self, index: int, listener: Listener, every: bool, ticks: list[int]) -> None:
+    def __init__(self, index: int, every: bool, below: list[Watch], trace: Trace) -> None:
         self.index = index
-        self.listener = listener
         self.every = every
-        self.ticks = ticks
+        self.below = below
+        self.trace = trace
         self.last = IDLE
-        self.reached = self.told = 0  # the ticks in which it last had a status, and in which that was told
-        self.below: list[Watch] = []
+        self.reached = self.told = 0  # the ticks in which it last had a status, and in which that was noted
 
     def change(self, status: int) -> None:
         """The node has this status now."""
         if status != RUNNING and (self.every or self.last == RUNNING):
             self._forget_below()
         elif status == RUNNING and self.last not in (IDLE, RUNNING):
-            self._tell_below()
+            self._note_below()
         if status != self.last or (self.every and status != RUNNING):
             self.last = status
-            self.told = self.ticks[0]
-            self.listener(self.index, status)
+            self.note()
+
+    def note(self) -> None:
+        """Its status is news."""
+        trace = self.trace
+        self.told = trace.tick
+        trace.changes.append((self.index, self.last, trace.shared.fault if self.last is FAILURE else None))
 
     def wrap(self, compiled: Compiled) -> Compiled:
-        """The same node, watched."""
+        """The same node, watched. The root counts the ticks."""
         tick, halt = compiled
-        ticks = self.ticks
+        leaf = as_function(tick)
+        if leaf is not None and self.index and not self.every:
+            return self._watched_function(leaf), halt
+        trace = self.trace
 
         def watched_tick() -> int:
             status = tick()
-            self.reached = ticks[0]
-            if status != self.last or self.every:
+            self.reached = trace.tick
+            if status is not self.last or self.every:
                 self.change(status)
             return status
 
         def root_tick() -> int:
-            ticks[0] += 1
+            trace.tick += 1
             return watched_tick()
 
+        return (watched_tick if self.index else root_tick), self._watched_halt(halt)
+
+    def _watched_function(self, leaf: FunctionLeaf) -> Tick:
+        """A wrapper around the function itself, which does what FunctionLeaf.tick does: the two calls become one."""
+        call, site, trace = leaf.call, leaf.site, self.trace
+
+        def watched_tick() -> int:
+            try:
+                status = call()
+            except Exception as problem:
+                status = failed(site, problem)
+            else:
+                if status is not SUCCESS:
+                    status = status_of(site, status)
+            self.reached = trace.tick
+            if status is not self.last:
+                self.last = status
+                self.note()
+            return status  # type: ignore[no-any-return]
+
+        return watched_tick
+
+    def _watched_halt(self, halt: Halt) -> Halt:
         def watched_halt(keep: bool) -> None:
             halt(keep)
             if self.last == RUNNING:
                 self.change(IDLE)
 
-        return (watched_tick if self.index else root_tick), watched_halt
+        return watched_halt
 
     def _forget_below(self) -> None:
         # a node whose last status is IDLE has nothing to forget below it
@@ -83,22 +138,21 @@ class Watch:
             watch.last = IDLE
             stack += [child for child in watch.below if child.last != IDLE]
 
-    def _tell_below(self) -> None:
-        """Tells the completions of this tick that have not been told, children before parents, and forgets others."""
-        now = self.ticks[0]
-        untold: list[Watch] = []
+    def _note_below(self) -> None:
+        """Notes the completions of this tick that are not noted, children before parents, and forgets others."""
+        now = self.trace.tick
+        unnoted: list[Watch] = []
         stack = [child for child in self.below if child.last != IDLE]
         while stack:
             watch = stack.pop()
-            if watch.last == RUNNING:  # it has just told, and with it what is below it
+            if watch.last == RUNNING:  # it has just been noted, and with it what is below it
                 continue
             if watch.reached != now:
                 watch._forget_below()
                 watch.last = IDLE
                 continue
             if watch.told != now:
-                untold.append(watch)
+                unnoted.append(watch)
             stack += [child for child in watch.below if child.last != IDLE]
-        for watch in reversed(untold):
-            watch.told = now
-            watch.listener(watch.index, watch.last)
+        for watch in reversed(unnoted):
+            watch.note()

@@ -80,7 +80,8 @@ class RunRecord:
         elif isinstance(event, RobotEvent):
             self._happened(event)
         elif self.track:
-            self._changed(event)
+            for change in event:
+                self._changed(change)
 
     def _see(self, t: float, robot: Any) -> None:
         sample = Sample(t, robot.pose, robot.battery)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from btlang.engine.status import IDLE, RUNNING
-from btlang.run.events import StatusChanged
+from btlang.run.events import StatusesChanged
 from btlang.tree.node import Tree
 
 TYPE_CHECKING = False
@@ -25,12 +25,11 @@ class LastStatuses:
         self.by_path: dict[str, int] = {}
 
     def __call__(self, event: Event) -> None:
-        if not isinstance(event, StatusChanged) or len(event.path) > _LONGEST_PATH:
-            return
-        before = self.by_path.get(event.path)
-        if event.status != IDLE or before == RUNNING:
-            self.by_path.pop(event.path, None)
-            self.by_path[event.path] = event.status
+        for change in event if isinstance(event, StatusesChanged) else ():
+            before = self.by_path.get(change.path)
+            if len(change.path) <= _LONGEST_PATH and (change.status != IDLE or before == RUNNING):
+                self.by_path.pop(change.path, None)
+                self.by_path[change.path] = change.status
 
 
 def by_definition(statuses: Mapping[str, int], tree: Tree) -> dict[tuple[str, str], int]:

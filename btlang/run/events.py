@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 
 from btlang.record import Record
 from btlang.tree.node import Node
@@ -11,8 +11,17 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, Protocol, TypeAlias
 
-    Event: TypeAlias = "StatusChanged | RobotEvent | PeriodPassed"
+    from btlang.engine.watch import Change
+
+    Event: TypeAlias = "StatusesChanged | RobotEvent | PeriodPassed"
     Sink: TypeAlias = Callable[[Event], object]
+
+    class Nodes(Protocol):
+        """What tells the nodes of a tree by their numbers."""
+
+        def path(self, index: int) -> str: ...
+
+        def node(self, index: int) -> Node: ...
 
     class Robot(Protocol):
         """What a run asks of a robot. `moving` may be missing; so may `moves_by_itself`, which is then taken for true.
@@ -26,7 +35,7 @@ if TYPE_CHECKING:
 
 
 class StatusChanged(Record):
-    """A node has a new status. `index` is its number in preorder, `path` its place; `t` is in seconds of the mission.
+    """Of a StatusesChanged: a node has a new status. `index` is its number in preorder, `path` its place; `t` is in seconds of the mission.
 
     `reason` says why a leaf or decorator failed, "" for any other status and where nothing is known.
     """
@@ -37,6 +46,23 @@ class StatusChanged(Record):
     node: Node
     status: int
     reason: str = ""
+
+
+class StatusesChanged(Record):
+    """Nodes have new statuses; iterating gives each as a StatusChanged, oldest first.
+
+    They come together because making an event of each would take ten times as long as the tick.
+    """
+
+    t: float
+    changes: Sequence[Change]
+    nodes: Nodes
+
+    def __iter__(self) -> Iterator[StatusChanged]:
+        nodes = self.nodes
+        for index, status, fault in self.changes:
+            reason = fault.reason if fault is not None and fault.index == index else ""
+            yield StatusChanged(self.t, index, nodes.path(index), nodes.node(index), status, reason)
 
 
 class RobotEvent(Record):
@@ -64,11 +90,13 @@ class EventStream:
     """Hands each event to all sinks, in the order they were added.
 
     A sink that raises is dropped and its exception kept in `errors`: what watches a mission must not stop it.
+    `before` is called before an event of another sort than changes of statuses, to publish those that came earlier.
     """
 
     def __init__(self, *sinks: Sink) -> None:
         self.sinks: list[Sink] = list(sinks)
         self.errors: list[Exception] = []
+        self.before: Callable[[], object] | None = None
 
     def add(self, sink: Sink) -> None:
         """Adds a sink, which gets the events from now on."""
@@ -76,6 +104,8 @@ class EventStream:
 
     def publish(self, event: Event) -> None:
         """Hands an event to all sinks."""
+        if self.before is not None and not isinstance(event, StatusesChanged):
+            self.before()
         for sink in tuple(self.sinks):
             try:
                 sink(event)

@@ -6,7 +6,7 @@ import json
 from collections.abc import Callable, Mapping
 
 from btlang.engine.status import NAMES
-from btlang.run.events import PeriodPassed, RobotEvent, StatusChanged
+from btlang.run.events import RobotEvent, StatusChanged, StatusesChanged
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False
@@ -31,21 +31,23 @@ class JsonLog:
         self._label = label
 
     def __call__(self, event: Event) -> None:
-        if isinstance(event, PeriodPassed):
-            return
-        line = json.dumps(self._fields(event), ensure_ascii=False, default=str)
-        self._output.write(line + "\n")
+        if isinstance(event, StatusesChanged):
+            for change in event:
+                self._write(_status_fields(change, self._label(change.node)))
+        elif isinstance(event, RobotEvent):
+            self._write({**event.data, "t": _time(event.t), "event": event.kind})
+
+    def _write(self, fields: Mapping[str, Any]) -> None:
+        self._output.write(json.dumps(fields, ensure_ascii=False, default=str) + "\n")
         self._output.flush()
 
-    def _fields(self, event: RobotEvent | StatusChanged) -> Mapping[str, Any]:
-        t = round(event.t, 6)
-        if isinstance(event, RobotEvent):
-            return {**event.data, "t": t, "event": event.kind}
-        return _status_fields(event, t, self._label(event.node))
+
+def _status_fields(change: StatusChanged, name: str) -> Mapping[str, Any]:
+    node = change.node
+    fields = {"t": _time(change.t), "path": change.path, "id": node.id, "name": name, "ports": dict(node.ports)}
+    reason = {"reason": change.reason} if change.reason else {}
+    return {**fields, "status": NAMES[change.status], **reason}
 
 
-def _status_fields(event: StatusChanged, t: float, name: str) -> Mapping[str, Any]:
-    node = event.node
-    fields = {"t": t, "path": event.path, "id": node.id, "name": name, "ports": dict(node.ports)}
-    reason = {"reason": event.reason} if event.reason else {}
-    return {**fields, "status": NAMES[event.status], **reason}
+def _time(t: float) -> float:
+    return round(t, 6)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED
-from btlang.run.events import RobotEvent, StatusChanged
+from btlang.run.events import RobotEvent, StatusChanged, StatusesChanged
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False
@@ -31,9 +31,10 @@ class Lines:
     def __call__(self, event: Event) -> None:
         if isinstance(event, RobotEvent):
             self._robot(event)
-        elif isinstance(event, StatusChanged):
-            if (event.node.id == "Sleep" and event.node.span) or self._is_action(event.node):
-                self._action(event)
+        elif isinstance(event, StatusesChanged):
+            for change in event:
+                if (change.node.id == "Sleep" and change.node.span) or self._is_action(change.node):
+                    self._action(change)
 
     def _action(self, event: StatusChanged) -> None:
         reason = f": {event.reason}" if event.reason else ""

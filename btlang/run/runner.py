@@ -10,16 +10,17 @@ from btlang.engine.blackboard import Blackboard
 from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine, Failure
 from btlang.engine.leaf import LeafBinding
-from btlang.engine.status import FAILURE, IDLE, RUNNING
+from btlang.engine.status import IDLE, RUNNING
 from btlang.record import Record
 from btlang.run.controls import Controls
-from btlang.run.events import EventStream, PeriodPassed, RobotEvent, StatusChanged
+from btlang.run.events import EventStream, PeriodPassed, RobotEvent, StatusesChanged
 from btlang.tree.node import Tree
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+    from btlang.engine.watch import Change
     from btlang.run.events import Robot
 
 
@@ -50,11 +51,11 @@ def traced_engine(
 ) -> Engine:
     """An engine whose status changes go into the stream."""
 
-    def changed(index: int, status: int) -> None:
-        reason = engine.reason(index) if status == FAILURE else ""
-        events.publish(StatusChanged(clock.now, index, engine.path(index), engine.node(index), status, reason))
+    def changed(changes: list[Change]) -> None:
+        events.publish(StatusesChanged(clock.now, changes, engine))
 
     engine = Engine(tree, bind, clock=clock, services=services, blackboard=blackboard, listener=changed)
+    events.before = engine.tell
     return engine
 
 

@@ -207,12 +207,12 @@ class Reference(MoreNodes):
                 self.failures += result == FAILURE
                 if result in (SUCCESS, FAILURE):
                     self.completed.add(index)
-            end = 0
+            end = IDLE
             if self.successes >= required or (wanted < 0 and self.successes + skipped >= required):
                 end = SUCCESS
             elif size - self.failures < required or self.failures == limit:
                 end = FAILURE
-            if end:
+            if end != IDLE:
                 self.completed.clear()
                 self.successes = self.failures = 0
                 self.reset_children()

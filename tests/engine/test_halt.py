@@ -38,7 +38,7 @@ def test_halts_are_reported_children_first() -> None:
     engine.tick()
     world.changes.clear()
     engine.halt()
-    assert world.changes == [(2, 0), (1, 0), (0, 0)]
+    assert world.changes == [(2, IDLE), (1, IDLE), (0, IDLE)]
 
 
 def test_a_halted_sequence_starts_anew() -> None:
@@ -83,11 +83,11 @@ def test_suspend_halts_the_leaf_and_resuming_starts_it_anew() -> None:
     engine.tick()
     world.changes.clear()
     engine.suspend()
-    assert world.changes == [(2, 0), (0, 0)]
+    assert world.changes == [(2, IDLE), (0, IDLE)]
     assert engine.status == RUNNING
     engine.tick()
     assert world.log == ["A", "B.start", "B.halt", "B.start"]
-    assert world.changes[2:] == [(2, 1), (0, 1)]
+    assert world.changes[2:] == [(2, RUNNING), (0, RUNNING)]
 
 
 def test_a_suspended_fallback_keeps_its_place() -> None:

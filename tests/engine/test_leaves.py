@@ -5,40 +5,53 @@ from __future__ import annotations
 from collections.abc import Iterator
 from typing import Any
 
+import numpy as np
 import pytest
 
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.build import EngineError
 from btlang.engine.engine import Engine
 from btlang.engine.leaf import ActionFailed, LeafBinding
-from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
+from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 from btlang.tree.node import Node, Tree
 
 from .scripted import World, n
 
 
-def outcome(call: Any, world: World | None = None, **ports: str) -> tuple[int, str]:
-    """Status and reason of one tick of a leaf."""
+def outcome(call: Any, world: World | None = None, parent: str = "", **ports: str) -> tuple[int, str]:
+    """Status and reason of one tick of a leaf, by itself or as the only child of a parent."""
     world = world or World()
     world.bind("A", call)
-    engine = world.engine(n("A", **ports))
+    leaf = n("A", **ports)
+    engine = world.engine(n(parent, leaf) if parent else leaf)
     status = engine.tick()
     return status, engine.failure.reason if engine.failure else ""
 
 
 @pytest.mark.parametrize(
     ("value", "status"),
-    [(True, SUCCESS), (None, SUCCESS), (False, FAILURE), (1, RUNNING), (2, SUCCESS), (3, FAILURE), (4, SKIPPED)],
+    [
+        *[
+            (True, SUCCESS),
+            (None, SUCCESS),
+            (False, FAILURE),
+            (np.float64(2) > 1, SUCCESS),
+            (np.float64(2) < 1, FAILURE),
+        ],
+        *[(RUNNING, RUNNING), (SUCCESS, SUCCESS), (FAILURE, FAILURE), (SKIPPED, SKIPPED), (1, SUCCESS), (0, FAILURE)],
+    ],
 )
-def test_values_of_functions(value: object, status: int) -> None:
-    assert outcome(lambda: value) == (status, "")
+@pytest.mark.parametrize("parent", ["", "Sequence", "Fallback", "ReactiveSequence", "ReactiveFallback", "ParallelAll"])
+def test_values_of_functions(parent: str, value: object, status: int) -> None:
+    assert outcome(lambda: value, parent=parent) == (status, "")
 
 
-@pytest.mark.parametrize("value", [0, 5, -1, "yes", 2.0, [], object])
-def test_other_values_are_failures(value: object) -> None:
-    status, reason = outcome(lambda: value)
+@pytest.mark.parametrize("value", [IDLE, 5, -1, "yes", 2.5, [], object, np.array([1, 2])])
+@pytest.mark.parametrize("parent", ["", "Sequence", "Fallback", "ReactiveSequence", "ReactiveFallback", "Parallel"])
+def test_other_values_are_failures(parent: str, value: object) -> None:
+    status, reason = outcome(lambda: value, parent=parent)
     assert status == FAILURE
-    assert reason.startswith(f"it returned {value!r}, which is neither")
+    assert "it returned" in reason or (isinstance(value, np.ndarray) and "ValueError" in reason)
 
 
 def test_generators_run_until_they_return() -> None:

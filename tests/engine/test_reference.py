@@ -10,6 +10,7 @@ from hypothesis import given, settings
 from hypothesis import strategies as st
 
 from btlang.engine.blackboard import Blackboard
+from btlang.engine.status import IDLE
 from btlang.tree.node import Node
 
 from .reference import Reference
@@ -138,7 +139,7 @@ def test_engine_equals_reference(shape: Node, orders: str, watched: bool) -> Non
             assert LETTER[ours] == LETTER[theirs]
             if LETTER[theirs] in "sf":
                 reference.reset_children()
-                reference.status = 0
+                reference.status = IDLE
         assert world.log == log
         assert _values(engine.blackboard) == _values(board)
         world.clock.advance(1)

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from btlang.engine.status import IDLE
+
 from .scripted import World, n
 
 
@@ -58,5 +60,5 @@ def test_statuses_are_reported() -> None:
     world = World()
     engine = world.engine(n("Whenever", world.fn("C", "fs"), world.cls("B", "s"), world.cls("W", "r")), watched=True)
     world.ticks(engine, 2)
-    assert (3, 0) in world.changes  # the work was halted
+    assert (3, IDLE) in world.changes  # the work was halted
     assert world.changes[-1][0] == 3

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import btlang
+from btlang.engine.clock import Clock
+from btlang.engine.engine import Engine
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 from btlang.pictures.run_picture import numbers
 from btlang.pictures.run_record import RunRecord
 from btlang.pictures.statuses import LastStatuses, by_definition
-from btlang.run.events import StatusChanged
+from btlang.run.events import StatusesChanged
 from btlang.tree.node import Node, Tree
 
 
@@ -78,9 +80,9 @@ def test_last_statuses() -> None:
 
 
 def test_a_reset_is_no_status() -> None:
-    sink, node = LastStatuses(), Node("Wave")
+    sink, engine = LastStatuses(), Engine(Tree(Node("AlwaysSuccess")), lambda id: None, clock=Clock())
     for status in (RUNNING, SUCCESS, IDLE):
-        sink(StatusChanged(0.0, 0, "/", node, status))
+        sink(StatusesChanged(0.0, [(0, status, None)], engine))
     assert sink.by_path == {"/": SUCCESS}
 
 

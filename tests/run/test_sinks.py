@@ -5,8 +5,9 @@ from __future__ import annotations
 import io
 import json
 
+from btlang.engine.build import Fault
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
-from btlang.run.events import RobotEvent, StatusChanged
+from btlang.run.events import RobotEvent, StatusesChanged
 from btlang.run.json_log import JsonLog
 from btlang.run.lines import Lines
 from btlang.text.source import Source, Span
@@ -18,6 +19,23 @@ SEE = Node("See")
 
 def label(node: Node) -> str:
     return {"GoTo": "go to the lab", "See": "i see a person", "Sleep": "wait 5 s"}.get(node.id, node.name or node.id)
+
+
+class One:
+    """The only node of a tree, at /0/1."""
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+
+    def path(self, index: int) -> str:
+        return "/0/1"
+
+    def node(self, index: int) -> Node:
+        return self._node
+
+
+def changed(t: float, node: Node, status: int, reason: str = "") -> StatusesChanged:
+    return StatusesChanged(t, [(3, status, Fault(3, reason) if reason else None)], One(node))
 
 
 class Output(io.StringIO):
@@ -32,8 +50,8 @@ class Output(io.StringIO):
 def test_json_lines() -> None:
     output = Output()
     log = JsonLog(output, label)
-    log(StatusChanged(0.1 + 0.2, 3, "/0/1", GO, RUNNING))
-    log(StatusChanged(9.8, 3, "/0/1", GO, FAILURE, "the way is blocked"))
+    log(changed(0.1 + 0.2, GO, RUNNING))
+    log(changed(9.8, GO, FAILURE, "the way is blocked"))
     log(RobotEvent(2.0, "say", {"text": "héllo\nyou"}))
     log(RobotEvent(2.5, "pose", {"where": complex(1, 2)}))
     where = {"path": "/0/1", "id": "GoTo", "name": "go to the lab", "ports": {"place": "the lab"}}
@@ -62,7 +80,7 @@ def test_human_lines() -> None:
         (1234.5, Node("Sleep", span=Span(Source("wait 5 s"), 0, 8)), RUNNING, ""),
         (1235.0, Node("Sleep"), RUNNING, ""),  # the timer of a form
     ]:
-        sink(StatusChanged(t, 0, "/", node, status, reason))
+        sink(changed(t, node, status, reason))
     sink(RobotEvent(2.0, "say", {"text": "hello"}))
     sink(RobotEvent(2.0, "print", {"text": "hello"}))
     sink(RobotEvent(2.1, "bump", {"into": "a wall"}))

@@ -6,9 +6,8 @@ import os
 from collections import deque
 from collections.abc import Callable
 
-from btlang.engine.blackboard import Blackboard
-from btlang.engine.compile import expand
-from btlang.run.events import PeriodPassed, RobotEvent, StatusChanged
+from btlang.engine.compile import outline
+from btlang.run.events import PeriodPassed, RobotEvent, StatusesChanged
 from btlang.run.lines import Lines
 from btlang.run.live import frame
 from btlang.run.live.shape import Shape
@@ -45,11 +44,10 @@ class Board:
     """
 
     def __init__(self, mission: Viewed, signs: frame.Signs) -> None:
-        places = expand(mission.tree, Blackboard())
-        nodes = [place.node for place in places]
+        nodes, parents = outline(mission.tree)
         span = mission.tree.root.span
         self.changes = 0
-        self.state = State(Shape([place.parent for place in places]), [node.id for node in nodes])
+        self.state = State(Shape(parents), [node.id for node in nodes])
         self._title = frame.printable(os.path.basename(span.source.name)) if span is not None else "mission"
         self._signs = signs
         self._words = frame.Words(nodes, mission.label)
@@ -104,8 +102,9 @@ class Board:
         if isinstance(event, str):
             self._above.append(event)
             return
-        if isinstance(event, StatusChanged):
-            self.state.change(event.index, event.status, event.t, event.reason)
+        if isinstance(event, StatusesChanged):
+            for change in event:
+                self.state.change(change.index, change.status, change.t, change.reason)
         elif isinstance(event, RobotEvent) and event.kind == "say":
             self.state.said = str(event.data.get("text", ""))
         self._lines(event)

@@ -34,8 +34,8 @@ class Signs(Record):
     apart: str
 
 
-UNICODE = Signs("·▶✓✗–■‖", ("├── ", "└── ", "│   "), "…", " · ")  # noqa: RUF001
-ASCII = Signs(".>+x-!=", ("|-- ", "`-- ", "|   "), "...", " - ")
+UNICODE = Signs("✗✓▶–·■‖", ("├── ", "└── ", "│   "), "…", " · ")  # noqa: RUF001
+ASCII = Signs("x+>-.!=", ("|-- ", "`-- ", "|   "), "...", " - ")
 
 
 class Words:

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
 
     from btlang.run.events import PeriodPassed
 
-HALTED = SKIPPED + 1
+HALTED = IDLE + 1
 """Was RUNNING and was halted."""
 SUSPENDED = HALTED + 1
 """Was halted by a pause, or by the end of the run."""
@@ -49,7 +49,7 @@ class State:
 
     def __init__(self, shape: Shape, ids: Sequence[str]) -> None:
         self.shape = shape
-        self.statuses = bytearray(len(shape))
+        self.statuses = bytearray([IDLE]) * len(shape)
         self.started: dict[int, float] = {}
         self.ended: dict[int, float] = {}
         self.reasons: dict[int, str] = {}
@@ -125,7 +125,7 @@ class State:
                 break
         if top >= 0:
             end = self.shape.ends[top]
-            self.statuses[top + 1 : end] = bytes(end - top - 1)
+            self.statuses[top + 1 : end] = bytes([IDLE]) * (end - top - 1)
             over[top:end] = bytes(end - top)
 
     def _clear_older(self, index: int, t: float) -> None:

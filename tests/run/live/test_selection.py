@@ -82,7 +82,7 @@ def test_before_the_start_and_after_a_failure() -> None:
 
 def test_a_part_of_what_is_too_long_to_be_opened() -> None:
     shape = Shape([-1, 0] + [1] * MANY)
-    assert told(shape, bytes(MANY + 2), 6) == ["0", " 1", "  2", "  3", "  4", "  497 to come"]
+    assert told(shape, bytes([IDLE] * (MANY + 2)), 6) == ["0", " 1", "  2", "  3", "  4", "  497 to come"]
 
 
 def test_many_run_at_once() -> None:

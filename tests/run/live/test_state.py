@@ -19,7 +19,7 @@ def n(id: str, *children: Node, **ports: object) -> Node:
 
 def letters(statuses: bytes) -> str:
     """`.` not started, r s f k the statuses, h halted, p paused."""
-    return "".join(".rsfkhp"[status] for status in statuses)
+    return "".join("fsrk.hp"[status] for status in statuses)
 
 
 def test_an_earlier_round_is_forgotten() -> None:
@@ -110,15 +110,15 @@ def test_it_agrees_with_the_engine(root: Node, deeds: list[str]) -> None:
             if status in (RUNNING, SUCCESS, FAILURE, SKIPPED):
                 continue
             if status == IDLE:
-                assert not any(statuses[node : shape.ends[node]])
+                assert set(statuses[node : shape.ends[node]]) == {IDLE}
             else:
                 assert status in (HALTED, SUSPENDED)
         assert (statuses[0] == SUSPENDED) == (run.latest.get(0) == IDLE and deed == "p")
-        for node, place in enumerate(run.places):
-            if place.node.id in ("Sequence", "Fallback") and statuses[node] == RUNNING:
+        for node, made in enumerate(run.nodes):
+            if made.id in ("Sequence", "Fallback") and statuses[node] == RUNNING:
                 row = [statuses[child] for child in shape.children(node)]
                 at = row.index(RUNNING)
-                passes = SUCCESS if place.node.id == "Sequence" else FAILURE
+                passes = SUCCESS if made.id == "Sequence" else FAILURE
                 assert set(row[:at]) <= {passes, SKIPPED}
                 if "p" not in deeds:  # that what was suspended does not go on is no change of a status
                     assert set(row[at + 1 :]) <= {IDLE}

@@ -6,15 +6,19 @@ from collections.abc import Iterable
 
 from hypothesis import strategies as st
 
-from btlang.engine.blackboard import Blackboard
 from btlang.engine.clock import Clock
-from btlang.engine.compile import expand
+from btlang.engine.compile import outline
 from btlang.engine.engine import Engine
 from btlang.engine.leaf import LeafBinding
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
+from btlang.run.events import StatusesChanged
 from btlang.run.live.shape import Shape
 from btlang.run.live.state import State
 from btlang.tree.node import Node, Tree
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.engine.watch import Change
 
 LETTERS = {"r": RUNNING, "s": SUCCESS, "f": FAILURE, "k": SKIPPED}
 
@@ -44,8 +48,8 @@ class Run:
 
     def __init__(self, root: Node) -> None:
         self.clock = Clock()
-        self.places = expand(Tree(root), Blackboard())
-        self.state = State(Shape([place.parent for place in self.places]), [place.node.id for place in self.places])
+        self.nodes, self.parents = outline(Tree(root))
+        self.state = State(Shape(self.parents), [node.id for node in self.nodes])
         self.latest: dict[int, int] = {}
         self.positions: dict[str, int] = {}
         self.engine = Engine(Tree(root), self._bind, clock=self.clock, listener=self._changed)
@@ -62,10 +66,10 @@ class Run:
         self.engine.suspend()
         return bytes(self.state.statuses)
 
-    def _changed(self, index: int, status: int) -> None:
-        self.latest[index] = status
-        reason = self.engine.reason(index) if status == FAILURE else ""
-        self.state.change(index, status, self.clock.now, reason)
+    def _changed(self, changes: list[Change]) -> None:
+        for change in StatusesChanged(self.clock.now, changes, self.engine):
+            self.latest[change.index] = change.status
+            self.state.change(change.index, change.status, change.t, change.reason)
 
     def _bind(self, id: str) -> LeafBinding:
         positions = self.positions

@@ -1,0 +1,214 @@
+"""How fast trees are ticked, beside py_trees: `python -m tests.benchmarks.ticks [--rounds 15]`.
+
+Both run the same tree, with leaves that do nothing, written as each documents it: here functions, and generators for
+what takes time; there behaviours. A tick is `Engine.tick` and `BehaviourTree.tick`. Ratios are those of medians of
+rounds in which all take turns. The last lines are the ratios without a listener; before them stand those with every
+status change sent to the event stream, what depth does to a tick, and what a node costs.
+"""
+
+from __future__ import annotations
+
+import argparse
+import tracemalloc
+from collections.abc import Callable, Iterator
+from functools import partial
+from random import Random
+from time import perf_counter
+
+import py_trees
+from py_trees.common import Status
+
+from btlang.engine.clock import Clock
+from btlang.engine.engine import Engine
+from btlang.engine.leaf import LeafBinding
+from btlang.run.events import EventStream
+from btlang.run.runner import traced_engine
+from btlang.tree.node import Node, Tree
+from tests.benchmarks.compile import medians
+
+CONDITIONS, RUNNERS, ACTIONS = 10, 50, 10_000
+MIX, DEPTH = 1_000, 6
+BIG = 100_000
+DEEP = (10, 100, 1_000)
+
+
+def run() -> Iterator[None]:
+    """An action that never completes."""
+    while True:
+        yield
+
+
+BINDINGS = {
+    "Yes": LeafBinding(lambda: True),
+    "No": LeafBinding(lambda: False),
+    "Act": LeafBinding(lambda: None),
+    "Run": LeafBinding(run),
+}
+
+
+class Answer(py_trees.behaviour.Behaviour):
+    """The same leaves for py_trees: one status for ever."""
+
+    def __init__(self, name: str, status: Status) -> None:
+        super().__init__(name)
+        self.answer = status
+
+    def update(self) -> Status:
+        return self.answer
+
+
+ANSWERS = {"Yes": Status.SUCCESS, "No": Status.FAILURE, "Act": Status.SUCCESS, "Run": Status.RUNNING}
+DECORATORS = {
+    "Inverter": py_trees.decorators.Inverter,
+    "ForceSuccess": py_trees.decorators.FailureIsSuccess,
+    "ForceFailure": py_trees.decorators.SuccessIsFailure,
+}
+
+
+def peer(node: Node) -> py_trees.behaviour.Behaviour:
+    """The same tree in py_trees."""
+    if node.id in ANSWERS:
+        return Answer(node.id, ANSWERS[node.id])
+    children = [peer(child) for child in node.children]
+    if node.id in DECORATORS:
+        return DECORATORS[node.id](node.id, children[0])
+    if node.id == "Parallel":
+        policy = py_trees.common.ParallelPolicy.SuccessOnAll(synchronise=True)
+        return py_trees.composites.Parallel(node.id, policy, children)
+    kind = py_trees.composites.Selector if node.id.endswith("Fallback") else py_trees.composites.Sequence
+    return kind(node.id, memory=not node.id.startswith("Reactive"), children=children)
+
+
+def n(id: str, *children: Node) -> Node:
+    return Node(id, children=children)
+
+
+def mix() -> Node:
+    """MIX nodes of depth DEPTH, all of which a tick visits: conditions, actions, sequences, fallbacks, decorators."""
+    random, left = Random(7), MIX
+
+    def grown(depth: int, succeeds: bool, share: int) -> Node:
+        """A tree of about `share` nodes that completes at once."""
+        nonlocal left
+        left -= 1
+        if depth == DEPTH or share < 3:
+            return n(random.choice(("Yes", "Act")) if succeeds else "No")
+        if random.random() < 0.15:
+            return n("Inverter", grown(depth + 1, not succeeds, share - 1))
+        kind = random.choice(("Sequence", "Fallback", "Parallel") if succeeds else ("Sequence", "Fallback"))
+        count = min(random.randint(3, 6), share)
+        passes = kind != "Fallback"
+        shares = (share - 1) // count
+        children = [grown(depth + 1, passes, shares) for _ in range(count - 1)]
+        return n(kind, *children, grown(depth + 1, succeeds, shares))
+
+    children: list[Node] = []
+    while left > 0:
+        children.append(grown(1, True, min(left, 4 * MIX)))
+    return n("Sequence", *children)
+
+
+TREES: dict[str, tuple[str, Node]] = {
+    "T1": (
+        f"resumed leaf behind {CONDITIONS} conditions",
+        n("Sequence", *[n("Yes")] * CONDITIONS, n("Run")),
+    ),
+    "T2": (f"fresh tick of about {MIX:,} nodes of depth {DEPTH}", mix()),
+    "T3": (f"reactive guard of {CONDITIONS} conditions", n("ReactiveSequence", *[n("Yes")] * CONDITIONS, n("Run"))),
+    "T4": (f"parallel of {RUNNERS} running leaves", n("Parallel", *[n("Run")] * RUNNERS)),
+    "T5": (f"sequence of {ACTIONS:,} actions run to the end", n("Sequence", *[n("Act")] * ACTIONS)),
+}
+
+
+def engine(root: Node) -> Engine:
+    """Without a listener."""
+    return Engine(Tree(root), BINDINGS.get, clock=Clock())
+
+
+def nodes(root: Node) -> Iterator[Node]:
+    stack = [root]
+    while stack:
+        node = stack.pop()
+        yield node
+        stack += node.children
+
+
+def repeated(tick: Callable[[], object], times: int) -> None:
+    for _ in range(times):
+        tick()
+
+
+def compared(root: Node, rounds: int) -> tuple[float, float, float]:
+    """Seconds of a tick: of py_trees, of the engine, of the engine whose changes go to a sink."""
+    told: list[object] = []
+    stream = EventStream(told.append)
+    traced = traced_engine(Tree(root), BINDINGS.get, clock=Clock(), events=stream)
+    theirs = py_trees.trees.BehaviourTree(peer(root))
+
+    def traced_tick() -> None:
+        traced.tick()
+        told.clear()
+
+    ticks = {"py_trees": theirs.tick, "btlang": engine(root).tick, "traced": traced_tick}
+    times = {}
+    for name, tick in ticks.items():
+        tick()
+        began = perf_counter()
+        tick()
+        times[name] = max(1, int(0.02 / (perf_counter() - began)))
+    taken = medians({name: partial(repeated, tick, times[name]) for name, tick in ticks.items()}, rounds)
+    theirs_s, ours, traced_s = [taken[name] / times[name] for name in ticks]
+    return theirs_s, ours, traced_s
+
+
+def depths(rounds: int) -> None:
+    """A resumed tick of a leaf below ever more nodes."""
+    ticks: dict[str, Callable[[], object]] = {}
+    for depth in DEEP:
+        root = n("Run")
+        for _ in range(depth):
+            root = n("Sequence", n("Yes"), root)
+        tick = engine(root).tick
+        tick()
+        ticks[f"{depth:,}"] = partial(repeated, tick, 200)
+    taken = medians(ticks, rounds)
+    told = ", ".join(f"{taken[name] / 200 * 1e6:.2f} µs below {name} sequences" for name in ticks)
+    print(f"resumed tick: {told}")
+
+
+def size(rounds: int) -> None:
+    """What a node of a big tree costs."""
+    root = n("Sequence", *[mix() for _ in range(BIG // MIX)])
+    count = sum(1 for _ in nodes(root))
+    built = medians({"build": partial(engine, root)}, max(3, rounds // 3))["build"]
+    tracemalloc.start()
+    kept = engine(root)
+    used, _ = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    del kept
+    print(f"{count:,} nodes: {used / count:.0f} bytes and {built / count * 1e6:.1f} µs to build a node")
+
+
+def main() -> None:
+    """Measures and prints."""
+    options = argparse.ArgumentParser(description="How fast trees are ticked.")
+    options.add_argument("--rounds", type=int, default=15)
+    rounds = options.parse_args().rounds
+    py_trees.logging.level = py_trees.logging.Level.WARN
+    ratios: dict[str, tuple[float, float]] = {}
+    for name, (what, root) in TREES.items():
+        theirs, ours, traced = compared(root, rounds)
+        ratios[name] = theirs / ours, theirs / traced
+        told = f"py_trees {theirs * 1e6:,.2f} µs, btlang {ours * 1e6:,.2f} µs, with events {traced * 1e6:,.2f} µs"
+        print(f"{name} {what}, {sum(1 for _ in nodes(root)):,} nodes: {told}")
+    depths(rounds)
+    size(rounds)
+    print("with every status change sent to the event stream:")
+    for name, (_, traced) in ratios.items():
+        print(f"  {name} {traced:.1f}")
+    for name, (plain, _) in ratios.items():
+        print(f"{name} {plain:.1f}")
+
+
+if __name__ == "__main__":
+    main()
