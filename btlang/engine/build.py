@@ -10,6 +10,7 @@ A compiled node is a pair of closures:
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import cache
 
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.clock import Clock
@@ -128,7 +129,7 @@ class Site:
             value = _whole(text or default, port, least, most)
         except ActionFailed as problem:
             raise self.error(str(problem)) from None
-        return lambda: value
+        return _always(value)
 
     def arguments(
         self, ports: Mapping[str, str], converters: Mapping[str, Callable[[str], Any]]
@@ -177,6 +178,11 @@ def halt_nothing(keep: bool) -> None:
 def apart(children: Sequence[Compiled]) -> tuple[tuple[Tick, ...], tuple[Halt, ...]]:
     """The ticks and the halts of compiled children."""
     return tuple([tick for tick, _ in children]), tuple([halt for _, halt in children])
+
+
+@cache  # one function for all nodes that have the number
+def _always(value: int) -> Callable[[], int]:
+    return lambda: value
 
 
 def _convert(scope: Blackboard, port: str, key: str, convert: Callable[[str], Any]) -> Any:

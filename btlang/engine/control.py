@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
-from btlang.engine.build import Site
+from btlang.engine.build import Site, apart
 from btlang.engine.row import row, settle
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.engine.build import Compiled
+    from btlang.engine.row import Ticks
+
+    Count = Callable[[], int]
 
 
 def sequence(site: Site, children: Sequence[Compiled]) -> Compiled:
@@ -23,16 +26,6 @@ def fallback(site: Site, children: Sequence[Compiled]) -> Compiled:
     return _in_order(children, FAILURE)
 
 
-def async_sequence(site: Site, children: Sequence[Compiled]) -> Compiled:
-    """A Sequence that returns RUNNING after each child that succeeded within one tick: it can be interrupted."""
-    return _in_order(children, SUCCESS, breathe=True)
-
-
-def async_fallback(site: Site, children: Sequence[Compiled]) -> Compiled:
-    """A Fallback that returns RUNNING after each child that failed within one tick."""
-    return _in_order(children, FAILURE, breathe=True)
-
-
 def sequence_with_memory(site: Site, children: Sequence[Compiled]) -> Compiled:
     """A Sequence that, after a failure or a halt, starts again at the child it had reached.
 
@@ -41,16 +34,25 @@ def sequence_with_memory(site: Site, children: Sequence[Compiled]) -> Compiled:
     return _in_order(children, SUCCESS, remember=True)
 
 
-def _in_order(children: Sequence[Compiled], passes: int, breathe: bool = False, remember: bool = False) -> Compiled:
+def async_sequence(site: Site, children: Sequence[Compiled]) -> Compiled:
+    """A Sequence that returns RUNNING after each child that succeeded within one tick: it can be interrupted."""
+    return _breathing(children, SUCCESS)
+
+
+def async_fallback(site: Site, children: Sequence[Compiled]) -> Compiled:
+    """A Fallback that returns RUNNING after each child that failed within one tick."""
+    return _breathing(children, FAILURE)
+
+
+def _in_order(children: Sequence[Compiled], passes: int, remember: bool = False) -> Compiled:
     """Goes on to the next child at the status `passes`, and returns it after the last child."""
     ticks, halts, leaves = row(children)
-    count = len(ticks)
     nothing = None if passes is SUCCESS else passes  # what functions return is most often nothing
     index = skipped = 0
-    waiting = -1  # the child that was RUNNING at the last tick; only AsyncSequence and AsyncFallback ask
 
-    def tick() -> int:
-        nonlocal index, skipped, waiting
+    # what does not change are defaults: a cell for each would be a third of the memory of a tree
+    def tick(ticks: Ticks = ticks, count: int = len(ticks), passes: int = passes, nothing: int | None = nothing) -> int:
+        nonlocal index, skipped
         plain = -1  # the latest child that passed, where nothing has settled what it answered
         while index < count:
             try:
@@ -58,32 +60,68 @@ def _in_order(children: Sequence[Compiled], passes: int, breathe: bool = False, 
                 if status is passes or status is nothing:
                     plain = index
                     index += 1
-                    if breathe and index != waiting + 1 and index < count:
-                        return RUNNING
                     continue
                 if status == RUNNING:
-                    waiting = index
                     return RUNNING
             except Exception as problem:
                 status = problem
             if status == SKIPPED:
                 halts[index](False)
                 skipped += 1
-                index += 1
-            elif (status := settle(leaves[index], status)) is passes:
-                plain = -1
-                index += 1
-                if breathe and index != waiting + 1 and index < count:
-                    return RUNNING
             else:
-                skipped = 0
-                waiting = -1
-                if not remember:
-                    index = 0
-                return status
-        result = SKIPPED if skipped == count else passes
-        if result is FAILURE and plain >= 0:
+                status = settle(leaves[index], status)
+                if status is not passes:
+                    skipped = 0
+                    if not remember:
+                        index = 0
+                    return status
+                plain = -1
+            index += 1
+        if skipped:
+            passes = SKIPPED if skipped == count else passes
+            skipped = 0
+        if passes is FAILURE and plain >= 0:
             settle(leaves[plain], FAILURE)
+        index = 0
+        return passes
+
+    def halt(keep: bool) -> None:
+        nonlocal index, skipped
+        if index < len(halts):  # not so where an exception came after the last child
+            halts[index](keep)
+        if not keep:
+            skipped = 0
+            if not remember:
+                index = 0
+
+    return tick, halt
+
+
+def _breathing(children: Sequence[Compiled], passes: int) -> Compiled:
+    """As `_in_order`, but RUNNING between two children of which the first took no longer than its tick."""
+    ticks, halts = apart(children)
+    count = len(ticks)
+    index = skipped = 0
+    waiting = -1  # the child that was RUNNING at the last tick
+
+    def tick() -> int:
+        nonlocal index, skipped, waiting
+        while index < count:
+            status = ticks[index]()
+            if status == RUNNING:
+                waiting = index
+                return RUNNING
+            if status == SKIPPED:
+                halts[index](False)
+                skipped += 1
+            elif status is not passes:
+                index = skipped = 0
+                waiting = -1
+                return status
+            index += 1
+            if status is passes and index != waiting + 1 and index < count:
+                return RUNNING
+        result = SKIPPED if skipped == count else passes
         index = skipped = 0
         waiting = -1
         return result
@@ -93,10 +131,8 @@ def _in_order(children: Sequence[Compiled], passes: int, breathe: bool = False, 
         if index < count:  # not so where an exception came after the last child
             halts[index](keep)
         if not keep:
-            skipped = 0
+            index = skipped = 0
             waiting = -1
-            if not remember:
-                index = 0
 
     return tick, halt
 
@@ -108,13 +144,13 @@ def parallel(site: Site, children: Sequence[Compiled]) -> Compiled:
     are left to succeed. With a negative success_count a skipped child counts as a success (parallel_node.cpp).
     """
     ticks, halts, leaves = row(children)
-    pairs, count = tuple(enumerate(ticks)), len(ticks)
+    count = len(ticks)
     success_count = site.number("success_count", -1, -count - 1, count)
     failure_count = site.number("failure_count", 1, -count - 1, count)
     completed = [False] * count
     successes = failures = 0
 
-    def tick() -> int:
+    def tick(ticks: Ticks = ticks, success_count: Count = success_count, failure_count: Count = failure_count) -> int:
         nonlocal successes, failures
         required, allowed = success_count(), failure_count()
         counts_skipped = required < 0
@@ -124,7 +160,7 @@ def parallel(site: Site, children: Sequence[Compiled]) -> Compiled:
             allowed += count + 1
         skipped = 0
         undecided = False  # after the latest child, and nothing has changed since
-        for index, child in pairs:
+        for index, child in enumerate(ticks):
             if not completed[index]:
                 try:
                     status = child()
@@ -167,7 +203,7 @@ def parallel(site: Site, children: Sequence[Compiled]) -> Compiled:
 def parallel_all(site: Site, children: Sequence[Compiled]) -> Compiled:
     """Ticks all until each has completed; FAILURE if max_failures (1) or more failed (parallel_all_node.cpp)."""
     ticks, halts, leaves = row(children)
-    pairs, count = tuple(enumerate(ticks)), len(ticks)
+    count = len(ticks)
     max_failures = site.number("max_failures", 1, -count - 1, count)
     completed = [False] * count
     failures = 0
@@ -178,7 +214,7 @@ def parallel_all(site: Site, children: Sequence[Compiled]) -> Compiled:
         if allowed < 0:
             allowed += count + 1
         skipped = 0
-        for index, child in pairs:
+        for index, child in enumerate(ticks):
             if not completed[index]:
                 try:
                     status = child()

@@ -46,10 +46,10 @@ class Plan:
     """What the leaves of one engine with the same id share, found once.
 
     `kind` is "class", "async", "generator" or "function"; `given` keeps the names of the services that the call gets,
-    by the names of the ports that a node has.
+    by the names of the ports that a node has; for a class `made_with` keeps those of its constructor.
     """
 
-    __slots__ = ("binding", "given", "kind")
+    __slots__ = ("binding", "given", "kind", "made_with")
 
     def __init__(self, binding: LeafBinding) -> None:
         from inspect import isclass, iscoroutinefunction, isgeneratorfunction
@@ -57,6 +57,7 @@ class Plan:
         call = binding.call
         self.binding = binding
         self.given: dict[tuple[str, ...], list[str]] = {}
+        self.made_with: list[str] | None = None
         if isclass(call):
             self.kind = "class"
         elif iscoroutinefunction(call):
@@ -71,15 +72,16 @@ def bound_leaf(site: Site, plan: Plan) -> Compiled:
     binding = plan.binding
     call: Any = binding.call
     ports = {**binding.defaults, **{port: text for port, text in site.node.ports if port[:1] != "_"}}
+    names = tuple(ports)
     if plan.kind == "class":
-        leaf = _make(site, call)
-        _fill(site, leaf.start, ports, ())
+        leaf = _make(site, plan)
+        if names not in plan.given:
+            plan.given[names] = _fill(site, leaf.start, names, ())
         constants, stored = _arguments(site, ports, binding)
         start = partial(leaf.start, **constants) if constants else leaf.start
         return _class_leaf(site, leaf, start, stored)
     if plan.kind == "async":
         raise site.error(f"{site.node.id} is bound to an async function; a generator does what it should do")
-    names = tuple(ports)
     given = plan.given.get(names)
     if given is None:
         given = plan.given[names] = _fill(site, call, names, site.shared.service_names)
@@ -253,13 +255,15 @@ def _describe(problem: Exception) -> str:
     return f"{type(problem).__name__}: {problem}"
 
 
-def _make(site: Site, cls: type) -> Any:
-    missing = [method for method in ("start", "tick", "halt") if not callable(getattr(cls, method, None))]
-    if missing:
-        raise site.error(f"{cls.__name__} has no {' and no '.join(missing)}, so it is no leaf")
-    given = _fill(site, cls, (), site.shared.service_names)
+def _make(site: Site, plan: Plan) -> Any:
+    cls: Any = plan.binding.call
+    if plan.made_with is None:
+        missing = [method for method in ("start", "tick", "halt") if not callable(getattr(cls, method, None))]
+        if missing:
+            raise site.error(f"{cls.__name__} has no {' and no '.join(missing)}, so it is no leaf")
+        plan.made_with = _fill(site, cls, (), site.shared.service_names)
     try:
-        return cls(**{name: site.service(name) for name in given})
+        return cls(**{name: site.service(name) for name in plan.made_with})
     except Exception as problem:
         raise site.error(f"{cls.__name__} cannot be made: {_describe(problem)}") from problem
 

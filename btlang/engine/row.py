@@ -17,7 +17,8 @@ if TYPE_CHECKING:
 
     from btlang.engine.build import Compiled, Halt
 
-    Row: TypeAlias = tuple[tuple[Callable[[], Any], ...], tuple[Halt, ...], tuple[FunctionLeaf | None, ...]]
+    Ticks: TypeAlias = tuple[Callable[[], Any], ...]
+    Row: TypeAlias = tuple[Ticks, tuple[Halt, ...], tuple[FunctionLeaf | None, ...]]
 
 
 def row(children: Sequence[Compiled]) -> Row:

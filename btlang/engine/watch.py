@@ -118,7 +118,7 @@ class Watch:
             if status is not self.last:
                 self.last = status
                 self.note()
-            return status  # type: ignore[no-any-return]
+            return status
 
         return watched_tick
 

@@ -35,7 +35,8 @@ if TYPE_CHECKING:
 
 
 class StatusChanged(Record):
-    """Of a StatusesChanged: a node has a new status. `index` is its number in preorder, `path` its place; `t` is in seconds of the mission.
+    """Of a StatusesChanged: a node has a new status. `index` is its number in preorder, `path` its place; `t` is in
+    seconds of the mission.
 
     `reason` says why a leaf or decorator failed, "" for any other status and where nothing is known.
     """

@@ -14,7 +14,7 @@ from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine
 from btlang.engine.leaf import ActionFailed, LeafBinding
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
-from btlang.run.events import EventStream, PeriodPassed, RobotEvent, StatusesChanged
+from btlang.run.events import EventStream, PeriodPassed, RobotEvent, StatusChanged, StatusesChanged
 from btlang.run.runner import Runner, traced_engine
 from btlang.tree.node import Node, Tree
 
@@ -189,6 +189,10 @@ def test_step() -> None:
 # Events
 
 
+def changes(events: list[Any]) -> list[StatusChanged]:
+    return [change for event in events if isinstance(event, StatusesChanged) for change in event]
+
+
 def test_status_changes_go_into_the_stream() -> None:
     events = EventStream()
     seen: list[Any] = []
@@ -201,8 +205,7 @@ def test_status_changes_go_into_the_stream() -> None:
     root = Node("Sequence", (SLEEP, Node("Lost")))
     engine = traced_engine(Tree(root), {"Lost": LeafBinding(lost)}.get, clock=clock, events=events)
     Runner(engine, clock=clock, speed=math.inf, events=events).run()
-    changes = [change for event in seen if isinstance(event, StatusesChanged) for change in event]
-    told = [(round(e.t, 6), e.index, e.path, e.node.id, e.status, e.reason) for e in changes]
+    told = [(round(e.t, 6), e.index, e.path, e.node.id, e.status, e.reason) for e in changes(seen)]
     assert told == [
         (0.0, 1, "/0", "Sleep", RUNNING, ""),
         (0.0, 0, "/", "Sequence", RUNNING, ""),
@@ -224,10 +227,7 @@ def test_a_sink_that_raises_is_dropped_and_the_mission_goes_on() -> None:
     engine = traced_engine(Tree(SLEEP), lambda id: None, clock=clock, events=events)
     assert Runner(engine, clock=clock, speed=math.inf, events=events).run().status == SUCCESS
     assert events.errors == [problem]
-    assert [change.status for event in seen if isinstance(event, StatusesChanged) for change in event] == [
-        RUNNING,
-        SUCCESS,
-    ]
+    assert [change.status for change in changes(seen)] == [RUNNING, SUCCESS]
 
 
 def test_exceptions_while_halting_are_events() -> None:
