@@ -35,42 +35,45 @@ def _reactive(site: Site, children: Sequence[Compiled], passes: int) -> Compiled
     interrupts = site.shared.interrupts
     fails = SUCCESS if passes is FAILURE else FAILURE
     running = -1  # the child that was RUNNING at the last tick
+    asked = 0  # the child that is being ticked
 
     def interrupt() -> None:
         nonlocal running
-        child, running = running, -1
-        halts[child](False)
+        if asked < running:
+            child, running = running, -1
+            halts[child](False)
 
     def tick() -> int:
-        nonlocal running
-        resumed = running if running > 0 else -1
-        if resumed > 0:  # it is on the list while children before it are ticked
+        nonlocal running, asked
+        if running > 0:
             interrupts.append(interrupt)
         skipped = 0
         plain = -1  # the latest child that passed, where nothing has settled what it answered
-        for index, child in pairs:
-            if index == resumed and running > 0:
-                interrupts.pop()
+        status = passes
+        for asked, child in pairs:
             try:
                 status = child()
                 if status is passes:
-                    plain = index
+                    plain = asked
                     continue
                 if status != RUNNING and status != SKIPPED:
-                    status = settle(leaves[index], status)
+                    status = settle(leaves[asked], status)
             except Exception as problem:
-                status = settle(leaves[index], problem)
+                status = settle(leaves[asked], problem)
             if status is passes:
                 plain = -1
-                continue
-            if status == SKIPPED:
-                halts[index](False)
+            elif status == SKIPPED:
+                halts[asked](False)
                 skipped += 1
-                continue
-            if index < running:
-                interrupts.pop()()
-            running = -1 if status is fails else index
-            return fails if status is fails else RUNNING
+            else:
+                break
+        if interrupts and interrupts[-1] is interrupt:
+            interrupts.pop()
+        if status is fails or status == RUNNING:
+            if asked < running:
+                halts[running](False)
+            running = -1 if status is fails else asked
+            return status
         running = -1
         if skipped == count:
             return SKIPPED

@@ -32,14 +32,14 @@ def row(children: Sequence[Compiled]) -> Row:
     return ticks, tuple([halt for _, halt in children]), leaves
 
 
-def settle(leaf: FunctionLeaf | None, answer: Any) -> int:
+def settle(leaf: FunctionLeaf | None, answer: object) -> int:
     """The status that an answer, or an exception that was raised instead, stands for; that of a node is its own."""
-    if answer is FAILURE:
-        if leaf is not None:
-            leaf.site.shared.fault = leaf.site
-        return FAILURE
     if leaf is None:
         if isinstance(answer, Exception):
             raise answer
-        return answer  # type: ignore[no-any-return]
+        assert isinstance(answer, int)
+        return answer
+    if answer is FAILURE:
+        leaf.site.shared.fault = leaf.site
+        return FAILURE
     return failed(leaf.site, answer) if isinstance(answer, Exception) else status_of(leaf.site, answer)
