@@ -19,10 +19,11 @@ from btlang.engine import (
     updates,
 )
 from btlang.engine.blackboard import Blackboard
-from btlang.engine.build import EngineError, Shared, Site
+from btlang.engine.build import EngineError, Shared, Site, halt_nothing
 from btlang.engine.clock import Clock
 from btlang.engine.conditions import conditioned
 from btlang.engine.leaf import ActionFailed
+from btlang.engine.region import at_top, below, regions
 from btlang.engine.subtree import child_scope, subtree
 from btlang.engine.switch import switch, switch_ports
 from btlang.engine.try_catch import try_catch
@@ -39,43 +40,47 @@ MAX_NODES = 1_000_000
 
 
 class NodeType(Record):
-    """How many children a node has, which ports, and the function that compiles it."""
+    """How many children a node has, which ports, and the function that compiles it.
+
+    `waits`: while a child is RUNNING, a tick asks that child, and nothing else happens where it still is.
+    """
 
     compile: Callable[[Site, Sequence[Compiled]], Compiled]
     least: int
     most: int
     ports: tuple[str, ...] = ()
+    waits: bool = False
 
 
 _MANY = MAX_NODES
 
 NODE_TYPES = {
-    "Sequence": NodeType(control.sequence, 1, _MANY),
-    "Fallback": NodeType(control.fallback, 1, _MANY),
-    "AsyncSequence": NodeType(control.async_sequence, 1, _MANY),
-    "AsyncFallback": NodeType(control.async_fallback, 1, _MANY),
-    "SequenceWithMemory": NodeType(control.sequence_with_memory, 1, _MANY),
+    "Sequence": NodeType(control.sequence, 1, _MANY, waits=True),
+    "Fallback": NodeType(control.fallback, 1, _MANY, waits=True),
+    "AsyncSequence": NodeType(control.async_sequence, 1, _MANY, waits=True),
+    "AsyncFallback": NodeType(control.async_fallback, 1, _MANY, waits=True),
+    "SequenceWithMemory": NodeType(control.sequence_with_memory, 1, _MANY, waits=True),
     "Parallel": NodeType(control.parallel, 1, _MANY, ("success_count", "failure_count")),
     "ParallelAll": NodeType(control.parallel_all, 1, _MANY, ("max_failures",)),
     "ReactiveSequence": NodeType(reactive.reactive_sequence, 1, _MANY),
     "ReactiveFallback": NodeType(reactive.reactive_fallback, 1, _MANY),
-    "IfThenElse": NodeType(branch.if_then_else, 2, 3),
+    "IfThenElse": NodeType(branch.if_then_else, 2, 3, waits=True),
     "WhileDoElse": NodeType(branch.while_do_else, 2, 3),
     **{f"Switch{cases}": NodeType(switch, cases + 1, cases + 1, switch_ports(cases)) for cases in range(2, 7)},
     "TryCatch": NodeType(try_catch, 2, _MANY, ("catch_on_halt",)),
     "Whenever": NodeType(whenever, 3, 3),
     "PipelineSequence": NodeType(nav2.pipeline_sequence, 1, _MANY),
-    "RecoveryNode": NodeType(nav2.recovery_node, 2, 2, ("number_of_retries",)),
-    "RoundRobin": NodeType(nav2.round_robin, 1, _MANY),
-    "Inverter": NodeType(decorators.inverter, 1, 1),
-    "ForceSuccess": NodeType(decorators.force_success, 1, 1),
-    "ForceFailure": NodeType(decorators.force_failure, 1, 1),
-    "Repeat": NodeType(decorators.repeat, 1, 1, ("num_cycles",)),
-    "RetryUntilSuccessful": NodeType(decorators.retry_until_successful, 1, 1, ("num_attempts",)),
+    "RecoveryNode": NodeType(nav2.recovery_node, 2, 2, ("number_of_retries",), waits=True),
+    "RoundRobin": NodeType(nav2.round_robin, 1, _MANY, waits=True),
+    "Inverter": NodeType(decorators.inverter, 1, 1, waits=True),
+    "ForceSuccess": NodeType(decorators.force_success, 1, 1, waits=True),
+    "ForceFailure": NodeType(decorators.force_failure, 1, 1, waits=True),
+    "Repeat": NodeType(decorators.repeat, 1, 1, ("num_cycles",), waits=True),
+    "RetryUntilSuccessful": NodeType(decorators.retry_until_successful, 1, 1, ("num_attempts",), waits=True),
     "Timeout": NodeType(timed.timeout, 1, 1, ("msec",)),
     "Delay": NodeType(timed.delay, 1, 1, ("delay_msec",)),
     "RateController": NodeType(nav2.rate_controller, 1, 1, ("hz",)),
-    "KeepRunningUntilFailure": NodeType(guards.keep_running_until_failure, 1, 1),
+    "KeepRunningUntilFailure": NodeType(guards.keep_running_until_failure, 1, 1, waits=True),
     "RunOnce": NodeType(guards.run_once, 1, 1, ("then_skip",)),
     "Precondition": NodeType(guards.precondition, 1, 1, ("if", "else")),
     "LoopInt": NodeType(loops.loop_int, 1, 1, loops.LOOP_PORTS),
@@ -93,7 +98,7 @@ NODE_TYPES = {
     "Script": NodeType(script_nodes.script, 0, 0, ("code",)),
     "ScriptCondition": NodeType(script_nodes.script_condition, 0, 0, ("code",)),
 }
-_SUBTREE = NodeType(subtree, 1, 1)
+_SUBTREE = NodeType(subtree, 1, 1, waits=True)
 
 
 def expand(tree: Tree, blackboard: Blackboard, shared: Shared) -> list[Site]:
@@ -146,6 +151,7 @@ def compile_sites(sites: Sequence[Site], trace: Trace | None) -> Compiled:
     """Compiles from the last node to the root, so that children are there before their parents."""
     waiting: list[Compiled] = []  # compiled nodes whose parents come later, so that the last ones are the next one's
     watches: list[Watch] = []
+    around = regions(sites, _waits)
     for site in reversed(sites):
         node = site.node
         count = 1 if node.id == "SubTree" else len(node.children)
@@ -153,15 +159,33 @@ def compile_sites(sites: Sequence[Site], trace: Trace | None) -> Compiled:
         if count:
             children = waiting[: -count - 1 : -1]
             del waiting[-count:]
-        if trace is None:
-            waiting.append(_compile(site, children))
-            continue
-        below = watches[: -count - 1 : -1] if count else []
-        site.watch = watch = Watch(site.index, site.parent in REPEATING, below, trace)
-        watches[len(watches) - count :] = [watch]
-        waiting.append(watch.wrap(_compile(site, children)))
+        if trace is not None:
+            lower = watches[: -count - 1 : -1] if count else []
+            site.watch = Watch(site.index, site.parent in REPEATING, lower, trace)
+            watches[len(watches) - count :] = [site.watch]
+        compiled = _compile(site, children)
+        region, above = around[site.index], site.above
+        if region is not None and region.used and region.top == site.index:
+            compiled = at_top(region, compiled)
+        if site.watch is not None:
+            compiled = site.watch.wrap(compiled)
+        if region is None and above is not None and compiled[1] is not halt_nothing:
+            wider = around[above.index]
+            if wider is not None and wider.top != above.index:  # else the way down is not longer
+                compiled = below(wider, compiled)
+        waiting.append(compiled)
     [root] = waiting
     return root
+
+
+def _waits(site: Site) -> bool:
+    kind = _SUBTREE if site.node.id == "SubTree" else NODE_TYPES.get(site.node.id)
+    if kind is None or not kind.waits:
+        return False
+    for port, text in site.node.ports:
+        if (port[:1] == "_" and port != "_autoremap") or ("{" in text and kind is not _SUBTREE):
+            return False  # pre-conditions are asked, and a port is read, at each tick
+    return True
 
 
 def _compile(site: Site, children: Sequence[Compiled]) -> Compiled:

@@ -51,7 +51,13 @@ def _in_order(children: Sequence[Compiled], passes: int, remember: bool = False)
     index = skipped = 0
 
     # what does not change are defaults: a cell for each would be a third of the memory of a tree
-    def tick(ticks: Ticks = ticks, count: int = len(ticks), passes: int = passes, nothing: int | None = nothing) -> int:
+    def tick(
+        ticks: Ticks = ticks,
+        count: int = len(ticks),
+        passes: int = passes,
+        nothing: int | None = nothing,
+        remember: bool = remember,
+    ) -> int:
         nonlocal index, skipped
         plain = -1  # the latest child that passed, where nothing has settled what it answered
         while index < count:
@@ -85,7 +91,7 @@ def _in_order(children: Sequence[Compiled], passes: int, remember: bool = False)
         index = 0
         return passes
 
-    def halt(keep: bool) -> None:
+    def halt(keep: bool, remember: bool = remember) -> None:
         nonlocal index, skipped
         if index < len(halts):  # not so where an exception came after the last child
             halts[index](keep)
