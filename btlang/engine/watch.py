@@ -2,24 +2,45 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 from btlang.engine.leaves import FunctionLeaf, as_function, failed, status_of
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SUCCESS
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import TypeAlias
+    from typing import Any, TypeAlias
 
     from btlang.engine.build import Compiled, Fault, Halt, Shared, Site, Tick
 
-    Change: TypeAlias = "tuple[int, int, Fault | Site | None]"
-    """Index of a node in preorder, its new status, and for a FAILURE what has failed latest, of this node or below."""
-
-    Listener: TypeAlias = Callable[[list[Change]], object]
+    Call: TypeAlias = Callable[[], Any]
+    Listener: TypeAlias = Callable[["Changes"], object]
 
 REPEATING = frozenset(("Repeat", "KeepRunningUntilFailure", "LoopInt", "LoopBool", "LoopDouble", "LoopString"))
 """The nodes whose child is run again after it has succeeded: each of its completions is told."""
+
+
+class Changes:
+    """Changes of statuses, oldest first. Iterating gives for each the index of the node in preorder, its new status,
+    and for a FAILURE what had failed latest then: this node or one below.
+
+    They are kept as three collections so that a change makes no new object: the garbage collector, which new objects
+    call for, took longer than the rest of a tick.
+    """
+
+    __slots__ = ("faults", "indices", "statuses")
+
+    def __init__(self) -> None:
+        self.indices: list[int] = []
+        self.statuses: list[int] = []
+        self.faults: dict[int, Fault | Site | None] = {}  # by the position of the change
+
+    def __len__(self) -> int:
+        return len(self.indices)
+
+    def __iter__(self) -> Iterator[tuple[int, int, Fault | Site | None]]:
+        for position, (index, status) in enumerate(zip(self.indices, self.statuses, strict=True)):
+            yield index, status, self.faults.get(position)
 
 
 class Trace:
@@ -35,13 +56,12 @@ class Trace:
         self.shared = shared
         self.listener = listener
         self.tick = 0
-        self.changes: list[Change] = []
+        self.changes = Changes()
 
     def tell(self) -> None:
         """Hands the changes so far to the listener, oldest first."""
-        if self.changes:
-            told = self.changes[:]
-            self.changes.clear()
+        if self.changes.indices:
+            told, self.changes = self.changes, Changes()
             self.listener(told)
 
 
@@ -78,8 +98,12 @@ class Watch:
     def note(self) -> None:
         """Its status is news."""
         trace = self.trace
+        changes = trace.changes
         self.told = trace.tick
-        trace.changes.append((self.index, self.last, trace.shared.fault if self.last is FAILURE else None))
+        if self.last is FAILURE:
+            changes.faults[len(changes.indices)] = trace.shared.fault
+        changes.indices.append(self.index)
+        changes.statuses.append(self.last)
 
     def wrap(self, compiled: Compiled) -> Compiled:
         """The same node, watched. The root counts the ticks."""
@@ -104,20 +128,27 @@ class Watch:
 
     def _watched_function(self, leaf: FunctionLeaf) -> Tick:
         """A wrapper around the function itself, which does what FunctionLeaf.tick does: the two calls become one."""
-        call, site, trace = leaf.call, leaf.site, self.trace
 
-        def watched_tick() -> int:
+        # defaults and not cells, as in control.py: there are many of them
+        def watched_tick(self: Watch = self, call: Call = leaf.call, trace: Trace = self.trace) -> int:
             try:
                 status = call()
             except Exception as problem:
-                status = failed(site, problem)
+                status = failed(leaf.site, problem)
             else:
-                if status is not SUCCESS:
-                    status = status_of(site, status)
-            self.reached = trace.tick
+                if status is None:
+                    status = SUCCESS
+                elif status is not SUCCESS:
+                    status = status_of(leaf.site, status)
+            self.reached = now = trace.tick
             if status is not self.last:
                 self.last = status
-                self.note()
+                if status is SUCCESS:
+                    self.told = now
+                    trace.changes.indices.append(self.index)
+                    trace.changes.statuses.append(SUCCESS)
+                else:
+                    self.note()
             return status
 
         return watched_tick

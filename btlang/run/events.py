@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
 
 from btlang.record import Record
 from btlang.tree.node import Node
@@ -11,7 +11,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, Protocol, TypeAlias
 
-    from btlang.engine.watch import Change
+    from btlang.engine.watch import Changes
 
     Event: TypeAlias = "StatusesChanged | RobotEvent | PeriodPassed"
     Sink: TypeAlias = Callable[[Event], object]
@@ -56,7 +56,7 @@ class StatusesChanged(Record):
     """
 
     t: float
-    changes: Sequence[Change]
+    changes: Changes
     nodes: Nodes
 
     def __iter__(self) -> Iterator[StatusChanged]:

@@ -20,7 +20,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from btlang.engine.watch import Change
+    from btlang.engine.watch import Changes
     from btlang.run.events import Robot
 
 
@@ -51,7 +51,7 @@ def traced_engine(
 ) -> Engine:
     """An engine whose status changes go into the stream."""
 
-    def changed(changes: list[Change]) -> None:
+    def changed(changes: Changes) -> None:
         events.publish(StatusesChanged(clock.now, changes, engine))
 
     engine = Engine(tree, bind, clock=clock, services=services, blackboard=blackboard, listener=changed)

@@ -6,6 +6,7 @@ import btlang
 from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
+from btlang.engine.watch import Changes
 from btlang.pictures.run_picture import numbers
 from btlang.pictures.run_record import RunRecord
 from btlang.pictures.statuses import LastStatuses, by_definition
@@ -82,7 +83,9 @@ def test_last_statuses() -> None:
 def test_a_reset_is_no_status() -> None:
     sink, engine = LastStatuses(), Engine(Tree(Node("AlwaysSuccess")), lambda id: None, clock=Clock())
     for status in (RUNNING, SUCCESS, IDLE):
-        sink(StatusesChanged(0.0, [(0, status, None)], engine))
+        changes = Changes()
+        changes.indices, changes.statuses = [0], [status]
+        sink(StatusesChanged(0.0, changes, engine))
     assert sink.by_path == {"/": SUCCESS}
 
 

@@ -7,6 +7,7 @@ import json
 
 from btlang.engine.build import Fault
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
+from btlang.engine.watch import Changes
 from btlang.run.events import RobotEvent, StatusesChanged
 from btlang.run.json_log import JsonLog
 from btlang.run.lines import Lines
@@ -35,7 +36,9 @@ class One:
 
 
 def changed(t: float, node: Node, status: int, reason: str = "") -> StatusesChanged:
-    return StatusesChanged(t, [(3, status, Fault(3, reason) if reason else None)], One(node))
+    changes = Changes()
+    changes.indices, changes.statuses, changes.faults = [3], [status], {0: Fault(3, reason)} if reason else {}
+    return StatusesChanged(t, changes, One(node))
 
 
 class Output(io.StringIO):

@@ -18,7 +18,7 @@ from btlang.tree.node import Node, Tree
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.engine.watch import Change
+    from btlang.engine.watch import Changes
 
 LETTERS = {"r": RUNNING, "s": SUCCESS, "f": FAILURE, "k": SKIPPED}
 
@@ -66,7 +66,7 @@ class Run:
         self.engine.suspend()
         return bytes(self.state.statuses)
 
-    def _changed(self, changes: list[Change]) -> None:
+    def _changed(self, changes: Changes) -> None:
         for change in StatusesChanged(self.clock.now, changes, self.engine):
             self.latest[change.index] = change.status
             self.state.change(change.index, change.status, change.t, change.reason)
