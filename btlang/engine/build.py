@@ -3,6 +3,9 @@
 A compiled node is a pair of closures:
 - `tick()` returns a status. A node that returns SUCCESS or FAILURE has reset itself. One that returns SKIPPED may keep
   a count (Repeat and RetryUntilSuccessful do, as in BehaviorTree.CPP), so a parent that goes past it halts it.
+  One that returns FAILURE has called `site.fail`, or a node below it has, and that failure is the latest recorded one.
+  So a node whose other children are ticked after the one that counts records the failure of that one again, and a
+  branch puts back what an answer of its condition has recorded when it is SKIPPED.
 - `halt(keep)` stops every leaf that runs below and resets. With `keep` it suspends: positions, counts and timers stay,
   and the next tick goes on with them. It may be called at any time, also when an exception cut a tick short, and twice.
 """
@@ -13,7 +16,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.clock import Clock
-from btlang.engine.leaf import ActionFailed, LeafBinding
+from btlang.engine.leaf import ActionFailed, LeafBinding, Reason, told
 from btlang.engine.script_values import as_text
 from btlang.engine.status import FAILURE
 from btlang.record import Record
@@ -41,11 +44,20 @@ class EngineError(Exception):
 
 
 class Fault(Record):
-    """A failure as it is recorded during a tick: index of the node, reason for people ("" where none is known)."""
+    """A failure as it is recorded during a tick: index of the node, reason for people.
+
+    `cause` is the failure below it, where that is why it failed and it has something to add.
+    """
 
     index: int
-    reason: str = ""
+    reason: Reason
     exception: BaseException | None = None
+    cause: Fault | None = None
+
+    @property
+    def text(self) -> str:
+        """The reason as text."""
+        return told(self.reason)
 
 
 class Shared:
@@ -78,7 +90,7 @@ class Site:
     `parent` is the id of the node above, "" for the root.
     """
 
-    __slots__ = ("_plain", "index", "node", "parent", "scope", "shared", "watch")
+    __slots__ = ("_usual", "index", "node", "parent", "scope", "shared", "watch")
 
     def __init__(
         self, node: Node, index: int, scope: Blackboard, shared: Shared, watch: Watch | None, parent: str = ""
@@ -89,17 +101,23 @@ class Site:
         self.shared = shared
         self.watch = watch
         self.parent = parent
-        self._plain: Fault | None = None
+        self._usual: Fault | None = None
 
-    def fail(self, reason: str = "", exception: BaseException | None = None) -> int:
-        """Records this node as what failed; returns FAILURE."""
-        if reason:
-            self.shared.fault = Fault(self.index, reason, exception)
-        else:
-            plain = self._plain
-            if plain is None:
-                plain = self._plain = Fault(self.index)
-            self.shared.fault = plain
+    def fail(self, reason: Reason, exception: BaseException | None = None) -> int:
+        """Records this node as what failed; returns FAILURE. Costs least with the same text as the time before."""
+        fault = self._usual
+        if fault is None or fault.reason is not reason or exception is not None:
+            fault = Fault(self.index, reason, exception)
+            if exception is None:  # which would keep what its frames hold
+                self._usual = fault
+        self.shared.fault = fault
+        return FAILURE
+
+    def pass_on(self, reason: Reason) -> int:
+        """Adds why this node fails as well to the failure below it, which stays the cause; returns FAILURE."""
+        cause = self.shared.fault
+        below = cause is not None and cause.index > self.index
+        self.shared.fault = Fault(self.index, reason, None, cause if below else None)
         return FAILURE
 
     def service(self, name: str) -> Any:

@@ -98,9 +98,11 @@ def parallel(site: Site, children: Sequence[Compiled]) -> Compiled:
     failure_count = site.number("failure_count", 1, -count - 1, count)
     completed = [False] * count
     successes = failures = 0
+    shared = site.shared
+    fault = shared.fault  # of the child that failed last
 
     def tick() -> int:
-        nonlocal successes, failures
+        nonlocal successes, failures, fault
         threshold = success_count()
         required, allowed = _of(threshold, count), _of(failure_count(), count)
         skipped = 0
@@ -113,14 +115,19 @@ def parallel(site: Site, children: Sequence[Compiled]) -> Compiled:
                 elif status == FAILURE:
                     completed[index] = True
                     failures += 1
+                    fault = shared.fault
                 elif status == SKIPPED:
                     skipped += 1
             if successes >= required or (threshold < 0 and successes + skipped >= required):
                 halt(False)
                 return SUCCESS
             if count - failures < required or failures == allowed:
+                failed = failures
                 halt(False)
-                return FAILURE
+                if failed == 0:
+                    return site.fail("its failure_count allows no child to run")
+                shared.fault = fault
+                return FAILURE if failed == 1 else site.pass_on(f"{failed} of {count} failed")
         return SKIPPED if skipped == count else RUNNING
 
     def halt(keep: bool) -> None:
@@ -142,9 +149,11 @@ def parallel_all(site: Site, children: Sequence[Compiled]) -> Compiled:
     max_failures = site.number("max_failures", 1, -count - 1, count)
     completed = [False] * count
     failures = 0
+    shared = site.shared
+    fault = shared.fault  # of the child that made it one too many
 
     def tick() -> int:
-        nonlocal failures
+        nonlocal failures, fault
         allowed = _of(max_failures(), count)
         skipped = 0
         for index, child in enumerate(ticks):
@@ -154,14 +163,22 @@ def parallel_all(site: Site, children: Sequence[Compiled]) -> Compiled:
                     skipped += 1
                 elif status != RUNNING:
                     completed[index] = True
-                    failures += status == FAILURE
+                    if status == FAILURE:
+                        failures += 1
+                        if failures <= allowed:
+                            fault = shared.fault
         if skipped == count:
             return SKIPPED
         if skipped + sum(completed) < count:
             return RUNNING
-        result = FAILURE if failures >= allowed else SUCCESS
+        failed = failures
         halt(False)
-        return result
+        if failed < allowed:
+            return SUCCESS
+        if failed == 0:
+            return site.fail("its max_failures allows no success")
+        shared.fault = fault
+        return FAILURE if failed == 1 else site.pass_on(f"{failed} of {count} failed")
 
     def halt(keep: bool) -> None:
         nonlocal failures

@@ -29,9 +29,10 @@ _FRAMES_FOR_LEAVES = 1000
 
 
 class Failure(Record):
-    """Why a node failed: in words ("" where a condition was just not true), with the exception where one was raised.
+    """Why a node failed: in words, with the exception where one was raised.
 
-    `span` is the sentence of the node, or of the nearest one around it that has one.
+    `span` is the sentence of the node, or of the nearest one around it that has one. `around` are the nodes around it
+    that failed with it and add something, innermost first: that all attempts failed, say.
     """
 
     node: Node
@@ -39,6 +40,7 @@ class Failure(Record):
     reason: str
     exception: BaseException | None = None
     span: Span | None = None
+    around: tuple[Failure, ...] = ()
 
 
 class Engine:
@@ -70,7 +72,7 @@ class Engine:
         self._frames = depth * _FRAMES_PER_LEVEL + _FRAMES_FOR_LEAVES
         self._busy = False
         self.status = IDLE
-        self.failure: Failure | None = None
+        self._fault: Fault | None = None
 
     def tick(self) -> int:
         """Ticks the tree once; returns its status. `failure` then tells why it failed, None for any other status.
@@ -80,13 +82,18 @@ class Engine:
         self._enter()
         try:
             self.status = status = self._tick()
-            self.failure = self._root_failure() if status == FAILURE else None
+            self._fault = self._shared.fault if status == FAILURE else None
             return status
         except BaseException:
             self._halt_all(False)
             raise
         finally:
             self._busy = False
+
+    @property
+    def failure(self) -> Failure | None:
+        """Why the latest tick failed: the leaf, or the decorator, that made the root fail. None where it did not."""
+        return None if self._fault is None else self._failure(self._fault)
 
     def halt(self) -> None:
         """Halts every running leaf, children before parents, and resets all nodes; the next tick starts anew.
@@ -137,10 +144,22 @@ class Engine:
             index = place.parent
         return "/" + "/".join(reversed(steps))
 
+    def parent(self, index: int) -> int:
+        """The node above a node, -1 for the root."""
+        return self._places[index].parent
+
+    def span(self, index: int) -> Span | None:
+        """The sentence of a node, or of the nearest one around it that has one."""
+        while index >= 0 and self._places[index].node.span is None:
+            index = self._places[index].parent
+        return self._places[index].node.span if index >= 0 else None
+
     def reason(self, index: int) -> str:
-        """Why a node failed, "" where that is not known or another node has failed since."""
+        """Why a node failed in this tick, "" where only a node below it can say that."""
         fault = self._shared.fault
-        return fault.reason if fault is not None and fault.index == index else ""
+        while fault is not None and fault.index < index:  # causes are below
+            fault = fault.cause
+        return fault.text if fault is not None and fault.index == index else ""
 
     def _enter(self) -> None:
         if self._busy:
@@ -164,12 +183,13 @@ class Engine:
         if interrupted is not None:
             raise interrupted
 
-    def _root_failure(self) -> Failure:
-        return self._failure(self._shared.fault or Fault(0))
-
     def _failure(self, fault: Fault) -> Failure:
+        around: list[Failure] = []
+        while fault.cause is not None:
+            around.append(self._told(fault))
+            fault = fault.cause
+        return self._told(fault, tuple(reversed(around)))
+
+    def _told(self, fault: Fault, around: tuple[Failure, ...] = ()) -> Failure:
         index = fault.index
-        while index >= 0 and self._places[index].node.span is None:
-            index = self._places[index].parent
-        span = self._places[index].node.span if index >= 0 else None
-        return Failure(self.node(fault.index), self.path(fault.index), fault.reason, fault.exception, span)
+        return Failure(self.node(index), self.path(index), fault.text, fault.exception, self.span(index), around)

@@ -10,7 +10,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import lru_cache, partial
 
 from btlang.engine.build import Fault, Site, blackboard_key, halt_nothing
-from btlang.engine.leaf import ActionFailed, LeafBinding
+from btlang.engine.leaf import ActionFailed, Failed, LeafBinding, described
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
 
 TYPE_CHECKING = False
@@ -30,7 +30,7 @@ def always_success(site: Site, children: Sequence[Compiled]) -> Compiled:
 
 def always_failure(site: Site, children: Sequence[Compiled]) -> Compiled:
     """FAILURE."""
-    return site.fail, halt_nothing
+    return partial(site.fail, "the mission says so"), halt_nothing
 
 
 def skipped(site: Site, children: Sequence[Compiled]) -> Compiled:
@@ -71,7 +71,7 @@ def bound_leaf(site: Site, plan: Plan) -> Compiled:
         leaf = _make(site, call)
         _fill(site, leaf.start, ports, ())
         constants, stored = _arguments(site, ports, binding)
-        return _class_leaf(site, leaf, partial(leaf.start, **constants), stored)
+        return _class_leaf(site, leaf, partial(leaf.start, **constants), stored, binding.refusal)
     if plan.kind == "async":
         raise site.error(f"{site.node.id} is bound to an async function; a generator does what it should do")
     names = tuple(ports)
@@ -83,7 +83,7 @@ def bound_leaf(site: Site, plan: Plan) -> Compiled:
         constants[name] = site.service(name)
     if constants:
         call = partial(call, **constants)
-    return _generator_leaf(site, call, stored) if plan.kind == "generator" else _function_leaf(site, call, stored)
+    return (_generator_leaf if plan.kind == "generator" else _function_leaf)(site, call, stored, binding.refusal)
 
 
 def _arguments(site: Site, ports: dict[str, str], binding: LeafBinding) -> tuple[dict[str, Any], Stored]:
@@ -102,7 +102,7 @@ def _arguments(site: Site, ports: dict[str, str], binding: LeafBinding) -> tuple
     return constants, stored
 
 
-def _function_leaf(site: Site, call: Callable[..., Any], stored: Stored) -> Compiled:
+def _function_leaf(site: Site, call: Callable[..., Any], stored: Stored, refusal: str) -> Compiled:
     def tick() -> int:
         try:
             result = call() if stored is None else call(**stored())
@@ -113,13 +113,13 @@ def _function_leaf(site: Site, call: Callable[..., Any], stored: Stored) -> Comp
         if result is True or result is None:
             return SUCCESS
         if result is False:
-            return site.fail()
-        return _status(site, result)
+            return site.fail(refusal)
+        return _status(site, result, refusal)
 
     return tick, halt_nothing
 
 
-def _generator_leaf(site: Site, call: Callable[..., Any], stored: Stored) -> Compiled:
+def _generator_leaf(site: Site, call: Callable[..., Any], stored: Stored, refusal: str) -> Compiled:
     generator: Any = None
 
     def tick() -> int:
@@ -133,7 +133,7 @@ def _generator_leaf(site: Site, call: Callable[..., Any], stored: Stored) -> Com
             return RUNNING
         except StopIteration as stop:
             generator = None
-            return SUCCESS if stop.value is None else _status(site, stop.value)
+            return SUCCESS if stop.value is None else _status(site, stop.value, refusal)
         except ActionFailed as failed:
             generator = None
             return site.fail(str(failed))
@@ -150,7 +150,7 @@ def _generator_leaf(site: Site, call: Callable[..., Any], stored: Stored) -> Com
     return tick, halt
 
 
-def _class_leaf(site: Site, leaf: Any, start: Callable[..., Any], stored: Stored) -> Compiled:
+def _class_leaf(site: Site, leaf: Any, start: Callable[..., Any], stored: Stored, refusal: str) -> Compiled:
     running = False
 
     def tick() -> int:
@@ -171,7 +171,7 @@ def _class_leaf(site: Site, leaf: Any, start: Callable[..., Any], stored: Stored
             return _crash(site, problem)
         if result is None:
             return RUNNING
-        status = _status(site, result)
+        status = _status(site, result, refusal)
         running = status == RUNNING
         return status
 
@@ -197,25 +197,23 @@ def _stop(site: Site, halt: Callable[[], object]) -> None:
     try:
         halt()
     except Exception as problem:
-        site.shared.halt_faults.append(Fault(site.index, _describe(problem), problem))
+        site.shared.halt_faults.append(Fault(site.index, described(problem), problem))
 
 
 def _crash(site: Site, problem: Exception) -> int:
-    return site.fail(_describe(problem), problem)
+    return site.fail(described(problem), problem)
 
 
-def _describe(problem: Exception) -> str:
-    return f"{type(problem).__name__}: {problem}"
-
-
-def _status(site: Site, result: object) -> int:
+def _status(site: Site, result: object, refusal: str) -> int:
     """The status that a returned value stands for."""
     if result is True:
         return SUCCESS
     if result is False:
-        return site.fail()
+        return site.fail(refusal)
+    if isinstance(result, Failed):
+        return site.fail(result.reason)
     if isinstance(result, int) and RUNNING <= result <= SKIPPED:
-        return site.fail() if result == FAILURE else int(result)
+        return site.fail("it returned FAILURE") if result == FAILURE else int(result)
     return site.fail(f"it returned {result!r}, which is neither True, False, None nor a status")
 
 
@@ -227,7 +225,7 @@ def _make(site: Site, cls: type) -> Any:
     try:
         return cls(**{name: site.service(name) for name in given})
     except Exception as problem:
-        raise site.error(f"{cls.__name__} cannot be made: {_describe(problem)}") from problem
+        raise site.error(f"{cls.__name__} cannot be made: {described(problem)}") from problem
 
 
 def _fill(site: Site, call: Callable[..., Any], ports: Collection[str], services: Collection[str]) -> list[str]:

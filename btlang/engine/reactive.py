@@ -56,6 +56,8 @@ def _reactive(site: Site, children: Sequence[Compiled], passes: int) -> Compiled
                 continue
             if index < running:
                 interrupts.pop()()
+                if status == FAILURE:
+                    site.pass_on("it failed while what it guards was running")
             running = index if status == RUNNING else -1
             return status
         running = -1

@@ -10,7 +10,7 @@ import pytest
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.build import EngineError
 from btlang.engine.engine import Engine
-from btlang.engine.leaf import ActionFailed, LeafBinding
+from btlang.engine.leaf import ActionFailed, Failed, LeafBinding
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
 from btlang.tree.node import Node, Tree
 
@@ -27,11 +27,22 @@ def outcome(call: Any, world: World | None = None, **ports: str) -> tuple[int, s
 
 
 @pytest.mark.parametrize(
-    ("value", "status"),
-    [(True, SUCCESS), (None, SUCCESS), (False, FAILURE), (1, RUNNING), (2, SUCCESS), (3, FAILURE), (4, SKIPPED)],
+    ("value", "status", "reason"),
+    [
+        (True, SUCCESS, ""),
+        (None, SUCCESS, ""),
+        (False, FAILURE, "it returned False"),
+        (Failed("it is dark"), FAILURE, "it is dark"),
+        (Failed(lambda: "it is dark"), FAILURE, "it is dark"),
+        (Failed(lambda: str(1 // 0)), FAILURE, "ZeroDivisionError: integer division or modulo by zero"),
+        (1, RUNNING, ""),
+        (2, SUCCESS, ""),
+        (3, FAILURE, "it returned FAILURE"),
+        (4, SKIPPED, ""),
+    ],
 )
-def test_values_of_functions(value: object, status: int) -> None:
-    assert outcome(lambda: value) == (status, "")
+def test_values_of_functions(value: object, status: int, reason: str) -> None:
+    assert outcome(lambda: value) == (status, reason)
 
 
 @pytest.mark.parametrize("value", [0, 5, -1, "yes", 2.0, [], object])
@@ -297,7 +308,7 @@ def test_failure_names_what_made_the_root_fail() -> None:
     engine = world.engine(n("Inverter", world.fn("B", "s")))
     engine.tick()
     assert engine.failure is not None
-    assert (engine.failure.node.id, engine.failure.reason) == ("Inverter", "")
+    assert (engine.failure.node.id, engine.failure.reason) == ("Inverter", "it holds")
     engine = world.engine(n("Fallback", world.fn("B", "f"), world.fn("C", "s")))
     engine.tick()
     assert engine.failure is None
