@@ -32,7 +32,7 @@ def bind_leaf(node_id: str, vocabulary: Vocabulary) -> LeafBinding | None:
     call = _imported(entry)
     if not entry.measures:
         binding = LeafBinding(call, converters, defaults)
-        return binding if entry.sort == "action" else binding.replace(refusal="it does not hold")
+        return binding if entry.sort == "action" else binding.replace(refusal="it is not true")
 
     def say(given: Mapping[str, Any], value: str) -> str:
         ports = {name: str(given[name]) for name in slots if name in given}

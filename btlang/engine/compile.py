@@ -25,7 +25,7 @@ from btlang.engine.leaf import ActionFailed
 from btlang.engine.subtree import child_scope, subtree
 from btlang.engine.switch import switch, switch_ports
 from btlang.engine.try_catch import try_catch
-from btlang.engine.watch import REPEATING, Watch
+from btlang.engine.watch import Watch, repeats
 from btlang.engine.whenever import whenever
 from btlang.record import Record
 from btlang.tree.node import Node, Tree
@@ -165,7 +165,7 @@ def compile_places(places: Sequence[Place], shared: Shared, listener: Listener |
         parent = places[place.parent].node.id if place.parent >= 0 else ""
         watch = None
         if listener is not None:
-            watch = Watch(index, listener, parent in REPEATING, ticks)
+            watch = Watch(index, listener, bool(parent) and repeats(places[place.parent].node), ticks)
             watch.below = watches[: -count - 1 : -1] if count else []
             watches[len(watches) - count :] = [watch]
         compiled = _compile(Site(node, index, place.scope, shared, watch, parent), children)

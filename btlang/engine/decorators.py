@@ -19,7 +19,7 @@ def inverter(site: Site, children: Sequence[Compiled]) -> Compiled:
     def tick() -> int:
         status = child()
         if status == SUCCESS:
-            return site.fail("it holds")
+            return site.fail("it is true")
         return SUCCESS if status == FAILURE else status
 
     return tick, halt
@@ -92,7 +92,7 @@ def _rounds(site: Site, children: Sequence[Compiled], limit: Callable[[], int], 
             if count == 0:
                 site.fail("it allows no attempt")
             elif count > 1:
-                site.pass_on(f"all {count} attempts failed")
+                site.pass_on(f"{'both' if count == 2 else f'all {count}'} attempts failed")
         count = 0
         return again
 

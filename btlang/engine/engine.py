@@ -35,6 +35,7 @@ class Failure(Record):
     that failed with it and add something, innermost first: that all attempts failed, say.
     """
 
+    index: int
     node: Node
     path: str
     reason: str
@@ -192,4 +193,4 @@ class Engine:
 
     def _told(self, fault: Fault, around: tuple[Failure, ...] = ()) -> Failure:
         index = fault.index
-        return Failure(self.node(index), self.path(index), fault.text, fault.exception, self.span(index), around)
+        return Failure(index, self.node(index), self.path(index), fault.text, fault.exception, self.span(index), around)

@@ -57,7 +57,7 @@ def _reactive(site: Site, children: Sequence[Compiled], passes: int) -> Compiled
             if index < running:
                 interrupts.pop()()
                 if status == FAILURE:
-                    site.pass_on("it failed while what it guards was running")
+                    site.pass_on("its guard broke on the way")
             running = index if status == RUNNING else -1
             return status
         running = -1

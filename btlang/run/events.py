@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 class StatusChanged(Record):
     """A node has a new status. `index` is its number in preorder, `path` its place; `t` is in seconds of the mission.
 
-    `reason` says why a leaf or decorator failed, "" for any other status and where nothing is known.
+    `reason` says why a node failed, "" for any other status and where only a node below it can say that.
     """
 
     t: float
@@ -40,7 +40,11 @@ class StatusChanged(Record):
 
 
 class RobotEvent(Record):
-    """Something that the robot did or met: kind `say`, `print`, `bump`, ... with its data."""
+    """Something that the robot did or met: kind `say`, `print`, `bump`, ... with its data.
+
+    The last event of a run is of the kind `end`: `status`, `stopped` and `seconds` as in its Outcome, and where it
+    failed `path`, `id` and `reason` of the failure, and the `place` of its sentence in the mission.
+    """
 
     t: float
     kind: str

@@ -16,7 +16,7 @@ from .scripted import World, n, said
 A, B, C = Node("A"), Node("B"), Node("C")
 LATE = n("Timeout", A, msec=1000)
 NO_BRANCH = "its condition did not hold, and it has no other branch"
-BROKEN = "it failed while what it guards was running"
+BROKEN = "its guard broke on the way"
 
 
 def bind(world: World, id: str, script: str) -> None:
@@ -49,7 +49,7 @@ def run(root: Node, scripts: str) -> Engine:
     [
         (n("Sequence", A, B, C), "s f s", "/1", "B1", []),
         (n("Fallback", A, B, C), "f f f", "/2", "C1", []),
-        (n("Fallback", A, n("Inverter", B), C), "f s k", "/1", "it holds", []),
+        (n("Fallback", A, n("Inverter", B), C), "f s k", "/1", "it is true", []),
         (n("Fallback", A, n("IfThenElse", B, C, n("AlwaysSuccess", _skipIf="true"))), "f f s", "/0", "A1", []),
         (n("Fallback", A, n("WhileDoElse", B, C, n("AlwaysSuccess", _skipIf="true"))), "f f s", "/0", "A1", []),
         (n("Fallback", A, n("Whenever", B, C, n("AlwaysSuccess", _skipIf="true"))), "f f s", "/0", "A1", []),
@@ -83,8 +83,8 @@ def run(root: Node, scripts: str) -> Engine:
         (n("RecoveryNode", A, B), "f k", "/0", "A1", [("/", "its recovery was skipped")]),
         (n("RecoveryNode", A, B, number_of_retries=0), "f s", "/0", "A1", []),
         (n("RoundRobin", A, B), "f f", "/1", "B1", []),
-        (n("Inverter", A), "s", "/", "it holds", []),
-        (n("Inverter", n("Fallback", A, B)), "f s", "/", "it holds", []),
+        (n("Inverter", A), "s", "/", "it is true", []),
+        (n("Inverter", n("Fallback", A, B)), "f s", "/", "it is true", []),
         (n("ForceFailure", A), "s", "/", "it turns success into failure", []),
         (n("ForceFailure", A), "f", "/0", "A1", []),
         (n("Repeat", A, num_cycles=3), "sf", "/0", "A1", [("/", "in round 2 of 3")]),
@@ -110,7 +110,7 @@ def run(root: Node, scripts: str) -> Engine:
         (n("Sequence", A, _post="x := gone"), "s", "/", "{gone} has no value", []),
         (
             n("Repeat", n("Sequence", n("RetryUntilSuccessful", A, num_attempts=2)), num_cycles=2),
-            "sff", "/0/0/0", "A2", [("/0/0", "all 2 attempts failed"), ("/", "in round 2 of 2")],
+            "sff", "/0/0/0", "A2", [("/0/0", "both attempts failed"), ("/", "in round 2 of 2")],
         ),
     ],
 )  # fmt: skip
@@ -136,7 +136,7 @@ def test_a_run_that_is_not_repeated_fails_for_its_old_reason() -> None:
 
 def test_each_node_is_asked_for_its_own_reason() -> None:
     engine = run(n("Repeat", n("RetryUntilSuccessful", n("Sequence", A), num_attempts=2), num_cycles=2), "sff")
-    assert [engine.reason(index) for index in range(4)] == ["in round 2 of 2", "all 2 attempts failed", "", "A2"]
+    assert [engine.reason(index) for index in range(4)] == ["in round 2 of 2", "both attempts failed", "", "A2"]
 
 
 def test_failures_without_end_are_not_kept() -> None:

@@ -308,7 +308,7 @@ def test_failure_names_what_made_the_root_fail() -> None:
     engine = world.engine(n("Inverter", world.fn("B", "s")))
     engine.tick()
     assert engine.failure is not None
-    assert (engine.failure.node.id, engine.failure.reason) == ("Inverter", "it holds")
+    assert (engine.failure.node.id, engine.failure.reason) == ("Inverter", "it is true")
     engine = world.engine(n("Fallback", world.fn("B", "f"), world.fn("C", "s")))
     engine.tick()
     assert engine.failure is None

@@ -49,7 +49,7 @@ class Board:
         nodes = [place.node for place in places]
         span = mission.tree.root.span
         self.changes = 0
-        self.state = State(Shape([place.parent for place in places]), [node.id for node in nodes])
+        self.state = State(Shape([place.parent for place in places]), nodes)
         self._title = frame.printable(os.path.basename(span.source.name)) if span is not None else "mission"
         self._signs = signs
         self._words = frame.Words(nodes, mission.label)

@@ -45,7 +45,7 @@ class Run:
     def __init__(self, root: Node) -> None:
         self.clock = Clock()
         self.places = expand(Tree(root), Blackboard())
-        self.state = State(Shape([place.parent for place in self.places]), [place.node.id for place in self.places])
+        self.state = State(Shape([place.parent for place in self.places]), [place.node for place in self.places])
         self.latest: dict[int, int] = {}
         self.positions: dict[str, int] = {}
         self.engine = Engine(Tree(root), self._bind, clock=self.clock, listener=self._changed)

@@ -1,0 +1,115 @@
+"""Why a mission failed, as text for people."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable, Iterator
+
+from btlang.diagnostics.render import underlined
+from btlang.engine.engine import Failure
+from btlang.run.story import Attempt, Attempts, Story
+from btlang.text.source import Span
+from btlang.tree.node import Node
+
+_LONGEST = 60  # of the words of a sentence beside a reason
+
+
+def failure_report(failure: Failure, story: Story, label: Callable[[Node], str], colour: str = "") -> str:
+    """Which sentence failed, its words underlined in a colour, at which leaf, why, and what had been tried before.
+
+    `label` gives the words for a node.
+    """
+    return "\n".join(_Report(failure, story, label).lines(colour))
+
+
+class _Report:
+    def __init__(self, failure: Failure, story: Story, label: Callable[[Node], str]) -> None:
+        self._failure = failure
+        self._story = story
+        self._label = label
+
+    def lines(self, colour: str) -> Iterator[str]:
+        failure, story = self._failure, self._story
+        yield f"The mission failed after {story.ended:.1f} s."
+        span = failure.span
+        if span is None:
+            yield f"{failure.path}: {self._words(failure.node, None)}"
+        else:
+            whole = failure.node.children or failure.node.span is None
+            yield f"{span.place}: {span.text.splitlines()[0] if whole else self._label(failure.node)}"
+            yield from underlined(span, colour)
+        yield f"  {_denied(failure.node).id}: {failure.reason}"
+        yield from _raised(failure.exception)
+        last, before = self._apart(story.tried)
+        for index, seconds in last.stopped if last is not None else ():
+            yield f"  It stopped '{self._label(story.engine.node(index))}' after {seconds:.1f} s."
+        around = list(self._around())
+        if around:
+            yield "It was part of:"
+            yield from around
+        if before.kept:
+            yield "What had been tried before:"
+            if before.dropped:
+                yield f"{'...':>9}  {before.dropped} more"
+            yield from map(self._attempt, sorted(before.kept, key=lambda attempt: attempt.first))
+
+    def _around(self) -> Iterator[str]:
+        """The nodes around the failure that add something to it, and the names that it is part of, innermost first."""
+        reasons = {around.index: around.reason for around in self._failure.around}
+        engine = self._story.engine
+        index = engine.parent(self._failure.index)
+        while index >= 0:
+            node = engine.node(index)
+            if index in reasons:
+                yield f"  {self._sentence(node, engine.span(index))}: {reasons[index]}"
+            elif node.id == "SubTree" and node.span is not None:
+                yield f"  {self._sentence(node, node.span)}"
+            index = engine.parent(index)
+
+    def _apart(self, tried: Attempts) -> tuple[Attempt | None, Attempts]:
+        """The failure itself, and what came before it."""
+        own = [attempt for attempt in tried.kept if attempt.index == self._failure.index]
+        if not own:
+            return None, tried
+        last = own[-1]
+        kept = [attempt for attempt in tried.kept if attempt is not last]
+        if last.times > 1:
+            kept.append(last.replace(times=last.times - 1, last=last.before))
+        return last, Attempts(tuple(kept), tried.dropped)
+
+    def _attempt(self, attempt: Attempt) -> str:
+        engine = self._story.engine
+        words = self._sentence(engine.node(attempt.index), engine.span(attempt.index))
+        reason = attempt.reason or "done, but it did not help"
+        times = f" ({attempt.times} times, last at {attempt.last:.1f} s)" if attempt.times > 1 else ""
+        return f"{attempt.first:7.1f} s  {words}: {reason}{times}"
+
+    def _sentence(self, node: Node, span: Span | None) -> str:
+        """The words of a node, with their line where that is not the one of the failure."""
+        words, own = self._words(node, span), self._failure.span
+        if span is None or own is None:
+            return words
+        line, _ = span.source.position(span.start)
+        if span.source is not own.source:
+            return f"{words} ({span.source.name}:{line})"
+        return words if line == own.source.position(own.start)[0] else f"{words} (line {line})"
+
+    def _words(self, node: Node, span: Span | None) -> str:
+        if span is None or not (node.children or node.id == "SubTree"):
+            return self._label(node)
+        text = span.text.splitlines()[0]
+        return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 3]}..."
+
+
+def _denied(node: Node) -> Node:
+    """The leaf that a `not` denies, which says more than the Inverter."""
+    return node.children[0] if node.id == "Inverter" and not node.children[0].children else node
+
+
+def _raised(exception: BaseException | None) -> Iterator[str]:
+    """The line of Python that raised it."""
+    if exception is not None and exception.__traceback__ is not None:
+        from traceback import extract_tb
+
+        *_, frame = extract_tb(exception.__traceback__, limit=-1)
+        yield f"  raised in {frame.name}, {os.path.basename(frame.filename)}:{frame.lineno}"
