@@ -6,7 +6,7 @@ import sys
 from collections.abc import Callable, Mapping
 
 from btlang.engine.blackboard import Blackboard
-from btlang.engine.build import EngineError, Fault, Shared
+from btlang.engine.build import EngineError, Fault, Shared, blackboard_key
 from btlang.engine.clock import Clock
 from btlang.engine.compile import compile_places, expand
 from btlang.engine.leaf import LeafBinding
@@ -136,6 +136,13 @@ class Engine:
     def node(self, index: int) -> Node:
         """The node with an index in preorder."""
         return self._places[index].node
+
+    def filled(self, index: int) -> Node:
+        """As `node`, with the arguments of the subtrees around it in place of their `{names}`."""
+        node, scope = self._places[index].node, self._places[index].scope
+        keys = [(port, text, blackboard_key(port, text)) for port, text in node.ports]
+        ports = tuple((port, text if key is None else scope.argument(key) or text) for port, text, key in keys)
+        return node if ports == node.ports else node.replace(ports=ports)
 
     def path(self, index: int) -> str:
         """Where a node is: `/` is the root, `/0/1` the second child of its first child; a SubTree's tree is child 0."""

@@ -8,7 +8,6 @@ from collections.abc import Callable, Iterator
 from btlang.diagnostics.render import underlined
 from btlang.engine.engine import Failure
 from btlang.run.story import Attempt, Attempts, Story
-from btlang.text.source import Span
 from btlang.tree.node import Node
 
 _LONGEST = 60  # of the words of a sentence beside a reason
@@ -30,19 +29,16 @@ class _Report:
 
     def lines(self, colour: str) -> Iterator[str]:
         failure, story = self._failure, self._story
-        yield f"The mission failed after {story.ended:.1f} s."
-        span = failure.span
-        if span is None:
-            yield f"{failure.path}: {self._words(failure.node, None)}"
-        else:
-            whole = failure.node.children or failure.node.span is None
-            yield f"{span.place}: {span.text.splitlines()[0] if whole else self._label(failure.node)}"
-            yield from underlined(span, colour)
-        yield f"  {_denied(failure.node).id}: {failure.reason}"
-        yield from _raised(failure.exception)
+        named = self._named(failure.index)
         last, before = self._apart(story.tried)
+        yield f"The mission failed after {story.ended:.1f} s."
+        yield f"{failure.path if failure.span is None else failure.span.place}: {self._words(failure.index)}"
+        if failure.span is not None:
+            yield from underlined(failure.span, colour)
+        yield f"  {story.engine.node(named).id}: {failure.reason}"
+        yield from _raised(failure.exception)
         for index, seconds in last.stopped if last is not None else ():
-            yield f"  It stopped '{self._label(story.engine.node(index))}' after {seconds:.1f} s."
+            yield f"  It stopped '{self._words(index)}' after {seconds:.1f} s."
         around = list(self._around())
         if around:
             yield "It was part of:"
@@ -50,20 +46,17 @@ class _Report:
         if before.kept:
             yield "What had been tried before:"
             if before.dropped:
-                yield f"{'...':>9}  {before.dropped} more"
+                yield f"{'...':>9}  and {before.dropped} more before"
             yield from map(self._attempt, sorted(before.kept, key=lambda attempt: attempt.first))
 
     def _around(self) -> Iterator[str]:
         """The nodes around the failure that add something to it, and the names that it is part of, innermost first."""
-        reasons = {around.index: around.reason for around in self._failure.around}
+        reasons = {around.index: f": {around.reason}" for around in self._failure.around}
         engine = self._story.engine
         index = engine.parent(self._failure.index)
         while index >= 0:
-            node = engine.node(index)
-            if index in reasons:
-                yield f"  {self._sentence(node, engine.span(index))}: {reasons[index]}"
-            elif node.id == "SubTree" and node.span is not None:
-                yield f"  {self._sentence(node, node.span)}"
+            if index in reasons or (engine.node(index).id == "SubTree" and engine.node(index).span is not None):
+                yield f"  {self._sentence(index)}{reasons.get(index, '')}"
             index = engine.parent(index)
 
     def _apart(self, tried: Attempts) -> tuple[Attempt | None, Attempts]:
@@ -78,15 +71,20 @@ class _Report:
         return last, Attempts(tuple(kept), tried.dropped)
 
     def _attempt(self, attempt: Attempt) -> str:
-        engine = self._story.engine
-        words = self._sentence(engine.node(attempt.index), engine.span(attempt.index))
         reason = attempt.reason or "done, but it did not help"
         times = f" ({attempt.times} times, last at {attempt.last:.1f} s)" if attempt.times > 1 else ""
-        return f"{attempt.first:7.1f} s  {words}: {reason}{times}"
+        return f"{attempt.first:7.1f} s  {self._sentence(self._named(attempt.index))}: {reason}{times}"
 
-    def _sentence(self, node: Node, span: Span | None) -> str:
-        """The words of a node, with their line where that is not the one of the failure."""
-        words, own = self._words(node, span), self._failure.span
+    def _named(self, index: int) -> int:
+        """The node that a reason is about: that of a `not` is about what it denies, its child."""
+        return index + 1 if self._story.engine.node(index).id == "Inverter" else index
+
+    def _sentence(self, index: int) -> str:
+        """The words of a node, cut where they are many, with their line where that is not the one of the failure."""
+        words = self._words(index)
+        if len(words) > _LONGEST:
+            words = f"{words[: _LONGEST - 3]}..."
+        span, own = self._story.engine.span(index), self._failure.span
         if span is None or own is None:
             return words
         line, _ = span.source.position(span.start)
@@ -94,16 +92,13 @@ class _Report:
             return f"{words} ({span.source.name}:{line})"
         return words if line == own.source.position(own.start)[0] else f"{words} (line {line})"
 
-    def _words(self, node: Node, span: Span | None) -> str:
-        if span is None or not (node.children or node.id == "SubTree"):
+    def _words(self, index: int) -> str:
+        """A command or condition in the words of the vocabulary, and as it was written what is made of several."""
+        engine = self._story.engine
+        node, span = engine.filled(index), engine.span(index)
+        if span is None or (node.span is not None and not node.children and node.id != "SubTree"):
             return self._label(node)
-        text = span.text.splitlines()[0]
-        return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 3]}..."
-
-
-def _denied(node: Node) -> Node:
-    """The leaf that a `not` denies, which says more than the Inverter."""
-    return node.children[0] if node.id == "Inverter" and not node.children[0].children else node
+        return span.text.splitlines()[0]
 
 
 def _raised(exception: BaseException | None) -> Iterator[str]:

@@ -14,7 +14,7 @@ from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine
 from btlang.engine.leaf import ActionFailed, LeafBinding
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
-from btlang.run.events import EventStream, PeriodPassed, RobotEvent, StatusChanged
+from btlang.run.events import EventStream, RobotEvent, StatusChanged
 from btlang.run.runner import Runner, traced_engine
 from btlang.tree.node import Node, Tree
 
