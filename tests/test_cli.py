@@ -68,7 +68,7 @@ def test_the_log_ends_with_what_failed(btc: Screen, tmp_path: Path) -> None:
     end = json.loads(log.read_text(encoding="utf-8").splitlines()[-1])
     assert end.pop("t") >= end.pop("seconds") > 1
     told = {"path": "/1", "id": "Battery", "reason": "battery is 100%", "place": "<command line>:1:17"}
-    assert end == {"event": "end", "status": "FAILURE", "stopped": "", **told}
+    assert end == {"event": "end", "outcome": "FAILURE", "stopped": "", **told}
 
 
 def test_exit_codes(btc: Screen) -> None:
@@ -124,7 +124,7 @@ def test_log_has_a_line_for_every_change(btc: Screen, tmp_path: Path) -> None:
         ("/1", "move forward 0.2 m", {"distance": "0.2"}, "SUCCESS"),
     ]
     assert any(event.get("event") == "say" for event in events)
-    assert (events[-1]["event"], events[-1]["status"]) == ("end", "SUCCESS")
+    assert (events[-1]["event"], events[-1]["outcome"]) == ("end", "SUCCESS")
     assert [event["t"] for event in events] == sorted(event["t"] for event in events)
 
 

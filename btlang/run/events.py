@@ -42,8 +42,8 @@ class StatusChanged(Record):
 class RobotEvent(Record):
     """Something that the robot did or met: kind `say`, `print`, `bump`, ... with its data.
 
-    The last event of a run is of the kind `end`: `status`, `stopped` and `seconds` as in its Outcome, and where it
-    failed `path`, `id` and `reason` of the failure, and the `place` of its sentence in the mission.
+    The last event of a run is of the kind `end`: `outcome` (a status), `stopped` and `seconds` as in its Outcome, and
+    where it failed `path`, `id` and `reason` of the failure, and the `place` of its sentence in the mission.
     """
 
     t: float

@@ -210,7 +210,7 @@ class Runner:
 
 def _ending(outcome: Outcome) -> Mapping[str, Any]:
     """How a run ended, for programs."""
-    data = {"status": NAMES[outcome.status], "stopped": outcome.stopped, "seconds": round(outcome.seconds, 6)}
+    data = {"outcome": NAMES[outcome.status], "stopped": outcome.stopped, "seconds": round(outcome.seconds, 6)}
     failure = outcome.failure
     if failure is None:
         return data

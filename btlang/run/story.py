@@ -49,6 +49,9 @@ _NONE = Attempts()
 
 def together(parts: Iterable[Attempts]) -> Attempts:
     """All attempts, as far as they are kept."""
+    parts = [part for part in parts if part.kept]
+    if len(parts) == 1:
+        return parts[0]
     found: dict[tuple[int, str], Attempt] = {}
     dropped = 0
     for part in parts:
