@@ -16,7 +16,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.clock import Clock
-from btlang.engine.leaf import ActionFailed, LeafBinding, Reason, told
+from btlang.engine.leaf import ActionFailed, LeafBinding, Reason
 from btlang.engine.script_values import as_text
 from btlang.engine.status import FAILURE
 from btlang.record import Record
@@ -44,7 +44,7 @@ class EngineError(Exception):
 
 
 class Fault(Record):
-    """A failure as it is recorded during a tick: index of the node, reason for people.
+    """A failure as it is recorded during a tick: index of the node, reason for people (see REFUSED).
 
     `cause` is the failure below it, where that is why it failed and it has something to add.
     """
@@ -53,11 +53,6 @@ class Fault(Record):
     reason: Reason
     exception: BaseException | None = None
     cause: Fault | None = None
-
-    @property
-    def text(self) -> str:
-        """The reason as text."""
-        return told(self.reason)
 
 
 class Shared:

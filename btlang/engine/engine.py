@@ -9,7 +9,7 @@ from btlang.engine.blackboard import Blackboard
 from btlang.engine.build import EngineError, Fault, Shared, blackboard_key
 from btlang.engine.clock import Clock
 from btlang.engine.compile import compile_places, expand
-from btlang.engine.leaf import LeafBinding
+from btlang.engine.leaf import REFUSED, LeafBinding, told
 from btlang.engine.status import FAILURE, IDLE
 from btlang.garbage import no_collection
 from btlang.record import Record
@@ -167,7 +167,7 @@ class Engine:
         fault = self._shared.fault
         while fault is not None and fault.index < index:  # causes are below
             fault = fault.cause
-        return fault.text if fault is not None and fault.index == index else ""
+        return self._text(fault) if fault is not None and fault.index == index else ""
 
     def _enter(self) -> None:
         if self._busy:
@@ -191,6 +191,11 @@ class Engine:
         if interrupted is not None:
             raise interrupted
 
+    def _text(self, fault: Fault) -> str:
+        if fault.reason is REFUSED:
+            return self._shared.plans[self.node(fault.index).id].binding.refusal
+        return told(fault.reason) or "it gave no reason"
+
     def _failure(self, fault: Fault) -> Failure:
         around: list[Failure] = []
         while fault.cause is not None:
@@ -200,4 +205,6 @@ class Engine:
 
     def _told(self, fault: Fault, around: tuple[Failure, ...] = ()) -> Failure:
         index = fault.index
-        return Failure(index, self.node(index), self.path(index), fault.text, fault.exception, self.span(index), around)
+        return Failure(
+            index, self.node(index), self.path(index), self._text(fault), fault.exception, self.span(index), around
+        )

@@ -29,6 +29,9 @@ if TYPE_CHECKING:
 Reason: TypeAlias = "str | Callable[[], str]"
 """Why something failed, for people: a text, or what gives it when somebody asks."""
 
+REFUSED = "it returned False"
+"""Stands for the `refusal` of a leaf's binding, which is looked for when somebody asks."""
+
 
 class ActionFailed(Exception):
     """A leaf raises it to FAIL with a reason for people: `raise ActionFailed("nothing within reach")`."""
@@ -68,4 +71,4 @@ class LeafBinding(Record):
     converters: Mapping[str, Callable[[str], Any]] = {}
     defaults: Mapping[str, str] = {}
     outputs: tuple[str, ...] = ()
-    refusal: str = "it returned False"
+    refusal: str = REFUSED

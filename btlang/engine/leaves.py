@@ -10,7 +10,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import lru_cache, partial
 
 from btlang.engine.build import Fault, Site, blackboard_key, halt_nothing
-from btlang.engine.leaf import ActionFailed, Failed, LeafBinding, described
+from btlang.engine.leaf import REFUSED, ActionFailed, Failed, LeafBinding, described
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
 
 TYPE_CHECKING = False
@@ -71,7 +71,7 @@ def bound_leaf(site: Site, plan: Plan) -> Compiled:
         leaf = _make(site, call)
         _fill(site, leaf.start, ports, ())
         constants, stored = _arguments(site, ports, binding)
-        return _class_leaf(site, leaf, partial(leaf.start, **constants), stored, binding.refusal)
+        return _class_leaf(site, leaf, partial(leaf.start, **constants), stored)
     if plan.kind == "async":
         raise site.error(f"{site.node.id} is bound to an async function; a generator does what it should do")
     names = tuple(ports)
@@ -83,7 +83,7 @@ def bound_leaf(site: Site, plan: Plan) -> Compiled:
         constants[name] = site.service(name)
     if constants:
         call = partial(call, **constants)
-    return (_generator_leaf if plan.kind == "generator" else _function_leaf)(site, call, stored, binding.refusal)
+    return _generator_leaf(site, call, stored) if plan.kind == "generator" else _function_leaf(site, call, stored)
 
 
 def _arguments(site: Site, ports: dict[str, str], binding: LeafBinding) -> tuple[dict[str, Any], Stored]:
@@ -102,7 +102,7 @@ def _arguments(site: Site, ports: dict[str, str], binding: LeafBinding) -> tuple
     return constants, stored
 
 
-def _function_leaf(site: Site, call: Callable[..., Any], stored: Stored, refusal: str) -> Compiled:
+def _function_leaf(site: Site, call: Callable[..., Any], stored: Stored) -> Compiled:
     def tick() -> int:
         try:
             result = call() if stored is None else call(**stored())
@@ -113,13 +113,13 @@ def _function_leaf(site: Site, call: Callable[..., Any], stored: Stored, refusal
         if result is True or result is None:
             return SUCCESS
         if result is False:
-            return site.fail(refusal)
-        return _status(site, result, refusal)
+            return site.fail(REFUSED)
+        return _status(site, result)
 
     return tick, halt_nothing
 
 
-def _generator_leaf(site: Site, call: Callable[..., Any], stored: Stored, refusal: str) -> Compiled:
+def _generator_leaf(site: Site, call: Callable[..., Any], stored: Stored) -> Compiled:
     generator: Any = None
 
     def tick() -> int:
@@ -133,7 +133,7 @@ def _generator_leaf(site: Site, call: Callable[..., Any], stored: Stored, refusa
             return RUNNING
         except StopIteration as stop:
             generator = None
-            return SUCCESS if stop.value is None else _status(site, stop.value, refusal)
+            return SUCCESS if stop.value is None else _status(site, stop.value)
         except ActionFailed as failed:
             generator = None
             return site.fail(str(failed))
@@ -150,7 +150,7 @@ def _generator_leaf(site: Site, call: Callable[..., Any], stored: Stored, refusa
     return tick, halt
 
 
-def _class_leaf(site: Site, leaf: Any, start: Callable[..., Any], stored: Stored, refusal: str) -> Compiled:
+def _class_leaf(site: Site, leaf: Any, start: Callable[..., Any], stored: Stored) -> Compiled:
     running = False
 
     def tick() -> int:
@@ -171,7 +171,7 @@ def _class_leaf(site: Site, leaf: Any, start: Callable[..., Any], stored: Stored
             return _crash(site, problem)
         if result is None:
             return RUNNING
-        status = _status(site, result, refusal)
+        status = _status(site, result)
         running = status == RUNNING
         return status
 
@@ -204,12 +204,12 @@ def _crash(site: Site, problem: Exception) -> int:
     return site.fail(described(problem), problem)
 
 
-def _status(site: Site, result: object, refusal: str) -> int:
+def _status(site: Site, result: object) -> int:
     """The status that a returned value stands for."""
     if result is True:
         return SUCCESS
     if result is False:
-        return site.fail(refusal)
+        return site.fail(REFUSED)
     if isinstance(result, Failed):
         return site.fail(result.reason)
     if isinstance(result, int) and RUNNING <= result <= SKIPPED:

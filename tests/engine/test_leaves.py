@@ -176,6 +176,22 @@ def test_a_failed_action_gives_its_reason() -> None:
     assert outcome(call) == (FAILURE, "nothing within reach")
 
 
+def test_a_failure_without_a_reason_says_so() -> None:
+    def call() -> None:
+        raise ActionFailed
+
+    assert outcome(call) == (FAILURE, "it gave no reason")
+    assert outcome(lambda: Failed("")) == (FAILURE, "it gave no reason")
+
+
+def test_what_a_returned_false_means_is_said_by_the_binding() -> None:
+    world = World()
+    engine = world.engine(world.bind("A", lambda: False, refusal="it is dark"))
+    assert engine.tick() == FAILURE
+    assert engine.failure is not None
+    assert (engine.failure.reason, engine.reason(0)) == ("it is dark", "it is dark")
+
+
 class Broken:
     """Raises in one of its methods."""
 
