@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from btlang.run.controls import Controls
     from btlang.run.events import Sink
     from btlang.run.runner import Outcome, Runner
+    from btlang.run.story import Story
 
     Call = TypeVar("Call", bound=Callable[..., Any])
 
@@ -171,6 +172,7 @@ class RunnableTree:
         """What sinks of the latest run raised; such a sink gets no more events, and the mission goes on."""
         self._controls: Controls | None = None
         self._runner: Runner | None = None
+        self._story: Story | None = None
         self._simulation: Simulation | None = None
 
     def __str__(self) -> str:
@@ -225,6 +227,19 @@ class RunnableTree:
         """Ticks once and moves the simulated world on by 1/20 s; returns the status (see btlang.engine.status)."""
         runner = self._runner or self._start()
         return runner.tick()
+
+    def why(self, *, colour: bool = False) -> str:
+        """Why the latest run or tick failed, as `btc run` tells it; "" where it did not fail.
+
+        Tells the sentence, with `colour` underlined in red, the leaf and its reason, and what had been tried before.
+        """
+        from btlang.diagnostics.render import RED
+        from btlang.run.report import failure_report
+
+        failure = self._story.engine.failure if self._story is not None else None
+        if failure is None or self._story is None:
+            return ""
+        return failure_report(failure, self._story, self.label, RED if colour else "")
 
     def halt(self) -> None:
         """Halts every running leaf and stops the robot; the next tick starts anew."""
@@ -283,6 +298,7 @@ class RunnableTree:
         from btlang.engine.engine import EngineError
         from btlang.robots.world import Place
         from btlang.run.runner import Runner, traced_engine
+        from btlang.run.story import Story
 
         stage = load_simulation(self.world) if self.stage is None else self.stage
         for fact in all_facts(self.mission) if self.mission is not None else ():
@@ -300,6 +316,8 @@ class RunnableTree:
         except EngineError as error:
             span = error.node.span or Span(Source(""), 0, 0)
             raise MissionError([diagnostic("BT080", span, id=error.node.id, reason=error.message)]) from None
+        self._story = Story(engine)
+        stage.events.add(self._story)
         self.sink_errors = stage.events.errors
         self._simulation = stage
         self._runner = Runner(

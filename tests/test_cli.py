@@ -57,8 +57,18 @@ def test_run_tells_what_failed(btc: Screen) -> None:
         "<command line>:1:17: battery is low",
         "  wave then check battery is low",
         "                  ^^^^^^^^^^^^^^".replace("  ", "", 1).rjust(32),
-        "  BatteryLow: it does not hold",
+        "  BatteryLow: it is not true",
     ]
+
+
+def test_the_log_ends_with_what_failed(btc: Screen, tmp_path: Path) -> None:
+    log = tmp_path / "log.jsonl"
+    command = ["run", "-c", "wave then check battery is below 20%", "--speed", "max", "--quiet", "--log", str(log)]
+    assert btc(*command) == 1
+    end = json.loads(log.read_text(encoding="utf-8").splitlines()[-1])
+    assert end.pop("t") >= end.pop("seconds") > 1
+    told = {"path": "/1", "id": "Battery", "reason": "battery is 100%", "place": "<command line>:1:17"}
+    assert end == {"event": "end", "outcome": "FAILURE", "stopped": "", **told}
 
 
 def test_exit_codes(btc: Screen) -> None:
@@ -104,7 +114,7 @@ def test_log_has_a_line_for_every_change(btc: Screen, tmp_path: Path) -> None:
     text = 'greet is say "hi there"; greet then move forward 20 cm'
     assert btc("run", "-c", text, "--speed", "max", "--quiet", "--log", str(log)) == 0
     events = [json.loads(line) for line in log.read_text(encoding="utf-8").splitlines()]
-    changes = [event for event in events if "status" in event]
+    changes = [event for event in events if "event" not in event]
     assert all(event.keys() >= {"t", "path", "id", "name", "ports", "status"} for event in changes)
     leaves = [(e["path"], e["name"], e["ports"], e["status"]) for e in changes if e["id"] in ("Say", "MoveForward")]
     assert leaves == [
@@ -114,6 +124,7 @@ def test_log_has_a_line_for_every_change(btc: Screen, tmp_path: Path) -> None:
         ("/1", "move forward 0.2 m", {"distance": "0.2"}, "SUCCESS"),
     ]
     assert any(event.get("event") == "say" for event in events)
+    assert (events[-1]["event"], events[-1]["outcome"]) == ("end", "SUCCESS")
     assert [event["t"] for event in events] == sorted(event["t"] for event in events)
 
 
@@ -171,8 +182,9 @@ def test_an_interrupted_run_stops_the_robot_and_exits_with_130(number: signal.Si
     assert process.returncode == 130, err
     assert "the robot stands still" in out
     assert err == ""
-    statuses = [json.loads(line).get("status") for line in log.read_text(encoding="utf-8").splitlines()]
-    assert "IDLE" in statuses
+    *events, end = [json.loads(line) for line in log.read_text(encoding="utf-8").splitlines()]
+    assert "IDLE" in [event.get("status") for event in events]
+    assert (end["event"], end["stopped"]) == ("end", "interrupted")
 
 
 def test_a_closed_pipe_is_no_error() -> None:

@@ -10,13 +10,14 @@ from btlang.backends.comparing import comparing
 from btlang.engine.build import EngineError
 from btlang.engine.leaf import LeafBinding
 from btlang.engine.script_values import as_text
+from btlang.english.phrase import leaf_words
 from btlang.tree.node import Node
 from btlang.vocabulary.entry import MEASURED, Entry, SlotSpec
 from btlang.vocabulary.vocabulary import Vocabulary
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
     from typing import Any
 
 
@@ -30,9 +31,15 @@ def bind_leaf(node_id: str, vocabulary: Vocabulary) -> LeafBinding | None:
     defaults = {name: slot.default for name, slot in slots.items() if slot.default is not None}
     call = _imported(entry)
     if not entry.measures:
-        return LeafBinding(call, converters, defaults)
+        binding = LeafBinding(call, converters, defaults)
+        return binding if entry.sort == "action" else binding.replace(refusal="it is not true")
+
+    def say(given: Mapping[str, Any], value: str) -> str:
+        ports = {name: str(given[name]) for name in slots if name in given}
+        return leaf_words(node_id, {**ports, "equal": value}, vocabulary) or f"it is {value}"
+
     try:
-        return LeafBinding(comparing(call), converters, defaults, (MEASURED,))
+        return LeafBinding(comparing(call, say), converters, defaults, (MEASURED,))
     except (TypeError, ValueError) as error:
         raise EngineError(f"{entry.call} cannot be a quantity: {error}", Node(entry.id, span=entry.span)) from error
 

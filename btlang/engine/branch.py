@@ -15,15 +15,18 @@ if TYPE_CHECKING:
     from btlang.engine.build import Compiled
 
 _NO_ANSWER = "its condition was skipped"
+_NO_BRANCH = "its condition did not hold, and it has no other branch"
 
 
 def if_then_else(site: Site, children: Sequence[Compiled]) -> Compiled:
     """Asks the condition once, then ticks the second child, or the third (without one: FAILURE), until it completes."""
     ticks, halts = apart(children)
+    shared = site.shared
     position = 0  # 0 the condition, then the branch that was chosen
 
     def tick() -> int:
         nonlocal position
+        fault = shared.fault
         if position == 0:
             status = ticks[0]()
             if status == SUCCESS:
@@ -34,11 +37,12 @@ def if_then_else(site: Site, children: Sequence[Compiled]) -> Compiled:
                 halts[0](False)
                 return site.fail(_NO_ANSWER)
             else:
-                return status
+                return site.pass_on(_NO_BRANCH) if status == FAILURE else status
         status = ticks[position]()
         if status != RUNNING:
             if status == SKIPPED:
                 halts[position](False)
+                shared.fault = fault
             position = 0
         return status
 
@@ -58,7 +62,8 @@ def while_do_else(site: Site, children: Sequence[Compiled]) -> Compiled:
     it is; one that is an action interrupts it (see reactive.py).
     """
     ticks, halts = apart(children)
-    interrupts = site.shared.interrupts
+    shared = site.shared
+    interrupts = shared.interrupts
     branch = 0  # the branch that was RUNNING at the last tick, 0 none
 
     def interrupt() -> None:
@@ -68,6 +73,7 @@ def while_do_else(site: Site, children: Sequence[Compiled]) -> Compiled:
 
     def tick() -> int:
         nonlocal branch
+        fault = shared.fault
         if branch:
             interrupts.append(interrupt)
         status = ticks[0]()
@@ -82,10 +88,11 @@ def while_do_else(site: Site, children: Sequence[Compiled]) -> Compiled:
             halts[0](False)
             return site.fail(_NO_ANSWER)
         if chosen == len(ticks):
-            return FAILURE
+            return site.pass_on(_NO_BRANCH)
         status = ticks[chosen]()
         if status == SKIPPED:
             halts[chosen](False)
+            shared.fault = fault
         branch = chosen if status == RUNNING else 0
         return status
 

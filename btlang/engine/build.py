@@ -3,6 +3,9 @@
 A compiled node is a pair of closures:
 - `tick()` returns a status. A node that returns SUCCESS or FAILURE has reset itself. One that returns SKIPPED may keep
   a count (Repeat and RetryUntilSuccessful do, as in BehaviorTree.CPP), so a parent that goes past it halts it.
+  One that returns FAILURE has called `site.fail`, or a node below it has, and that failure is the latest recorded one.
+  So a node whose other children are ticked after the one that counts records the failure of that one again, and a
+  branch puts back what an answer of its condition has recorded when it is SKIPPED.
 - `halt(keep)` stops every leaf that runs below and resets. With `keep` it suspends: positions, counts and timers stay,
   and the next tick goes on with them. It may be called at any time, also when an exception cut a tick short, and twice.
 """
@@ -14,7 +17,7 @@ from functools import cache
 
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.clock import Clock
-from btlang.engine.leaf import ActionFailed, LeafBinding
+from btlang.engine.leaf import REFUSED, ActionFailed, LeafBinding, Reason
 from btlang.engine.script_values import as_text
 from btlang.engine.status import FAILURE
 from btlang.record import Record
@@ -42,17 +45,32 @@ class EngineError(Exception):
 
 
 class Fault(Record):
-    """A failure as it is recorded during a tick: index of the node, reason for people ("" where none is known)."""
+    """A failure as it is recorded during a tick: index of the node, reason for people (see REFUSED).
+
+    `cause` is the failure below it, where that is why it failed and it has something to add.
+    """
 
     index: int
-    reason: str = ""
+    reason: Reason
     exception: BaseException | None = None
+    cause: Fault | Site | None = None
 
 
 class Shared:
     """What all nodes of one engine share."""
 
-    __slots__ = ("bind", "clock", "enums", "fault", "halt_faults", "interrupts", "plans", "service_names", "services")
+    __slots__ = (
+        "bind",
+        "clock",
+        "enums",
+        "fault",
+        "halt_faults",
+        "interrupts",
+        "plans",
+        "service_names",
+        "services",
+        "watch",
+    )
 
     def __init__(
         self,
@@ -71,19 +89,22 @@ class Shared:
         self.halt_faults: list[Fault] = []  # exceptions that leaves raised while they were halted
         # what reactive nodes that are at another child want stopped before an action starts there
         self.interrupts: list[Callable[[], None]] = []
+        self.watch: Watch | None = None  # of the node that is being compiled
 
 
 class Site:
     """A node where it is used, after expansion of subtrees: what its compiler may ask, and what names it later.
 
     `above` is the site of its parent, None for the root, and `position` its place among the children there; `index` is
-    its number in preorder; `scope` is its blackboard. It stands for a failure of its node that has no reason.
+    its number in preorder; `scope` is its blackboard. It stands for a failure of its node
+    that has no reason of its own.
     """
 
-    __slots__ = ("above", "index", "node", "position", "scope", "shared", "watch")
+    __slots__ = ("_usual", "above", "index", "node", "position", "scope", "shared")
 
-    reason = ""
+    reason = REFUSED
     exception = None
+    cause = None
 
     def __init__(
         self, node: Node, index: int, above: Site | None, position: int, scope: Blackboard, shared: Shared
@@ -94,16 +115,33 @@ class Site:
         self.position = position
         self.scope = scope
         self.shared = shared
-        self.watch: Watch | None = None
+        self._usual: Fault | None = None
 
     @property
     def parent(self) -> str:
         """The id of the node above, "" for the root."""
         return "" if self.above is None else self.above.node.id
 
-    def fail(self, reason: str = "", exception: BaseException | None = None) -> int:
-        """Records this node as what failed; returns FAILURE."""
-        self.shared.fault = Fault(self.index, reason, exception) if reason else self
+    def refuse(self) -> int:
+        """Records that this leaf has returned False; returns FAILURE."""
+        self.shared.fault = self
+        return FAILURE
+
+    def fail(self, reason: Reason, exception: BaseException | None = None) -> int:
+        """Records this node as what failed; returns FAILURE. Costs least with the same text as the time before."""
+        fault = self._usual
+        if fault is None or fault.reason is not reason or exception is not None:
+            fault = Fault(self.index, reason, exception)
+            if exception is None:  # which would keep what its frames hold
+                self._usual = fault
+        self.shared.fault = fault
+        return FAILURE
+
+    def pass_on(self, reason: Reason) -> int:
+        """Adds why this node fails as well to the failure below it, which stays the cause; returns FAILURE."""
+        cause = self.shared.fault
+        below = cause is not None and cause.index > self.index
+        self.shared.fault = Fault(self.index, reason, None, cause if below else None)
         return FAILURE
 
     def service(self, name: str) -> Any:

@@ -27,7 +27,7 @@ from btlang.engine.region import at_top, below, regions
 from btlang.engine.subtree import child_scope, subtree
 from btlang.engine.switch import switch, switch_ports
 from btlang.engine.try_catch import try_catch
-from btlang.engine.watch import REPEATING, Trace, Watch
+from btlang.engine.watch import Trace, Watch, repeats
 from btlang.engine.whenever import whenever
 from btlang.record import Record
 from btlang.tree.node import Node, Tree
@@ -159,16 +159,18 @@ def compile_sites(sites: Sequence[Site], trace: Trace | None) -> Compiled:
         if count:
             children = waiting[: -count - 1 : -1]
             del waiting[-count:]
+        above, watch = site.above, None
         if trace is not None:
             lower = watches[: -count - 1 : -1] if count else []
-            site.watch = Watch(site.index, site.parent in REPEATING, lower, trace)
-            watches[len(watches) - count :] = [site.watch]
+            watch = Watch(site.index, above is not None and repeats(above.node), lower, trace)
+            watches[len(watches) - count :] = [watch]
+        site.shared.watch = watch
         compiled = _compile(site, children)
-        region, above = around[site.index], site.above
+        region = around[site.index]
         if region is not None and region.used and region.top == site.index:
             compiled = at_top(region, compiled)
-        if site.watch is not None:
-            compiled = site.watch.wrap(compiled)
+        if watch is not None:
+            compiled = watch.wrap(compiled)
         if region is None and above is not None and compiled[1] is not halt_nothing:
             wider = around[above.index]
             if wider is not None and wider.top != above.index:  # else the way down is not longer

@@ -105,7 +105,7 @@ def _watched_by_scripts(site: Site, compiled: Compiled, texts: Mapping[str, str]
                 for script in after[status]:
                     script(scope)
             except ActionFailed as failed:
-                return site.fail(str(failed))
+                return (site.fail if status == SUCCESS else site.pass_on)(str(failed))
         return status
 
     def halt(keep: bool) -> None:

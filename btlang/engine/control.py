@@ -155,9 +155,11 @@ def parallel(site: Site, children: Sequence[Compiled]) -> Compiled:
     failure_count = site.number("failure_count", 1, -count - 1, count)
     completed = [False] * count
     successes = failures = 0
+    shared = site.shared
+    fault = shared.fault  # of the child that failed last
 
     def tick(ticks: Ticks = ticks, success_count: Count = success_count, failure_count: Count = failure_count) -> int:
-        nonlocal successes, failures
+        nonlocal successes, failures, fault
         required, allowed = success_count(), failure_count()
         counts_skipped = required < 0
         if required < 0:
@@ -182,6 +184,7 @@ def parallel(site: Site, children: Sequence[Compiled]) -> Compiled:
                 elif status is FAILURE:
                     completed[index] = True
                     failures += 1
+                    fault = shared.fault
                 elif status == SKIPPED:
                     skipped += 1
             undecided = True
@@ -189,8 +192,12 @@ def parallel(site: Site, children: Sequence[Compiled]) -> Compiled:
                 halt(False)
                 return SUCCESS
             if count - failures < required or failures == allowed:
+                failed = failures
                 halt(False)
-                return FAILURE
+                if failed == 0:
+                    return site.fail("its failure_count allows no child to run")
+                shared.fault = fault
+                return FAILURE if failed == 1 else site.pass_on(f"{failed} of {count} failed")
         return SKIPPED if skipped == count else RUNNING
 
     def halt(keep: bool) -> None:
@@ -213,9 +220,11 @@ def parallel_all(site: Site, children: Sequence[Compiled]) -> Compiled:
     max_failures = site.number("max_failures", 1, -count - 1, count)
     completed = [False] * count
     failures = 0
+    shared = site.shared
+    fault = shared.fault  # of the child that made it one too many
 
     def tick() -> int:
-        nonlocal failures
+        nonlocal failures, fault
         allowed = max_failures()
         if allowed < 0:
             allowed += count + 1
@@ -232,14 +241,22 @@ def parallel_all(site: Site, children: Sequence[Compiled]) -> Compiled:
                     skipped += 1
                 else:
                     completed[index] = True
-                    failures += settle(leaves[index], status) is FAILURE
+                    if settle(leaves[index], status) is FAILURE:
+                        failures += 1
+                        if failures <= allowed:
+                            fault = shared.fault
         if skipped == count:
             return SKIPPED
         if skipped + sum(completed) < count:
             return RUNNING
-        result = FAILURE if failures >= allowed else SUCCESS
+        failed = failures
         halt(False)
-        return result
+        if failed < allowed:
+            return SUCCESS
+        if failed == 0:
+            return site.fail("its max_failures allows no success")
+        shared.fault = fault
+        return FAILURE if failed == 1 else site.pass_on(f"{failed} of {count} failed")
 
     def halt(keep: bool) -> None:
         nonlocal failures

@@ -19,7 +19,7 @@ def inverter(site: Site, children: Sequence[Compiled]) -> Compiled:
     def tick() -> int:
         status = child()
         if status == SUCCESS:
-            return site.fail()
+            return site.fail("it is true")
         return SUCCESS if status == FAILURE else status
 
     return tick, halt
@@ -42,7 +42,7 @@ def force_failure(site: Site, children: Sequence[Compiled]) -> Compiled:
 
     def tick() -> int:
         status = child()
-        return site.fail() if status == SUCCESS else status
+        return site.fail("it turns success into failure") if status == SUCCESS else status
 
     return tick, halt
 
@@ -80,14 +80,19 @@ def _rounds(site: Site, children: Sequence[Compiled], limit: Callable[[], int], 
                 halt_child(False)
                 return SKIPPED
             if status != again:
+                if count and status == FAILURE:
+                    site.pass_on(f"in round {count + 1}" if most == -1 else f"in round {count + 1} of {most}")
                 count = 0
                 return status
             count += 1
             if not resumed and (count < most or most == -1):
                 return RUNNING
             resumed = False
-        if most == 0 and again == FAILURE:
-            site.fail("it allows no attempt")
+        if again == FAILURE:
+            if count == 0:
+                site.fail("it allows no attempt")
+            elif count > 1:
+                site.pass_on(f"{'both' if count == 2 else f'all {count}'} attempts failed")
         count = 0
         return again
 

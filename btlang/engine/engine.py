@@ -6,10 +6,10 @@ import sys
 from collections.abc import Callable, Mapping, Sequence
 
 from btlang.engine.blackboard import Blackboard
-from btlang.engine.build import EngineError, Fault, Shared, Site
+from btlang.engine.build import EngineError, Fault, Shared, Site, blackboard_key
 from btlang.engine.clock import Clock
 from btlang.engine.compile import compile_sites, expand
-from btlang.engine.leaf import LeafBinding
+from btlang.engine.leaf import REFUSED, LeafBinding, told
 from btlang.engine.status import FAILURE, IDLE
 from btlang.engine.watch import Trace
 from btlang.garbage import no_collection
@@ -31,16 +31,19 @@ _FRAMES_ASSUMED = 1500  # which Python is taken to allow, or nearly, without bei
 
 
 class Failure(Record):
-    """Why a node failed: in words ("" where a condition was just not true), with the exception where one was raised.
+    """Why a node failed: in words, with the exception where one was raised.
 
-    `span` is the sentence of the node, or of the nearest one around it that has one.
+    `span` is the sentence of the node, or of the nearest one around it that has one. `around` are the nodes around it
+    that failed with it and add something, innermost first: that all attempts failed, say.
     """
 
+    index: int
     node: Node
     path: str
     reason: str
     exception: BaseException | None = None
     span: Span | None = None
+    around: tuple[Failure, ...] = ()
 
 
 class Engine:
@@ -73,14 +76,7 @@ class Engine:
         self._deep = self._frames > _FRAMES_ASSUMED
         self._busy = False
         self.status = IDLE
-        self._failed: Failure | None = None  # what failed before a halt
-
-    @property
-    def failure(self) -> Failure | None:
-        """Why the latest tick failed, also after a halt; None where it did not."""
-        if self.status == FAILURE:
-            return self._failure(self._shared.fault or Fault(0))
-        return self._failed if self.status == IDLE else None
+        self._fault: Fault | Site | None = None
 
     def tick(self) -> int:
         """Ticks the tree once; returns its status.
@@ -95,6 +91,7 @@ class Engine:
         self._busy = True
         try:
             self.status = status = self._tick()
+            self._fault = self._shared.fault if status is FAILURE else None
             if self._trace is not None:
                 self._trace.tell()
             return status
@@ -103,6 +100,11 @@ class Engine:
             raise
         finally:
             self._busy = False
+
+    @property
+    def failure(self) -> Failure | None:
+        """Why the latest tick failed: the leaf, or the decorator, that made the root fail. None where it did not."""
+        return None if self._fault is None else self._failure(self._fault)
 
     def halt(self) -> None:
         """Halts every running leaf, children before parents, and resets all nodes; the next tick starts anew.
@@ -137,6 +139,13 @@ class Engine:
         """The node with an index in preorder."""
         return self._sites[index].node
 
+    def filled(self, index: int) -> Node:
+        """As `node`, with the arguments of the subtrees around it in place of their `{names}`."""
+        node, scope = self._sites[index].node, self._sites[index].scope
+        keys = [(port, text, blackboard_key(port, text)) for port, text in node.ports]
+        ports = tuple((port, text if key is None else scope.argument(key) or text) for port, text, key in keys)
+        return node if ports == node.ports else node.replace(ports=ports)
+
     def path(self, index: int) -> str:
         """Where a node is: `/` is the root, `/0/1` the second child of its first child; a SubTree's tree is child 0."""
         steps: list[str] = []
@@ -150,6 +159,28 @@ class Engine:
         """Hands to the listener what has changed since it was last told; also from within a leaf."""
         if self._trace is not None:
             self._trace.tell()
+
+    def parent(self, index: int) -> int:
+        """The node above a node, -1 for the root."""
+        above = self._sites[index].above
+        return -1 if above is None else above.index
+
+    def span(self, index: int) -> Span | None:
+        """The sentence of a node, or of the nearest one around it that has one."""
+        site = self._sites[index]
+        while site.node.span is None and site.above is not None:
+            site = site.above
+        return site.node.span
+
+    def reason(self, index: int, fault: Fault | Site | None = None) -> str:
+        """What a failure, by default the latest, or one that caused it, says about a node.
+
+        "" where only a node below it can say that.
+        """
+        fault = fault or self._shared.fault
+        while fault is not None and fault.index < index:  # causes are below
+            fault = fault.cause
+        return self._text(fault) if fault is not None and fault.index == index else ""
 
     def _stop(self, keep: bool) -> None:
         if self._deep:
@@ -187,12 +218,23 @@ class Engine:
         if interrupted is not None:
             raise interrupted
 
+    def _text(self, fault: Fault | Site) -> str:
+        if fault.reason is REFUSED:
+            return self._shared.plans[self.node(fault.index).id].binding.refusal
+        return told(fault.reason) or "it gave no reason"
+
     def _failure(self, fault: Fault | Site) -> Failure:
-        site = self._sites[fault.index]
-        node, sentence = site.node, site
-        while sentence.node.span is None and sentence.above is not None:
-            sentence = sentence.above
-        return Failure(node, self.path(fault.index), fault.reason, fault.exception, sentence.node.span)
+        around: list[Failure] = []
+        while fault.cause is not None:
+            around.append(self._told(fault))
+            fault = fault.cause
+        return self._told(fault, tuple(reversed(around)))
+
+    def _told(self, fault: Fault | Site, around: tuple[Failure, ...] = ()) -> Failure:
+        index = fault.index
+        return Failure(
+            index, self.node(index), self.path(index), self._text(fault), fault.exception, self.span(index), around
+        )
 
 
 def _depth(sites: Sequence[Site]) -> int:

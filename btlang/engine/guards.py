@@ -13,7 +13,7 @@ from btlang.engine.gated import gated
 from btlang.engine.leaf import ActionFailed
 from btlang.engine.ports import STATUSES, TRUTHS, choice_port
 from btlang.engine.script import truth
-from btlang.engine.script_nodes import script_of
+from btlang.engine.script_nodes import not_true, script_of
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 
 TYPE_CHECKING = False
@@ -39,18 +39,23 @@ def run_once(site: Site, children: Sequence[Compiled]) -> Compiled:
     [(child, halt)] = children
     then_skip = choice_port(site, "then_skip", TRUTHS, "true")
     result = IDLE
+    shared = site.shared
+    fault = shared.fault  # of that run
 
     def tick() -> int:
-        nonlocal result
+        nonlocal result, fault
         skips = then_skip()
         if result == IDLE:
             status = child()
             if status in (SUCCESS, FAILURE):
-                result = status
+                result, fault = status, shared.fault
             return status
         if skips:
             return SKIPPED
-        return site.fail() if result == FAILURE else result
+        if result == FAILURE:
+            shared.fault = fault
+            return site.pass_on("its one run had failed")
+        return result
 
     return tick, halt
 
@@ -58,6 +63,7 @@ def run_once(site: Site, children: Sequence[Compiled]) -> Compiled:
 def precondition(site: Site, children: Sequence[Compiled]) -> Compiled:
     """Its child where the script `if` holds when it starts, else the status in `else` (script_precondition.h)."""
     condition, scope = script_of(site, "if"), site.scope
+    refusal = not_true(site, "if")
     otherwise = choice_port(site, "else", STATUSES, "FAILURE")
 
     def ask() -> int:
@@ -68,6 +74,6 @@ def precondition(site: Site, children: Sequence[Compiled]) -> Compiled:
         if holds:
             return IDLE
         status = otherwise()
-        return site.fail() if status == FAILURE else status
+        return site.fail(refusal) if status == FAILURE else status
 
     return gated(children, ask)

@@ -10,6 +10,9 @@ A leaf is one of
 Parameters are filled by name: ports first, then services (`robot`, `clock`, `blackboard`); a class gets the services
 in its constructor and the ports in `start`.
 
+A leaf that fails says why: it raises ActionFailed, or returns `Failed(reason)`, which is cheaper and may work out the
+reason later. For False the reason is the `refusal` of its binding.
+
 For an output port, whose text is a `{key}`, the parameter gets a function: `store(value)` writes the value to that key.
 """
 
@@ -21,20 +24,51 @@ from btlang.record import Record
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any
+    from typing import Any, TypeAlias
+
+Reason: TypeAlias = "str | Callable[[], str]"
+"""Why something failed, for people: a text, or what gives it when somebody asks."""
+
+REFUSED = "it returned False"
+"""Stands for the `refusal` of a leaf's binding, which is looked for when somebody asks."""
 
 
 class ActionFailed(Exception):
     """A leaf raises it to FAIL with a reason for people: `raise ActionFailed("nothing within reach")`."""
 
 
+class Failed(Record):
+    """What a leaf may return in place of False: FAILURE with a reason."""
+
+    reason: Reason
+
+    def __bool__(self) -> bool:
+        return False
+
+
+def told(reason: Reason) -> str:
+    """The text of a reason. A function that cannot give it gives its exception instead."""
+    if isinstance(reason, str):
+        return reason
+    try:
+        return reason()
+    except Exception as problem:
+        return described(problem)
+
+
+def described(problem: BaseException) -> str:
+    """An exception as the reason of a failure."""
+    return f"{type(problem).__name__}: {problem}"
+
+
 class LeafBinding(Record):
     """The Python side of a leaf id: what to call, how each port's text becomes a value, and values for absent ports.
 
-    `outputs` are the ports that the leaf writes instead of reading them.
+    `outputs` are the ports that the leaf writes instead of reading them, `refusal` is the reason for a returned False.
     """
 
     call: Callable[..., Any]
     converters: Mapping[str, Callable[[str], Any]] = {}
     defaults: Mapping[str, str] = {}
     outputs: tuple[str, ...] = ()
+    refusal: str = REFUSED

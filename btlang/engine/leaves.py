@@ -10,7 +10,7 @@ from collections.abc import Callable, Collection, Mapping, Sequence
 from functools import lru_cache, partial
 
 from btlang.engine.build import Fault, Site, blackboard_key, halt_nothing
-from btlang.engine.leaf import ActionFailed, LeafBinding
+from btlang.engine.leaf import ActionFailed, Failed, LeafBinding, described
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
 
 TYPE_CHECKING = False
@@ -31,7 +31,7 @@ def always_success(site: Site, children: Sequence[Compiled]) -> Compiled:
 
 def always_failure(site: Site, children: Sequence[Compiled]) -> Compiled:
     """FAILURE."""
-    return site.fail, halt_nothing
+    return partial(site.fail, "the mission says so"), halt_nothing
 
 
 def skipped(site: Site, children: Sequence[Compiled]) -> Compiled:
@@ -151,7 +151,7 @@ def _function_leaf(site: Site, call: Callable[..., Any], stored: Stored) -> Comp
 
 def _generator_leaf(site: Site, call: Callable[..., Any], stored: Stored) -> Compiled:
     generator: Any = None
-    interrupts, watch = site.shared.interrupts, site.watch
+    interrupts, watch = site.shared.interrupts, site.shared.watch
 
     def tick() -> int:
         nonlocal generator
@@ -181,7 +181,7 @@ def _generator_leaf(site: Site, call: Callable[..., Any], stored: Stored) -> Com
 
 def _class_leaf(site: Site, leaf: Any, start: Callable[..., Any], stored: Stored) -> Compiled:
     go_on = leaf.tick
-    interrupts, watch = site.shared.interrupts, site.watch
+    interrupts, watch = site.shared.interrupts, site.shared.watch
     running = False
 
     def tick() -> int:
@@ -228,31 +228,29 @@ def _stop(site: Site, halt: Callable[[], object]) -> None:
     try:
         halt()
     except Exception as problem:
-        site.shared.halt_faults.append(Fault(site.index, _describe(problem), problem))
+        site.shared.halt_faults.append(Fault(site.index, described(problem), problem))
 
 
 def failed(site: Site, problem: Exception) -> int:
     """FAILURE, for the reason that the leaf gave, or with the exception that it should not have raised."""
     if isinstance(problem, ActionFailed):
         return site.fail(str(problem))
-    return site.fail(_describe(problem), problem)
+    return site.fail(described(problem), problem)
 
 
 def status_of(site: Site, result: object) -> int:
-    """The status that a returned value stands for: None is SUCCESS, FAILURE comes with the leaf's blame."""
+    """The status that a returned value stands for; a FAILURE is recorded as that of the leaf."""
     if result is True or result is None:
         return SUCCESS
     if result is False:
-        return site.fail()
+        return site.refuse()
+    if isinstance(result, Failed):
+        return site.fail(result.reason)
     if isinstance(result, int) and result in (RUNNING, SKIPPED):
         return int(result)
     if type(result).__name__ in _TRUTHS or (isinstance(result, int) and result in (FAILURE, SUCCESS)):
-        return SUCCESS if result else site.fail()
+        return SUCCESS if result else site.refuse()
     return site.fail(f"it returned {result!r}, which is neither True, False, None nor a status")
-
-
-def _describe(problem: Exception) -> str:
-    return f"{type(problem).__name__}: {problem}"
 
 
 def _make(site: Site, plan: Plan) -> Any:
@@ -265,7 +263,7 @@ def _make(site: Site, plan: Plan) -> Any:
     try:
         return cls(**{name: site.service(name) for name in plan.made_with})
     except Exception as problem:
-        raise site.error(f"{cls.__name__} cannot be made: {_describe(problem)}") from problem
+        raise site.error(f"{cls.__name__} cannot be made: {described(problem)}") from problem
 
 
 def _fill(site: Site, call: Callable[..., Any], ports: Collection[str], services: Collection[str]) -> list[str]:

@@ -79,9 +79,13 @@ def recovery_node(site: Site, children: Sequence[Compiled]) -> Compiled:
             else:
                 if status == SKIPPED:
                     halts[position](False)
-                result = FAILURE if position == 1 else status
+                if position == 1:
+                    site.pass_on("its recovery failed" if status == FAILURE else "its recovery was skipped")
+                    status = FAILURE
+                elif count and status == FAILURE:
+                    site.pass_on(f"{count} {'recovery' if count == 1 else 'recoveries'} did not help")
                 position = count = 0
-                return result
+                return status
 
     def halt(keep: bool) -> None:
         nonlocal position, count

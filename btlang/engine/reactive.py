@@ -71,6 +71,8 @@ def _reactive(site: Site, children: Sequence[Compiled], passes: int) -> Compiled
             interrupts.pop()
         if status is fails or status == RUNNING:
             if asked < running:
+                if status is FAILURE:
+                    site.pass_on("its guard broke on the way")
                 halts[running](False)
             running = -1 if status is fails else asked
             return status

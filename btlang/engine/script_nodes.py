@@ -37,14 +37,20 @@ def script(site: Site, children: Sequence[Compiled]) -> Compiled:
 def script_condition(site: Site, children: Sequence[Compiled]) -> Compiled:
     """Runs its code: SUCCESS where the value is true, else FAILURE."""
     run, scope = script_of(site, "code"), site.scope
+    refusal = not_true(site, "code")
 
     def tick() -> int:
         try:
-            return SUCCESS if truth(run(scope)) else site.fail()
+            return SUCCESS if truth(run(scope)) else site.fail(refusal)
         except ActionFailed as failed:
             return site.fail(str(failed))
 
     return tick, halt_nothing
+
+
+def not_true(site: Site, port: str) -> str:
+    """The reason where the script in a port is not true."""
+    return f"this is not true: {site.node.port(port)}"
 
 
 def script_of(site: Site, port: str) -> Callable[[Blackboard], Any]:

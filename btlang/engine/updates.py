@@ -34,7 +34,8 @@ def wait_value_update(site: Site, children: Sequence[Compiled]) -> Compiled:
 def was_entry_updated(site: Site, children: Sequence[Compiled]) -> Compiled:
     """SUCCESS where the entry is new, else FAILURE."""
     is_new = _news(site)
-    return (lambda: SUCCESS if is_new() else site.fail()), halt_nothing
+    refusal = f"nothing has been written to {{{key_port(site, 'entry')}}} since it last asked"
+    return (lambda: SUCCESS if is_new() else site.fail(refusal)), halt_nothing
 
 
 def _news(site: Site) -> Callable[[], bool]:

@@ -12,12 +12,21 @@ if TYPE_CHECKING:
     from typing import Any, TypeAlias
 
     from btlang.engine.build import Compiled, Fault, Halt, Shared, Site, Tick
+    from btlang.tree.node import Node
 
     Call: TypeAlias = Callable[[], Any]
     Listener: TypeAlias = Callable[["Changes"], object]
 
-REPEATING = frozenset(("Repeat", "KeepRunningUntilFailure", "LoopInt", "LoopBool", "LoopDouble", "LoopString"))
-"""The nodes whose child is run again after it has succeeded: each of its completions is told."""
+_REPEATING = frozenset(("Repeat", "KeepRunningUntilFailure", "LoopInt", "LoopBool", "LoopDouble", "LoopString"))
+_LIMITS = {"RetryUntilSuccessful": "num_attempts", "RecoveryNode": "number_of_retries"}
+
+
+def repeats(node: Node) -> bool:
+    """Whether each completion of the node's children is told: it runs them again after a success, or so many times.
+
+    What it runs until it succeeds, without a limit, is a condition that is waited for.
+    """
+    return node.id in _REPEATING or (node.id in _LIMITS and node.port(_LIMITS[node.id]) != "-1")
 
 
 class Changes:

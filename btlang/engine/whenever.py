@@ -23,7 +23,8 @@ def whenever(site: Site, children: Sequence[Compiled]) -> Compiled:
     again. The whole ends with the status of the work. A condition that is RUNNING counts as false.
     """
     ticks, halts = apart(children)
-    interrupts = site.shared.interrupts
+    shared = site.shared
+    interrupts = shared.interrupts
     armed = True  # the condition has been false since it last counted
     reacting = working = False  # which of both was RUNNING at the last tick
 
@@ -49,6 +50,7 @@ def whenever(site: Site, children: Sequence[Compiled]) -> Compiled:
 
     def tick() -> int:
         nonlocal armed, reacting, working
+        fault = shared.fault
         if not holds():
             armed = True
         elif armed and not reacting:
@@ -63,7 +65,7 @@ def whenever(site: Site, children: Sequence[Compiled]) -> Compiled:
             if status == FAILURE:
                 halts[2](False)
                 end()
-                return FAILURE
+                return site.pass_on("its reaction failed")
             if status == SKIPPED:
                 halts[1](False)
         status = ticks[2]()
@@ -72,6 +74,7 @@ def whenever(site: Site, children: Sequence[Compiled]) -> Compiled:
             end()
             if status == SKIPPED:
                 halts[2](False)
+                shared.fault = fault
         return status
 
     def halt(keep: bool) -> None:

@@ -5,12 +5,12 @@ from __future__ import annotations
 import os
 import signal
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.reading import unwritable
-from btlang.diagnostics.render import RED, has_colour, underlined
+from btlang.diagnostics.render import has_colour
 from btlang.engine.status import FAILURE, SKIPPED
 from btlang.run.json_log import JsonLog
 from btlang.run.lines import Lines
@@ -37,6 +37,8 @@ if TYPE_CHECKING:
 
         @property
         def controls(self) -> Controls: ...
+
+        def why(self, *, colour: bool = False) -> str: ...
 
         def label(self, node: Node) -> str: ...
 
@@ -82,7 +84,7 @@ def run_mission(
     except OSError as error:
         raise MissionError([unwritable(log or "the output", error)]) from None
     if outcome.status == FAILURE:
-        print(failure_report(outcome, tree.label, RED if has_colour(sys.stderr) else ""), file=sys.stderr)
+        print(tree.why(colour=has_colour(sys.stderr)), file=sys.stderr)
         return 1
     if not quiet:
         print(_ending(outcome))
@@ -131,21 +133,6 @@ def _opened(log: str | None) -> AbstractContextManager[TextIO | None]:
     if log is None:
         return nullcontext()
     return open(log, "w", encoding="utf-8", errors="backslashreplace")  # a mission may hold what UTF-8 does not
-
-
-def failure_report(outcome: Outcome, label: Callable[[Node], str], colour: str = "") -> str:
-    """Which sentence failed, its words underlined in a colour, at which leaf, and why."""
-    lines = [f"The mission failed after {outcome.seconds:.1f} s."]
-    failure = outcome.failure
-    if failure is not None:
-        span = failure.span
-        if span is not None:
-            whole = failure.node.children or failure.node.span is None
-            sentence = span.text.splitlines()[0] if whole else label(failure.node)
-            lines += [f"{span.place}: {sentence}", *underlined(span, colour)]
-        asked = "the mission says so" if failure.node.id == "AlwaysFailure" else "it does not hold"
-        lines.append(f"  {failure.node.id}: {failure.reason or asked}")
-    return "\n".join(lines)
 
 
 def _ending(outcome: Outcome) -> str:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 
+from btlang.engine.status import FAILURE
 from btlang.record import Record
 from btlang.tree.node import Node
 
@@ -11,6 +12,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, Protocol, TypeAlias
 
+    from btlang.engine.build import Fault, Site
     from btlang.engine.watch import Changes
 
     Event: TypeAlias = "StatusesChanged | RobotEvent | PeriodPassed"
@@ -22,6 +24,8 @@ if TYPE_CHECKING:
         def path(self, index: int) -> str: ...
 
         def node(self, index: int) -> Node: ...
+
+        def reason(self, index: int, fault: Fault | Site | None) -> str: ...
 
     class Robot(Protocol):
         """What a run asks of a robot. `moving` may be missing; so may `moves_by_itself`, which is then taken for true.
@@ -38,7 +42,7 @@ class StatusChanged(Record):
     """Of a StatusesChanged: a node has a new status. `index` is its number in preorder, `path` its place; `t` is in
     seconds of the mission.
 
-    `reason` says why a leaf or decorator failed, "" for any other status and where nothing is known.
+    `reason` says why a node failed, "" for any other status and where only a node below it can say that.
     """
 
     t: float
@@ -62,12 +66,16 @@ class StatusesChanged(Record):
     def __iter__(self) -> Iterator[StatusChanged]:
         nodes = self.nodes
         for index, status, fault in self.changes:
-            reason = fault.reason if fault is not None and fault.index == index else ""
+            reason = nodes.reason(index, fault) if status == FAILURE else ""
             yield StatusChanged(self.t, index, nodes.path(index), nodes.node(index), status, reason)
 
 
 class RobotEvent(Record):
-    """Something that the robot did or met: kind `say`, `print`, `bump`, ... with its data."""
+    """Something that the robot did or met: kind `say`, `print`, `bump`, ... with its data.
+
+    The last event of a run is of the kind `end`: `outcome` (a status), `stopped` and `seconds` as in its Outcome, and
+    where it failed `path`, `id` and `reason` of the failure, and the `place` of its sentence in the mission.
+    """
 
     t: float
     kind: str

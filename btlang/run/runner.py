@@ -10,7 +10,7 @@ from btlang.engine.blackboard import Blackboard
 from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine, Failure
 from btlang.engine.leaf import LeafBinding
-from btlang.engine.status import IDLE, RUNNING
+from btlang.engine.status import IDLE, NAMES, RUNNING
 from btlang.record import Record
 from btlang.run.controls import Controls
 from btlang.run.events import EventStream, PeriodPassed, RobotEvent, StatusesChanged
@@ -123,7 +123,9 @@ class Runner:
         finally:
             seconds = self._clock.now - self._began
             self._end()
-        return Outcome(status, seconds, self.ticks, None if stopped else self._engine.failure, stopped)
+        outcome = Outcome(status, seconds, self.ticks, None if stopped else self._engine.failure, stopped)
+        self._events.publish(RobotEvent(self._clock.now, "end", _ending(outcome)))
+        return outcome
 
     def _loop(self) -> tuple[int, str]:
         controls, due, stepped = self.controls, time.monotonic(), False
@@ -205,3 +207,13 @@ class Runner:
         for failure in self._engine.take_halt_failures():
             data = {"text": f"{failure.node.id} did not halt: {failure.reason}", "path": failure.path}
             self._events.publish(RobotEvent(self._clock.now, "error", data))
+
+
+def _ending(outcome: Outcome) -> Mapping[str, Any]:
+    """How a run ended, for programs."""
+    data = {"outcome": NAMES[outcome.status], "stopped": outcome.stopped, "seconds": round(outcome.seconds, 6)}
+    failure = outcome.failure
+    if failure is None:
+        return data
+    place = {} if failure.span is None else {"place": failure.span.place}
+    return {**data, "path": failure.path, "id": failure.node.id, "reason": failure.reason, **place}

@@ -103,6 +103,27 @@ def test_a_leaf_that_raises_fails_with_a_reason() -> None:
     assert isinstance(outcome.failure.exception, ZeroDivisionError)
 
 
+def test_why_it_failed() -> None:
+    tree = btlang.parse_tree("try grasp the cup up to 2 times, otherwise check not the battery is above 20%")
+    assert tree.why() == ""
+    tree.run(speed="max")
+    told = [
+        "The mission failed after 0.1 s.",
+        "<text>:1:50: not the battery is above 20%",
+        "  try grasp the cup up to 2 times, otherwise check not the battery is above 20%",
+        f"  {'':49}{'^' * 28}",
+        "  Battery: it is true",
+        "What had been tried before:",
+        "    0.0 s  grasp cup: the cup is not within reach of the right hand (2 times, last at 0.1 s)",
+    ]
+    assert tree.why().splitlines() == told
+    assert tree.why(colour=True).splitlines()[3] == f"  {'':49}\x1b[1;31m{'^' * 28}\x1b[0m"
+    other = btlang.parse_tree("try grasp the cup up to 2 times, otherwise check not the battery is above 20%")
+    assert (other.tick(), other.why()) == (RUNNING, "")
+    assert other.tick() == FAILURE
+    assert other.why().splitlines() == told
+
+
 def test_a_mission_whose_commands_are_all_skipped() -> None:
     assert btlang.parse_tree("if bumped, wave").run(speed="max").status == SKIPPED
 

@@ -11,7 +11,7 @@ import pytest
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.build import EngineError
 from btlang.engine.engine import Engine
-from btlang.engine.leaf import ActionFailed, LeafBinding
+from btlang.engine.leaf import ActionFailed, Failed, LeafBinding
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 from btlang.tree.node import Node, Tree
 
@@ -29,21 +29,25 @@ def outcome(call: Any, world: World | None = None, parent: str = "", **ports: st
 
 
 @pytest.mark.parametrize(
-    ("value", "status"),
+    ("value", "status", "reason"),
     [
-        *[
-            (True, SUCCESS),
-            (None, SUCCESS),
-            (False, FAILURE),
-            (np.bool_(True), SUCCESS),
-            (np.bool_(False), FAILURE),
-        ],
-        *[(RUNNING, RUNNING), (SUCCESS, SUCCESS), (FAILURE, FAILURE), (SKIPPED, SKIPPED), (1, SUCCESS), (0, FAILURE)],
+        (True, SUCCESS, ""),
+        (None, SUCCESS, ""),
+        (False, FAILURE, "it returned False"),
+        (Failed("it is dark"), FAILURE, "it is dark"),
+        (Failed(lambda: "it is dark"), FAILURE, "it is dark"),
+        (Failed(lambda: str(1 // 0)), FAILURE, "ZeroDivisionError: integer division or modulo by zero"),
+        (np.bool_(True), SUCCESS, ""),
+        (np.bool_(False), FAILURE, "it returned False"),
+        (RUNNING, RUNNING, ""),
+        (SKIPPED, SKIPPED, ""),
+        (1, SUCCESS, ""),
+        (0, FAILURE, "it returned False"),
     ],
 )
 @pytest.mark.parametrize("parent", ["", "Sequence", "Fallback", "ReactiveSequence", "ReactiveFallback", "ParallelAll"])
-def test_values_of_functions(parent: str, value: object, status: int) -> None:
-    assert outcome(lambda: value, parent=parent) == (status, "")
+def test_values_of_functions(parent: str, value: object, status: int, reason: str) -> None:
+    assert outcome(lambda: value, parent=parent) == (status, reason)
 
 
 @pytest.mark.parametrize("value", [IDLE, 5, -1, "yes", 2.5, [], object, np.array([1, 2])])
@@ -178,6 +182,22 @@ def test_a_failed_action_gives_its_reason() -> None:
     assert outcome(call) == (FAILURE, "nothing within reach")
 
 
+def test_a_failure_without_a_reason_says_so() -> None:
+    def call() -> None:
+        raise ActionFailed
+
+    assert outcome(call) == (FAILURE, "it gave no reason")
+    assert outcome(lambda: Failed("")) == (FAILURE, "it gave no reason")
+
+
+def test_what_a_returned_false_means_is_said_by_the_binding() -> None:
+    world = World()
+    engine = world.engine(world.bind("A", lambda: False, refusal="it is dark"))
+    assert engine.tick() == FAILURE
+    assert engine.failure is not None
+    assert (engine.failure.reason, engine.reason(0)) == ("it is dark", "it is dark")
+
+
 class Broken:
     """Raises in one of its methods."""
 
@@ -310,7 +330,7 @@ def test_failure_names_what_made_the_root_fail() -> None:
     engine = world.engine(n("Inverter", world.fn("B", "s")))
     engine.tick()
     assert engine.failure is not None
-    assert (engine.failure.node.id, engine.failure.reason) == ("Inverter", "")
+    assert (engine.failure.node.id, engine.failure.reason) == ("Inverter", "it is true")
     engine = world.engine(n("Fallback", world.fn("B", "f"), world.fn("C", "s")))
     engine.tick()
     assert engine.failure is None

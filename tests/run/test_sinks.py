@@ -5,7 +5,7 @@ from __future__ import annotations
 import io
 import json
 
-from btlang.engine.build import Fault
+from btlang.engine.build import Fault, Site
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 from btlang.engine.watch import Changes
 from btlang.run.events import RobotEvent, StatusesChanged
@@ -33,6 +33,9 @@ class One:
 
     def node(self, index: int) -> Node:
         return self._node
+
+    def reason(self, index: int, fault: Fault | Site | None) -> str:
+        return "" if fault is None else str(fault.reason)
 
 
 def changed(t: float, node: Node, status: int, reason: str = "") -> StatusesChanged:

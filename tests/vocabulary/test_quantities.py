@@ -7,11 +7,13 @@ from pathlib import Path
 import pytest
 
 import btlang
+from btlang.backends.comparing import comparing
 from btlang.backends.engine import bind_leaf
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.engine.build import EngineError
 from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine
+from btlang.engine.leaf import Failed, told
 from btlang.engine.status import FAILURE, SUCCESS
 from btlang.tree.dump import plain
 from btlang.tree.node import Node, Tree
@@ -88,6 +90,44 @@ def test_wrong_values(text: str, code: str) -> None:
 )
 def test_they_hold_in_the_world(condition: str, status: int) -> None:
     assert btlang.parse_tree(f"check {condition}").run(speed="max").status == status
+
+
+@pytest.mark.parametrize(
+    ("condition", "reason"),
+    [
+        ("the battery is below 99%", "battery is 100%"),
+        ("the battery is not at least 20%", "it is true"),
+        ("the distance to the lobby is below 1 m", "distance to lobby is 1.5 m"),
+        ("the distance to Alice is more than 10 m", "distance to Alice is 5.98 m"),
+        ("the number of people nearby is 3", "number of people near is 0"),
+        ("the distance to the place is below 1 m", "distance to lobby is 1.5 m"),
+    ],
+)
+def test_what_was_read_is_the_reason(condition: str, reason: str) -> None:
+    tree = btlang.parse_tree(
+        f"look at {{place}} is check {condition.replace('the place', '{place}')}; look at the lobby"
+    )
+    failure = tree.run(speed="max").failure
+    assert failure is not None
+    assert failure.reason == reason
+
+
+@pytest.mark.parametrize(
+    ("ports", "value", "reason"),
+    [
+        ({"below": 20.0}, 20.04, "20"),
+        ({"at_least": 20.0}, 19.96, "19.96"),
+        ({"at_least": 20.0}, 19.12, "19.1"),
+        ({"at_least": 20.0, "at_most": 30.0}, 12.3456, "12.3"),
+        ({"above": 20.0}, 20.0, "20"),
+        ({"below": 1.0}, float("inf"), "inf"),
+        ({"above": 1.0}, float("nan"), "nan"),
+    ],
+)
+def test_a_reading_is_rounded_so_that_it_still_fails(ports: dict[str, float], value: float, reason: str) -> None:
+    refused = comparing(lambda: value, lambda given, read: read)(**ports)
+    assert isinstance(refused, Failed)
+    assert told(refused.reason) == reason
 
 
 def test_they_stop_a_loop() -> None:

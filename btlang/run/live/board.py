@@ -47,7 +47,7 @@ class Board:
         nodes, parents = outline(mission.tree)
         span = mission.tree.root.span
         self.changes = 0
-        self.state = State(Shape(parents), [node.id for node in nodes])
+        self.state = State(Shape(parents), nodes)
         self._title = frame.printable(os.path.basename(span.source.name)) if span is not None else "mission"
         self._signs = signs
         self._words = frame.Words(nodes, mission.label)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
-from btlang.engine.watch import REPEATING
+from btlang.engine.watch import repeats
 from btlang.record import Record
 from btlang.run.live.shape import Shape
 
@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from typing import Any
 
     from btlang.run.events import PeriodPassed
+    from btlang.tree.node import Node
 
 HALTED = IDLE + 1
 """Was RUNNING and was halted."""
@@ -44,10 +45,10 @@ class State:
 
     A node that is started again keeps nothing of its earlier round: what it has not reached yet is IDLE again. Where
     that round was over within a tick, this is so once the new one is RUNNING (see btlang/engine/watch.py).
-    `ids` are the types of the nodes.
+    `nodes` are those of the tree.
     """
 
-    def __init__(self, shape: Shape, ids: Sequence[str]) -> None:
+    def __init__(self, shape: Shape, nodes: Sequence[Node]) -> None:
         self.shape = shape
         self.statuses = bytearray([IDLE]) * len(shape)
         self.started: dict[int, float] = {}
@@ -58,7 +59,7 @@ class State:
         self.ticks = 0
         self.overruns = 0
         self.robot: Reading | None = None
-        self._ids = ids
+        self._nodes = nodes
         self._over = bytearray(len(shape))  # 1: this run of the node is over, a new one clears what is below it
         self._seen = [0] * len(shape)  # the sweep in which a node was last found to need no clearing
         self._sweep = 1
@@ -93,7 +94,7 @@ class State:
         self.ended[index] = t
         if status == FAILURE:
             self.reasons[index] = reason
-        if before == RUNNING or (index and self._ids[self.shape.parents[index]] in REPEATING):
+        if before == RUNNING or (index and repeats(self._nodes[self.shape.parents[index]])):
             self._end_run(index)
 
     def _halt(self, index: int, t: float) -> None:

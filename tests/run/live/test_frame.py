@@ -40,7 +40,7 @@ def made(outline: str) -> tuple[State, Words]:
     """A tree whose nodes are named by the lines."""
     shape = shape_of(outline)
     nodes = [Node("Id", name=line.strip()) for line in outline.splitlines()]
-    return State(shape, ["Sequence"] * len(shape)), Words(nodes, named)
+    return State(shape, [Node("Sequence")] * len(shape)), Words(nodes, named)
 
 
 def lines(state: State, words: Words, height: int = 24, width: int = 40, over: bool = False) -> list[str]:
@@ -100,7 +100,7 @@ def test_sentences() -> None:
     whole = Node("Sequence", (repeat,), span=Span(source, 0, 46))
     named_again = Node("Sequence", (wave,), name="wave", span=wave.span)
     nodes = [whole, repeat, body, both, both, wave, named_again]
-    state = State(shape_of("a\n b\n  c\n   d\n    e\n     f\n b"), [node.id for node in nodes])
+    state = State(shape_of("a\n b\n  c\n   d\n    e\n     f\n b"), nodes)
     assert lines(state, Words(nodes, lambda node: node.name or node.id), width=60) == [
         "· Sequence",
         "├── · Repeat  repeat 2 times:",
@@ -161,7 +161,7 @@ def test_wide_characters_are_counted_as_wide() -> None:
 
 @given(SHAPES, st.integers(3, 30), st.integers(30, 120), st.text(max_size=50), st.booleans())
 def test_whatever_the_tree_the_lines_fit(shape: object, height: int, width: int, name: str, over: bool) -> None:
-    state = State(shape, ["Sequence"] * len(shape))  # type: ignore[arg-type]
+    state = State(shape, [Node("Sequence")] * len(shape))  # type: ignore[arg-type]
     state.statuses[:] = bytes(index % 7 for index in range(len(state.statuses)))
     state.started = dict.fromkeys(range(len(state.statuses)), 0.0)
     words = Words([Node("Id", name=name)] * len(state.statuses), named)

@@ -69,7 +69,7 @@ def test_times() -> None:
 
 def test_depth_does_not_matter() -> None:
     depth = 10_000
-    state = State(Shape(range(-1, depth - 1)), ["Sequence"] * depth)
+    state = State(Shape(range(-1, depth - 1)), [Node("Sequence")] * depth)
     for t in range(3):
         for status in (RUNNING, SUCCESS):
             for index in range(depth - 1, -1, -1):

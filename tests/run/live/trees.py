@@ -49,7 +49,7 @@ class Run:
     def __init__(self, root: Node) -> None:
         self.clock = Clock()
         self.nodes, self.parents = outline(Tree(root))
-        self.state = State(Shape(self.parents), [node.id for node in self.nodes])
+        self.state = State(Shape(self.parents), self.nodes)
         self.latest: dict[int, int] = {}
         self.positions: dict[str, int] = {}
         self.engine = Engine(Tree(root), self._bind, clock=self.clock, listener=self._changed)
