@@ -46,7 +46,7 @@ def async_fallback(site: Site, children: Sequence[Compiled]) -> Compiled:
 
 def _in_order(children: Sequence[Compiled], passes: int, remember: bool = False) -> Compiled:
     """Goes on to the next child at the status `passes`, and returns it after the last child."""
-    ticks, halts, leaves = row(children)
+    ticks, halts, sites = row(children)
     nothing = None if passes is SUCCESS else passes  # what functions return is most often nothing
     index = skipped = 0
 
@@ -75,7 +75,7 @@ def _in_order(children: Sequence[Compiled], passes: int, remember: bool = False)
                 halts[index](False)
                 skipped += 1
             else:
-                status = settle(leaves[index], status)
+                status = settle(sites[index], status)
                 if status is not passes:
                     skipped = 0
                     if not remember:
@@ -87,7 +87,7 @@ def _in_order(children: Sequence[Compiled], passes: int, remember: bool = False)
             passes = SKIPPED if skipped == count else passes
             skipped = 0
         if passes is FAILURE and plain >= 0:
-            settle(leaves[plain], FAILURE)
+            settle(sites[plain], FAILURE)
         index = 0
         return passes
 
@@ -149,7 +149,7 @@ def parallel(site: Site, children: Sequence[Compiled]) -> Compiled:
     Ports success_count (all by default) and failure_count (1); -1 is all, -2 all but one. It fails also when too few
     are left to succeed. With a negative success_count a skipped child counts as a success (parallel_node.cpp).
     """
-    ticks, halts, leaves = row(children)
+    ticks, halts, sites = row(children)
     count = len(ticks)
     success_count = site.number("success_count", -1, -count - 1, count)
     failure_count = site.number("failure_count", 1, -count - 1, count)
@@ -177,7 +177,7 @@ def parallel(site: Site, children: Sequence[Compiled]) -> Compiled:
                 except Exception as problem:
                     status = problem
                 if status is SUCCESS or (
-                    status != RUNNING and status != SKIPPED and (status := settle(leaves[index], status)) is SUCCESS
+                    status != RUNNING and status != SKIPPED and (status := settle(sites[index], status)) is SUCCESS
                 ):
                     completed[index] = True
                     successes += 1
@@ -215,7 +215,7 @@ def parallel(site: Site, children: Sequence[Compiled]) -> Compiled:
 
 def parallel_all(site: Site, children: Sequence[Compiled]) -> Compiled:
     """Ticks all until each has completed; FAILURE if max_failures (1) or more failed (parallel_all_node.cpp)."""
-    ticks, halts, leaves = row(children)
+    ticks, halts, sites = row(children)
     count = len(ticks)
     max_failures = site.number("max_failures", 1, -count - 1, count)
     completed = [False] * count
@@ -241,7 +241,7 @@ def parallel_all(site: Site, children: Sequence[Compiled]) -> Compiled:
                     skipped += 1
                 else:
                     completed[index] = True
-                    if settle(leaves[index], status) is FAILURE:
+                    if settle(sites[index], status) is FAILURE:
                         failures += 1
                         if failures <= allowed:
                             fault = shared.fault

@@ -30,7 +30,7 @@ def reactive_fallback(site: Site, children: Sequence[Compiled]) -> Compiled:
 
 def _reactive(site: Site, children: Sequence[Compiled], passes: int) -> Compiled:
     """Goes on to the next child at the status `passes`, and returns it after the last child. SKIPPED if all are."""
-    ticks, halts, leaves = row(children)
+    ticks, halts, sites = row(children)
     pairs, count = tuple(enumerate(ticks)), len(ticks)
     interrupts = site.shared.interrupts
     fails = SUCCESS if passes is FAILURE else FAILURE
@@ -57,9 +57,9 @@ def _reactive(site: Site, children: Sequence[Compiled], passes: int) -> Compiled
                     plain = asked
                     continue
                 if status != RUNNING and status != SKIPPED:
-                    status = settle(leaves[asked], status)
+                    status = settle(sites[asked], status)
             except Exception as problem:
-                status = settle(leaves[asked], problem)
+                status = settle(sites[asked], problem)
             if status is passes:
                 plain = -1
             elif status == SKIPPED:
@@ -80,7 +80,7 @@ def _reactive(site: Site, children: Sequence[Compiled], passes: int) -> Compiled
         if skipped == count:
             return SKIPPED
         if passes is FAILURE and plain >= 0:
-            settle(leaves[plain], FAILURE)
+            settle(sites[plain], FAILURE)
         return passes
 
     def halt(keep: bool) -> None:
