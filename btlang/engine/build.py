@@ -9,6 +9,7 @@ A compiled node is a pair of closures:
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 
 from btlang.engine.blackboard import Blackboard
@@ -51,7 +52,18 @@ class Fault(Record):
 class Shared:
     """What all nodes of one engine share."""
 
-    __slots__ = ("bind", "clock", "enums", "fault", "halt_faults", "interrupts", "plans", "service_names", "services")
+    __slots__ = (
+        "bind",
+        "clock",
+        "emergency",
+        "enums",
+        "fault",
+        "halt_faults",
+        "interrupts",
+        "plans",
+        "service_names",
+        "services",
+    )
 
     def __init__(
         self,
@@ -67,7 +79,9 @@ class Shared:
         self.plans: dict[str, Plan] = {}  # of the leaves that were bound so far, by id
         self.enums = {name: float(value) for name, value in enums.items()}  # names that scripts and Switch nodes know
         self.fault: Fault | None = None  # the latest failure
-        self.halt_faults: list[Fault] = []  # exceptions that leaves raised while they were halted
+        # exceptions that leaves raised while they were halted; only the latest, should nobody ask for them
+        self.halt_faults: deque[Fault] = deque(maxlen=1000)
+        self.emergency = False  # whether the halt in progress is an emergency stop, which starts nothing
         # what reactive nodes that are at another child want stopped before an action starts there
         self.interrupts: list[Callable[[], None]] = []
 

@@ -88,15 +88,18 @@ class Engine:
         finally:
             self._busy = False
 
-    def halt(self) -> None:
+    def halt(self, emergency: bool = False) -> None:
         """Halts every running leaf, children before parents, and resets all nodes; the next tick starts anew.
 
-        Only a SequenceWithMemory keeps its place, as in BehaviorTree.CPP.
+        Only a SequenceWithMemory keeps its place, as in BehaviorTree.CPP. What `catch_on_halt` of a TryCatch starts
+        to clean up does not run in an emergency.
         """
         self._enter()
+        self._shared.emergency = emergency
         try:
             self._halt_all(False)
         finally:
+            self._shared.emergency = False
             self._busy = False
 
     def suspend(self) -> None:
@@ -152,8 +155,8 @@ class Engine:
     def _halt_all(self, keep: bool) -> None:
         """Also when a leaf is interrupted while it halts: it counts as halted then, and another attempt goes on."""
         interrupted: BaseException | None = None
-        self._shared.interrupts.clear()
-        for _ in self._places:
+        for _ in range(len(self._places) + 1):  # each leaf interrupts it once at most, and so does each TryCatch
+            self._shared.interrupts.clear()
             try:
                 self._halt(keep)
                 break

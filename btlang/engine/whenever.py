@@ -76,7 +76,12 @@ def whenever(site: Site, children: Sequence[Compiled]) -> Compiled:
 
     def halt(keep: bool) -> None:
         nonlocal armed, reacting, working
-        for stop in halts:
+        if working:  # to halt the condition may start what cleans up after it
+            interrupts.append(suspend)
+        halts[0](keep)
+        if working:
+            interrupts.pop()
+        for stop in halts[1:]:
             stop(keep)
         if not keep:
             armed, reacting, working = True, False, False
