@@ -70,6 +70,7 @@ def _more_parents(children: st.SearchStrategy[Node]) -> list[st.SearchStrategy[N
     return [
         several("Switch2", 3, 3, variable="{x}", case_1=1, case_2=2),
         several("Switch3", 4, 4, variable="{x}", case_1=2, case_2=1, case_3=3),
+        several("TryCatch", 2, 4, catch_on_halt="true"),
         st.sampled_from(("true", "false", "{x}")).flatmap(lambda on: several("TryCatch", 2, 4, catch_on_halt=on)),
         several("Whenever", 3, 3),
         several("Whenever", 3, 3),

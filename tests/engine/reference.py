@@ -290,9 +290,9 @@ class Reference(MoreNodes):
         self.status = RUNNING
         if self.at == 0:
             result = self.children[0].execute()
-            if result == RUNNING or (result == FAILURE and len(self.children) == 2):
+            if result == RUNNING:
                 return result
-            if result == SKIPPED:
+            if result == SKIPPED or (result == FAILURE and len(self.children) == 2):
                 self.reset_children()
                 return FAILURE
             self.at = 1 if result == SUCCESS else 2
