@@ -113,6 +113,31 @@ LEAVES = st.one_of(
 TREES = st.recursive(LEAVES, _parents, max_leaves=12)
 
 
+def _busy_parents(children: st.SearchStrategy[Node]) -> st.SearchStrategy[Node]:
+    many = ("ReactiveSequence", "ReactiveFallback", "Sequence", "Fallback", "PipelineSequence")
+    return st.one_of(
+        st.tuples(st.sampled_from(many), st.lists(children, min_size=2, max_size=3)).map(lambda d: n(d[0], *d[1])),
+        st.tuples(st.sampled_from(("Whenever", "WhileDoElse")), st.lists(children, min_size=3, max_size=3)).map(
+            lambda d: n(d[0], *d[1])
+        ),
+        st.lists(children, min_size=2, max_size=3).map(lambda c: n("ParallelAll", *c, max_failures=1)),
+        st.lists(children, min_size=2, max_size=3).map(lambda c: n("TryCatch", *c, catch_on_halt="true")),
+        st.tuples(st.sampled_from(("Inverter", "ForceSuccess", "KeepRunningUntilFailure")), children).map(
+            lambda d: n(d[0], d[1])
+        ),
+    )
+
+
+BUSY = st.recursive(
+    st.tuples(st.sampled_from("CCG"), st.text("rrrssfk", min_size=1, max_size=4)).map(
+        lambda leaf: Node(":".join(leaf))
+    ),
+    _busy_parents,
+    max_leaves=8,
+)
+"""Trees in which nearly every node is an action or chooses among some."""
+
+
 class Drawn:
     """A drawn tree, with an id of its own for each leaf, `F0`, `C1` or `G2`: a function, class or generator."""
 

@@ -153,9 +153,12 @@ class Reference(MoreNodes):
             for child in above.children if follows else ():
                 if child is not below and child.status == RUNNING:
                     child.reset()
-            if above.node.id == "Whenever" and below is above.children[0] and above.working:
-                above.working = False
-                above.children[2].suspend()
+            if above.node.id == "Whenever" and below is above.children[0]:
+                if above.reacting:
+                    above.children[1].suspend()
+                elif above.working:
+                    above.working = False
+                    above.children[2].suspend()
             below, above = above, above.parent
 
     def SubTree(self) -> int:
