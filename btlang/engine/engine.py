@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from _thread import allocate_lock  # `threading` takes longer to import
 from collections.abc import Callable, Mapping
 
 from btlang.engine.blackboard import Blackboard
@@ -24,7 +25,9 @@ if TYPE_CHECKING:
 
     from btlang.engine.watch import Listener
 
-_FRAMES_PER_LEVEL = 4  # a node, its watch, its pre-conditions, and the check of ports from the blackboard
+# A node, its watch, its pre-conditions, and the check of ports from the blackboard; twice, because what starts at the
+# end of one branch may halt another one.
+_FRAMES_PER_LEVEL = 8
 _FRAMES_FOR_LEAVES = 1000
 
 
@@ -68,7 +71,7 @@ class Engine:
             self._tick, self._halt = compile_places(self._places, self._shared, listener)
         depth = max([place.depth for place in self._places])
         self._frames = depth * _FRAMES_PER_LEVEL + _FRAMES_FOR_LEAVES
-        self._busy = False
+        self._alone = allocate_lock()
         self.status = IDLE
         self.failure: Failure | None = None
 
@@ -83,10 +86,10 @@ class Engine:
             self.failure = self._root_failure() if status == FAILURE else None
             return status
         except BaseException:
-            self._halt_all(False)
+            self._halt_all(False, cut_short=True)
             raise
         finally:
-            self._busy = False
+            self._alone.release()
 
     def halt(self, emergency: bool = False) -> None:
         """Halts every running leaf, children before parents, and resets all nodes; the next tick starts anew.
@@ -100,7 +103,7 @@ class Engine:
             self._halt_all(False)
         finally:
             self._shared.emergency = False
-            self._busy = False
+            self._alone.release()
 
     def suspend(self) -> None:
         """Halts every running leaf but keeps positions, counts and timers; the next tick starts those leaves anew."""
@@ -108,7 +111,7 @@ class Engine:
         try:
             self._halt_all(True)
         finally:
-            self._busy = False
+            self._alone.release()
 
     def take_halt_failures(self) -> list[Failure]:
         """What leaves raised while they were halted since it was last asked, oldest first."""
@@ -146,22 +149,28 @@ class Engine:
         return fault.reason if fault is not None and fault.index == index else ""
 
     def _enter(self) -> None:
-        if self._busy:
+        if not self._alone.acquire(False):
             raise RuntimeError("the tree is being ticked: neither a leaf nor another thread may tick or halt it now")
         if sys.getrecursionlimit() < self._frames:
             sys.setrecursionlimit(self._frames)
-        self._busy = True
 
-    def _halt_all(self, keep: bool) -> None:
-        """Also when a leaf is interrupted while it halts: it counts as halted then, and another attempt goes on."""
+    def _halt_all(self, keep: bool, cut_short: bool = False) -> None:
+        """Also when a leaf is interrupted while it halts: it counts as halted then, and another attempt goes on.
+
+        Where a tick or a halt was cut short, nodes do not know which of their children run. So all is stopped before a
+        TryCatch starts to clean up.
+        """
         interrupted: BaseException | None = None
         for _ in range(len(self._places) + 1):  # each leaf interrupts it once at most, and so does each TryCatch
             self._shared.interrupts.clear()
             try:
+                if cut_short:
+                    self._halt(True)
                 self._halt(keep)
                 break
             except BaseException as exception:
                 interrupted = interrupted or exception
+                cut_short = True
         if not keep:
             self.status = IDLE
         if interrupted is not None:

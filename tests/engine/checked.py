@@ -45,6 +45,11 @@ class CheckedWorld(World):
         if letter == "i":
             raise KeyboardInterrupt
 
+    def calm(self) -> None:
+        """Ends what runs, without trouble: a generator that is left alone would meet it later."""
+        self.trouble = cycle(".")
+        self.checked.halt()
+
     def begin(self, id: str, run: object) -> None:
         """To be called first when a leaf starts: nothing may run that a reactive node above should have halted."""
         for other, _ in self.live:
