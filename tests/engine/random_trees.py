@@ -8,6 +8,12 @@ from btlang.tree.node import Node, Tree
 
 from .scripted import World, n
 
+
+def letters(weighted: str, least: int, most: int) -> st.SearchStrategy[str]:
+    """Texts of these letters, each as likely as it is frequent there; `st.text` takes the letters for a set."""
+    return st.lists(st.sampled_from(weighted), min_size=least, max_size=most).map("".join)
+
+
 IN_ORDER = ("Sequence", "Fallback", "AsyncSequence", "AsyncFallback", "SequenceWithMemory")
 REACTIVE = ("ReactiveSequence", "ReactiveFallback")
 PLAIN_DECORATORS = ("Inverter", "ForceSuccess", "ForceFailure", "KeepRunningUntilFailure")
@@ -101,9 +107,7 @@ def _used(drawn: tuple[Node, dict[str, str], dict[str, str], bool]) -> Node:
 
 
 LEAVES = st.one_of(
-    st.tuples(st.sampled_from("FCG"), st.text("rrssffkx", min_size=1, max_size=4)).map(
-        lambda leaf: Node(":".join(leaf))
-    ),
+    st.tuples(st.sampled_from("FCG"), letters("rrssffkx", 1, 4)).map(lambda leaf: Node(":".join(leaf))),
     st.sampled_from((0, 1000, 2000)).map(lambda msec: n("Sleep", msec=msec)),
     ASKED.map(lambda code: n("ScriptCondition", code=code)),
     DONE.map(lambda code: n("Script", code=code)),
@@ -129,9 +133,7 @@ def _busy_parents(children: st.SearchStrategy[Node]) -> st.SearchStrategy[Node]:
 
 
 BUSY = st.recursive(
-    st.tuples(st.sampled_from("CCG"), st.text("rrrssfk", min_size=1, max_size=4)).map(
-        lambda leaf: Node(":".join(leaf))
-    ),
+    st.tuples(st.sampled_from("CCG"), letters("rrrssfk", 1, 4)).map(lambda leaf: Node(":".join(leaf))),
     _busy_parents,
     max_leaves=8,
 )

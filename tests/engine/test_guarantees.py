@@ -9,7 +9,6 @@ from copy import copy, deepcopy
 
 import pytest
 from hypothesis import given, settings
-from hypothesis import strategies as st
 
 from btlang.engine import engine as engine_module
 from btlang.engine.compile import NODE_TYPES
@@ -20,7 +19,7 @@ from btlang.tree.node import Node, Tree
 
 from .checked import CheckedWorld
 from .every_type import RUNS, around, running
-from .random_trees import BUSY, TREES, Drawn
+from .random_trees import BUSY, TREES, Drawn, letters
 from .scripted import World, broken, leaves, n
 
 every_type = pytest.mark.parametrize("id", RUNS)
@@ -82,7 +81,7 @@ def test_a_halt_stops_nothing_that_does_not_run() -> None:
 
 
 @settings(max_examples=1500)
-@given(TREES | BUSY, st.text("ttttthpe", min_size=3, max_size=10), st.text(".......xi", min_size=1, max_size=12))
+@given(BUSY | TREES, letters("ttttthpe", 3, 10), letters("................xi", 1, 12))
 def test_leaves_are_used_as_they_must_be(shape: Node, orders: str, trouble: str) -> None:
     """Started before they are ticked, halted once and only while they run, none next to what excludes it.
 
@@ -107,7 +106,9 @@ def test_leaves_are_used_as_they_must_be(shape: Node, orders: str, trouble: str)
         if order in "pe" and not interrupted:
             told_in_order(engine, status, world.changes)
         status.update(world.changes)
+        world.note_successes()
         world.clock.advance(1)
+    assert world.problems == []
     world.calm()
 
 

@@ -12,6 +12,7 @@ from py_trees.common import OneShotPolicy, ParallelPolicy, Status
 
 from btlang.tree.node import Node
 
+from .random_trees import letters
 from .scripted import World, n
 from .their_leaves import LETTERS, Script, TheirLeaf, bind
 
@@ -117,7 +118,7 @@ class Twins:
         return self.world.log, self.log
 
 
-ORDERS = st.text("ttttth", min_size=3, max_size=12)
+ORDERS = letters("ttttth", 3, 12)
 
 
 @settings(max_examples=500)

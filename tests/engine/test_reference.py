@@ -13,14 +13,14 @@ from hypothesis import strategies as st
 
 from btlang.tree.node import Node
 
-from .random_trees import BUSY, TREES, Drawn
+from .random_trees import BUSY, TREES, Drawn, letters
 from .reference import Mission, Reference
 from .reference_board import Board
 from .scripted import LETTER, World
 
 
 @settings(max_examples=2000, deadline=None)
-@given(TREES | BUSY, st.text("ttttthpe", min_size=3, max_size=12), st.booleans())
+@given(TREES | BUSY, letters("ttttthpe", 3, 12), st.booleans())
 def test_engine_equals_reference(shape: Node, orders: str, watched: bool) -> None:
     drawn, world = Drawn(shape), World()
     drawn.bind(world)

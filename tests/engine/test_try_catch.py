@@ -10,7 +10,7 @@ from btlang.engine.leaf import ActionFailed
 from btlang.engine.status import FAILURE, RUNNING
 from btlang.tree.node import Node
 
-from .scripted import World, n
+from .scripted import World, broken, n
 
 
 def tried(work: Node, last: Node) -> Node:
@@ -124,20 +124,20 @@ def test_an_interrupt_while_it_cleans_up_does_not_start_that_again(where: str) -
 
 
 def test_a_tick_that_was_cut_short_is_cleaned_up_after() -> None:
-    class Work:
-        def start(self) -> None:
-            raise KeyboardInterrupt
-
-        def tick(self) -> None: ...
-
-        def halt(self) -> None:
-            world.log.append("A.halt")
-
     world = World()
-    engine = world.engine(tried(world.bind("A", Work), world.cls("B", "s")))
+    engine = world.engine(tried(broken(world, "A", "start", KeyboardInterrupt()), world.cls("B", "s")))
     with pytest.raises(KeyboardInterrupt):
         engine.tick()
-    assert world.log == ["A.halt", "B.start"]
+    assert world.log == ["start", "halt", "B.start"]
+
+
+def test_all_that_a_tick_cut_short_has_started_is_halted_before_anything_is_cleaned_up() -> None:
+    world = World()
+    waiting = tried(world.cls("A", "r"), world.cls("B", "s"))
+    engine = world.engine(n("Whenever", waiting, world.cls("C", "r"), broken(world, "X", "start", KeyboardInterrupt())))
+    with pytest.raises(KeyboardInterrupt):
+        engine.tick()
+    assert world.log == ["A.start", "start", "A.halt", "halt", "B.start"]
 
 
 def test_a_script_that_ends_it_cleans_up_too() -> None:
