@@ -101,6 +101,9 @@ class Record(metaclass=_RecordMeta):
         """A copy with the named fields changed."""
         return type(self)(**{f: changes.get(f, getattr(self, f)) for f in self.fields})
 
+    def __deepcopy__(self, memo: dict[int, Any]) -> Record:
+        return self  # a copy of what is frozen would be the same, and copying a deep tree is recursion
+
     def __reduce__(self) -> tuple[Any, ...]:
         return type(self), tuple(getattr(self, f) for f in self.fields)
 

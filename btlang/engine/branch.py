@@ -98,7 +98,12 @@ def while_do_else(site: Site, children: Sequence[Compiled]) -> Compiled:
 
     def halt(keep: bool) -> None:
         nonlocal branch
-        for stop in halts:
+        if branch:  # to halt the condition may start what cleans up after it
+            interrupts.append(interrupt)
+        halts[0](keep)
+        if branch:
+            interrupts.pop()
+        for stop in halts[1:]:
             stop(keep)
         if not keep:
             branch = 0

@@ -12,6 +12,7 @@ A compiled node is a pair of closures:
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Callable, Mapping, Sequence
 from functools import cache
 
@@ -62,6 +63,7 @@ class Shared:
     __slots__ = (
         "bind",
         "clock",
+        "emergency",
         "enums",
         "fault",
         "halt_faults",
@@ -86,7 +88,9 @@ class Shared:
         self.plans: dict[str, Plan] = {}  # of the leaves that were bound so far, by id
         self.enums = {name: float(value) for name, value in enums.items()}  # names that scripts and Switch nodes know
         self.fault: Fault | Site | None = None  # the latest failure
-        self.halt_faults: list[Fault] = []  # exceptions that leaves raised while they were halted
+        # exceptions that leaves raised while they were halted; only the latest, should nobody ask for them
+        self.halt_faults: deque[Fault] = deque(maxlen=1000)
+        self.emergency = False  # whether the halt in progress is an emergency stop, which starts nothing
         # what reactive nodes that are at another child want stopped before an action starts there
         self.interrupts: list[Callable[[], None]] = []
         self.watch: Watch | None = None  # of the node that is being compiled

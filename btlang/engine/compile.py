@@ -166,12 +166,13 @@ def compile_sites(sites: Sequence[Site], trace: Trace | None) -> Compiled:
             watches[len(watches) - count :] = [watch]
         site.shared.watch = watch
         compiled = _compile(site, children)
+        lasts = compiled[1] is not halt_nothing
         region = around[site.index]
         if region is not None and region.used and region.top == site.index:
             compiled = at_top(region, compiled)
         if watch is not None:
             compiled = watch.wrap(compiled)
-        if region is None and above is not None and compiled[1] is not halt_nothing:
+        if region is None and above is not None and lasts:
             wider = around[above.index]
             if wider is not None and wider.top != above.index:  # else the way down is not longer
                 compiled = below(wider, compiled)

@@ -25,9 +25,11 @@ if TYPE_CHECKING:
 
     from btlang.engine.watch import Listener
 
-_FRAMES_PER_LEVEL = 4  # a node, its watch, its pre-conditions, and the check of ports from the blackboard
+# A node, its watch, its pre-conditions, and the check of ports from the blackboard; twice, because what starts at the
+# end of one branch may halt another one.
+_FRAMES_PER_LEVEL = 8
 _FRAMES_FOR_LEAVES = 1000
-_FRAMES_ASSUMED = 1500  # which Python is taken to allow, or nearly, without being asked at each tick
+_FRAMES_ASSUMED = 2000  # which Python is taken to allow, or nearly, without being asked at each tick
 
 
 class Failure(Record):
@@ -96,7 +98,7 @@ class Engine:
                 self._trace.tell()
             return status
         except BaseException:
-            self._halt_all(False)
+            self._halt_all(False, cut_short=True)
             raise
         finally:
             self._busy = False
@@ -106,12 +108,17 @@ class Engine:
         """Why the latest tick failed: the leaf, or the decorator, that made the root fail. None where it did not."""
         return None if self._fault is None else self._failure(self._fault)
 
-    def halt(self) -> None:
+    def halt(self, emergency: bool = False) -> None:
         """Halts every running leaf, children before parents, and resets all nodes; the next tick starts anew.
 
-        Only a SequenceWithMemory keeps its place, as in BehaviorTree.CPP.
+        Only a SequenceWithMemory keeps its place, as in BehaviorTree.CPP. What `catch_on_halt` of a TryCatch starts
+        to clean up does not run in an emergency.
         """
-        self._stop(False)
+        self._shared.emergency = emergency
+        try:
+            self._stop(False)
+        finally:
+            self._shared.emergency = False
 
     def suspend(self) -> None:
         """Halts every running leaf but keeps positions, counts and timers; the next tick starts those leaves anew."""
@@ -201,16 +208,23 @@ class Engine:
         if sys.getrecursionlimit() < self._frames:
             sys.setrecursionlimit(self._frames)
 
-    def _halt_all(self, keep: bool) -> None:
-        """Also when a leaf is interrupted while it halts: it counts as halted then, and another attempt goes on."""
+    def _halt_all(self, keep: bool, cut_short: bool = False) -> None:
+        """Also when a leaf is interrupted while it halts: it counts as halted then, and another attempt goes on.
+
+        Where a tick or a halt was cut short, nodes do not know which of their children run. So all is stopped before a
+        TryCatch starts to clean up.
+        """
         interrupted: BaseException | None = None
-        self._shared.interrupts.clear()
-        for _ in self._sites:
+        for _ in range(len(self._sites) + 1):  # each leaf interrupts it once at most, and so does each TryCatch
+            self._shared.interrupts.clear()
             try:
+                if cut_short:
+                    self._halt(True)
                 self._halt(keep)
                 break
             except BaseException as exception:
                 interrupted = interrupted or exception
+                cut_short = True
         if not keep:
             self._failed = self.failure
             self.status = IDLE

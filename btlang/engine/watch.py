@@ -119,7 +119,7 @@ class Watch:
         tick, halt = compiled
         leaf = as_function(tick)
         if leaf is not None and self.index and not self.every:
-            return self._watched_function(leaf), halt
+            return self._watched_function(leaf), self._watched_halt(halt)
         trace = self.trace
 
         def watched_tick() -> int:

@@ -20,46 +20,49 @@ def whenever(site: Site, children: Sequence[Compiled]) -> Compiled:
 
     When it becomes true (true at the start counts too), the work is suspended, and the reaction is ticked until it
     completes. If it fails, the whole fails; else the work goes on. The condition must have been false before it counts
-    again. The whole ends with the status of the work. A condition that is RUNNING counts as false.
+    again. The whole ends with the status of the work. A condition that is RUNNING counts as false; one that is an
+    action suspends what runs before it starts (see reactive.py).
     """
     ticks, halts = apart(children)
     shared = site.shared
     interrupts = shared.interrupts
     armed = True  # the condition has been false since it last counted
-    reacting = working = False  # which of both was RUNNING at the last tick
+    reacting = False
+    running = 0  # the child that was RUNNING at the last tick, 1 the reaction, 2 the work, 0 none
 
     def suspend() -> None:
-        nonlocal working
-        working = False
-        halts[2](True)
+        nonlocal running
+        child, running = running, 0
+        halts[child](True)
 
     def holds() -> bool:
-        if working:
+        if running:
             interrupts.append(suspend)
         status = ticks[0]()
-        if working:
+        if running:
             interrupts.pop()
         if status == SKIPPED:
             halts[0](False)
         return status == SUCCESS
 
     def end() -> None:
-        nonlocal armed, reacting, working
-        armed, reacting, working = True, False, False
+        nonlocal armed, reacting, running
+        armed, reacting, running = True, False, 0
         halts[0](False)
 
     def tick() -> int:
-        nonlocal armed, reacting, working
+        nonlocal armed, reacting, running
         fault = shared.fault
         if not holds():
             armed = True
         elif armed and not reacting:
             armed, reacting = False, True
-            if working:
+            if running:
                 suspend()
         if reacting:
             status = ticks[1]()
             if status == RUNNING:
+                running = 1
                 return RUNNING
             reacting = False
             if status == FAILURE:
@@ -69,8 +72,8 @@ def whenever(site: Site, children: Sequence[Compiled]) -> Compiled:
             if status == SKIPPED:
                 halts[1](False)
         status = ticks[2]()
-        working = status == RUNNING
-        if not working:
+        running = 2 if status == RUNNING else 0
+        if not running:
             end()
             if status == SKIPPED:
                 halts[2](False)
@@ -78,10 +81,15 @@ def whenever(site: Site, children: Sequence[Compiled]) -> Compiled:
         return status
 
     def halt(keep: bool) -> None:
-        nonlocal armed, reacting, working
-        for stop in halts:
+        nonlocal armed, reacting, running
+        if running:  # to halt the condition may start what cleans up after it
+            interrupts.append(suspend)
+        halts[0](keep)
+        if running:
+            interrupts.pop()
+        for stop in halts[1:]:
             stop(keep)
         if not keep:
-            armed, reacting, working = True, False, False
+            armed, reacting, running = True, False, 0
 
     return tick, halt

@@ -1,50 +1,55 @@
 """A plain interpreter of trees with the semantics of BehaviorTree.CPP 4.10, to compare the engine with.
 
-Each node has a status, as in C++; SKIPPED is returned but not kept. Before a class leaf (id `C...`) starts, each node
-above it that asks its children anew and has a running child elsewhere halts that. A suspended leaf keeps the status
-RUNNING, but is `stopped`: it starts anew.
+Each node has a status, as in C++; SKIPPED is returned but not kept. Before a class or generator leaf (id `C...` or
+`G...`) starts, each node above it that asks its children anew and has a running child elsewhere halts that. A suspended
+leaf keeps the status RUNNING, but is `stopped`: it starts anew.
 """
 
 from __future__ import annotations
 
+from collections import Counter
 from collections.abc import Callable
 
 from btlang.engine.clock import Clock
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
-from btlang.tree.node import Node
+from btlang.tree.node import Node, Tree
 
-from .reference_nodes import Board, MoreNodes
+from .reference_board import Board
+from .reference_nodes import MoreNodes
 from .scripted import STATUS
 
 
-class Reference(MoreNodes):
-    """One node and, below it, the others. `scripts` gives each leaf's letters; each call takes the next."""
+class Mission:
+    """What all nodes share. `scripts` gives the letters of each leaf id; each call takes the next."""
 
-    def __init__(
-        self,
-        node: Node,
-        scripts: dict[str, str],
-        log: list[str],
-        clock: Clock,
-        board: Board,
-        parent: Reference | None = None,
-    ) -> None:
-        self.node, self.scripts, self.log, self.clock, self.board, self.parent = (
-            node,
-            scripts,
-            log,
-            clock,
-            board,
-            parent,
-        )
-        self.children = [Reference(child, scripts, log, clock, board, self) for child in node.children]
+    def __init__(self, tree: Tree, scripts: dict[str, str], clock: Clock) -> None:
+        self.subtrees = dict(tree.subtrees)
+        self.scripts = scripts
+        self.clock = clock
+        self.log: list[str] = []
+        self.calls: Counter[str] = Counter()
+        self.emergency = False
+
+
+class Reference(MoreNodes):
+    """One node and, below it, the others."""
+
+    def __init__(self, node: Node, mission: Mission, board: Board, parent: Reference | None = None) -> None:
+        self.node, self.mission, self.board, self.parent = node, mission, board, parent
+        self.log, self.clock = mission.log, mission.clock
+        below, nodes = board, node.children
+        if node.id == "SubTree":
+            below, nodes = board.of_subtree(node.ports), (mission.subtrees[node.port("ID")],)
+        self.children = [Reference(child, mission, below, self) for child in nodes]
+        self.lasting = node.id[0] in "CG" and node.id[1:].isdigit()  # a leaf that starts and can be halted
         self.status = IDLE
-        self.calls = self.at = self.count = self.skipped = self.seen = 0
+        self.at = self.count = self.skipped = self.seen = 0
         self.completed: set[int] = set()
         self.failures = self.successes = 0
         self.since: float | None = None
         self.kept = 0.0
         self.late = self.started = self.stopped = self.catching = self.reacting = self.working = False
+        self.left = False  # whether its parent is halting it
         self.armed = True
         self.once = IDLE
         self.queue: list[str] = []
@@ -63,8 +68,10 @@ class Reference(MoreNodes):
         return result
 
     def halt(self) -> None:
-        if self.node.id.startswith("C") and self.status == RUNNING and not self.stopped:
+        if self.lasting and self.status == RUNNING and not self.stopped:
             self.log.append(f"{self.node.id}.halt")
+        if self.node.id == "TryCatch":
+            self.clean_up()
         self.reset_children()
         if self.node.id != "SequenceWithMemory":
             self.at = 0
@@ -79,7 +86,7 @@ class Reference(MoreNodes):
             self.run_script("_onHalted")
 
     def suspend(self) -> None:
-        if self.node.id.startswith("C") and self.status == RUNNING and not self.stopped:
+        if self.lasting and self.status == RUNNING and not self.stopped:
             self.log.append(f"{self.node.id}.halt")
             self.stopped = True
         if self.since is not None:
@@ -100,7 +107,9 @@ class Reference(MoreNodes):
 
     def reset(self) -> None:
         if self.status == RUNNING:
+            self.left = True
             self.halt()
+            self.left = False
         self.status = IDLE
 
     def reset_children(self) -> None:
@@ -114,7 +123,7 @@ class Reference(MoreNodes):
 
     def leaf(self) -> int:
         name = self.node.id
-        if name.startswith("C"):
+        if self.lasting:
             runs = self.status == RUNNING and not self.stopped
             if not runs:
                 self.interrupt()
@@ -122,9 +131,9 @@ class Reference(MoreNodes):
             self.log.append(f"{name}.{'tick' if runs else 'start'}")
         else:
             self.log.append(name)
-        script = self.scripts[name]
-        letter = script[self.calls % len(script)]
-        self.calls += 1
+        script = self.mission.scripts[name]
+        letter = script[self.mission.calls[name] % len(script)]
+        self.mission.calls[name] += 1
         if letter == "x":
             if name.startswith("C"):
                 self.log.append(f"{name}.halt")
@@ -137,15 +146,27 @@ class Reference(MoreNodes):
     def interrupt(self) -> None:
         below, above = self, self.parent
         while above is not None:
-            if above.node.id in ("ReactiveSequence", "ReactiveFallback", "WhileDoElse"):
-                for child in above.children:
-                    polled = above.node.id == "WhileDoElse" and below is not above.children[0]
-                    if child is not below and child.status == RUNNING and not polled:
-                        child.reset()
-            if above.node.id == "Whenever" and below is above.children[0] and above.working:
-                above.working = False
-                above.children[2].suspend()
+            if above.node.id in ("ReactiveSequence", "ReactiveFallback"):
+                follows = not below.left  # what is started by halting a child makes room for the others
+            else:
+                follows = above.node.id == "WhileDoElse" and below is above.children[0]
+            for child in above.children if follows else ():
+                if child is not below and child.status == RUNNING:
+                    child.reset()
+            if above.node.id == "Whenever" and below is above.children[0]:
+                if above.reacting:
+                    above.children[1].suspend()
+                elif above.working:
+                    above.working = False
+                    above.children[2].suspend()
             below, above = above, above.parent
+
+    def SubTree(self) -> int:
+        self.status = RUNNING
+        result = self.children[0].execute()
+        if result in (SUCCESS, FAILURE):
+            self.children[0].reset()
+        return result
 
     def Sleep(self) -> int:
         if self.passed() < self.number("msec") / 1000:
@@ -272,9 +293,9 @@ class Reference(MoreNodes):
         self.status = RUNNING
         if self.at == 0:
             result = self.children[0].execute()
-            if result == RUNNING or (result == FAILURE and len(self.children) == 2):
+            if result == RUNNING:
                 return result
-            if result == SKIPPED:
+            if result == SKIPPED or (result == FAILURE and len(self.children) == 2):
                 self.reset_children()
                 return FAILURE
             self.at = 1 if result == SUCCESS else 2

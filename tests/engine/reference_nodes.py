@@ -1,27 +1,14 @@
-"""The rest of the reference interpreter: nodes beside the plain ones, the blackboard and what scripts decide."""
+"""The rest of the reference interpreter: nodes beside the plain ones, and what scripts decide."""
 
 from __future__ import annotations
 
-from collections import Counter, deque
+from collections import deque
 from typing import Any
 
-from btlang.engine.blackboard import Blackboard
 from btlang.engine.script import ScriptFailed, compile_script, truth
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 
 STATUSES = {"SUCCESS": SUCCESS, "FAILURE": FAILURE, "SKIPPED": SKIPPED, "RUNNING": RUNNING}
-
-
-class Board(Blackboard):
-    """A blackboard that counts how often each key was set."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.counts: Counter[str] = Counter()
-
-    def set(self, key: str, value: Any) -> None:
-        self.counts[key] += 1
-        super().set(key, value)
 
 
 class MoreNodes:
@@ -98,7 +85,7 @@ class MoreNodes:
         key = self.node.port("entry").strip("{}")
         if key not in self.board:
             return False
-        before, self.seen = self.seen, self.board.counts[key]
+        before, self.seen = self.seen, self.board.writes(key)
         return bool(before != self.seen)
 
     # one child of several
@@ -147,6 +134,17 @@ class MoreNodes:
         self.at = self.skipped = 0
         self.catching = False
         return result
+
+    def clean_up(self) -> None:
+        """Of a halted TryCatch: the last child is executed once, and then reset as all children are."""
+        wanted = self.node.port("catch_on_halt")
+        if wanted == "{x}":
+            wanted = str(self.board.get("x")) if "x" in self.board else ""
+        if wanted in ("true", "1") and self.started and not self.catching and not self.mission.emergency:
+            for child in self.children[:-1]:
+                child.reset()
+            self.catching = True
+            self.children[-1].execute()
 
     def Whenever(self) -> int:
         condition, reaction, work = self.children

@@ -121,3 +121,34 @@ def leaves(world: World, scripts: Sequence[str]) -> list[Node]:
         world.cls(name, script.lower()) if script.isupper() else world.fn(name, script)
         for name, script in zip(names, scripts, strict=False)
     ]
+
+
+class Broken:
+    """A class leaf that raises in one of its methods, and logs their names."""
+
+    def __init__(self, where: str, problem: BaseException, log: list[str]) -> None:
+        self.where, self.problem, self.log = where, problem, log
+
+    def _at(self, method: str) -> None:
+        self.log.append(method)
+        if self.where == method:
+            raise self.problem
+
+    def start(self) -> None:
+        self._at("start")
+
+    def tick(self) -> None:
+        self._at("tick")
+
+    def halt(self) -> None:
+        self._at("halt")
+
+
+def broken(world: World, id: str, where: str, problem: BaseException) -> Node:
+    """A class leaf that raises in that method and else runs for ever."""
+
+    class Leaf(Broken):
+        def __init__(self) -> None:
+            super().__init__(where, problem, world.log)
+
+    return world.bind(id, Leaf)

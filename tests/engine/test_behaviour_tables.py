@@ -47,9 +47,9 @@ def play(text: str, scripts: str, ticks: str) -> tuple[str, str]:
             engine.blackboard.set("x", int(step))
             happened += step
             continue
-        if step == "!":
-            engine.halt()
-            happened += "!"
+        if step in "!e":
+            engine.halt(emergency=step == "e")
+            happened += step
         elif step == "~":
             engine.suspend()
             happened += "~"

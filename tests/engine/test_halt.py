@@ -1,4 +1,4 @@
-"""Halting, suspending and resuming; the rule of reactive nodes."""
+"""Where nodes go on after a halt and a suspension; test_guarantees.py has what holds for all of them."""
 
 from __future__ import annotations
 
@@ -8,37 +8,6 @@ from btlang.engine.status import IDLE, RUNNING
 from btlang.tree.node import Node
 
 from .scripted import World, n
-
-
-def test_halt_reaches_every_running_leaf_once_and_in_order() -> None:
-    world = World()
-    both = n("Parallel", n("Sequence", world.fn("X", "s"), world.cls("A", "r")), n("Inverter", world.gen("B", "r")))
-    engine = world.engine(n("Timeout", n("Fallback", both), msec=1000))
-    engine.tick()
-    world.since()
-    engine.halt()
-    assert world.since() == ["A.halt", "B.halt"]
-    assert engine.status == IDLE
-    engine.halt()
-    assert world.since() == []
-
-
-def test_halting_before_the_first_tick_and_after_the_last_does_nothing() -> None:
-    world = World()
-    engine = world.engine(n("Sequence", world.cls("A", "rs")))
-    engine.halt()
-    assert world.ticks(engine, 2) == "rs"
-    engine.halt()
-    assert world.log == ["A.start", "A.tick"]
-
-
-def test_halts_are_reported_children_first() -> None:
-    world = World()
-    engine = world.engine(n("Sequence", n("Inverter", world.cls("A", "r"))), watched=True)
-    engine.tick()
-    world.changes.clear()
-    engine.halt()
-    assert world.changes == [(2, IDLE), (1, IDLE), (0, IDLE)]
 
 
 def test_a_halted_sequence_starts_anew() -> None:
@@ -191,58 +160,3 @@ def test_halting_a_suspended_tree_resets_it() -> None:
     world.since()
     engine.tick()
     assert world.log == ["A", "B.start"]
-
-
-# The reactive rule
-
-
-def test_a_running_child_is_halted_before_another_action_starts() -> None:
-    for start in (World.cls, World.gen):
-        world = World()
-        first = n("Sequence", world.fn("C", "fs"), start(world, "A", "r"))
-        engine = world.engine(n("ReactiveFallback", first, world.cls("B", "r")))
-        world.ticks(engine, 2)
-        assert world.log == ["C", "B.start", "C", "B.halt", "A.start"]
-
-
-def test_functions_halt_nothing() -> None:
-    world = World()
-    engine = world.engine(
-        n("ReactiveSequence", n("Sequence", world.fn("C", "s"), world.fn("D", "s")), world.cls("B", "r"))
-    )
-    world.ticks(engine, 3)
-    assert world.log == ["C", "D", "B.start", "C", "D", "B.tick", "C", "D", "B.tick"]
-
-
-def test_an_action_that_ends_at_once_also_interrupts() -> None:
-    world = World()
-    engine = world.engine(n("ReactiveSequence", world.cls("A", "s"), world.cls("B", "r")))
-    world.ticks(engine, 2)
-    assert world.log == ["A.start", "B.start", "B.halt", "A.start", "B.start"]
-
-
-def test_nested_reactive_nodes_halt_the_inner_one_first() -> None:
-    world = World()
-    alarm = n("Sequence", world.fn("C", "fs"), world.cls("A", "r"))
-    inner = n("ReactiveFallback", n("Sequence", world.fn("D", "fs"), world.cls("E", "r")), world.cls("B", "r"))
-    engine = world.engine(n("ReactiveFallback", alarm, n("Parallel", inner, world.cls("X", "r"))))
-    world.ticks(engine, 1)
-    world.since()
-    world.ticks(engine, 1)
-    assert world.log == ["C", "B.halt", "X.halt", "A.start"]
-
-
-def test_parallel_branches_do_not_interrupt_each_other() -> None:
-    world = World()
-    left = n("ReactiveFallback", n("Sequence", world.fn("C", "fs"), world.cls("A", "r")), world.cls("B", "r"))
-    right = n("ReactiveSequence", world.fn("D", "s"), world.cls("E", "r"))
-    engine = world.engine(n("Parallel", right, left))
-    world.ticks(engine, 2)
-    assert world.log == ["D", "E.start", "C", "B.start", "D", "E.tick", "C", "B.halt", "A.start"]
-
-
-def test_an_action_as_condition_interrupts_what_depends_on_it() -> None:
-    world = World()
-    engine = world.engine(n("WhileDoElse", world.gen("C", "s"), world.cls("A", "r"), n("AlwaysSuccess")))
-    world.ticks(engine, 2)
-    assert world.log == ["C.start", "A.start", "A.halt", "C.start", "A.start"]

@@ -15,7 +15,7 @@ from btlang.engine.leaf import ActionFailed, Failed, LeafBinding
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 from btlang.tree.node import Node, Tree
 
-from .scripted import World, n
+from .scripted import World, broken, n
 
 
 def outcome(call: Any, world: World | None = None, parent: str = "", **ports: str) -> tuple[int, str]:
@@ -198,35 +198,6 @@ def test_what_a_returned_false_means_is_said_by_the_binding() -> None:
     assert (engine.failure.reason, engine.reason(0)) == ("it is dark", "it is dark")
 
 
-class Broken:
-    """Raises in one of its methods."""
-
-    def __init__(self, where: str, problem: BaseException, log: list[str]) -> None:
-        self.where, self.problem, self.log = where, problem, log
-
-    def _at(self, method: str) -> None:
-        self.log.append(method)
-        if self.where == method:
-            raise self.problem
-
-    def start(self) -> None:
-        self._at("start")
-
-    def tick(self) -> None:
-        self._at("tick")
-
-    def halt(self) -> None:
-        self._at("halt")
-
-
-def broken(world: World, id: str, where: str, problem: BaseException) -> Node:
-    class Leaf(Broken):
-        def __init__(self) -> None:
-            super().__init__(where, problem, world.log)
-
-    return world.bind(id, Leaf)
-
-
 @pytest.mark.parametrize(("where", "log"), [("start", ["start", "halt"]), ("tick", ["start", "tick", "halt"])])
 def test_an_exception_fails_the_leaf_and_halts_it(where: str, log: list[str]) -> None:
     world, problem = World(), ValueError("no map")
@@ -266,58 +237,6 @@ def test_exceptions_of_functions_and_generators() -> None:
     assert outcome(endless) == (FAILURE, "RuntimeError: generator raised StopIteration")
 
 
-def test_an_exception_in_halt_keeps_no_other_leaf_from_halting() -> None:
-    def stubborn() -> Iterator[None]:
-        try:
-            yield
-        except GeneratorExit:
-            world.log.append("ignored")
-            yield
-
-    world = World()
-    problem = ValueError("stuck")
-    tree = n("Parallel", broken(world, "A", "halt", problem), world.bind("G", stubborn), world.cls("B", "r"))
-    engine = world.engine(tree)
-    engine.tick()
-    world.since()
-    engine.halt()
-    assert world.log == ["halt", "ignored", "B.halt"]
-    failures = engine.take_halt_failures()
-    assert engine.take_halt_failures() == []
-    reasons = [(f.path, f.reason) for f in failures]
-    assert reasons == [("/0", "ValueError: stuck"), ("/1", "RuntimeError: generator ignored GeneratorExit")]
-    assert failures[0].exception is problem
-    assert world.ticks(engine, 1) == "r"
-    engine.halt()
-
-
-@pytest.mark.parametrize("where", ["start", "tick"])
-@pytest.mark.parametrize("kind", [KeyboardInterrupt, SystemExit])
-def test_an_interrupt_halts_everything_and_comes_through(where: str, kind: type[BaseException]) -> None:
-    world = World()
-    tree = n(
-        "ReactiveSequence", world.fn("C", "s"), n("Parallel", world.cls("B", "r"), broken(world, "A", where, kind()))
-    )
-    engine = world.engine(tree)
-    if where == "tick":
-        engine.tick()
-    world.since()
-    with pytest.raises(kind):
-        engine.tick()
-    assert [entry for entry in world.log if entry.endswith("halt")] == ["B.halt", "halt"]
-    engine.halt()
-    assert world.log.count("B.halt") == 1
-
-
-def test_an_interrupt_in_halt_still_halts_the_others() -> None:
-    world = World()
-    engine = world.engine(n("Parallel", broken(world, "A", "halt", KeyboardInterrupt()), world.cls("B", "r")))
-    engine.tick()
-    with pytest.raises(KeyboardInterrupt):
-        engine.halt()
-    assert world.log == ["start", "B.start", "halt", "B.halt"]
-
-
 def test_failure_names_what_made_the_root_fail() -> None:
     def lost() -> None:
         raise ActionFailed("lost")
@@ -334,17 +253,6 @@ def test_failure_names_what_made_the_root_fail() -> None:
     engine = world.engine(n("Fallback", world.fn("B", "f"), world.fn("C", "s")))
     engine.tick()
     assert engine.failure is None
-
-
-def test_a_tree_refuses_to_be_ticked_from_within() -> None:
-    world = World()
-    engines: list[Engine] = []
-    engine = world.engine(world.bind("A", lambda: engines[0].tick()))
-    engines.append(engine)
-    assert engine.tick() == FAILURE
-    assert engine.failure is not None
-    assert "the tree is being ticked" in engine.failure.reason
-    assert engine.tick() == FAILURE
 
 
 # What cannot be compiled

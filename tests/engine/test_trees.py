@@ -7,7 +7,7 @@ import pytest
 from btlang.engine import compile as compiling
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.build import EngineError
-from btlang.engine.status import FAILURE, RUNNING, SUCCESS
+from btlang.engine.status import FAILURE, SUCCESS
 from btlang.tree.node import Node, Tree
 
 from .scripted import LETTER, World, n
@@ -181,22 +181,3 @@ def test_an_interrupted_action_is_told_before_the_one_that_replaces_it() -> None
     first = n("Sequence", world.fn("C", "fs"), world.cls("A", "r"))
     root = n("ReactiveFallback", first, world.cls("B", "r"))
     assert told(root, world, 2) == ["2f1f4r0r", "2s4i3r1r"]
-
-
-# Depth
-
-
-@pytest.mark.parametrize("watched", [False, True])
-@pytest.mark.parametrize("id", ["Inverter", "Sequence", "ReactiveSequence"])
-def test_ten_thousand_levels(id: str, watched: bool) -> None:
-    world = World()
-    root = world.cls("A", "rrs")
-    for _ in range(10_000):
-        root = n(id, root)
-    engine = world.engine(root, watched)
-    assert engine.tick() == RUNNING
-    engine.halt()
-    assert engine.tick() == RUNNING
-    assert engine.tick() == SUCCESS
-    assert world.log == ["A.start", "A.halt", "A.start", "A.tick"]
-    assert engine.path(10_000) == "/0" * 10_000
