@@ -214,11 +214,12 @@ class RunnableTree:
 
     @property
     def controls(self) -> Controls:
-        """Pause, resume, single step and stop, from any thread: of the run under way, else of the next one."""
+        """Pause, resume, single step and the stops, from any thread: of the run under way, else of the next one."""
         from btlang.run.controls import Controls
 
         if self._controls is None:
-            self._controls = Controls()
+            stage = self._simulation or self.stage
+            self._controls = Controls(stage.robot if stage is not None else None)
         return self._controls
 
     def tick(self) -> int:
@@ -234,6 +235,15 @@ class RunnableTree:
     def stop(self) -> None:
         """Ends the run under way, else the next one before its first tick; for another thread or a signal handler."""
         self.controls.stop()
+
+    def emergency_stop(self) -> None:
+        """Stops the robot at once, from any thread, without waiting for the tick under way; then the run ends.
+
+        A leaf that hangs does not delay it, and what a leaf still commands in that tick is ignored. Where no run is
+        under way the robot is stopped all the same, and the next run ends before its first tick. So does a tick of
+        `tick`: it halts the tree and returns IDLE.
+        """
+        self.controls.emergency_stop()
 
     def pause(self) -> None:
         """The robot of the run under way comes to rest, and the time of the mission stands still."""
@@ -269,7 +279,8 @@ class RunnableTree:
         try:
             return runner.run()
         finally:
-            self._controls = None
+            self._controls = None  # what is asked for from now on is for what comes next, a run or a tick
+            runner.controls = self.controls
 
     def _start(
         self,
@@ -281,6 +292,7 @@ class RunnableTree:
         """A new engine on the stage."""
         from btlang.backends.engine import bind_leaf
         from btlang.engine.engine import EngineError
+        from btlang.engine.timing import Stopwatch
         from btlang.robots.world import Place
         from btlang.run.runner import Runner, traced_engine
 
@@ -296,6 +308,7 @@ class RunnableTree:
                 events=stage.events,
                 services={"robot": stage.robot},
                 blackboard=self._blackboard,
+                stopwatch=Stopwatch() if speed < math.inf else None,
             )
         except EngineError as error:
             span = error.node.span or Span(Source(""), 0, 0)

@@ -24,6 +24,7 @@ if TYPE_CHECKING:
     from typing import Any, TypeAlias
 
     from btlang.engine.leaves import Plan
+    from btlang.engine.timing import Stopwatch
     from btlang.engine.watch import Watch
 
     Tick: TypeAlias = Callable[[], int]
@@ -51,7 +52,10 @@ class Fault(Record):
 class Shared:
     """What all nodes of one engine share."""
 
-    __slots__ = ("bind", "clock", "enums", "fault", "halt_faults", "interrupts", "plans", "service_names", "services")
+    __slots__ = (
+        "bind", "clock", "emergency", "enums", "fault", "halt_faults", "interrupts", "plans", "service_names",
+        "services", "stopwatch",
+    )  # fmt: skip
 
     def __init__(
         self,
@@ -59,8 +63,10 @@ class Shared:
         clock: Clock,
         services: Mapping[str, Any],
         enums: Mapping[str, float],
+        stopwatch: Stopwatch | None,
     ) -> None:
         self.bind = bind
+        self.stopwatch = stopwatch
         self.clock = clock
         self.services = {"clock": clock, **services}
         self.service_names = frozenset(("blackboard", *self.services))
@@ -68,6 +74,7 @@ class Shared:
         self.enums = {name: float(value) for name, value in enums.items()}  # names that scripts and Switch nodes know
         self.fault: Fault | None = None  # the latest failure
         self.halt_faults: list[Fault] = []  # exceptions that leaves raised while they were halted
+        self.emergency = False  # whether the halt under way is that of an emergency stop
         # what reactive nodes that are at another child want stopped before an action starts there
         self.interrupts: list[Callable[[], None]] = []
 

@@ -205,7 +205,8 @@ def _compile_leaf(site: Site, children: Sequence[Compiled]) -> Compiled:
         plan = shared.plans[node_id] = leaves.Plan(binding)
     if children:
         raise site.error(f"{node_id} is a leaf, but has {len(children)} children")
-    return leaves.bound_leaf(site, plan)
+    compiled = leaves.bound_leaf(site, plan)
+    return compiled if shared.stopwatch is None else shared.stopwatch.wrap(site.index, compiled)
 
 
 def _how_many(kind: NodeType) -> str:

@@ -22,6 +22,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+    from btlang.engine.timing import Stopwatch
     from btlang.engine.watch import Listener
 
 _FRAMES_PER_LEVEL = 4  # a node, its watch, its pre-conditions, and the check of ports from the blackboard
@@ -44,7 +45,7 @@ class Failure(Record):
 class Engine:
     """A compiled tree. `bind` gives the Python side of a leaf id, `services` what leaves may ask for by name.
 
-    `enums` are names of numbers that scripts and the cases of Switch nodes may use.
+    `enums` are names of numbers that scripts and the cases of Switch nodes may use. A `stopwatch` times the leaves.
 
     Raises EngineError where the tree cannot be compiled. `listener` is called with the index of a node in preorder and
     its new status at every change, children before parents; see watch.py for what counts as one.
@@ -60,9 +61,13 @@ class Engine:
         blackboard: Blackboard | None = None,
         listener: Listener | None = None,
         enums: Mapping[str, float] = {},
+        stopwatch: Stopwatch | None = None,
     ) -> None:
         self.blackboard = Blackboard() if blackboard is None else blackboard
-        self._shared = Shared(bind, clock, services, enums)
+        self.stopwatch = stopwatch
+        self.on_wake: Callable[[], object] | None = None
+        """What the service `wake` calls, in the thread of whoever asks for it: "tick again now"."""
+        self._shared = Shared(bind, clock, {"wake": self._wake, **services}, enums, stopwatch)
         with no_collection:
             self._places = expand(tree, self.blackboard)
             self._tick, self._halt = compile_places(self._places, self._shared, listener)
@@ -88,15 +93,18 @@ class Engine:
         finally:
             self._busy = False
 
-    def halt(self) -> None:
+    def halt(self, emergency: bool = False) -> None:
         """Halts every running leaf, children before parents, and resets all nodes; the next tick starts anew.
 
-        Only a SequenceWithMemory keeps its place, as in BehaviorTree.CPP.
+        Only a SequenceWithMemory keeps its place, as in BehaviorTree.CPP. `emergency` tells the nodes that it is that
+        of an emergency stop, in which they start nothing.
         """
         self._enter()
+        self._shared.emergency = emergency
         try:
             self._halt_all(False)
         finally:
+            self._shared.emergency = False
             self._busy = False
 
     def suspend(self) -> None:
@@ -141,6 +149,10 @@ class Engine:
         """Why a node failed, "" where that is not known or another node has failed since."""
         fault = self._shared.fault
         return fault.reason if fault is not None and fault.index == index else ""
+
+    def _wake(self) -> None:
+        if self.on_wake is not None:
+            self.on_wake()
 
     def _enter(self) -> None:
         if self._busy:

@@ -79,7 +79,7 @@ class RunRecord:
                 self._see(event.t, event.robot)
         elif isinstance(event, RobotEvent):
             self._happened(event)
-        elif self.track:
+        elif isinstance(event, StatusChanged) and self.track:
             self._changed(event)
 
     def _see(self, t: float, robot: Any) -> None:

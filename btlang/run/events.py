@@ -11,7 +11,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, Protocol, TypeAlias
 
-    Event: TypeAlias = "StatusChanged | RobotEvent | PeriodPassed"
+    Event: TypeAlias = "StatusChanged | RobotEvent | Overrun | PeriodPassed"
     Sink: TypeAlias = Callable[[Event], object]
 
     class Robot(Protocol):
@@ -45,6 +45,20 @@ class RobotEvent(Record):
     t: float
     kind: str
     data: Mapping[str, Any] = {}
+
+
+class Overrun(Record):
+    """A tick took `seconds` of real time, longer than its `period`. Only in runs that keep step with real time.
+
+    `node` is its slowest leaf, at `path`, which took `leaf_seconds` of them; None where no leaf is to blame.
+    """
+
+    t: float
+    seconds: float
+    period: float
+    path: str = ""
+    node: Node | None = None
+    leaf_seconds: float = 0.0
 
 
 class PeriodPassed(Record):

@@ -6,7 +6,7 @@ import json
 from collections.abc import Callable, Mapping
 
 from btlang.engine.status import NAMES
-from btlang.run.events import PeriodPassed, RobotEvent, StatusChanged
+from btlang.run.events import Overrun, PeriodPassed, RobotEvent, StatusChanged
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False
@@ -37,11 +37,21 @@ class JsonLog:
         self._output.write(line + "\n")
         self._output.flush()
 
-    def _fields(self, event: RobotEvent | StatusChanged) -> Mapping[str, Any]:
+    def _fields(self, event: RobotEvent | StatusChanged | Overrun) -> Mapping[str, Any]:
         t = round(event.t, 6)
         if isinstance(event, RobotEvent):
             return {**event.data, "t": t, "event": event.kind}
+        if isinstance(event, Overrun):
+            return self._overrun_fields(event, t)
         return _status_fields(event, t, self._label(event.node))
+
+    def _overrun_fields(self, event: Overrun, t: float) -> Mapping[str, Any]:
+        fields = {"t": t, "event": "overrun", "seconds": round(event.seconds, 6), "period": round(event.period, 6)}
+        node = event.node
+        if node is None:
+            return fields
+        blamed = {"path": event.path, "id": node.id, "name": self._label(node)}
+        return {**fields, **blamed, "leaf_seconds": round(event.leaf_seconds, 6)}
 
 
 def _status_fields(event: StatusChanged, t: float, name: str) -> Mapping[str, Any]:

@@ -12,7 +12,7 @@ from btlang.run.events import PeriodPassed
 from btlang.run.live import frame
 from btlang.run.live.board import Board
 from btlang.run.live.capture import captured
-from btlang.run.live.keys import STOP, Keys
+from btlang.run.live.keys import EMERGENCY, STOP, Keys
 from btlang.run.live.screen import Screen
 from btlang.run.live.stopping import stoppable
 
@@ -37,9 +37,9 @@ class LiveView:
     """A sink for one run, between `with` and its end.
 
     It shows the tree at the end of what the terminal shows, and above it the lines that `Lines` writes, which stay; the
-    tree stays too unless `tree_stays` is false. The keys space, s and q of `keyboard`, where there is one, pause, step
-    and stop the run. What is printed to standard output, or to a standard error on a terminal, comes above the tree.
-    Raises EngineError for a tree that cannot be compiled.
+    tree stays too unless `tree_stays` is false. The keys space, s, q and e of `keyboard`, where there is one, pause,
+    step and stop the run, and stop the robot at once. What is printed to standard output, or to a standard error on a
+    terminal, comes above the tree. Raises EngineError for a tree that cannot be compiled.
     """
 
     def __init__(
@@ -66,7 +66,7 @@ class LiveView:
         """Notes an event."""
         self._board.note(event)
         if isinstance(event, PeriodPassed) and time.monotonic() >= self._due:
-            self._wake.set()  # the run now sleeps until its next tick, so that drawing takes no time from it
+            self._wake.set()
 
     def __enter__(self) -> LiveView:
         with ExitStack() as exits:
@@ -124,6 +124,8 @@ class LiveView:
     def _doing(self) -> str:
         if self._ended:
             return ""
+        if self._controls.emergency:
+            return "emergency stop"
         return "stopping" if self._controls.stopped else "paused" if self._controls.paused else "running"
 
     @property
@@ -152,7 +154,9 @@ class LiveView:
             return None
 
     def _press(self, key: str) -> None:
-        deed = {" ": self._controls.toggle, "s": self._controls.step, STOP: self._controls.stop}.get(key.lower())
+        controls = self._controls
+        deeds = {" ": controls.toggle, "s": controls.step, STOP: controls.stop, EMERGENCY: controls.emergency_stop}
+        deed = deeds.get(key.lower())
         if deed is not None:
             deed()
             self._wake.set()
