@@ -108,25 +108,31 @@ def load_simulation(world: str | None = None) -> Simulation:
 
 
 def action(
-    phrase: str | Sequence[str], *, id: str = "", slots: dict[str, str] | None = None, resources: Sequence[str] = ()
+    phrase: str | Sequence[str],
+    *,
+    id: str = "",
+    slots: dict[str, str] | None = None,
+    resources: Sequence[str] = (),
+    thread: bool = False,
 ) -> Callable[[Call], Call]:
-    """Makes a function, generator function or class a command: pass it to `parse_tree(keywords=[...])`.
+    """Makes a function, generator function, `async def` function or class a command: `parse_tree(keywords=[...])`.
 
     `phrase` is one pattern or several, `slots` gives types to slots whose name is not a type, `id` is the node's name,
-    by default that of the function in CamelCase. See btlang/engine/leaf.py for what a leaf may be.
+    by default that of the function in CamelCase. With `thread` a plain function works in a thread of its own. See
+    btlang/engine/leaf.py for what a leaf may be.
     """
-    return _word("action", phrase, id, slots or {}, resources)
+    return _word("action", phrase, id, slots or {}, resources, thread)
 
 
 def condition(
     phrase: str | Sequence[str], *, id: str = "", slots: dict[str, str] | None = None
 ) -> Callable[[Call], Call]:
     """Makes a function that returns a bool a condition; as `action`."""
-    return _word("condition", phrase, id, slots or {}, ())
+    return _word("condition", phrase, id, slots or {}, (), False)
 
 
 def _word(
-    sort: str, phrase: str | Sequence[str], node_id: str, slots: dict[str, str], resources: Sequence[str]
+    sort: str, phrase: str | Sequence[str], node_id: str, slots: dict[str, str], resources: Sequence[str], thread: bool
 ) -> Callable[[Call], Call]:
     from btlang.vocabulary.pattern import Slot, forms
 
@@ -136,7 +142,8 @@ def _word(
         names = dict.fromkeys(p.name for text in phrases for form in forms(text) for p in form if isinstance(p, Slot))
         specs = tuple(SlotSpec(name, slots.get(name, name)) for name in names)
         made = node_id or "".join(part.title() for part in call.__name__.split("_"))
-        call.btlang_entry = Entry(sort, made, phrases, call, specs, tuple(resources), help=call.__doc__ or "")  # type: ignore[attr-defined]
+        entry = Entry(sort, made, phrases, call, specs, tuple(resources), help=call.__doc__ or "", thread=thread)
+        call.btlang_entry = entry  # type: ignore[attr-defined]
         return call
 
     return decorate

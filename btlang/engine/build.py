@@ -23,6 +23,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, TypeAlias
 
+    from btlang.engine.background import Background
     from btlang.engine.leaves import Plan
     from btlang.engine.timing import Stopwatch
     from btlang.engine.watch import Watch
@@ -53,8 +54,8 @@ class Shared:
     """What all nodes of one engine share."""
 
     __slots__ = (
-        "bind", "clock", "emergency", "enums", "fault", "halt_faults", "interrupts", "plans", "service_names",
-        "services", "stopwatch",
+        "background", "bind", "clock", "emergency", "enums", "fault", "halt_faults", "interrupts", "plans",
+        "service_names", "services", "stopwatch",
     )  # fmt: skip
 
     def __init__(
@@ -72,6 +73,7 @@ class Shared:
         self.service_names = frozenset(("blackboard", *self.services))
         self.plans: dict[str, Plan] = {}  # of the leaves that were bound so far, by id
         self.enums = {name: float(value) for name, value in enums.items()}  # names that scripts and Switch nodes know
+        self.background: Background | None = None  # where a leaf works beside the tick
         self.fault: Fault | None = None  # the latest failure
         self.halt_faults: list[Fault] = []  # exceptions that leaves raised while they were halted
         self.emergency = False  # whether the halt under way is that of an emergency stop

@@ -116,13 +116,28 @@ class Engine:
             self._busy = False
 
     def take_halt_failures(self) -> list[Failure]:
-        """What leaves raised while they were halted since it was last asked, oldest first."""
+        """What leaves raised while they were halted since it was last asked, oldest first.
+
+        What a background leaf raises that ends after its halt is told once it has ended.
+        """
         faults = self._shared.halt_faults
+        if self._shared.background is not None:
+            faults += self._shared.background.take_faults()
         if not faults:
             return []
         failures = [self._failure(fault) for fault in faults]
         faults.clear()
         return failures
+
+    def close(self, patience: float = 0.0) -> list[Failure]:
+        """Ends what works for background leaves, after a halt; returns those that were halted and have not ended.
+
+        It waits for them at most `patience` seconds of real time. The engine can be ticked again.
+        """
+        background = self._shared.background
+        if background is None:
+            return []
+        return [self._failure(Fault(index, "it did not end")) for index in background.close(patience)]
 
     @property
     def nodes(self) -> list[tuple[str, Node]]:

@@ -41,8 +41,8 @@ def skipped(site: Site, children: Sequence[Compiled]) -> Compiled:
 class Plan:
     """What the leaves of one engine with the same id share, found once.
 
-    `kind` is "class", "async", "generator" or "function"; `given` keeps the names of the services that the call gets,
-    by the names of the ports that a node has.
+    `kind` is "class", "async", "generator", "thread" or "function"; `given` keeps the names of the services that the
+    call gets, by the names of the ports that a node has.
     """
 
     __slots__ = ("binding", "given", "kind")
@@ -55,11 +55,12 @@ class Plan:
         self.given: dict[tuple[str, ...], list[str]] = {}
         if isclass(call):
             self.kind = "class"
-        elif iscoroutinefunction(call):
+        elif iscoroutinefunction(call) or iscoroutinefunction(type(call).__call__):
             self.kind = "async"
+        elif isgeneratorfunction(call) or isgeneratorfunction(type(call).__call__):
+            self.kind = "generator"
         else:
-            generates = isgeneratorfunction(call) or isgeneratorfunction(type(call).__call__)
-            self.kind = "generator" if generates else "function"
+            self.kind = "thread" if binding.thread else "function"
 
 
 def bound_leaf(site: Site, plan: Plan) -> Compiled:
@@ -67,22 +68,29 @@ def bound_leaf(site: Site, plan: Plan) -> Compiled:
     binding = plan.binding
     call: Any = binding.call
     ports = {**binding.defaults, **{port: text for port, text in site.node.ports if port[:1] != "_"}}
+    if binding.thread and plan.kind != "thread":
+        raise site.error(f"{site.node.id} is to run in a thread, and only a plain function can")
     if plan.kind == "class":
         leaf = _make(site, call)
         _fill(site, leaf.start, ports, ())
         constants, stored = _arguments(site, ports, binding)
         return _class_leaf(site, leaf, partial(leaf.start, **constants), stored)
-    if plan.kind == "async":
-        raise site.error(f"{site.node.id} is bound to an async function; a generator does what it should do")
     names = tuple(ports)
     given = plan.given.get(names)
     if given is None:
-        given = plan.given[names] = _fill(site, call, names, site.shared.service_names)
+        services = site.shared.service_names
+        given = plan.given[names] = _fill(site, call, names, services | {"halted"} if binding.thread else services)
     constants, stored = _arguments(site, ports, binding) if ports else ({}, None)
     for name in given:
-        constants[name] = site.service(name)
+        if name != "halted" or not binding.thread:
+            constants[name] = site.service(name)
     if constants:
         call = partial(call, **constants)
+    if plan.kind in ("async", "thread"):
+        from btlang.engine.background import background_leaf
+
+        background = background_leaf(site, call, binding.thread, "halted" in given)
+        return _class_leaf(site, background, background.start, stored)
     return _generator_leaf(site, call, stored) if plan.kind == "generator" else _function_leaf(site, call, stored)
 
 
@@ -197,14 +205,15 @@ def _stop(site: Site, halt: Callable[[], object]) -> None:
     try:
         halt()
     except Exception as problem:
-        site.shared.halt_faults.append(Fault(site.index, _describe(problem), problem))
+        site.shared.halt_faults.append(Fault(site.index, describe(problem), problem))
 
 
 def _crash(site: Site, problem: Exception) -> int:
-    return site.fail(_describe(problem), problem)
+    return site.fail(describe(problem), problem)
 
 
-def _describe(problem: Exception) -> str:
+def describe(problem: BaseException) -> str:
+    """An exception in the reason of a failure."""
     return f"{type(problem).__name__}: {problem}"
 
 
@@ -227,7 +236,7 @@ def _make(site: Site, cls: type) -> Any:
     try:
         return cls(**{name: site.service(name) for name in given})
     except Exception as problem:
-        raise site.error(f"{cls.__name__} cannot be made: {_describe(problem)}") from problem
+        raise site.error(f"{cls.__name__} cannot be made: {describe(problem)}") from problem
 
 
 def _fill(site: Site, call: Callable[..., Any], ports: Collection[str], services: Collection[str]) -> list[str]:

@@ -26,7 +26,7 @@ if TYPE_CHECKING:
     from btlang.run.events import Robot
 
 
-_REST = 2.0  # seconds of the mission that a robot gets to come to rest
+_REST = 2.0  # seconds of the mission that a robot gets to come to rest, and real ones that background leaves get to end
 
 
 class Outcome(Record):
@@ -125,6 +125,8 @@ class Runner:
             return IDLE
         if status == RUNNING:
             self._advance(self._period_left())
+        else:
+            self._engine.close()
         return status
 
     def run(self) -> Outcome:
@@ -214,7 +216,10 @@ class Runner:
         finally:
             if self._robot is not None:
                 self._robot.stop()
+        unended = self._engine.close(_REST)
         self._report_halts()
+        for failure in unended:
+            self._report(failure, f"{_words(failure)} did not end after it was halted")
         if self._robot is None:
             return
         rest_until = self._clock.now + _REST
@@ -227,5 +232,15 @@ class Runner:
 
     def _report_halts(self) -> None:
         for failure in self._engine.take_halt_failures():
-            data = {"text": f"{failure.node.id} did not halt: {failure.reason}", "path": failure.path}
-            self._events.publish(RobotEvent(self._clock.now, "error", data))
+            self._report(failure, f"{failure.node.id} did not halt: {failure.reason}")
+
+    def _report(self, failure: Failure, text: str) -> None:
+        data = {"text": text, "path": failure.path}
+        place = {"place": failure.span.place} if failure.span is not None else {}
+        self._events.publish(RobotEvent(self._clock.now, "error", {**data, **place}))
+
+
+def _words(failure: Failure) -> str:
+    """The words of a command where it came from some."""
+    span = failure.node.span
+    return span.text if span is not None else failure.node.id
