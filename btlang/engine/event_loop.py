@@ -5,7 +5,8 @@ from __future__ import annotations
 import asyncio
 import logging
 from collections.abc import Callable
-from threading import Event, Thread
+from concurrent.futures import Future, ThreadPoolExecutor
+from threading import Thread
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -18,10 +19,12 @@ class EventLoop:
     """Runs from when it is made until it is closed."""
 
     def __init__(self) -> None:
-        self._ready = Event()
+        self._loop = asyncio.new_event_loop()
+        self._loop.set_exception_handler(_in_one_line)
+        self._loop.set_default_executor(_Daemons())
+        self._closing = asyncio.Event()
         self._thread = Thread(target=self._run, name="btlang event loop", daemon=True)
         self._thread.start()
-        self._ready.wait()
 
     def start(self, call: Callable[[], Any], work: Work, over: Callable[[Work], object]) -> None:
         """Awaits what `call` gives, and tells `over` when it has ended. Cancelling the work cancels the task."""
@@ -46,15 +49,29 @@ class EventLoop:
         self._thread.join(patience)
 
     def _run(self) -> None:
-        with asyncio.Runner() as runner:
-            runner.run(self._serve())
+        with asyncio.Runner(loop_factory=lambda: self._loop) as runner:
+            runner.run(self._closed())
 
-    async def _serve(self) -> None:
-        self._loop = asyncio.get_running_loop()
-        self._loop.set_exception_handler(_in_one_line)
-        self._closing = asyncio.Event()
-        self._ready.set()
+    async def _closed(self) -> None:
         await self._closing.wait()
+
+
+class _Daemons(ThreadPoolExecutor):
+    """The threads of `asyncio.to_thread`, as daemons: Python waits at its end for those of its own executors."""
+
+    def submit(self, call: Callable[..., Any], /, *args: Any, **named: Any) -> Future[Any]:
+        future: Future[Any] = Future()
+
+        def run() -> None:
+            if not future.set_running_or_notify_cancel():
+                return
+            try:
+                future.set_result(call(*args, **named))
+            except BaseException as problem:
+                future.set_exception(problem)
+
+        Thread(target=run, name="btlang leaf", daemon=True).start()
+        return future
 
 
 async def _awaited(call: Callable[[], Any], work: Work) -> None:

@@ -340,6 +340,21 @@ def test_asyncio_leaves_share_one_loop_which_ends_with_the_run(world: World) -> 
     assert not thread.is_alive()
 
 
+def test_threads_that_a_leaf_waits_for(world: World) -> None:
+    def fails() -> None:
+        raise ActionFailed(threading.current_thread().name)
+
+    async def leaf() -> None:
+        assert await asyncio.to_thread(lambda: threading.current_thread().daemon)
+        await asyncio.to_thread(fails)
+
+    engine = world.engine(world.bind("A", leaf))
+    assert tick_to_end(engine) == FAILURE
+    assert engine.failure is not None
+    assert engine.failure.reason == "btlang leaf"
+    engine.close()
+
+
 def test_what_a_leaf_left_on_the_loop_is_one_line(world: World, caplog: pytest.LogCaptureFixture) -> None:
     async def lost() -> None:
         raise ValueError("lost")
