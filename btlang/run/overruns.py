@@ -10,6 +10,7 @@ from btlang.engine.timing import Stopwatch
 from btlang.run.events import EventStream, Overrun
 
 _TO_BLAME = 0.5  # of a period: a leaf that took less is not the reason, the computer was busy with something else
+_NOISE = 0.005  # seconds that anything may take on a busy computer
 
 
 class Overruns:
@@ -40,7 +41,7 @@ class Overruns:
     def _tell(self, seconds: float) -> None:
         overrun = Overrun(self._clock.now, seconds, self._period)
         slowest = self._stopwatch.slowest()
-        if slowest is not None and slowest[1] > _TO_BLAME * self._period:
+        if slowest is not None and slowest[1] > max(_TO_BLAME * self._period, _NOISE):
             index, spent = slowest
             overrun = overrun.replace(path=self._engine.path(index), node=self._engine.node(index), leaf_seconds=spent)
         self.count += 1

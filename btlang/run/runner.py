@@ -26,7 +26,8 @@ if TYPE_CHECKING:
     from btlang.run.events import Robot
 
 
-_REST = 2.0  # seconds of the mission that a robot gets to come to rest, and real ones that background leaves get to end
+_REST = 2.0  # seconds of the mission that a robot gets to come to rest
+_PATIENCE = 2.0  # seconds of real time that background leaves get to end after the last halt
 
 
 class Outcome(Record):
@@ -132,9 +133,8 @@ class Runner:
     def run(self) -> Outcome:
         """Runs to the end, the time limit, a stop or Ctrl-C; then halts the tree and brings the robot to rest.
 
-        An emergency stop counts also when it comes while the robot comes to rest.
-
-        An exception other than KeyboardInterrupt does the same and comes through.
+        An emergency stop counts also where it comes during the latter. An exception other than KeyboardInterrupt does
+        the same and comes through.
         """
         self._began, self.ticks = self._clock.now, 0
         self._publish_period()
@@ -216,7 +216,7 @@ class Runner:
         finally:
             if self._robot is not None:
                 self._robot.stop()
-        unended = self._engine.close(_REST)
+        unended = self._engine.close(_PATIENCE)
         self._report_halts()
         for failure in unended:
             self._report(failure, f"{_words(failure)} did not end after it was halted")

@@ -198,7 +198,7 @@ def test_the_end_of_a_run_halts_it(how: str) -> None:
     getattr(tree, how)()
     assert thought.ended.wait(PATIENCE)
     thread.join(PATIENCE)
-    assert time.monotonic() - began < runner._REST  # nobody waited for a straggler; one period of rest is 1 s
+    assert time.monotonic() - began < runner._PATIENCE  # nobody waited for a straggler; one period of rest is 1 s
     assert outcomes[0].stopped == {"stop": "interrupted", "emergency_stop": "emergency stop"}[how]
     assert errors == []
 
