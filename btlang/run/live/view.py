@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 _INTERVAL = 0.2  # seconds between two frames
 _LATEST = 0.1  # seconds after which a frame does not wait any longer for the end of a period
+_TICK = 0.01  # seconds: a tick follows a period at once, and is over by then as a rule; the run then sleeps
 _SHARE = 40  # a frame that took long to make is followed by a rest of so many times as long
 _LONGEST_REST = 1.0
 _SWITCH = 0.0005  # seconds after which the drawing thread lets a run that is waiting go on
@@ -94,6 +95,7 @@ class LiveView:
         while not self._ended:
             self._wake.wait(rest + _LATEST)
             self._wake.clear()
+            time.sleep(_TICK)  # so that drawing takes no time from it
             if self._left or not self._in_front:
                 self._behind = True
                 continue
