@@ -10,7 +10,7 @@ from btlang.engine.timing import Stopwatch
 from btlang.run.events import EventStream, Overrun
 
 _TO_BLAME = 0.5  # of a period: a leaf that took less is not the reason, the computer was busy with something else
-_NOISE = 0.005  # seconds that anything may take on a busy computer
+_NOISE = 0.02  # seconds that anything may take on a busy computer
 
 
 class Overruns:

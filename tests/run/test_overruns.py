@@ -44,8 +44,8 @@ class Time:
         return LeafBinding(call)
 
 
-def run(root: Node, leaves: dict[str, LeafBinding], speed: float = 100.0) -> tuple[Any, list[Overrun]]:
-    """Runs with 1 tick a second, which 100 times real time makes 10 ms; returns the outcome and what was told."""
+def run(root: Node, leaves: dict[str, LeafBinding], speed: float = 10.0) -> tuple[Any, list[Overrun]]:
+    """Runs with 1 tick a second, which 10 times real time makes 0.1 s; returns the outcome and what was told."""
     told: list[Overrun] = []
     events = EventStream(lambda event: told.append(event) if isinstance(event, Overrun) else None)
     clock = Clock()
@@ -61,38 +61,38 @@ A, B = Node("A"), Node("B")
 def test_the_slowest_leaf_is_blamed(monkeypatch: pytest.MonkeyPatch) -> None:
     real = Time(monkeypatch)
     root = Node("Parallel", (A, B))
-    leaves = {"A": real.leaf(0.002, 0.005, 0.001, 0), "B": real.leaf(0.003, 0.02, 0.04, 0)}
+    leaves = {"A": real.leaf(0.02, 0.05, 0.01, 0), "B": real.leaf(0.03, 0.2, 0.4, 0)}
     outcome, told = run(root, leaves)
     assert [(event.t, event.path, event.node, round(event.seconds, 6)) for event in told] == [
-        (1.0, "/1", B, 0.025),
-        (2.0, "/1", B, 0.041),
+        (1.0, "/1", B, 0.25),
+        (2.0, "/1", B, 0.41),
     ]
-    assert [event.leaf_seconds for event in told] == [pytest.approx(0.02), pytest.approx(0.04)]
-    assert {event.period for event in told} == {0.01}
+    assert [event.leaf_seconds for event in told] == [pytest.approx(0.2), pytest.approx(0.4)]
+    assert {event.period for event in told} == {0.1}
     assert (outcome.overruns, outcome.worst, outcome.ticks) == (2, told[1], 4)
 
 
 def test_no_leaf_is_blamed_that_took_less_than_half_a_period(monkeypatch: pytest.MonkeyPatch) -> None:
     real = Time(monkeypatch)
     root = Node("Sequence", tuple(Node(id) for id in "ABC"))
-    outcome, told = run(root, {id: real.leaf(0.04) for id in "ABC"}, speed=10)
+    outcome, told = run(root, {id: real.leaf(0.04) for id in "ABC"})
     assert [(event.path, event.node, event.leaf_seconds) for event in told] == [("", None, 0.0)]
     assert (outcome.overruns, outcome.worst) == (1, None)
 
 
 def test_no_leaf_is_blamed_for_what_may_be_noise(monkeypatch: pytest.MonkeyPatch) -> None:
     real = Time(monkeypatch)
-    _, [event] = run(A, {"A": real.leaf(0.004)}, speed=1000)
-    assert (event.seconds, event.period, event.node) == (pytest.approx(0.004), 0.001, None)
+    _, [event] = run(A, {"A": real.leaf(0.015)}, speed=1000)
+    assert (event.seconds, event.period, event.node) == (pytest.approx(0.015), 0.001, None)
 
 
 def test_a_leaf_that_is_ticked_often_adds_up(monkeypatch: pytest.MonkeyPatch) -> None:
     real = Time(monkeypatch)
-    calls = real.leaf(*[0.004] * 4)
+    calls = real.leaf(*[0.04] * 4)
     leaf = LeafBinding(lambda: calls.call() == SUCCESS)
     root = Node("RecoveryNode", (A, Node("AlwaysSuccess")), (("number_of_retries", "9"),))
     _, [event] = run(root, {"A": leaf})
-    assert (event.path, event.leaf_seconds) == ("/0", pytest.approx(0.016))
+    assert (event.path, event.leaf_seconds) == ("/0", pytest.approx(0.16))
 
 
 def test_the_time_of_a_halt_counts_too(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -104,11 +104,11 @@ def test_the_time_of_a_halt_counts_too(monkeypatch: pytest.MonkeyPatch) -> None:
         def tick(self) -> None: ...
 
         def halt(self) -> None:
-            real.now += 0.03
+            real.now += 0.3
 
     root = Node("Parallel", (Node("Slow"), B), (("success_count", "1"),))
     _, [event] = run(root, {"Slow": LeafBinding(Slow), "B": real.leaf(0, 0)})
-    assert (event.path, event.leaf_seconds) == ("/0", pytest.approx(0.03))
+    assert (event.path, event.leaf_seconds) == ("/0", pytest.approx(0.3))
 
 
 def test_nothing_is_measured_at_full_speed(monkeypatch: pytest.MonkeyPatch) -> None:
