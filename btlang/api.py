@@ -109,25 +109,31 @@ def load_simulation(world: str | None = None) -> Simulation:
 
 
 def action(
-    phrase: str | Sequence[str], *, id: str = "", slots: dict[str, str] | None = None, resources: Sequence[str] = ()
+    phrase: str | Sequence[str],
+    *,
+    id: str = "",
+    slots: dict[str, str] | None = None,
+    resources: Sequence[str] = (),
+    thread: bool = False,
 ) -> Callable[[Call], Call]:
-    """Makes a function, generator function or class a command: pass it to `parse_tree(keywords=[...])`.
+    """Makes a function, generator function, `async def` function or class a command: `parse_tree(keywords=[...])`.
 
     `phrase` is one pattern or several, `slots` gives types to slots whose name is not a type, `id` is the node's name,
-    by default that of the function in CamelCase. See btlang/engine/leaf.py for what a leaf may be.
+    by default that of the function in CamelCase. With `thread` a plain function works in a thread of its own. See
+    btlang/engine/leaf.py for what a leaf may be.
     """
-    return _word("action", phrase, id, slots or {}, resources)
+    return _word("action", phrase, id, slots or {}, resources, thread)
 
 
 def condition(
     phrase: str | Sequence[str], *, id: str = "", slots: dict[str, str] | None = None
 ) -> Callable[[Call], Call]:
     """Makes a function that returns a bool a condition; as `action`."""
-    return _word("condition", phrase, id, slots or {}, ())
+    return _word("condition", phrase, id, slots or {}, (), False)
 
 
 def _word(
-    sort: str, phrase: str | Sequence[str], node_id: str, slots: dict[str, str], resources: Sequence[str]
+    sort: str, phrase: str | Sequence[str], node_id: str, slots: dict[str, str], resources: Sequence[str], thread: bool
 ) -> Callable[[Call], Call]:
     from btlang.vocabulary.pattern import Slot, forms
 
@@ -137,7 +143,8 @@ def _word(
         names = dict.fromkeys(p.name for text in phrases for form in forms(text) for p in form if isinstance(p, Slot))
         specs = tuple(SlotSpec(name, slots.get(name, name)) for name in names)
         made = node_id or "".join(part.title() for part in call.__name__.split("_"))
-        call.btlang_entry = Entry(sort, made, phrases, call, specs, tuple(resources), help=call.__doc__ or "")  # type: ignore[attr-defined]
+        entry = Entry(sort, made, phrases, call, specs, tuple(resources), help=call.__doc__ or "", thread=thread)
+        call.btlang_entry = entry  # type: ignore[attr-defined]
         return call
 
     return decorate
@@ -216,11 +223,12 @@ class RunnableTree:
 
     @property
     def controls(self) -> Controls:
-        """Pause, resume, single step and stop, from any thread: of the run under way, else of the next one."""
+        """Pause, resume, single step and the stops, from any thread: of the run under way, else of the next one."""
         from btlang.run.controls import Controls
 
         if self._controls is None:
-            self._controls = Controls()
+            stage = self._simulation or self.stage
+            self._controls = Controls(stage.robot if stage is not None else None)
         return self._controls
 
     def tick(self) -> int:
@@ -249,6 +257,15 @@ class RunnableTree:
     def stop(self) -> None:
         """Ends the run under way, else the next one before its first tick; for another thread or a signal handler."""
         self.controls.stop()
+
+    def emergency_stop(self) -> None:
+        """Stops the robot at once, from any thread, without waiting for the tick under way; then the run ends.
+
+        A leaf that hangs does not delay it, and what a leaf still commands in that tick is ignored. Where no run is
+        under way the robot is stopped all the same, and the next run ends before its first tick. So does a tick of
+        `tick`: it halts the tree and returns IDLE.
+        """
+        self.controls.emergency_stop()
 
     def pause(self) -> None:
         """The robot of the run under way comes to rest, and the time of the mission stands still."""
@@ -284,7 +301,8 @@ class RunnableTree:
         try:
             return runner.run()
         finally:
-            self._controls = None
+            self._controls = None  # what is asked for from now on is for what comes next, a run or a tick
+            runner.controls = self.controls
 
     def _start(
         self,
@@ -296,6 +314,7 @@ class RunnableTree:
         """A new engine on the stage."""
         from btlang.backends.engine import bind_leaf
         from btlang.engine.engine import EngineError
+        from btlang.engine.timing import Stopwatch
         from btlang.robots.world import Place
         from btlang.run.runner import Runner, traced_engine
         from btlang.run.story import Story
@@ -312,6 +331,7 @@ class RunnableTree:
                 events=stage.events,
                 services={"robot": stage.robot},
                 blackboard=self._blackboard,
+                stopwatch=Stopwatch() if speed < math.inf else None,
             )
         except EngineError as error:
             span = error.node.span or Span(Source(""), 0, 0)

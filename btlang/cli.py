@@ -27,7 +27,10 @@ _WIDEST = 120  # columns; longer lines are hard to read
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Runs one verb; returns the exit code: 0 success or skipped, 1 mission failed, 2 bad input, 130 interrupted."""
+    """Runs one verb; returns the exit code.
+
+    0 success or skipped, 1 mission failed, 2 bad input, 130 interrupted, 131 emergency stop.
+    """
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="replace")  # a terminal that cannot show a character still gets the rest

@@ -22,7 +22,9 @@ if TYPE_CHECKING:
 
 
 def bind_leaf(node_id: str, vocabulary: Vocabulary) -> LeafBinding | None:
-    """None where no keyword entry has the id. Raises EngineError where its `call` leads nowhere."""
+    """None where no keyword entry has the id. Raises EngineError where its `call` leads nowhere or is of no use."""
+    from inspect import iscoroutinefunction
+
     entry = vocabulary.entry(node_id)
     if entry is None:
         return None
@@ -30,8 +32,10 @@ def bind_leaf(node_id: str, vocabulary: Vocabulary) -> LeafBinding | None:
     converters = {name: _converter(slot, vocabulary) for name, slot in slots.items()}
     defaults = {name: slot.default for name, slot in slots.items() if slot.default is not None}
     call = _imported(entry)
+    if entry.sort == "condition" and iscoroutinefunction(call):
+        raise EngineError("it is asynchronous, and a condition is asked at once", Node(entry.id, span=entry.span))
     if not entry.measures:
-        binding = LeafBinding(call, converters, defaults)
+        binding = LeafBinding(call, converters, defaults, thread=entry.thread)
         return binding if entry.sort == "action" else binding.replace(refusal="it is not true")
 
     def say(given: Mapping[str, Any], value: str) -> str:

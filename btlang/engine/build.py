@@ -28,7 +28,9 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, TypeAlias
 
+    from btlang.engine.background import Background
     from btlang.engine.leaves import Plan
+    from btlang.engine.timing import Stopwatch
     from btlang.engine.watch import Watch
 
     Tick: TypeAlias = Callable[[], int]
@@ -61,18 +63,9 @@ class Shared:
     """What all nodes of one engine share."""
 
     __slots__ = (
-        "bind",
-        "clock",
-        "emergency",
-        "enums",
-        "fault",
-        "halt_faults",
-        "interrupts",
-        "plans",
-        "service_names",
-        "services",
-        "watch",
-    )
+        "background", "bind", "clock", "emergency", "enums", "fault", "halt_faults", "interrupts", "plans",
+        "service_names", "services", "stopwatch", "watch",
+    )  # fmt: skip
 
     def __init__(
         self,
@@ -80,13 +73,16 @@ class Shared:
         clock: Clock,
         services: Mapping[str, Any],
         enums: Mapping[str, float],
+        stopwatch: Stopwatch | None,
     ) -> None:
         self.bind = bind
+        self.stopwatch = stopwatch
         self.clock = clock
         self.services = {"clock": clock, **services}
         self.service_names = frozenset(("blackboard", *self.services))
         self.plans: dict[str, Plan] = {}  # of the leaves that were bound so far, by id
         self.enums = {name: float(value) for name, value in enums.items()}  # names that scripts and Switch nodes know
+        self.background: Background | None = None  # where a leaf works beside the tick
         self.fault: Fault | Site | None = None  # the latest failure
         # exceptions that leaves raised while they were halted; only the latest, should nobody ask for them
         self.halt_faults: deque[Fault] = deque(maxlen=1000)

@@ -135,7 +135,7 @@ def expand(tree: Tree, blackboard: Blackboard, shared: Shared) -> list[Site]:
 
 def outline(tree: Tree) -> tuple[list[Node], list[int]]:
     """All nodes in preorder, after expansion of subtrees, and the index of each one's parent, -1 for the root."""
-    sites = expand(tree, Blackboard(), Shared(lambda id: None, Clock(), {}, {}))
+    sites = expand(tree, Blackboard(), Shared(lambda id: None, Clock(), {}, {}, None))
     return [site.node for site in sites], [-1 if site.above is None else site.above.index for site in sites]
 
 
@@ -220,7 +220,8 @@ def _compile_leaf(site: Site, children: Sequence[Compiled]) -> Compiled:
         plan = shared.plans[node_id] = leaves.Plan(binding)
     if children:
         raise site.error(f"{node_id} is a leaf, but has {len(children)} children")
-    return leaves.bound_leaf(site, plan)
+    compiled = leaves.bound_leaf(site, plan)
+    return compiled if shared.stopwatch is None else shared.stopwatch.wrap(site.index, compiled)
 
 
 def _how_many(kind: NodeType) -> str:

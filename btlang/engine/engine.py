@@ -23,6 +23,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+    from btlang.engine.timing import Stopwatch
     from btlang.engine.watch import Listener
 
 # A node, its watch, its pre-conditions, and the check of ports from the blackboard; twice, because what starts at the
@@ -51,7 +52,7 @@ class Failure(Record):
 class Engine:
     """A compiled tree. `bind` gives the Python side of a leaf id, `services` what leaves may ask for by name.
 
-    `enums` are names of numbers that scripts and the cases of Switch nodes may use.
+    `enums` are names of numbers that scripts and the cases of Switch nodes may use. A `stopwatch` times the leaves.
 
     Raises EngineError where the tree cannot be compiled. `listener` gets lists of status changes, children before
     parents; see watch.py for what counts as one and when they are told.
@@ -67,9 +68,13 @@ class Engine:
         blackboard: Blackboard | None = None,
         listener: Listener | None = None,
         enums: Mapping[str, float] = {},
+        stopwatch: Stopwatch | None = None,
     ) -> None:
         self.blackboard = Blackboard() if blackboard is None else blackboard
-        self._shared = Shared(bind, clock, services, enums)
+        self.stopwatch = stopwatch
+        self.on_wake: Callable[[], object] | None = None
+        """What the service `wake` calls, in the thread of whoever asks for it: "tick again now"."""
+        self._shared = Shared(bind, clock, {"wake": self._wake, **services}, enums, stopwatch)
         with no_collection:
             self._sites = expand(tree, self.blackboard, self._shared)
             self._trace = None if listener is None else Trace(self._shared, listener)
@@ -125,13 +130,28 @@ class Engine:
         self._stop(True)
 
     def take_halt_failures(self) -> list[Failure]:
-        """What leaves raised while they were halted since it was last asked, oldest first."""
+        """What leaves raised while they were halted since it was last asked, oldest first.
+
+        What a background leaf raises that ends after its halt is told once it has ended.
+        """
         faults = self._shared.halt_faults
+        if self._shared.background is not None:
+            faults += self._shared.background.take_faults()
         if not faults:
             return []
         failures = [self._failure(fault) for fault in faults]
         faults.clear()
         return failures
+
+    def close(self, patience: float = 0.0) -> list[Failure]:
+        """Ends what works for background leaves, after a halt; returns those that were halted and have not ended.
+
+        It waits for them at most `patience` seconds of real time. The engine can be ticked again.
+        """
+        background = self._shared.background
+        if background is None:
+            return []
+        return [self._failure(Fault(index, "it did not end")) for index in background.close(patience)]
 
     @property
     def nodes(self) -> list[tuple[str, Node]]:
@@ -188,6 +208,10 @@ class Engine:
         while fault is not None and fault.index < index:  # causes are below
             fault = fault.cause
         return self._text(fault) if fault is not None and fault.index == index else ""
+
+    def _wake(self) -> None:
+        if self.on_wake is not None:
+            self.on_wake()
 
     def _stop(self, keep: bool) -> None:
         if self._deep:

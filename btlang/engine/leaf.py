@@ -5,10 +5,18 @@ A leaf is one of
 - a generator function: each `yield` is RUNNING, its return value counts as a function's; halting closes it, so
   `try: ... finally: robot.stop()` is the way to stop what it moves;
 - a class with `start(**ports)`, `tick()` and `halt()`: made once for its node; `start` and `tick` return as functions
-  do, and None from `start` or `tick` means RUNNING. `halt` is called only while it runs.
+  do, and None from `start` or `tick` means RUNNING. `halt` is called only while it runs;
+- a background leaf: an `async def` function, or a plain function whose binding says `thread`. It works beside the tick
+  and is RUNNING until it returns; its value counts as a function's, and the next tick comes at once. Halting cancels
+  the task of an async function, and sets the event `halted` for a thread, which should look at it. Neither is waited
+  for: one that goes on is not started again before it has ended, and is reported where it outlives the run.
 
-Parameters are filled by name: ports first, then services (`robot`, `clock`, `blackboard`); a class gets the services
-in its constructor and the ports in `start`.
+Parameters are filled by name: ports first, then services (`robot`, `clock`, `blackboard`, `wake`); a class gets the
+services in its constructor and the ports in `start`. `wake()` asks for a tick at once, from any thread; a thread has
+`halted` too, a threading.Event.
+
+What a background leaf uses of these it uses beside the tick. Safe are `wake`, `halted`, reading `clock.now`, reading
+and setting single blackboard entries, and `robot.stop()`. All else of a robot is for the other leaves.
 
 A leaf that fails says why: it raises ActionFailed, or returns `Failed(reason)`, which is cheaper and may work out the
 reason later. For False the reason is the `refusal` of its binding.
@@ -65,6 +73,7 @@ class LeafBinding(Record):
     """The Python side of a leaf id: what to call, how each port's text becomes a value, and values for absent ports.
 
     `outputs` are the ports that the leaf writes instead of reading them, `refusal` is the reason for a returned False.
+    With `thread` a plain function is called in a thread of its own.
     """
 
     call: Callable[..., Any]
@@ -72,3 +81,4 @@ class LeafBinding(Record):
     defaults: Mapping[str, str] = {}
     outputs: tuple[str, ...] = ()
     refusal: str = REFUSED
+    thread: bool = False

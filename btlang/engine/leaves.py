@@ -45,8 +45,8 @@ _TRUTHS = ("bool", "bool_")  # what numpy's comparisons give goes by these names
 class Plan:
     """What the leaves of one engine with the same id share, found once.
 
-    `kind` is "class", "async", "generator" or "function"; `given` keeps the names of the services that the call gets,
-    by the names of the ports that a node has; for a class `made_with` keeps those of its constructor.
+    `kind` is "class", "async", "generator", "thread" or "function"; `given` keeps the names of the services that the
+    call gets, by the names of the ports that a node has; for a class `made_with` keeps those of its constructor.
     """
 
     __slots__ = ("binding", "given", "kind", "made_with")
@@ -60,11 +60,12 @@ class Plan:
         self.made_with: list[str] | None = None
         if isclass(call):
             self.kind = "class"
-        elif iscoroutinefunction(call):
+        elif iscoroutinefunction(call) or iscoroutinefunction(type(call).__call__):
             self.kind = "async"
+        elif isgeneratorfunction(call) or isgeneratorfunction(type(call).__call__):
+            self.kind = "generator"
         else:
-            generates = isgeneratorfunction(call) or isgeneratorfunction(type(call).__call__)
-            self.kind = "generator" if generates else "function"
+            self.kind = "thread" if binding.thread else "function"
 
 
 def bound_leaf(site: Site, plan: Plan) -> Compiled:
@@ -72,6 +73,8 @@ def bound_leaf(site: Site, plan: Plan) -> Compiled:
     binding = plan.binding
     call: Any = binding.call
     ports = {**binding.defaults, **{port: text for port, text in site.node.ports if port[:1] != "_"}}
+    if binding.thread and plan.kind != "thread":
+        raise site.error(f"{site.node.id} is to run in a thread, and only a plain function can")
     names = tuple(ports)
     if plan.kind == "class":
         leaf = _make(site, plan)
@@ -80,16 +83,21 @@ def bound_leaf(site: Site, plan: Plan) -> Compiled:
         constants, stored = _arguments(site, ports, binding)
         start = partial(leaf.start, **constants) if constants else leaf.start
         return _class_leaf(site, leaf, start, stored)
-    if plan.kind == "async":
-        raise site.error(f"{site.node.id} is bound to an async function; a generator does what it should do")
     given = plan.given.get(names)
     if given is None:
-        given = plan.given[names] = _fill(site, call, names, site.shared.service_names)
+        services = site.shared.service_names
+        given = plan.given[names] = _fill(site, call, names, services | {"halted"} if binding.thread else services)
     constants, stored = _arguments(site, ports, binding) if ports else ({}, None)
     for name in given:
-        constants[name] = site.service(name)
+        if name != "halted" or not binding.thread:
+            constants[name] = site.service(name)
     if constants:
         call = partial(call, **constants)
+    if plan.kind in ("async", "thread"):
+        from btlang.engine.background import background_leaf
+
+        background = background_leaf(site, call, binding.thread, "halted" in given)
+        return _class_leaf(site, background, background.start, stored)
     return _generator_leaf(site, call, stored) if plan.kind == "generator" else _function_leaf(site, call, stored)
 
 

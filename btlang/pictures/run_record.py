@@ -7,7 +7,7 @@ from collections.abc import Callable
 from btlang.engine.status import IDLE, RUNNING, SKIPPED
 from btlang.record import Record
 from btlang.robots.geometry import Point, Pose
-from btlang.run.events import PeriodPassed, RobotEvent, StatusChanged
+from btlang.run.events import PeriodPassed, RobotEvent, StatusChanged, StatusesChanged
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False
@@ -79,7 +79,7 @@ class RunRecord:
                 self._see(event.t, event.robot)
         elif isinstance(event, RobotEvent):
             self._happened(event)
-        elif self.track:
+        elif isinstance(event, StatusesChanged) and self.track:
             for change in event:
                 self._changed(change)
 

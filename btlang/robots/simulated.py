@@ -54,11 +54,13 @@ class SimulatedRobot:
 
     def step(self, dt: float) -> None:
         """Lets `dt` (> 0) seconds pass; the scan, the events and all sensors follow."""
-        if self._stopping:
+        stopped = self._stopping
+        if stopped:
             self._stopping = False
-            self._rest()  # again: a step under way in this thread may have overwritten what `stop` did in another
         pieces = max(1, ceil(dt / _CONTROL_PERIOD - 1e-9))
         for _ in range(pieces):
+            if stopped or self._stopping:
+                self._rest()  # again: what was under way in this thread may have overwritten what `stop` did in another
             self._move_on(dt / pieces)
 
     def _move_on(self, dt: float) -> None:
@@ -227,12 +229,16 @@ class SimulatedRobot:
 
     def grasp(self, hand: Hand, name: str | None = None) -> str:
         """Closes a hand on the named or the nearest object and returns its name. Raises RobotError."""
+        if self._stopping:
+            raise RobotError("the robot was told to stop")
         found = self._hands.grasp(hand, None if name is None else self._known(name), self.pose, self.time)
         self._emit("grasp", hand=hand, name=found)
         return found
 
     def release(self, hand: Hand) -> str | None:
         """Opens a hand and puts down what it held."""
+        if self._stopping:
+            return None
         name = self._hands.release(hand, self.pose)
         self._emit("release", hand=hand, name=name)
         return name

@@ -5,15 +5,16 @@ from __future__ import annotations
 import os
 import signal
 import sys
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import AbstractContextManager, contextmanager, nullcontext
 
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.reading import unwritable
 from btlang.diagnostics.render import has_colour
 from btlang.engine.status import FAILURE, SKIPPED
+from btlang.run.emergency import emergency_signal
 from btlang.run.json_log import JsonLog
-from btlang.run.lines import Lines
+from btlang.run.lines import Lines, brief
 from btlang.run.runner import Outcome
 from btlang.tree.node import Node, Tree
 
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
     from typing import Protocol, TextIO
 
     from btlang.run.controls import Controls
-    from btlang.run.events import Sink
+    from btlang.run.events import Overrun, Sink
     from btlang.run.live.view import LiveView
 
     class Runnable(Protocol):
@@ -47,6 +48,8 @@ if TYPE_CHECKING:
 
 ENDING_SIGNALS = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if hasattr(signal, name)]
 """A signal to end, and that the terminal is gone, as far as the system has them."""
+EMERGENCY_STOPPED = 131
+"""The exit code after an emergency stop, as 130 is that after Ctrl-C: 128 and the signal of the keys."""
 _LEAST_SIZE = os.terminal_size((30, 10))  # of a terminal in which the live view is of use
 
 
@@ -72,7 +75,12 @@ def run_mission(
     shown: list[Sink] = [view] if view is not None else [] if quiet else [Lines(tree.label, tree.is_action, _print)]
     sinks = [*shown, *sinks]
     try:
-        with _interrupted_by_signals(), _opened(log) as file, view if view is not None else nullcontext():
+        with (
+            _interrupted_by_signals(),
+            emergency_signal(tree.controls.emergency_stop),
+            _opened(log) as file,
+            view if view is not None else nullcontext(),
+        ):
             if file is not None:
                 sinks.append(JsonLog(file, tree.label))
             outcome = tree.run(speed=speed, rate=rate, time_limit=time_limit, sinks=sinks)
@@ -83,12 +91,14 @@ def run_mission(
         raise
     except OSError as error:
         raise MissionError([unwritable(log or "the output", error)]) from None
+    if outcome.worst is not None and not quiet:
+        print(_too_slow(outcome, outcome.worst, tree.label))
     if outcome.status == FAILURE:
         print(tree.why(colour=has_colour(sys.stderr)), file=sys.stderr)
         return 1
     if not quiet:
         print(_ending(outcome))
-    return 130 if outcome.stopped == "interrupted" else 0
+    return {"interrupted": 130, "emergency stop": EMERGENCY_STOPPED}.get(outcome.stopped, 0)
 
 
 @contextmanager
@@ -135,10 +145,18 @@ def _opened(log: str | None) -> AbstractContextManager[TextIO | None]:
     return open(log, "w", encoding="utf-8", errors="backslashreplace")  # a mission may hold what UTF-8 does not
 
 
+def _too_slow(outcome: Outcome, worst: Overrun, label: Callable[[Node], str]) -> str:
+    ticks = f"{outcome.overruns} of {outcome.ticks} tick{'s' * (outcome.ticks > 1)} took too long"
+    leaf = label(worst.node) if worst.node is not None else ""
+    return f'{ticks}; the slowest leaf was "{leaf}" with {brief(worst.leaf_seconds)} s.'
+
+
 def _ending(outcome: Outcome) -> str:
     seconds = f"{outcome.seconds:.1f} s"
     if outcome.stopped == "interrupted":
         return f"Interrupted after {seconds}; the robot stands still."
+    if outcome.stopped == "emergency stop":
+        return f"Emergency stop after {seconds}; the robot stands still."
     if outcome.stopped:
         return f"Stopped after {seconds}, as asked; the robot stands still."
     if outcome.status == SKIPPED:

@@ -1,15 +1,28 @@
-"""What may be asked of a run while it goes on: pause, resume, a single step, stop."""
+"""What may be asked of a run while it goes on: pause, resume, a single step, stop, emergency stop."""
 
 from __future__ import annotations
 
 from contextlib import suppress
 from threading import Lock
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Protocol
+
+    class Stoppable(Protocol):
+        """A robot, as far as an emergency stop needs it."""
+
+        def stop(self) -> object: ...
+
 
 class Controls:
-    """May be used from any thread, from keys and from signal handlers; the run takes notice before its next tick."""
+    """May be used from any thread, from keys and from signal handlers; the run takes notice before its next tick.
 
-    def __init__(self) -> None:
+    `robot` is what an emergency stop stops.
+    """
+
+    def __init__(self, robot: Stoppable | None = None) -> None:
+        self.robot = robot
         self._asleep = Lock()  # held but for a moment; unlike an Event it may be released within a signal handler
         self._asleep.acquire()
         self._steps = 0
@@ -17,17 +30,19 @@ class Controls:
         """Whether the run stands still, or will before its next tick."""
         self.stopped = False
         """Whether the run has been told to end."""
+        self.emergency = False
+        """Whether that was an emergency stop."""
 
     def pause(self) -> None:
         """The robot comes to rest and the time of the mission stands still."""
         self.paused = True
-        self._wake()
+        self.wake()
 
     def resume(self) -> None:
         """Goes on where the pause began: the commands that it interrupted start anew."""
         self.paused = False
         self._steps = 0
-        self._wake()
+        self.wake()
 
     def toggle(self) -> None:
         """Pauses, or resumes."""
@@ -44,7 +59,26 @@ class Controls:
     def stop(self) -> None:
         """Ends the run."""
         self.stopped = True
-        self._wake()
+        self.wake()
+
+    def emergency_stop(self) -> None:
+        """Stops the robot at once, in this thread, whatever a leaf is doing; then ends the run.
+
+        The robot ignores what a leaf still commands in the tick under way, and the tree is not ticked again.
+        """
+        self.emergency = self.stopped = True  # first, so that no tick begins once the robot has been told
+        try:
+            if self.robot is not None:
+                self.robot.stop()
+        finally:
+            self.wake()
+
+    def take_emergency(self) -> bool:
+        """Whether there was an emergency stop that has not been seen to; who asks has to halt the tree."""
+        found = self.emergency
+        if found:
+            self.emergency = self.stopped = False
+        return found
 
     def take_step(self) -> bool:
         """Whether a single step was asked for that has not been made; the run then makes it."""
@@ -57,6 +91,7 @@ class Controls:
         """Sleeps so many seconds (None: without end), or until something is asked for."""
         self._asleep.acquire(timeout=-1 if seconds is None else max(0.0, seconds))
 
-    def _wake(self) -> None:
+    def wake(self) -> None:
+        """Ends the sleep of `wait`, or the next one."""
         with suppress(RuntimeError):  # it is released already
             self._asleep.release()

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from btlang.engine.build import Fault, Site
     from btlang.engine.watch import Changes
 
-    Event: TypeAlias = "StatusesChanged | RobotEvent | PeriodPassed"
+    Event: TypeAlias = "StatusesChanged | RobotEvent | Overrun | PeriodPassed"
     Sink: TypeAlias = Callable[[Event], object]
 
     class Nodes(Protocol):
@@ -80,6 +80,20 @@ class RobotEvent(Record):
     t: float
     kind: str
     data: Mapping[str, Any] = {}
+
+
+class Overrun(Record):
+    """A tick took `seconds` of real time, longer than its `period`. Only in runs that keep step with real time.
+
+    `node` is its slowest leaf, at `path`, which took `leaf_seconds` of them; None where no leaf is to blame.
+    """
+
+    t: float
+    seconds: float
+    period: float
+    path: str = ""
+    node: Node | None = None
+    leaf_seconds: float = 0.0
 
 
 class PeriodPassed(Record):

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED
-from btlang.run.events import RobotEvent, StatusChanged, StatusesChanged
+from btlang.run.events import Overrun, RobotEvent, StatusChanged, StatusesChanged
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False
@@ -18,6 +18,7 @@ _WORDS = {IDLE: "halted", RUNNING: "start", FAILURE: "failed", SKIPPED: "skipped
 class Lines:
     """A sink that writes a line at the start and at the end of each action, and what the robot says or bumps into.
 
+    Of a leaf that takes too long for a tick it tells the first time only.
     `label` gives the words for a node, `is_action` whether it is an action; `write` gets lines without an end.
     """
 
@@ -27,6 +28,7 @@ class Lines:
         self._label = label
         self._is_action = is_action
         self._write = write
+        self._slow: set[str] = set()  # paths of leaves
 
     def __call__(self, event: Event) -> None:
         if isinstance(event, RobotEvent):
@@ -35,10 +37,18 @@ class Lines:
             for change in event:
                 if (change.node.id == "Sleep" and change.node.span) or self._is_action(change.node):
                     self._action(change)
+        elif isinstance(event, Overrun):
+            self._overrun(event)
 
     def _action(self, event: StatusChanged) -> None:
         reason = f": {event.reason}" if event.reason else ""
         self._line(event.t, _WORDS.get(event.status, "done"), self._label(event.node) + reason)
+
+    def _overrun(self, event: Overrun) -> None:
+        if event.node is not None and event.path not in self._slow:
+            self._slow.add(event.path)
+            took = f"took {brief(event.leaf_seconds)} s of a tick, which has {brief(event.period)} s"
+            self._line(event.t, "slow", f"{self._label(event.node)}: {took}")
 
     def _robot(self, event: RobotEvent) -> None:
         if event.kind in ("say", "print"):
@@ -56,3 +66,8 @@ class Lines:
 
     def _line(self, t: float, word: str, rest: str) -> None:
         self._write(f"{t:7.2f}  {word:<6} {rest}".rstrip())
+
+
+def brief(seconds: float) -> str:
+    """Seconds with two digits that matter, however few they are."""
+    return f"{seconds:.2f}" if seconds >= 0.1 else f"{seconds:.2g}"

@@ -13,24 +13,30 @@ from btlang.engine.leaf import LeafBinding
 from btlang.engine.status import IDLE, NAMES, RUNNING
 from btlang.record import Record
 from btlang.run.controls import Controls
-from btlang.run.events import EventStream, PeriodPassed, RobotEvent, StatusesChanged
+from btlang.run.events import EventStream, Overrun, PeriodPassed, RobotEvent, StatusesChanged
+from btlang.run.overruns import Overruns
+from btlang.run.pace import Pace
 from btlang.tree.node import Tree
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+    from btlang.engine.timing import Stopwatch
     from btlang.engine.watch import Changes
     from btlang.run.events import Robot
 
 
 _REST = 2.0  # seconds of the mission that a robot gets to come to rest
+_PATIENCE = 2.0  # seconds of real time that background leaves get to end after the last halt
 
 
 class Outcome(Record):
-    """How a run ended: `stopped` is "" where the tree completed, else (status IDLE) "time limit" or "interrupted".
+    """How a run ended.
 
-    `seconds` are those of the mission, without the time in which the robot came to rest.
+    `stopped` is "" where the tree completed, else (status IDLE) "time limit", "interrupted" or "emergency stop".
+    `seconds` are those of the mission, without the time in which the robot came to rest. `overruns` are the ticks that
+    took too long, `worst` the one of them with the slowest leaf; None where no leaf was to blame, or nobody looked.
     """
 
     status: int
@@ -38,6 +44,8 @@ class Outcome(Record):
     ticks: int
     failure: Failure | None
     stopped: str = ""
+    overruns: int = 0
+    worst: Overrun | None = None
 
 
 def traced_engine(
@@ -48,13 +56,16 @@ def traced_engine(
     events: EventStream,
     services: Mapping[str, Any] = {},
     blackboard: Blackboard | None = None,
+    stopwatch: Stopwatch | None = None,
 ) -> Engine:
     """An engine whose status changes go into the stream."""
 
     def changed(changes: Changes) -> None:
         events.publish(StatusesChanged(clock.now, changes, engine))
 
-    engine = Engine(tree, bind, clock=clock, services=services, blackboard=blackboard, listener=changed)
+    engine = Engine(
+        tree, bind, clock=clock, services=services, blackboard=blackboard, listener=changed, stopwatch=stopwatch
+    )
     events.before = engine.tell
     return engine
 
@@ -62,8 +73,9 @@ def traced_engine(
 class Runner:
     """Ticks an engine `rate` times a second of the mission until the tree completes.
 
-    `speed` is seconds of the mission per second of real time; math.inf does not wait at all. `overruns` counts the
-    periods that took longer than they should have. Time after a late tick is not caught up with.
+    `speed` is seconds of the mission per second of real time; math.inf does not wait at all. The service `wake` of the
+    engine ends the wait: the next tick comes at once, after the part of the period that has passed. Where the engine
+    has a stopwatch, ticks that take longer than their period are events (Overrun).
 
     A pause suspends the tree (see Engine.suspend) and brakes the robot. Then the time of the mission stands still, and
     so does a simulated world once the robot is at rest.
@@ -91,28 +103,39 @@ class Runner:
         self.controls = Controls() if controls is None else controls
         self._suspended = False
         self._began = clock.now
+        self._pace = Pace(speed, self.controls)
+        self._overruns: Overruns | None = None
+        if engine.stopwatch is not None and speed < math.inf:
+            self._overruns = Overruns(engine, engine.stopwatch, self._pause, clock, self._events)
         self.ticks = 0
-        self.overruns = 0
+        self.controls.robot = robot
+        engine.on_wake = self._pace.wake
 
     def halt(self) -> None:
         """Halts the tree and stops the robot, outside of run(); the next tick starts the tree anew."""
         self._end()
 
     def tick(self) -> int:
-        """One period: ticks the tree, then, unless it completed, moves clock and robot on. Returns the status."""
-        self._suspended = False
-        status = self._engine.tick()
-        self.ticks += 1
-        self._report_halts()
+        """One period: ticks the tree, then, unless it completed, moves clock and robot on. Returns the status.
+
+        After an emergency stop, also one during this tick, it halts the tree instead and returns IDLE.
+        """
+        status = IDLE if self.controls.emergency else self._tick(self._engine)
+        if self.controls.emergency:
+            self._end()
+            self.controls.take_emergency()
+            return IDLE
         if status == RUNNING:
-            left = self._began + self._limit - self._clock.now  # the last period ends with the time limit
-            self._advance(left if left > 0 else math.inf)
+            self._advance(self._period_left())
+        else:
+            self._engine.close()
         return status
 
     def run(self) -> Outcome:
         """Runs to the end, the time limit, a stop or Ctrl-C; then halts the tree and brings the robot to rest.
 
-        An exception other than KeyboardInterrupt does the same and comes through.
+        An emergency stop counts also where it comes during the latter. An exception other than KeyboardInterrupt does
+        the same and comes through.
         """
         self._began, self.ticks = self._clock.now, 0
         self._publish_period()
@@ -123,25 +146,38 @@ class Runner:
         finally:
             seconds = self._clock.now - self._began
             self._end()
-        outcome = Outcome(status, seconds, self.ticks, None if stopped else self._engine.failure, stopped)
+        if self.controls.emergency:
+            status, stopped = IDLE, "emergency stop"
+        failure = None if stopped else self._engine.failure
+        count, worst = (self._overruns.count, self._overruns.worst) if self._overruns is not None else (0, None)
+        outcome = Outcome(status, seconds, self.ticks, failure, stopped, count, worst)
         self._events.publish(RobotEvent(self._clock.now, "end", _ending(outcome)))
         return outcome
 
     def _loop(self) -> tuple[int, str]:
-        controls, due, stepped = self.controls, time.monotonic(), False
+        controls, stepped = self.controls, False
+        self._pace.begin()
         while not controls.stopped:
             if controls.paused and not controls.take_step():
                 self._stand_still(stepped)
-                due = time.monotonic()
+                self._pace.begin()
                 continue
             stepped = controls.paused
             if self._clock.now - self._began >= self._limit - 1e-9:
                 return IDLE, "time limit"
-            status = self.tick()
+            status = self._tick(self._overruns or self._engine)
             if status != RUNNING:
                 return status, ""
-            due = self._wait(due + self._pause)
+            self._advance(self._pace.sleep(self._period_left()))
         return IDLE, "interrupted"
+
+    def _tick(self, ticking: Engine | Overruns) -> int:
+        self._suspended = False
+        self._pace.tick_begins()
+        status = ticking.tick()
+        self.ticks += 1
+        self._report_halts()
+        return status
 
     def _stand_still(self, stepped: bool) -> None:
         """One period of a pause. After a single step a simulated world stops as it is, so that steps add up."""
@@ -162,42 +198,36 @@ class Runner:
         self._publish_period()
         self.controls.wait(self._pause)
 
-    def _wait(self, due: float) -> float:
-        """Sleeps until a point in real time; returns it, or the present where that is later already."""
-        if self._pause == 0:
-            return due
-        left = due - time.monotonic()
-        if left <= 0:
-            self.overruns += 1
-            return due - left
-        while left > 0 and not self.controls.stopped:
-            self.controls.wait(left)
-            left = due - time.monotonic()
-        return due
+    def _period_left(self) -> float:
+        """The length of a period; the last one ends with the time limit."""
+        left = self._began + self._limit - self._clock.now
+        return min(self._period, left) if left > 0 else self._period
 
-    def _advance(self, most: float = math.inf) -> None:
-        seconds = min(self._period, most)
+    def _advance(self, seconds: float) -> None:
         self._clock.advance(seconds)
-        if self._robot is not None:
+        if self._robot is not None and seconds > 0:
             self._robot.step(seconds)
         self._publish_period()
 
     def _publish_period(self) -> None:
-        self._events.publish(PeriodPassed(self._clock.now, self.ticks, self.overruns, self._robot))
+        self._events.publish(PeriodPassed(self._clock.now, self.ticks, self._pace.late, self._robot))
 
     def _end(self) -> None:
         """Another Ctrl-C cuts short only the wait for the robot, not the halting."""
         try:
-            self._engine.halt()
+            self._engine.halt(emergency=self.controls.emergency)
         finally:
             if self._robot is not None:
                 self._robot.stop()
+        unended = self._engine.close(_PATIENCE)
         self._report_halts()
+        for failure in unended:
+            self._report(failure, f"{_words(failure)} did not end after it was halted")
         if self._robot is None:
             return
         rest_until = self._clock.now + _REST
         while True:  # at least once: a robot that was stopped takes no command before its next step
-            self._advance()
+            self._advance(self._period)
             if not getattr(self._robot, "moving", False) or self._clock.now >= rest_until - 1e-9:
                 return
             if self._pause:
@@ -205,8 +235,18 @@ class Runner:
 
     def _report_halts(self) -> None:
         for failure in self._engine.take_halt_failures():
-            data = {"text": f"{failure.node.id} did not halt: {failure.reason}", "path": failure.path}
-            self._events.publish(RobotEvent(self._clock.now, "error", data))
+            self._report(failure, f"{failure.node.id} did not halt: {failure.reason}")
+
+    def _report(self, failure: Failure, text: str) -> None:
+        data = {"text": text, "path": failure.path}
+        place = {"place": failure.span.place} if failure.span is not None else {}
+        self._events.publish(RobotEvent(self._clock.now, "error", {**data, **place}))
+
+
+def _words(failure: Failure) -> str:
+    """The words of a command where it came from some."""
+    span = failure.node.span
+    return span.text if span is not None else failure.node.id
 
 
 def _ending(outcome: Outcome) -> Mapping[str, Any]:

@@ -32,7 +32,8 @@ class Entry(Record, uncompared=("span",)):
     `span` is the place of its first phrase in its keyword file. Where `measures` names a type, the `call` gives a
     quantity of it; the vocabulary makes the phrases that compare it of the `quantity` ones and the words for comparing.
     `instant` and `uninterruptible` are what an action says of itself: that it ends in the tick in which it starts, and
-    that it should not be halted half-way. Warnings are made of them; they change nothing in a run.
+    that it should not be halted half-way. Warnings are made of them; they change nothing in a run. With `thread` the
+    `call`, a plain function, works in a thread of its own, beside the tick.
     """
 
     sort: str  # "action" or "condition"
@@ -48,6 +49,7 @@ class Entry(Record, uncompared=("span",)):
     measures: str = ""
     instant: bool = False
     uninterruptible: bool = False
+    thread: bool = False
     span: Span | None = None
 
     def slot(self, name: str) -> SlotSpec:

@@ -29,8 +29,8 @@ NODE_IDS = frozenset((
 ))  # fmt: skip
 """Ids that are not free: those of the engine."""
 _ENTRY = {"phrase", "id", "call", "ros", "slots", "resources", "topic", "help", "example"}
-_FLAGS = {"instant", "uninterruptible"}
-_MORE = {"action": _FLAGS, "condition": set[str](), "quantity": {"type"}}
+_FLAGS = ("instant", "uninterruptible", "thread")
+_MORE = {"action": set(_FLAGS), "condition": set[str](), "quantity": {"type"}}
 """The keys that an entry of one sort has beside those of all."""
 _TYPE = {"name", "units", "whole", "least", "open", "values"}
 
@@ -88,11 +88,14 @@ class _Reader:
             resources = []
         for key in [key for key in _FLAGS if not isinstance(table.get(key, False), bool)]:
             self.wrong(f"{key} of '{near}' is true or false", near)
+        instant, uninterruptible, thread = (table.get(key) is True for key in _FLAGS)
+        if instant and thread:
+            self.wrong(f"'{near}' cannot be instant: what works in a thread ends in a later tick", near)
         topic, help, example = (str(table.get(key, "")) for key in ("topic", "help", "example"))
         slots = self.slots(phrases, table.get("slots", {}), near)
         made = Entry(
             sort, name, tuple(phrases), str(call), slots, tuple(resources), topic, help, example, span=self.span(near),
-            instant=table.get("instant") is True, uninterruptible=table.get("uninterruptible") is True,
+            instant=instant, uninterruptible=uninterruptible, thread=thread,
         )  # fmt: skip
         return self.quantity(made, table, near) if sort == "quantity" else made
 

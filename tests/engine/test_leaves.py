@@ -264,9 +264,6 @@ class NoHalt:
     def tick(self) -> None: ...
 
 
-async def asynchronous() -> None: ...
-
-
 @pytest.mark.parametrize(
     ("node", "call", "message"),
     [
@@ -277,7 +274,6 @@ async def asynchronous() -> None: ...
         (n("A", x="1"), lambda x, /: None, "A takes no port x"),
         (n("A", x="one"), lambda x: None, "x cannot be 'one': invalid literal"),
         (n("A"), NoHalt, "NoHalt has no halt, so it is no leaf"),
-        (n("A"), asynchronous, "A is bound to an async function"),
         (n("A", n("AlwaysSuccess")), lambda: None, "A is a leaf, but has 1 children"),
         (n("Sequence"), None, "Sequence has 0 children instead of 1 or more"),
         (n("Inverter"), None, "Inverter has 0 children instead of 1"),

@@ -14,7 +14,7 @@ from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine
 from btlang.engine.leaf import ActionFailed, LeafBinding
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
-from btlang.run.events import EventStream, RobotEvent, StatusChanged, StatusesChanged
+from btlang.run.events import EventStream, PeriodPassed, RobotEvent, StatusChanged, StatusesChanged
 from btlang.run.runner import Runner, traced_engine
 from btlang.tree.node import Node, Tree
 
@@ -174,9 +174,11 @@ def test_overruns_are_counted() -> None:
         time.sleep(0.01)
         return RUNNING
 
-    runner, _, _ = make(Node("Slow"), {"Slow": slow}, speed=1.0, rate=1000, time_limit=0.005)
+    seen: list[Any] = []
+    events = EventStream(seen.append)
+    runner, _, _ = make(Node("Slow"), {"Slow": slow}, speed=1.0, rate=1000, time_limit=0.005, events=events)
     runner.run()
-    assert runner.overruns == 5
+    assert [event.overruns for event in seen if isinstance(event, PeriodPassed)] == [0, 1, 2, 3, 4, 5]
 
 
 def test_step() -> None:

@@ -201,7 +201,7 @@ def test_500_nodes_fit(terminal: Open, big: str) -> None:
     assert re.search(r"✓ task \w\w  [\d.]+ s  \(6 nodes\)", screen)
     assert re.search(r"‖ (nod|wave|look left|look right|look ahead)  ", screen)
     assert re.search(r"└── … \d\d to come", screen)
-    assert lines[-1] == "space resume · s step · q stop"
+    assert lines[-1] == "space resume · s step · q stop · e emergency stop"
 
 
 def test_a_narrow_terminal_and_another_size(terminal: Open, big: str) -> None:
@@ -298,3 +298,12 @@ def test_rich_is_imported_only_for_the_view() -> None:
     )
     done = subprocess.run([sys.executable, "-c", program], cwd=REPOSITORY, text=True, capture_output=True, check=True)
     assert done.stdout.splitlines()[-1] == "[]"
+
+
+@pytest.mark.parametrize("key", ["e", "C-\\"])
+def test_an_emergency_stop(terminal: Open, key: str) -> None:
+    seen = run(terminal, "-c", DRIVE)
+    seen.wait_for("▶ move forward")
+    seen.press(key)
+    assert seen.wait_for_end() == 131
+    assert "Emergency stop after" in seen.screen()

@@ -48,7 +48,9 @@ class Terminal:
         clean |= {"PYTHONPATH": str(REPOSITORY), "TERM": "screen-256color"} | dict(environment or {})
         assigned = [f"{name}={value}" for name, value in clean.items()]
         shell = (
-            f"trap : INT; {shlex.join(command)}; printf '[status %s]\\n' $?; exec sleep 1000" if command else "exec sh"
+            f"trap : INT QUIT; {shlex.join(command)}; printf '[status %s]\\n' $?; exec sleep 1000"
+            if command
+            else "exec sh"
         )
         program = shlex.join(["env", "-i", *assigned, "sh", "-c", shell])
         self._tmux(

@@ -46,6 +46,10 @@ ACTION = '[[action]]\nphrase = "hop"\nid = "Hop"\n'
         ('[[quantity]]\nphrase = "load on {value}"\nid = "Load"\ntype = "length"', "every quantity has a port value"),
         ('[[quantity]]\nphrase = "load on {below}"\nid = "Load"\ntype = "length"', "every quantity has a port below"),
         (ACTION + "foo = 1\nbar = 2", "'foo' is not known"),
+        (ACTION + "thread = 1", "thread of 'hop' is true or false"),
+        (ACTION + 'thread = "yes"', "thread of 'hop' is true or false"),
+        (ACTION + "thread = true\ninstant = true", "'hop' cannot be instant"),
+        ('[[condition]]\nphrase = "hopped"\nid = "Hopped"\nthread = true', "'thread' is not known in [[condition]]"),
         ("action = 5", "action is written [[action]]"),
     ],
 )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import signal
 from collections.abc import Callable, Sequence
 
 from rich.cells import cell_len, set_cell_size
@@ -22,7 +23,8 @@ if TYPE_CHECKING:
 _STYLES = {IDLE: "dim", RUNNING: "bold cyan", SUCCESS: "green", FAILURE: "bold red", SKIPPED: "dim"}
 _STYLES |= {HALTED: "yellow", SUSPENDED: "bold yellow"}
 _LABELS = {IDLE: "dim", RUNNING: "bold", FAILURE: "red", SKIPPED: "dim", SUSPENDED: "bold"}
-_KEYS = (("space", "pause"), ("s", "step"), ("q", "stop"))
+_KEYS = (("space", "pause"), ("s", "step"), ("q", "stop"), ("e", "emergency stop"))
+_SIGNALS = (("Ctrl-C", "stop"), *((("Ctrl-\\", "emergency stop"),) if hasattr(signal, "SIGQUIT") else ()))
 
 
 class Signs(Record):
@@ -73,7 +75,7 @@ def printable(text: str) -> str:
 
 def header(title: str, state: State, doing: str, signs: Signs) -> Line:
     """Mission file, time, and what the run is doing."""
-    style = {"running": "bold cyan", "paused": "bold yellow"}.get(doing, "bold")
+    style = {"running": "bold cyan", "paused": "bold yellow", "emergency stop": "bold red"}.get(doing, "bold")
     return ((title, "bold"), (f"{signs.apart}{state.now:.1f} s{signs.apart}", "dim"), (doing, style))
 
 
@@ -123,9 +125,9 @@ def counts_line(state: State, signs: Signs) -> Line:
 
 
 def keys_line(paused: bool, keys: bool, signs: Signs) -> Line:
-    """What the keys do; only Ctrl-C where the keyboard is not read."""
+    """What the keys do; those of signals where the keyboard is not read."""
     pieces: list[tuple[str, str]] = []
-    for key, deed in _KEYS if keys else (("Ctrl-C", "stop"),):
+    for key, deed in _KEYS if keys else _SIGNALS:
         deed = "resume" if paused and deed == "pause" else deed
         pieces += [(key, "bold"), (f" {deed}{signs.apart}", "dim")]
     last = pieces.pop()[0].removesuffix(signs.apart)

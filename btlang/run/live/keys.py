@@ -24,6 +24,8 @@ _PATIENCE = 0.2  # seconds until a process in the background looks again
 
 STOP = "q"
 """The key that ends the run."""
+EMERGENCY = "e"
+"""The key that stops the robot at once."""
 
 
 class Keys:

@@ -12,7 +12,7 @@ from btlang.run.events import PeriodPassed
 from btlang.run.live import frame
 from btlang.run.live.board import Board
 from btlang.run.live.capture import captured
-from btlang.run.live.keys import STOP, Keys
+from btlang.run.live.keys import EMERGENCY, STOP, Keys
 from btlang.run.live.screen import Screen
 from btlang.run.live.stopping import stoppable
 
@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 
 _INTERVAL = 0.2  # seconds between two frames
 _LATEST = 0.1  # seconds after which a frame does not wait any longer for the end of a period
+_TICK = 0.01  # seconds: a tick follows a period at once, and is over by then as a rule; the run then sleeps
 _SHARE = 40  # a frame that took long to make is followed by a rest of so many times as long
 _LONGEST_REST = 1.0
 _SWITCH = 0.0005  # seconds after which the drawing thread lets a run that is waiting go on
@@ -37,9 +38,9 @@ class LiveView:
     """A sink for one run, between `with` and its end.
 
     It shows the tree at the end of what the terminal shows, and above it the lines that `Lines` writes, which stay; the
-    tree stays too unless `tree_stays` is false. The keys space, s and q of `keyboard`, where there is one, pause, step
-    and stop the run. What is printed to standard output, or to a standard error on a terminal, comes above the tree.
-    Raises EngineError for a tree that cannot be compiled.
+    tree stays too unless `tree_stays` is false. The keys space, s, q and e of `keyboard`, where there is one, pause,
+    step and stop the run, and stop the robot at once. What is printed to standard output, or to a standard error on a
+    terminal, comes above the tree. Raises EngineError for a tree that cannot be compiled.
     """
 
     def __init__(
@@ -66,7 +67,7 @@ class LiveView:
         """Notes an event."""
         self._board.note(event)
         if isinstance(event, PeriodPassed) and time.monotonic() >= self._due:
-            self._wake.set()  # the run now sleeps until its next tick, so that drawing takes no time from it
+            self._wake.set()
 
     def __enter__(self) -> LiveView:
         with ExitStack() as exits:
@@ -94,6 +95,7 @@ class LiveView:
         while not self._ended:
             self._wake.wait(rest + _LATEST)
             self._wake.clear()
+            time.sleep(_TICK)  # so that drawing takes no time from it
             if self._left or not self._in_front:
                 self._behind = True
                 continue
@@ -124,6 +126,8 @@ class LiveView:
     def _doing(self) -> str:
         if self._ended:
             return ""
+        if self._controls.emergency:
+            return "emergency stop"
         return "stopping" if self._controls.stopped else "paused" if self._controls.paused else "running"
 
     @property
@@ -152,7 +156,9 @@ class LiveView:
             return None
 
     def _press(self, key: str) -> None:
-        deed = {" ": self._controls.toggle, "s": self._controls.step, STOP: self._controls.stop}.get(key.lower())
+        controls = self._controls
+        deeds = {" ": controls.toggle, "s": controls.step, STOP: controls.stop, EMERGENCY: controls.emergency_stop}
+        deed = deeds.get(key.lower())
         if deed is not None:
             deed()
             self._wake.set()

@@ -143,3 +143,15 @@ def test_a_captured_stream_is_like_the_real_one(terminal: Pty) -> None:
     assert (capture.encoding, capture.isatty(), capture.fileno()) == ("utf-8", True, terminal.slave)
     assert capture.writable()
     assert capture.errors == terminal.file.errors
+
+
+def test_a_slow_action_is_told_above_the_tree(terminal: Pty) -> None:
+    @btlang.action("dawdle")
+    def dawdle() -> None:
+        threading.Event().wait(0.12)
+
+    mission = btlang.parse_tree("dawdle", keywords=[dawdle])
+    with LiveView(mission, terminal.file) as view:
+        mission.run(sinks=[view])
+    assert mission.sink_errors == []
+    assert "slow   dawdle: took 0.1" in terminal.close()

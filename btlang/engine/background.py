@@ -1,0 +1,159 @@
+"""Leaves that work beside the tick: plain functions in threads, and `async def` functions on an event loop.
+
+To the rest of the engine such a leaf is a class leaf whose `tick` looks whether its work is over. The end of the work
+wakes the run. A halt asks the work to end and does not wait: until it has, the leaf is RUNNING when it is ticked and
+starts nothing. Threads are daemons: one that does not end does not keep the process from ending.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from threading import Event, Thread
+
+from btlang.engine.build import Fault, Shared, Site
+from btlang.engine.leaf import ActionFailed, described
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+    from btlang.engine.event_loop import EventLoop
+
+HALTED = "halted"
+"""The parameter by which the function of a thread gets the event that is set when it is halted."""
+_CLOSING = 0.5  # seconds that an event loop gets to end when nothing works on it
+
+
+class Work:
+    """One run of a background leaf. `ended` is set when it is over; its `result` or its `problem` is there by then."""
+
+    __slots__ = ("cancel", "ended", "halted", "problem", "result")
+
+    def __init__(self) -> None:
+        self.halted = Event()
+        self.ended = Event()
+        self.result: object = None
+        self.problem: BaseException | None = None
+        self.cancel: Callable[[], object] = self.halted.set
+        """Asks it to end, from the thread that ticks."""
+
+
+class Background:
+    """What the background leaves of one engine share. All of it is for the thread that ticks, but `over`."""
+
+    def __init__(self, shared: Shared) -> None:
+        self._wake: Callable[[], object] = shared.services["wake"]
+        self._loop: EventLoop | None = None
+        self._halted: list[tuple[int, Work]] = []  # with the index of its leaf
+
+    def start_thread(self, call: Callable[[Event], object]) -> Work:
+        """Calls a function in a thread of its own; it gets the event that is set when it is halted."""
+        work = Work()
+
+        def run() -> None:
+            try:
+                work.result = call(work.halted)
+            except BaseException as problem:  # also SystemExit: it ends the mission, not the thread alone
+                work.problem = problem
+            self.over(work)
+
+        Thread(target=run, name="btlang leaf", daemon=True).start()
+        return work
+
+    def start_async(self, call: Callable[[], Any]) -> Work:
+        """Awaits what an `async def` function gives, on the event loop of this engine."""
+        from btlang.engine.event_loop import EventLoop
+
+        if self._loop is None:
+            self._loop = EventLoop()
+        work = Work()
+        self._loop.start(call, work, self.over)
+        return work
+
+    def over(self, work: Work) -> None:
+        """The work has ended; from any thread."""
+        work.ended.set()
+        self._wake()
+
+    def halt(self, index: int, work: Work) -> None:
+        """Asks the work of a leaf to end."""
+        work.cancel()
+        self._halted.append((index, work))
+
+    def take_faults(self) -> list[Fault]:
+        """What works that were halted have raised since; ActionFailed and CancelledError are ways to end."""
+        faults, going = [], []
+        for index, work in self._halted:
+            if not work.ended.is_set():
+                going.append((index, work))
+            elif isinstance(work.problem, Exception) and not isinstance(work.problem, ActionFailed):
+                faults.append(Fault(index, described(work.problem), work.problem))
+        self._halted = going
+        return faults
+
+    def close(self, patience: float) -> list[int]:
+        """Ends the event loop. Waits at most so many real seconds for works that were halted first.
+
+        Returns the leaves whose work goes on.
+        """
+        until = time.monotonic() + patience
+        left = [index for index, work in self._halted if not work.ended.wait(max(0.0, until - time.monotonic()))]
+        if self._loop is not None:
+            self._loop.close(0.0 if left else _CLOSING)
+            self._loop = None
+        return left
+
+
+class BackgroundLeaf:
+    """The class leaf that a background leaf is. `launch` begins its work with the values of the ports."""
+
+    def __init__(self, index: int, background: Background, launch: Callable[[dict[str, Any]], Work]) -> None:
+        self._index = index
+        self._background = background
+        self._launch = launch
+        self._values: dict[str, Any] = {}
+        self._work: Work | None = None
+
+    def start(self, **values: Any) -> object:
+        """Begins the work, once that of a former run is over."""
+        self._values = values
+        return self.tick()
+
+    def tick(self) -> object:
+        """None while it works; then what it returned, or raises what it raised."""
+        work = self._work
+        if work is None or (work.halted.is_set() and work.ended.is_set()):
+            self._work = self._launch(self._values)
+            return None
+        if work.halted.is_set() or not work.ended.is_set():
+            return None
+        self._work = None
+        problem = work.problem
+        if isinstance(problem, Exception | SystemExit | KeyboardInterrupt):
+            raise problem
+        if problem is not None:  # such as the CancelledError of another task
+            raise ActionFailed(type(problem).__name__) from problem
+        return True if work.result is None else work.result
+
+    def halt(self) -> None:
+        """Asks the work to end."""
+        if self._work is not None and not self._work.halted.is_set():
+            self._background.halt(self._index, self._work)
+
+
+def background_leaf(site: Site, call: Callable[..., Any], in_thread: bool, takes_halted: bool) -> BackgroundLeaf:
+    """`call` takes the values of the ports that are read at each start, and the event `halted` where it asks for it."""
+    background = site.shared.background
+    if background is None:
+        background = site.shared.background = Background(site.shared)
+
+    def thread(values: dict[str, Any]) -> Work:
+        if takes_halted:
+            return background.start_thread(lambda halted: call(**values, **{HALTED: halted}))
+        return background.start_thread(lambda halted: call(**values))
+
+    def awaited(values: dict[str, Any]) -> Work:
+        return background.start_async(lambda: call(**values))
+
+    return BackgroundLeaf(site.index, background, thread if in_thread else awaited)

@@ -1,0 +1,55 @@
+"""A run in real time: when the next tick is due, and the sleep until then."""
+
+from __future__ import annotations
+
+import math
+import time
+
+from btlang.run.controls import Controls
+
+
+class Pace:
+    """Sleeps between ticks. `speed` is seconds of the mission per second of real time; math.inf does not sleep at all.
+
+    `late` counts the periods that were over before their sleep began. Time after a late tick is not caught up with.
+    """
+
+    def __init__(self, speed: float, controls: Controls) -> None:
+        self._speed = speed
+        self._controls = controls
+        self._due = 0.0
+        self._woken = False
+        self.late = 0
+
+    def begin(self) -> None:
+        """A period begins now."""
+        self._due = time.monotonic()
+
+    def tick_begins(self) -> None:
+        """Who calls `wake` from now on means the tick after this one."""
+        self._woken = False
+
+    def wake(self) -> None:
+        """Ends the sleep, also one that begins before the next tick; from any thread."""
+        self._woken = True
+        self._controls.wake()
+
+    def sleep(self, seconds: float) -> float:
+        """Sleeps through a period of so many seconds of the mission; returns how many have passed.
+
+        Those are all of them unless it is woken or the run is stopped.
+        """
+        if self._speed == math.inf:
+            return seconds
+        self._due += seconds / self._speed
+        left = self._due - time.monotonic()
+        if left <= 0:
+            self.late += 1
+            self._due -= left
+        while left > 0:
+            if self._woken or self._controls.stopped:
+                self._due -= left
+                return max(0.0, seconds - left * self._speed)
+            self._controls.wait(left)
+            left = self._due - time.monotonic()
+        return seconds

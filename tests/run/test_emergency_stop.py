@@ -1,0 +1,222 @@
+"""The emergency stop: the robot stops at once, whatever a leaf is doing, and then the run ends."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import btlang
+from btlang.api import load_simulation
+from btlang.engine.status import IDLE, RUNNING, SUCCESS
+from btlang.run.events import PeriodPassed, StatusesChanged
+
+REPOSITORY = Path(__file__).parent.parent.parent
+PATIENCE = 20.0  # seconds of real time, for what takes none
+
+
+class Hanging:
+    """A command that drives off, and at its tenth tick hangs until it is released; then it commands all it can."""
+
+    def __init__(self) -> None:
+        self.entered, self.released = threading.Event(), threading.Event()
+
+        @btlang.action("charge ahead")
+        def charge_ahead(robot: Any) -> Iterator[None]:
+            robot.drive(1.0, 0.0)
+            for _ in range(10):
+                yield
+            self.entered.set()
+            assert self.released.wait(PATIENCE)
+            robot.drive(1.0, 90.0)
+            robot.navigate_to("kitchen")
+            robot.move_joints({"head turn": 90.0})
+            robot.release("right")
+            robot.drive(1.0, 90.0)
+            while True:
+                yield
+
+        self.tree = btlang.parse_tree("pick up the cup then charge ahead", keywords=[charge_ahead])
+
+
+def test_the_robot_stops_before_a_hanging_leaf_returns() -> None:
+    hanging = Hanging()
+    tree, outcomes = hanging.tree, []
+    thread = threading.Thread(target=lambda: outcomes.append(tree.run(speed="max")))
+    thread.start()
+    assert hanging.entered.wait(PATIENCE)
+    robot = tree.robot
+    assert (robot.moving, robot.stops) == (True, 0)
+    tree.emergency_stop()
+    assert robot.stops == 1
+    assert thread.is_alive()
+    place, facing = robot.pose, robot.pose.heading
+    hanging.released.set()
+    thread.join(PATIENCE)
+    [outcome] = outcomes
+    assert (outcome.status, outcome.stopped, outcome.failure) == (IDLE, "emergency stop", None)
+    assert place.distance_to((robot.pose.x, robot.pose.y)) < 0.05  # what the brakes need from 0.5 m/s
+    assert robot.pose.heading == pytest.approx(facing)
+    assert (robot.moving, robot.joint("head turn"), robot.holding("right")) == (False, 0.0, "cup")
+
+
+def test_the_tree_is_halted_as_in_an_emergency(monkeypatch: pytest.MonkeyPatch) -> None:
+    from btlang.engine.engine import Engine
+
+    halts: list[bool] = []
+    halt = Engine.halt
+    monkeypatch.setattr(
+        Engine, "halt", lambda self, emergency=False: (halts.append(emergency), halt(self, emergency=emergency))
+    )
+    tree = btlang.parse_tree("move forward 2 m")
+    tree.run(speed="max", sinks=[lambda event: tree.stop() if event.t > 1 else None])
+    tree.run(speed="max", sinks=[lambda event: tree.emergency_stop() if event.t > 1 else None])
+    assert halts == [False, True]
+
+
+def test_nothing_is_ticked_after_it() -> None:
+    ticked: list[int] = []
+
+    @btlang.action("count")
+    def count(robot: Any) -> Iterator[None]:
+        while True:
+            ticked.append(robot.stops)
+            if len(ticked) == 5:
+                tree.emergency_stop()
+            yield
+
+    tree = btlang.parse_tree("count", keywords=[count])
+    outcome = tree.run(speed="max")
+    assert (outcome.stopped, outcome.ticks, ticked) == ("emergency stop", 5, [0] * 5)
+
+
+def test_while_the_run_is_paused() -> None:
+    tree = btlang.parse_tree("go to the lab")
+
+    def watch(event: object) -> None:
+        if isinstance(event, PeriodPassed) and event.t >= 2:
+            if tree.controls.paused:
+                tree.emergency_stop()
+            tree.pause()
+
+    outcome = tree.run(speed="max", sinks=[watch])
+    assert (outcome.stopped, tree.robot.moving) == ("emergency stop", False)
+
+
+def test_while_the_robot_comes_to_rest() -> None:
+    tree = btlang.parse_tree("wave")
+    over: list[object] = []
+
+    def watch(event: object) -> None:
+        if isinstance(event, StatusesChanged):
+            over.extend(change for change in event if change.path == "/" and change.status == SUCCESS)
+        elif over and isinstance(event, PeriodPassed):
+            tree.emergency_stop()
+
+    outcome = tree.run(speed="max", sinks=[watch])
+    assert (outcome.status, outcome.stopped) == (IDLE, "emergency stop")
+
+
+def test_without_a_run_the_robot_stops_and_the_next_run_does_not_begin() -> None:
+    mission = btlang.parse_tree("move forward 1 m")
+    stage = load_simulation()
+    tree = btlang.RunnableTree(mission.tree, mission.vocabulary, stage=stage)
+    stage.robot.drive(0.5, 0.0)
+    stage.robot.step(1.0)
+    tree.emergency_stop()
+    assert stage.robot.stops == 1
+    outcome = tree.run(speed="max")
+    assert (outcome.stopped, outcome.ticks, stage.robot.moving) == ("emergency stop", 0, False)
+    assert tree.run(speed="max").status == SUCCESS
+
+
+def test_between_ticks_by_hand() -> None:
+    tree = btlang.parse_tree("move forward 1 m")
+    for _ in range(20):
+        assert tree.tick() == RUNNING
+    tree.emergency_stop()
+    assert tree.tick() == IDLE
+    assert not tree.robot.moving
+    assert tree.tick() == RUNNING  # anew
+    tree.run(speed="max", time_limit=1)
+    assert tree.tick() == RUNNING
+    tree.emergency_stop()
+    assert tree.tick() == IDLE
+
+
+def test_a_stop_in_the_middle_of_a_step_is_not_overwritten(monkeypatch: pytest.MonkeyPatch) -> None:
+    robot = load_simulation().robot
+    robot.drive(0.5, 0.0)
+    robot.step(1.0)
+    pieces: list[int] = []
+
+    def between() -> None:
+        pieces.append(0)
+        if len(pieces) == 2:
+            robot.stop()
+            robot._base.drive(0.5, 0.0)  # as the journey under way in another thread would have
+
+    monkeypatch.setattr(robot, "_begin_faults", between)
+    robot.step(1.0)
+    assert len(pieces) == 20
+    assert not robot.moving
+
+
+HANGING = """
+import hashlib, threading, time
+
+def hang(robot):
+    seen = []
+
+    def watch():
+        while not robot.stops:
+            time.sleep(0.002)
+        seen.append("stopped")
+
+    threading.Thread(target=watch, daemon=True).start()
+    print("hangs", flush=True)
+    hashlib.pbkdf2_hmac("sha256", b"", b"", 4_000_000)  # no handler of a signal runs in here
+    print("returned after", seen, flush=True)
+    robot.drive(1, 0)
+    yield
+"""
+
+
+@pytest.mark.skipif(not hasattr(signal, "SIGQUIT"), reason="the system has no such signal")
+def test_the_signal_stops_the_robot_of_the_command(tmp_path: Path) -> None:
+    (tmp_path / "hanging.py").write_text(HANGING)
+    words = tmp_path / "words.toml"
+    words.write_text('[[action]]\nphrase = "hang"\nid = "Hang"\ncall = "hanging:hang"\n')
+    command = [
+        sys.executable,
+        "-m",
+        "btlang",
+        "run",
+        "-c",
+        "wait 1 s then hang",
+        "--speed",
+        "5",
+        "--keywords",
+        str(words),
+    ]
+    environment = {**os.environ, "PYTHONPATH": str(REPOSITORY)}
+    with subprocess.Popen(
+        command, env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE
+    ) as process:
+        assert process.stdout is not None
+        while process.stdout.readline() != "hangs\n":
+            pass
+        process.send_signal(signal.SIGQUIT)
+        out, err = process.communicate(timeout=60)
+    assert (process.returncode, err) == (131, ""), out
+    lines = out.splitlines()
+    assert lines[0] == "returned after ['stopped']"
+    assert lines[-1].startswith("Emergency stop after 1.")
+    assert lines[-1].endswith(" s; the robot stands still.")
