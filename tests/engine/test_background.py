@@ -13,7 +13,7 @@ import pytest
 
 from btlang.engine.build import EngineError
 from btlang.engine.engine import Engine
-from btlang.engine.leaf import ActionFailed
+from btlang.engine.leaf import ActionFailed, Failed
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
 from btlang.tree.node import Node
 
@@ -115,8 +115,8 @@ def world() -> World:
         (True, SUCCESS, ""),
         (SUCCESS, SUCCESS, ""),
         (SKIPPED, SKIPPED, ""),
-        (False, FAILURE, ""),
-        (FAILURE, FAILURE, ""),
+        (False, FAILURE, "it returned False"),
+        (Failed("it is dark"), FAILURE, "it is dark"),
         ("yes", FAILURE, "it returned 'yes', which is neither True, False, None nor a status"),
         (ActionFailed("nothing within reach"), FAILURE, "nothing within reach"),
         (ValueError("seven"), FAILURE, "ValueError: seven"),
