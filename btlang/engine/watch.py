@@ -56,7 +56,7 @@ class Trace:
     """What the watches of one engine share: the number of the tick, and the changes that have not been told yet.
 
     They are told together, which costs a listener far less: after each tick, halt and suspension, before a leaf that
-    takes time starts, and whenever somebody calls `tell`.
+    takes time starts and when it has ended, and whenever somebody calls `tell`.
     """
 
     __slots__ = ("changes", "listener", "shared", "tick")
@@ -101,8 +101,11 @@ class Watch:
         elif status == RUNNING and self.last not in (IDLE, RUNNING):
             self._note_below()
         if status != self.last or (self.every and status != RUNNING):
+            took_time = self.last == RUNNING and not self.below
             self.last = status
             self.note()
+            if took_time:
+                self.trace.tell()
 
     def note(self) -> None:
         """Its status is news."""
