@@ -1,0 +1,60 @@
+"""A ROS 2 node that is spun in a thread of its own, and leaves nothing behind."""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from threading import Thread
+
+import rclpy
+from rclpy.context import Context
+from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
+from rclpy.node import Node
+from rclpy.parameter import Parameter
+from rclpy.signals import SignalHandlerOptions
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from types import TracebackType
+
+
+class SpunNode:
+    """`node` in a ROS context of its own; its callbacks run in a thread of their own, one at a time.
+
+    Use it with `with`, or call `close`: a thread that spins when the process ends would abort it. Signals stay with
+    the program. With `use_sim_time` the node's clock is the topic /clock.
+    """
+
+    def __init__(self, name: str, *, use_sim_time: bool = False, domain_id: int | None = None) -> None:
+        self.context = Context()
+        rclpy.init(context=self.context, domain_id=domain_id, signal_handler_options=SignalHandlerOptions.NO)
+        overrides = [Parameter("use_sim_time", Parameter.Type.BOOL, use_sim_time)]
+        self.node: Node = rclpy.create_node(name, context=self.context, parameter_overrides=overrides)
+        self._executor = SingleThreadedExecutor(context=self.context)
+        self._executor.add_node(self.node)
+        self._thread = Thread(target=self._spin, name=f"ros {name}", daemon=True)
+
+    def start(self) -> None:
+        """Begins to call callbacks; to be called once all publishers and subscriptions are there."""
+        self._thread.start()
+
+    def close(self) -> None:
+        """Ends the thread, then the node, then its context. May be called twice."""
+        self._executor.shutdown()
+        if self._thread.ident is not None:
+            self._thread.join()
+        if self.context.ok():
+            self.node.destroy_node()
+            rclpy.shutdown(context=self.context)
+
+    def __enter__(self) -> SpunNode:
+        self.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def _spin(self) -> None:
+        with suppress(ExternalShutdownException):
+            self._executor.spin()
