@@ -85,7 +85,7 @@ def function_leaf(site: Site, call: Callable[..., Any], stored: Stored) -> Compi
 def generator_leaf(site: Site, call: Callable[..., Any], stored: Stored) -> Compiled:
     """A generator function; `stored` gives the values that are read at each start."""
     generator: Any = None
-    interrupts, watch = site.shared.interrupts, site.shared.watch
+    interrupts, watch = site.shared.interrupts, _watch_of(site)
 
     def tick() -> int:
         nonlocal generator
@@ -99,10 +99,11 @@ def generator_leaf(site: Site, call: Callable[..., Any], stored: Stored) -> Comp
             return RUNNING
         except StopIteration as stop:
             generator = None
-            return status_of(site, stop.value)
+            status = status_of(site, stop.value)
         except Exception as problem:
             generator = None
-            return failed(site, problem)
+            status = failed(site, problem)
+        return status if watch is None else watch.ended(status)
 
     def halt(keep: bool) -> None:
         nonlocal generator
@@ -116,7 +117,7 @@ def generator_leaf(site: Site, call: Callable[..., Any], stored: Stored) -> Comp
 def class_leaf(site: Site, leaf: Any, start: Callable[..., Any], stored: Stored) -> Compiled:
     """An object with `tick` and `halt`, and what starts it; `stored` gives the values that are read at each start."""
     go_on = leaf.tick
-    interrupts, watch = site.shared.interrupts, site.shared.watch
+    interrupts, watch = site.shared.interrupts, _watch_of(site)
     running = False
 
     def tick() -> int:
@@ -132,14 +133,15 @@ def class_leaf(site: Site, leaf: Any, start: Callable[..., Any], stored: Stored)
                 result = start() if values is None else start(**values)
             if result is None or result == RUNNING:
                 return RUNNING
+            running = False
+            status = SUCCESS if result is True else status_of(site, result)
         except ActionFailed as problem:
             running = False
-            return failed(site, problem)
+            status = failed(site, problem)
         except Exception as problem:
             halt(False)
-            return failed(site, problem)
-        running = False
-        return SUCCESS if result is True else status_of(site, result)
+            status = failed(site, problem)
+        return status if watch is None else watch.ended(status)
 
     def halt(keep: bool) -> None:
         nonlocal running
@@ -148,6 +150,14 @@ def class_leaf(site: Site, leaf: Any, start: Callable[..., Any], stored: Stored)
             _stop(site, leaf.halt)
 
     return tick, halt
+
+
+def _watch_of(site: Site) -> Watch | None:
+    """Its watch, to which the leaf itself tells how it ended unless conditions around it may change that."""
+    watch = site.shared.watch
+    if watch is not None and watch.index and not any(port[:1] == "_" for port, _ in site.node.ports):
+        watch.told_by_leaf = True
+    return watch
 
 
 def _begin(interrupts: list[Callable[[], None]], watch: Watch | None) -> None:

@@ -84,7 +84,7 @@ class Watch:
     told, so are the statuses below it that are those of the run before; what this run has not reached is forgotten.
     """
 
-    __slots__ = ("below", "every", "index", "last", "reached", "told", "trace")
+    __slots__ = ("below", "every", "index", "last", "reached", "told", "told_by_leaf", "trace")
 
     def __init__(self, index: int, every: bool, below: list[Watch], trace: Trace) -> None:
         self.index = index
@@ -93,6 +93,7 @@ class Watch:
         self.trace = trace
         self.last = IDLE
         self.reached = self.told = 0  # the ticks in which it last had a status, and in which that was noted
+        self.told_by_leaf = False  # so that a leaf needs no wrapper while it is RUNNING
 
     def change(self, status: int) -> None:
         """The node has this status now."""
@@ -106,6 +107,13 @@ class Watch:
             self.note()
             if took_time:
                 self.trace.tell()
+
+    def ended(self, status: int) -> int:
+        """To be called by a leaf that tells by itself how it ended; returns the status."""
+        if self.told_by_leaf:
+            self.reached = self.trace.tick
+            self.change(status)
+        return status
 
     def note(self) -> None:
         """Its status is news."""
@@ -123,6 +131,8 @@ class Watch:
         leaf = as_function(tick)
         if leaf is not None and self.index and not self.every:
             return self._watched_function(leaf), self._watched_halt(halt)
+        if self.told_by_leaf:
+            return tick, self._watched_halt(halt)
         trace = self.trace
 
         def watched_tick() -> int:
