@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from _thread import get_ident  # `threading` takes longer to import
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from btlang.engine.blackboard import Blackboard
@@ -191,8 +192,11 @@ class Engine:
         return "/" + "/".join(reversed(steps))
 
     def tell(self) -> None:
-        """Hands to the listener what has changed since it was last told; also from within a leaf."""
-        if self._trace is not None:
+        """Hands to the listener what has changed since it was last told; also from within a leaf.
+
+        In another thread than that of the latest tick it does nothing: that tick may go on.
+        """
+        if self._trace is not None and self._trace.thread == get_ident():
             self._trace.tell()
 
     def parent(self, index: int) -> int:
@@ -264,7 +268,8 @@ class Engine:
         if not keep:
             self._failed = self.failure
             self.status = IDLE
-        self.tell()
+        if self._trace is not None:
+            self._trace.tell()
         if interrupted is not None:
             raise interrupted
 

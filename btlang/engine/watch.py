@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from _thread import get_ident  # `threading` takes longer to import
 from collections.abc import Callable, Iterator
 
 from btlang.engine.leaves import FunctionLeaf, as_function, failed, status_of
@@ -59,12 +60,13 @@ class Trace:
     takes time starts and when it has ended, and whenever somebody calls `tell`.
     """
 
-    __slots__ = ("changes", "listener", "shared", "tick")
+    __slots__ = ("changes", "listener", "shared", "thread", "tick")
 
     def __init__(self, shared: Shared, listener: Listener) -> None:
         self.shared = shared
         self.listener = listener
         self.tick = 0
+        self.thread = 0  # that of the latest tick
         self.changes = Changes()
 
     def tell(self) -> None:
@@ -144,6 +146,7 @@ class Watch:
 
         def root_tick() -> int:
             trace.tick += 1
+            trace.thread = get_ident()
             return watched_tick()
 
         return (watched_tick if self.index else root_tick), self._watched_halt(halt)
