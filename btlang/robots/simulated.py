@@ -188,6 +188,11 @@ class SimulatedRobot:
         return self._power.level
 
     @property
+    def battery_empty(self) -> bool:
+        """True when the wheels get no power any more."""
+        return self._power.empty
+
+    @property
     def docked(self) -> bool:
         """True while connected to the dock."""
         return self._power.docked
