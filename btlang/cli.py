@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 
 import btlang
-from btlang.api import RATES, SLOWEST, RunnableTree, format_mission, parse_tree, world_vocabulary
+from btlang.api import RATES, SLOWEST, RunnableTree, format_mission, parse_tree, read_world, world_vocabulary
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.reading import read_source, reason_of
 from btlang.diagnostics.report import FORMATS, Report
@@ -22,7 +22,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-SUCCESS, UNFORMATTED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
+SUCCESS, FAILED, UNFORMATTED, BAD_INPUT, INTERRUPTED = 0, 1, 1, 2, 130
 _WIDEST = 120  # columns; longer lines are hard to read
 
 
@@ -61,9 +61,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _run(options: argparse.Namespace) -> int:
     from btlang.pictures.command import pictures_of
+    from btlang.ros.command import chosen_robot, print_preflight
     from btlang.run.command import run_mission
 
+    robot = chosen_robot(options)
     tree = _tree(options)
+    if options.preflight:
+        ready = print_preflight(tree.tree, read_world(options.world), sim_time=options.sim_time)
+        return SUCCESS if ready else FAILED
     with pictures_of(tree, options.picture, options.tree_picture) as sinks:
         return run_mission(
             tree,
@@ -74,6 +79,7 @@ def _run(options: argparse.Namespace) -> int:
             quiet=options.quiet,
             lines=options.lines,
             sinks=sinks,
+            robot=robot,
         )
 
 
@@ -264,6 +270,8 @@ def _repl_options(parser: argparse.ArgumentParser) -> None:
 
 
 def _run_options(parser: argparse.ArgumentParser) -> None:
+    from btlang.ros.command import add_robot_options
+
     _mission_options(parser)
     _speed_option(parser)
     parser.add_argument(
@@ -279,6 +287,7 @@ def _run_options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--lines", action="store_true", help="plain lines also where the output is a terminal")
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    add_robot_options(parser)
 
 
 def _tree_options(parser: argparse.ArgumentParser) -> None:
@@ -315,7 +324,7 @@ def _format_options(parser: argparse.ArgumentParser) -> None:
 
 _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "repl": ("type a mission line by line; what `btc` alone does", _repl_options),
-    "run": ("run a mission on the simulated robot", _run_options),
+    "run": ("run a mission on the simulated robot, or a ROS 2 robot", _run_options),
     "check": ("say what is wrong with a mission", _mission_options),
     "tree": ("print the behavior tree of a mission", _tree_options),
     "words": ("list what can be said", _listing_options),

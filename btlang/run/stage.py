@@ -7,9 +7,13 @@ from typing import Any, Protocol
 
 from btlang.engine.clock import Clock
 from btlang.run.controls import Controls
-from btlang.run.events import EventStream, Sink
+from btlang.run.events import EventStream
 from btlang.run.pace import Pace
 from btlang.tree.node import Tree
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.run.events import Sink
 
 
 class Stage(Protocol):
