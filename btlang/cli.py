@@ -29,7 +29,7 @@ _WIDEST = 120  # columns; longer lines are hard to read
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs one verb; returns the exit code.
 
-    0 success or skipped, 1 mission failed, 2 bad input, 130 interrupted, 131 emergency stop.
+    0 success or skipped, 1 mission failed, 2 bad input, 130 interrupted, 131 emergency stop, 143 terminated.
     """
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
@@ -189,6 +189,18 @@ def _format_one(source: Source, options: argparse.Namespace) -> bool:
     return False
 
 
+def _sim_ros(options: argparse.Namespace) -> int:
+    from btlang.ros.simulator.command import serve
+
+    return serve(
+        read_world(options.world),
+        speed=1.0 if options.speed == "real" else options.speed,
+        rate=options.rate,
+        gives_clock=options.clock,
+        namespace=options.namespace,
+    )
+
+
 def _repl(options: argparse.Namespace) -> int:
     from btlang.repl.loop import run_repl
 
@@ -204,6 +216,7 @@ _VERBS = {
     "examples": _examples,
     "explain": _explain,
     "format": _format,
+    "sim-ros": _sim_ros,
 }
 
 
@@ -242,6 +255,10 @@ def _words_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--keywords", action="append", default=[], metavar="FILE", help="further keyword file, or name of a pack"
     )
+    _world_option(parser)
+
+
+def _world_option(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--world", metavar="FILE", help="world file (default: the world that ships)")
 
 
@@ -322,6 +339,20 @@ def _format_options(parser: argparse.ArgumentParser) -> None:
     several.add_argument("-c", dest="text", metavar="TEXT", help="mission as text")
 
 
+def _sim_ros_options(parser: argparse.ArgumentParser) -> None:
+    _world_option(parser)
+    parser.add_argument(
+        "--speed", type=_finite_speed, default="real", help="real, or a factor of real time (default: real)"
+    )
+    parser.add_argument(
+        "--rate", type=_between(*RATES), default=20.0, metavar="HZ", help="steps a simulated second (default: 20)"
+    )
+    parser.add_argument(
+        "--clock", action=argparse.BooleanOptionalAction, default=True, help="give the simulated time on /clock"
+    )
+    parser.add_argument("--namespace", type=_namespace, default="", metavar="NS", help="of all topics (default: none)")
+
+
 _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "repl": ("type a mission line by line; what `btc` alone does", _repl_options),
     "run": ("run a mission on the simulated robot, or a ROS 2 robot", _run_options),
@@ -331,6 +362,7 @@ _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "examples": ("list the missions that ship, print them or copy them", _examples_options),
     "explain": ("show how a mission is read, or tell of a message", _explain_options),
     "format": ("lay out missions: indentation, spaces, empty lines", _format_options),
+    "sim-ros": ("offer the simulated robot over ROS 2", _sim_ros_options),
 }
 
 
@@ -354,6 +386,16 @@ class _Parser(argparse.ArgumentParser):
 
 def _speed(text: str) -> float | str:
     return text if text in ("real", "max") else _between(SLOWEST, 1e6)(text)
+
+
+def _finite_speed(text: str) -> float | str:
+    return text if text == "real" else _between(SLOWEST, 1e6)(text)
+
+
+def _namespace(text: str) -> str:
+    if text and not all(part.isidentifier() and part.isascii() for part in text.removeprefix("/").split("/")):
+        raise argparse.ArgumentTypeError(f"names of letters, digits and _ with / between are needed, not '{text}'")
+    return text
 
 
 def _between(least: float, most: float) -> Callable[[str], float]:

@@ -99,7 +99,7 @@ _ALL = (
     Code("BT080", "The command '{id}' cannot run: {reason}."),
     Code("BT081", "Pictures are drawn by matplotlib, which is not installed.", "Install it: pip install 'btlang[pictures]'"),
     Code("BT090", "There is no code '{name}'.", "All of them: btc explain"),
-    Code("BT100", "ROS 2 cannot be used: {reason}.", "Install it: pip install 'btlang[ros]', or source your ROS 2 Jazzy: . /opt/ros/jazzy/setup.bash"),
+    Code("BT100", "ROS 2 cannot be used: {reason}.", "{advice}"),
     Code("BT101", "'{words}' needs the {sort} {name}, but {reason}.", "All that a mission needs of a robot: btc run --robot ros --preflight FILE"),
 )  # fmt: skip
 

@@ -7,6 +7,8 @@ from importlib import import_module
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.text.source import Source, Span
 
+_INSTALL = "Install it: pip install 'btlang[ros]', or source your ROS 2 Jazzy: . /opt/ros/jazzy/setup.bash"
+
 
 def require_ros(*packages: str) -> None:
     """Raises MissionError (BT100) where rclpy, or one of the message packages named, cannot be imported."""
@@ -15,5 +17,10 @@ def require_ros(*packages: str) -> None:
             import_module(package)
         except ImportError as error:
             absent = error.name is not None and error.name.partition(".")[0] == package
-            reason = f"there is no Python package {package}" if absent else str(error)
-            raise MissionError([diagnostic("BT100", Span(Source("", "ROS 2"), 0, 0), reason=reason)]) from None
+            raise unusable(f"there is no Python package {package}" if absent else str(error), _INSTALL) from None
+
+
+def unusable(reason: str, advice: str = "") -> MissionError:
+    """What to raise where ROS 2 is not there, or is there and does not start (BT100)."""
+    told = reason.strip().rstrip(".")
+    return MissionError([diagnostic("BT100", Span(Source("", "ROS 2"), 0, 0), reason=told, advice=advice)])

@@ -39,7 +39,7 @@ class RosBase:
         self._idle = 0.0
         self._track: deque[tuple[float, Pose]] = deque(maxlen=_REMEMBERED)
         self._fix: tuple[Pose, Pose] | None = None
-        self._early: Any = None  # a localization that came before any odometry
+        self._early: Any = None  # a localization that is newer than the odometry
         self._publisher = node.create_publisher(Twist, VELOCITY, 10)
         inbox.listen(ODOMETRY, Odometry, "odometry", also=self._moved)
         inbox.listen(LOCATED, PoseWithCovarianceStamped, "pose", qos="state", also=self._located)
@@ -112,13 +112,16 @@ class RosBase:
         self._track.append((_seconds(message), _pose(message.pose.pose)))
         if self._early is not None:
             early, self._early = self._early, None
-            self._located(early)
+            self._match(early)
 
     def _located(self, message: Any) -> None:
-        """Remembers where on the map the robot was, and what the odometry said at that time."""
-        if not self._track:
+        """A pose is matched with the odometry of its time, which may come a moment later."""
+        if self._track and _seconds(message) <= self._track[-1][0]:
+            self._match(message)
+        else:
             self._early = message
-            return
+
+    def _match(self, message: Any) -> None:
         at = _seconds(message)
         odometry = min(self._track, key=lambda entry: abs(entry[0] - at))[1]
         self._fix = _pose(message.pose.pose), odometry

@@ -46,7 +46,7 @@ def _serves(node: Node, _: Inbox, wanted: Interface) -> str:
 
 
 def _acts(node: Node, _: Inbox, wanted: Interface) -> str:
-    return _service(node, f"{wanted.name}/_action/send_goal", wanted, "no action server")
+    return _service(node, f"{wanted.name}/_action/send_goal", wanted, "nothing serves it")
 
 
 def _service(node: Node, name: str, wanted: Interface, nobody: str) -> str:

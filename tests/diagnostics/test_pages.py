@@ -62,6 +62,7 @@ def test_examples(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setitem(sys.modules, "matplotlib", None)  # so that BT081 can be shown
+    monkeypatch.setitem(sys.modules, "rclpy", None)  # and BT100
     page = TEXTS[code]
     [wrong] = [example for example in examples(page) if example.sort == "Wrong"]
     [right] = [example for example in examples(page) if example.sort == "Right"]
