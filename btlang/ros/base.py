@@ -18,6 +18,7 @@ from btlang.ros.inbox import Inbox
 
 ODOMETRY, LOCATED, VELOCITY = "/odom", "/amcl_pose", "/cmd_vel"
 _SILENT = 2.0  # seconds without odometry
+_FRESH = 0.5  # seconds for which odometry can say that the robot does not move
 _REMEMBERED = 200  # odometry that a late localization is matched with
 _REST, _TURN_REST = 0.01, 1.0  # metres and degrees a second that odometry reports of a robot that stands
 _STUCK_AFTER, _STUCK_SHARE = 1.0, 0.05
@@ -81,7 +82,7 @@ class RosBase:
     @property
     def velocity(self) -> tuple[float, float]:
         """Metres and degrees a second. Raises RobotError where the odometry is silent."""
-        linear, angular = self._measured()
+        linear, angular = self._measured(_SILENT)
         return (linear if abs(linear) > _REST else 0.0), (angular if abs(angular) > _TURN_REST else 0.0)
 
     @property
@@ -95,14 +96,14 @@ class RosBase:
         message.linear.x, message.angular.z = self._wanted[0], radians(self._wanted[1])
         self._publisher.publish(message)
 
-    def _measured(self) -> tuple[float, float]:
-        twist = self._inbox.get(ODOMETRY, _SILENT).twist.twist
+    def _measured(self, limit: float) -> tuple[float, float]:
+        twist = self._inbox.get(ODOMETRY, limit).twist.twist
         return float(twist.linear.x), degrees(twist.angular.z)
 
     def _pushes(self) -> bool:
         """Whether it does not move as it is told to."""
         try:
-            linear, angular = self._measured()
+            linear, angular = self._measured(_FRESH)
         except RobotError:
             return False  # what asks for the velocity is told
         wanted = abs(self._wanted[0]) + self._radius * radians(abs(self._wanted[1]))
