@@ -24,17 +24,19 @@ class Moment(Record):
 
 
 class Every:
-    """True once a period of simulated time; at every step where the steps are longer."""
+    """Due once a period of simulated time; at every step where the steps are longer."""
 
     def __init__(self, hertz: float) -> None:
         self._period = 1 / hertz
         self._next = 0.0
 
     def is_due(self, seconds: float) -> bool:
-        """To be asked at every step."""
+        """Whether it is now; what has been missed is not caught up with."""
         if seconds < self._next - 1e-6:
             return False
-        self._next = max(self._next + self._period, seconds)
+        self._next += self._period
+        if self._next < seconds:
+            self._next = seconds + self._period
         return True
 
 
