@@ -109,7 +109,7 @@ def test_explain_lists_all_codes(capsys: pytest.CaptureFixture[str]) -> None:
     ("written", "told"),
     [
         ("BT031", "The nearest: BT032, BT029"),
-        ("BT9999999999999", "The nearest: BT090, BT081"),
+        ("BT9999999999999", "The nearest: BT100, BT090"),
         ("BT" + "9" * 6000, "The nearest: "),
         ("BT", "A code is BT and three digits"),
         ("", "A code is BT and three digits"),
