@@ -26,14 +26,16 @@ if TYPE_CHECKING:
 
     from btlang.engine.blackboard import Blackboard
     from btlang.robots.simulation import Simulation
+    from btlang.robots.stages import MakeStage
+    from btlang.robots.world import World
     from btlang.robots.world_file import WorldError
     from btlang.run.controls import Controls
     from btlang.run.events import Sink
     from btlang.run.runner import Outcome, Runner
+    from btlang.run.stage import Stage
     from btlang.run.story import Story
 
     Call = TypeVar("Call", bound=Callable[..., Any])
-
 
 SLOWEST = 0.001  # seconds of the mission per second; slower than that is a mistake
 RATES = (1.0, 1000.0)  # ticks a second; below, a robot drives blind for too long between two
@@ -100,10 +102,16 @@ def _names_by_type(world: str | None) -> dict[str, tuple[str, ...]]:
 def load_simulation(world: str | None = None) -> Simulation:
     """The simulated robot in the world of a file, by default the world that ships. Raises MissionError (BT070)."""
     from btlang.robots.simulation import Simulation
+
+    return Simulation(read_world(world))
+
+
+def read_world(world: str | None = None) -> World:
+    """The world in a file, by default the world that ships. Raises MissionError (BT070)."""
     from btlang.robots.world_file import WorldError, load_world
 
     try:
-        return Simulation(load_world(world))
+        return load_world(world)
     except WorldError as error:
         raise _world_problem(error) from None
 
@@ -164,7 +172,7 @@ class RunnableTree:
         vocabulary: Vocabulary,
         world: str | None = None,
         warnings: Sequence[Diagnostic] = (),
-        stage: Simulation | None = None,
+        stage: Stage | None = None,
         mission: Mission | None = None,
         blackboard: Blackboard | None = None,
     ) -> None:
@@ -180,7 +188,7 @@ class RunnableTree:
         self._controls: Controls | None = None
         self._runner: Runner | None = None
         self._story: Story | None = None
-        self._simulation: Simulation | None = None
+        self._latest: Stage | None = None
 
     def __str__(self) -> str:
         from btlang.tree.dump import outline
@@ -215,11 +223,11 @@ class RunnableTree:
 
     @property
     def robot(self) -> Any:
-        """The robot of the latest run or tick, the simulated one; it is made at the first use."""
-        if self._simulation is None:
-            self._start()
-        assert self._simulation is not None
-        return self._simulation.robot
+        """The robot of the latest run or tick; where there was none, a simulated one."""
+        if self._latest is None:
+            self._start(self._stage())
+        assert self._latest is not None
+        return self._latest.robot
 
     @property
     def controls(self) -> Controls:
@@ -227,13 +235,13 @@ class RunnableTree:
         from btlang.run.controls import Controls
 
         if self._controls is None:
-            stage = self._simulation or self.stage
+            stage = self._latest or self.stage
             self._controls = Controls(stage.robot if stage is not None else None)
         return self._controls
 
     def tick(self) -> int:
         """Ticks once and moves the simulated world on by 1/20 s; returns the status (see btlang.engine.status)."""
-        runner = self._runner or self._start()
+        runner = self._runner or self._start(self._stage())
         return runner.tick()
 
     def why(self, *, colour: bool = False) -> str:
@@ -286,26 +294,41 @@ class RunnableTree:
         rate: float = 20.0,
         time_limit: float | None = None,
         sinks: Iterable[Sink] = (),
+        robot: str | MakeStage = "simulated",
     ) -> Outcome:
         """Runs the mission from its start until it ends, `time_limit` seconds are over, or Ctrl-C.
 
         `speed` is "real", "max" or a factor of real time; `rate` is in ticks a second of the mission; `sinks` get every
-        event (see btlang.run.events). Raises MissionError where a command cannot run (BT080).
+        event (see btlang.run.events). `robot` is "simulated", "ros", or a function that makes the stage of this run in
+        the world of the mission (see btlang.run.stage); a tree that was given a stage runs on that.
+
+        Raises MissionError where a command cannot run (BT080), or the robot lacks what it needs (BT100, BT101).
         """
         factor = {"real": 1.0, "max": math.inf}.get(speed) if isinstance(speed, str) else speed
         if factor is None or not factor >= SLOWEST:
             raise ValueError(f'speed is "real", "max" or a number from {SLOWEST} on: {speed!r}')
         if not RATES[0] <= rate <= RATES[1]:
             raise ValueError(f"rate is from {RATES[0]:g} to {RATES[1]:g} ticks a second: {rate!r}")
-        runner = self._start(rate, factor, time_limit, sinks)
+        stage = self._stage(robot)
         try:
-            return runner.run()
+            runner = self._start(stage, rate, factor, time_limit, sinks)
+            try:
+                return runner.run()
+            finally:
+                self._controls = None  # what is asked for from now on is for what comes next, a run or a tick
+                runner.controls = self.controls
         finally:
-            self._controls = None  # what is asked for from now on is for what comes next, a run or a tick
-            runner.controls = self.controls
+            if stage is not self.stage:
+                stage.close()
+
+    def _stage(self, robot: str | MakeStage = "simulated") -> Stage:
+        from btlang.robots.stages import stage_maker
+
+        return stage_maker(robot)(read_world(self.world)) if self.stage is None else self.stage
 
     def _start(
         self,
+        stage: Stage,
         rate: float = 20.0,
         speed: float = 1.0,
         time_limit: float | None = None,
@@ -319,9 +342,9 @@ class RunnableTree:
         from btlang.run.runner import Runner, traced_engine
         from btlang.run.story import Story
 
-        stage = load_simulation(self.world) if self.stage is None else self.stage
         for fact in all_facts(self.mission) if self.mission is not None else ():
             stage.robot.add_place(Place(fact.name, fact.x, fact.y, fact.facing))
+        stage.check(self.tree)
         stage.begin(sinks)
         try:
             engine = traced_engine(
@@ -339,7 +362,7 @@ class RunnableTree:
         self._story = Story(engine)
         stage.events.add(self._story)
         self.sink_errors = stage.events.errors
-        self._simulation = stage
+        self._latest = stage
         self._runner = Runner(
             engine,
             clock=stage.clock,
@@ -349,6 +372,7 @@ class RunnableTree:
             time_limit=time_limit,
             events=stage.events,
             controls=self.controls,
+            pace=stage.pace,
         )
         return self._runner
 

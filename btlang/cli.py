@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import argparse
 import errno
-import math
 import os
 import sys
 from collections.abc import Callable, Sequence
 from functools import partial
 
 import btlang
-from btlang.api import RATES, SLOWEST, RunnableTree, format_mission, parse_tree, world_vocabulary
+from btlang.api import RATES, RunnableTree, format_mission, parse_tree, read_world, world_vocabulary
+from btlang.arguments import between, duration, namespace, picture, real_speed, speed
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.reading import read_source, reason_of
 from btlang.diagnostics.report import FORMATS, Report
@@ -22,14 +22,14 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-SUCCESS, UNFORMATTED, BAD_INPUT, INTERRUPTED = 0, 1, 2, 130
+SUCCESS, FAILED, UNFORMATTED, BAD_INPUT, INTERRUPTED = 0, 1, 1, 2, 130
 _WIDEST = 120  # columns; longer lines are hard to read
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs one verb; returns the exit code.
 
-    0 success or skipped, 1 mission failed, 2 bad input, 130 interrupted, 131 emergency stop.
+    0 success or skipped, 1 mission failed, 2 bad input, 130 interrupted, 131 emergency stop, 143 terminated.
     """
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
@@ -61,9 +61,14 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _run(options: argparse.Namespace) -> int:
     from btlang.pictures.command import pictures_of
+    from btlang.ros.command import chosen_robot, print_preflight
     from btlang.run.command import run_mission
 
+    robot = chosen_robot(options)
     tree = _tree(options)
+    if options.preflight:
+        ready = print_preflight(tree.tree, read_world(options.world), sim_time=options.sim_time)
+        return SUCCESS if ready else FAILED
     with pictures_of(tree, options.picture, options.tree_picture) as sinks:
         return run_mission(
             tree,
@@ -74,6 +79,7 @@ def _run(options: argparse.Namespace) -> int:
             quiet=options.quiet,
             lines=options.lines,
             sinks=sinks,
+            robot=robot,
         )
 
 
@@ -183,6 +189,18 @@ def _format_one(source: Source, options: argparse.Namespace) -> bool:
     return False
 
 
+def _sim_ros(options: argparse.Namespace) -> int:
+    from btlang.ros.simulator.command import serve
+
+    return serve(
+        read_world(options.world),
+        speed=1.0 if options.speed == "real" else options.speed,
+        rate=options.rate,
+        gives_clock=options.clock,
+        namespace=options.namespace,
+    )
+
+
 def _repl(options: argparse.Namespace) -> int:
     from btlang.repl.loop import run_repl
 
@@ -198,6 +216,7 @@ _VERBS = {
     "examples": _examples,
     "explain": _explain,
     "format": _format,
+    "sim-ros": _sim_ros,
 }
 
 
@@ -236,6 +255,10 @@ def _words_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--keywords", action="append", default=[], metavar="FILE", help="further keyword file, or name of a pack"
     )
+    _world_option(parser)
+
+
+def _world_option(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--world", metavar="FILE", help="world file (default: the world that ships)")
 
 
@@ -255,7 +278,7 @@ def _mission_options(parser: argparse.ArgumentParser) -> None:
 
 
 def _speed_option(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--speed", type=_speed, default="real", help="real, max, or a factor of real time")
+    parser.add_argument("--speed", type=speed, default="real", help="real, max, or a factor of real time")
 
 
 def _repl_options(parser: argparse.ArgumentParser) -> None:
@@ -264,27 +287,28 @@ def _repl_options(parser: argparse.ArgumentParser) -> None:
 
 
 def _run_options(parser: argparse.ArgumentParser) -> None:
+    from btlang.ros.command import add_robot_options
+
     _mission_options(parser)
     _speed_option(parser)
-    parser.add_argument(
-        "--rate", type=_between(*RATES), default=20.0, metavar="HZ", help="ticks a second (default: 20)"
-    )
-    parser.add_argument("--for", type=_seconds, dest="time_limit", metavar="DURATION", help="stop after e.g. 60s, 2min")
+    parser.add_argument("--rate", type=between(*RATES), default=20.0, metavar="HZ", help="ticks a second (default: 20)")
+    parser.add_argument("--for", type=duration, dest="time_limit", metavar="DURATION", help="stop after e.g. 60s, 2min")
     parser.add_argument("--log", metavar="FILE", help="write every event as a line of JSON")
     parser.add_argument(
-        "--picture", type=_picture(".svg", ".png", ".gif"), metavar="FILE", help="draw the run: .svg, .png or .gif"
+        "--picture", type=picture(".svg", ".png", ".gif"), metavar="FILE", help="draw the run: .svg, .png or .gif"
     )
     parser.add_argument(
-        "--tree-picture", type=_picture(".svg", ".png"), metavar="FILE", help="draw the tree and how its nodes ended"
+        "--tree-picture", type=picture(".svg", ".png"), metavar="FILE", help="draw the tree and how its nodes ended"
     )
     parser.add_argument("--lines", action="store_true", help="plain lines also where the output is a terminal")
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    add_robot_options(parser)
 
 
 def _tree_options(parser: argparse.ArgumentParser) -> None:
     _mission_options(parser)
     parser.add_argument("--plain", action="store_true", help="one line a node: Id port=value")
-    parser.add_argument("--picture", type=_picture(".svg", ".png"), metavar="FILE", help="draw the tree: .svg or .png")
+    parser.add_argument("--picture", type=picture(".svg", ".png"), metavar="FILE", help="draw the tree: .svg or .png")
     parser.add_argument("--apart", action="store_true", help="draw each named subtree once, below the tree")
 
 
@@ -313,15 +337,30 @@ def _format_options(parser: argparse.ArgumentParser) -> None:
     several.add_argument("-c", dest="text", metavar="TEXT", help="mission as text")
 
 
+def _sim_ros_options(parser: argparse.ArgumentParser) -> None:
+    _world_option(parser)
+    parser.add_argument(
+        "--speed", type=real_speed, default="real", help="real, or a factor of real time (default: real)"
+    )
+    parser.add_argument(
+        "--rate", type=between(*RATES), default=20.0, metavar="HZ", help="steps a simulated second (default: 20)"
+    )
+    parser.add_argument(
+        "--clock", action=argparse.BooleanOptionalAction, default=True, help="give the simulated time on /clock"
+    )
+    parser.add_argument("--namespace", type=namespace, default="", metavar="NS", help="of all topics (default: none)")
+
+
 _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "repl": ("type a mission line by line; what `btc` alone does", _repl_options),
-    "run": ("run a mission on the simulated robot", _run_options),
+    "run": ("run a mission on the simulated robot, or a ROS 2 robot", _run_options),
     "check": ("say what is wrong with a mission", _mission_options),
     "tree": ("print the behavior tree of a mission", _tree_options),
     "words": ("list what can be said", _listing_options),
     "examples": ("list the missions that ship, print them or copy them", _examples_options),
     "explain": ("show how a mission is read, or tell of a message", _explain_options),
     "format": ("lay out missions: indentation, spaces, empty lines", _format_options),
+    "sim-ros": ("offer the simulated robot over ROS 2", _sim_ros_options),
 }
 
 
@@ -341,49 +380,6 @@ class _Help(argparse.HelpFormatter):
 class _Parser(argparse.ArgumentParser):
     def __init__(self, prog: str | None = None, **options: Any) -> None:
         super().__init__(prog, formatter_class=_Help, **options)
-
-
-def _speed(text: str) -> float | str:
-    return text if text in ("real", "max") else _between(SLOWEST, 1e6)(text)
-
-
-def _between(least: float, most: float) -> Callable[[str], float]:
-    def number(text: str) -> float:
-        try:
-            value = float(text)
-        except ValueError:
-            value = math.nan
-        if not least <= value <= most:
-            raise argparse.ArgumentTypeError(f"a number from {least:g} to {most:g} is needed, not '{text}'")
-        return value
-
-    return number
-
-
-def _picture(*endings: str) -> Callable[[str], str]:
-    def path(text: str) -> str:
-        from btlang.pictures.files import ending
-
-        try:
-            ending(text, endings)
-        except ValueError as problem:
-            raise argparse.ArgumentTypeError(str(problem)) from None
-        return text
-
-    return path
-
-
-def _seconds(text: str) -> float:
-    """Seconds, as a number or in the words of the language. Raises ArgumentTypeError."""
-    try:
-        value = float(text)
-    except ValueError:
-        from btlang.vocabulary.load import load_vocabulary
-
-        value = float(load_vocabulary().value("duration", text) or math.nan)
-    if not 0 < value < math.inf:
-        raise argparse.ArgumentTypeError(f"a duration such as 60s or 2min is needed, not '{text}'")
-    return value
 
 
 if __name__ == "__main__":

@@ -24,7 +24,7 @@ class Watch:
         self.check_stop()
         if self._robot.bumps != self._bumps:
             raise ActionFailed(f"bumped into something after {so_far}")
-        if self._robot.battery <= 0.0:
+        if self._robot.battery_empty:
             raise ActionFailed(f"the battery is empty after {so_far}")
         if self._robot.stuck:
             raise ActionFailed(f"stuck after {so_far}: the wheels turn but the robot does not move")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from btlang.engine.leaf import ActionFailed
 from btlang.engine.status import IDLE, RUNNING, SKIPPED
 from btlang.record import Record
 from btlang.robots.geometry import Point, Pose
@@ -84,7 +85,10 @@ class RunRecord:
                 self._changed(change)
 
     def _see(self, t: float, robot: Any) -> None:
-        sample = Sample(t, robot.pose, robot.battery)
+        try:
+            sample = Sample(t, robot.pose, robot.battery)
+        except ActionFailed:
+            return  # a sensor is silent
         self.radius = robot.radius
         if len(self.track) >= 2 and _same(self.track[-2], sample):
             self.track[-1] = sample  # the latest one is always kept

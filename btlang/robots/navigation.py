@@ -1,12 +1,13 @@
-"""Journeys: plans a path to something that has a name, follows it, and faces what it went for."""
+"""Journeys: plans a path to something that has a name, or to a pose, follows it, and faces what it went for."""
 
 from __future__ import annotations
 
-from math import cos, radians, sqrt
+from itertools import pairwise
+from math import cos, dist, radians, sqrt
 
 from btlang.robots.base import Base
 from btlang.robots.faults import Faults
-from btlang.robots.geometry import Point, wrap
+from btlang.robots.geometry import Point, Pose, wrap
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.planning import Planner
 from btlang.robots.world import ROBOT_RADIUS, Place, World, said
@@ -24,10 +25,14 @@ _ROOM = ROBOT_RADIUS + 0.15
 
 
 class Journey:
-    """One way to one goal; see `btlang.robots.robot.Navigation`."""
+    """One way to one goal; see `btlang.robots.robot.Navigation`.
 
-    def __init__(self, name: str, base: Base) -> None:
+    `name` is that of what it goes to, or shows the spot; with a `pose` it ends there, facing as the pose does.
+    """
+
+    def __init__(self, name: str, base: Base, pose: Pose | None = None) -> None:
         self.name = name
+        self.pose = pose
         self.done = False
         self.failure: str | None = None
         self.path: list[Point] = []
@@ -40,6 +45,12 @@ class Journey:
     def cancel(self) -> None:
         """Gives up and brakes. Does nothing when done."""
         self.end("the way was given up")
+
+    @property
+    def left(self) -> float:
+        """Metres of the path that are left."""
+        rest = [(self._base.pose.x, self._base.pose.y), *self.path[self.at :]]
+        return sum(dist(a, b) for a, b in pairwise(rest))
 
     def end(self, failure: str | None) -> None:
         """Comes to rest, arrived or with the reason why not."""
@@ -66,10 +77,10 @@ class Navigator:
         self._places = {name: known for name, known in self._places.items() if name.lower() != place.name.lower()}
         self._places[place.name] = place
 
-    def start(self, name: str) -> Journey:
-        """Sets out at once; a journey under way is given up. The name is one of the world's."""
+    def start(self, name: str, pose: Pose | None = None) -> Journey:
+        """Sets out at once; a journey under way is given up. Without a pose the name is one of the world's."""
         self.cancel(f"the robot set out for {said(name)} instead")
-        self.journey = Journey(name, self._base)
+        self.journey = Journey(name, self._base, pose)
         self._check(self.journey)
         return self.journey
 
@@ -106,14 +117,17 @@ class Navigator:
 
     def _plan(self, journey: Journey) -> None:
         journey.version = self._obstacles.version
-        goal, reach = self._goal(journey.name)
+        goal, reach = self._goal(journey)
         path = self._planner.path((self._base.pose.x, self._base.pose.y), goal, reach)
         if path is None:
             journey.end(f"there is no free way to {said(journey.name)}")
         else:
             journey.path, journey.at, journey.driven = path, 0, False
 
-    def _goal(self, name: str) -> tuple[Point, float]:
+    def _goal(self, journey: Journey) -> tuple[Point, float]:
+        name = journey.name
+        if journey.pose is not None:
+            return (journey.pose.x, journey.pose.y), 0.0
         if name in self._places:
             return (self._places[name].x, self._places[name].y), 0.0
         thing = self._obstacles.things[name]
@@ -139,7 +153,9 @@ class Navigator:
 
     def _face(self, journey: Journey) -> None:
         pose = self._base.pose
-        if journey.name in self._places:
+        if journey.pose is not None:
+            error = wrap(journey.pose.heading - pose.heading)
+        elif journey.name in self._places:
             facing = self._places[journey.name].facing
             error = 0.0 if facing is None else wrap(facing - pose.heading)
         else:

@@ -1,4 +1,4 @@
-"""The robot as actions see it. The simulated robot implements it; so will a ROS 2 robot."""
+"""The robot as actions see it. The simulated robot and the ROS 2 robot implement it."""
 
 from __future__ import annotations
 
@@ -131,6 +131,10 @@ class Robot(Protocol):
     @property
     def battery(self) -> float:
         """Percent left."""
+
+    @property
+    def battery_empty(self) -> bool:
+        """True when the wheels get no power any more; False too where the robot does not tell."""
 
     @property
     def docked(self) -> bool:

@@ -21,6 +21,7 @@ from btlang.robots.scan import Scanner
 from btlang.robots.world import ROBOT_RADIUS, Place, World, said
 
 _CONTROL_PERIOD = 0.05
+_SAME_SPOT = 0.01  # metres
 _HANDS: tuple[Hand, Hand] = ("left", "right")
 
 
@@ -130,13 +131,28 @@ class SimulatedRobot:
 
     def navigate_to(self, name: str) -> Journey:
         """Sets out for a place, an object or a person. Raises RobotError for an unknown name."""
-        known = self._known(name)
-        journey = self._navigator.start(known)
+        return self._set_out(self._known(name))
+
+    def navigate_to_pose(self, pose: Pose) -> Journey:
+        """Sets out for a pose. On the spot of an object or a person it is a journey to that, as `navigate_to` makes it.
+
+        On the spot of a place it is called by that name, and so knows that its way is blocked.
+        """
+        for place in self.world.places:
+            if pose.distance_to((place.x, place.y)) <= _SAME_SPOT:
+                return self._set_out(place.name, pose)
+        for thing in self._obstacles.things.values():
+            if pose.distance_to((thing.x, thing.y)) <= _SAME_SPOT and not self._obstacles.is_carried(thing.name):
+                return self._set_out(thing.name)
+        return self._set_out(f"({pose.x:.2f}, {pose.y:.2f})", pose)
+
+    def _set_out(self, name: str, pose: Pose | None = None) -> Journey:
+        journey = self._navigator.start(name, pose)
         if self._stopping:
             journey.end("the robot was told to stop")
         if self._power.empty:
             journey.end("the battery is empty")
-        self._emit("navigate", name=known)
+        self._emit("navigate", name=name)
         return journey
 
     # Senses
@@ -186,6 +202,11 @@ class SimulatedRobot:
     def battery(self) -> float:
         """Percent left."""
         return self._power.level
+
+    @property
+    def battery_empty(self) -> bool:
+        """True when the wheels get no power any more."""
+        return self._power.empty
 
     @property
     def docked(self) -> bool:

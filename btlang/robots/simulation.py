@@ -13,7 +13,10 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+    from btlang.run.controls import Controls
     from btlang.run.events import Event, Sink
+    from btlang.run.pace import Pace
+    from btlang.tree.node import Tree
 
 
 class Simulation:
@@ -32,6 +35,18 @@ class Simulation:
         for event in self._untold:
             self.events.publish(event)
         self._untold.clear()
+
+    def check(self, tree: Tree) -> None:
+        """The simulated robot can do all that the shipped leaves need."""
+
+    def pace(self, speed: float, controls: Controls) -> Pace:
+        """Any speed will do: the world moves on as fast as it is asked to."""
+        from btlang.run.pace import Pace
+
+        return Pace(speed, controls)
+
+    def close(self) -> None:
+        """Does nothing: the world stays as it is."""
 
     def _publish(self, kind: str, data: Mapping[str, Any]) -> None:
         self.events.publish(RobotEvent(self.clock.now, kind, data))

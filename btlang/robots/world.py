@@ -69,8 +69,8 @@ class Fault(Record):
 
 
 def said(name: str) -> str:
-    """The name as it is spoken of: "the lab", but "Alice"."""
-    return name if name[:1].isupper() else f"the {name}"
+    """The name as it is spoken of: "the lab", but "Alice" and the spot "(1.00, 2.00)"."""
+    return name if name[:1].isupper() or name[:1] == "(" else f"the {name}"
 
 
 class WorldNames(Record):

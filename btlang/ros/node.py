@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from contextlib import suppress
 from threading import Thread
 
 import rclpy
@@ -12,23 +11,35 @@ from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.signals import SignalHandlerOptions
 
+from btlang.ros.available import unusable
+
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from types import TracebackType
+
+_LAST_DOMAIN = 232
 
 
 class SpunNode:
     """`node` in a ROS context of its own; its callbacks run in a thread of their own, one at a time.
 
     Use it with `with`, or call `close`: a thread that spins when the process ends would abort it. Signals stay with
-    the program. With `use_sim_time` the node's clock is the topic /clock.
+    the program. With `use_sim_time` the node's clock is the topic /clock. Raises MissionError (BT100).
     """
 
-    def __init__(self, name: str, *, use_sim_time: bool = False, domain_id: int | None = None) -> None:
+    def __init__(
+        self, name: str, *, namespace: str = "", use_sim_time: bool = False, domain_id: int | None = None
+    ) -> None:
         self.context = Context()
-        rclpy.init(context=self.context, domain_id=domain_id, signal_handler_options=SignalHandlerOptions.NO)
         overrides = [Parameter("use_sim_time", Parameter.Type.BOOL, use_sim_time)]
-        self.node: Node = rclpy.create_node(name, context=self.context, parameter_overrides=overrides)
+        try:
+            rclpy.init(context=self.context, domain_id=domain_id, signal_handler_options=SignalHandlerOptions.NO)
+            self._check_domain()
+            self.node: Node = rclpy.create_node(
+                name, namespace=namespace, context=self.context, parameter_overrides=overrides
+            )
+        except RuntimeError as error:  # no such domain, no network, a log that cannot be written
+            raise unusable(str(error)) from None
         self._executor = SingleThreadedExecutor(context=self.context)
         self._executor.add_node(self.node)
         self._thread = Thread(target=self._spin, name=f"ros {name}", daemon=True)
@@ -55,6 +66,20 @@ class SpunNode:
     ) -> None:
         self.close()
 
+    def _check_domain(self) -> None:
+        """Fast DDS would end the process."""
+        number = self.context.get_domain_id()
+        if number > _LAST_DOMAIN:
+            rclpy.shutdown(context=self.context)
+            raise RuntimeError(f"there is no domain {number}, they are 0 to {_LAST_DOMAIN} (ROS_DOMAIN_ID)")
+
     def _spin(self) -> None:
-        with suppress(ExternalShutdownException):
-            self._executor.spin()
+        """A callback that raises is told in the log, and the others go on."""
+        while self.context.ok():
+            try:
+                self._executor.spin()
+                return
+            except ExternalShutdownException:
+                return
+            except Exception as error:
+                self.node.get_logger().error(f"{type(error).__name__}: {error}")

@@ -20,18 +20,27 @@ from btlang.tree.node import Node, Tree
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Protocol, TextIO
+    from typing import Any, Protocol, TextIO
 
     from btlang.run.controls import Controls
     from btlang.run.events import Overrun, Sink
     from btlang.run.live.view import LiveView
+    from btlang.run.stage import Stage
 
     class Runnable(Protocol):
         """What can be run from the command line."""
 
         tree: Tree
 
-        def run(self, *, speed: float | str, rate: float, time_limit: float | None, sinks: list[Sink]) -> Outcome: ...
+        def run(
+            self,
+            *,
+            speed: float | str,
+            rate: float,
+            time_limit: float | None,
+            sinks: list[Sink],
+            robot: str | Callable[[Any], Stage],
+        ) -> Outcome: ...
 
         @property
         def sink_errors(self) -> list[Exception]: ...
@@ -65,11 +74,13 @@ def run_mission(
     keys: bool = True,
     tree_stays: bool = True,
     sinks: Iterable[Sink] = (),
+    robot: str | Callable[[Any], Stage] = "simulated",
 ) -> int:
     """Runs and reports; returns the exit code. Raises MissionError where the log cannot be written (BT009).
 
     On a terminal it shows the live view, with keys or not, whose tree stays at the end or not; elsewhere and where
-    `lines` is true plain lines; and nothing when `quiet`. `sinks` get all events too.
+    `lines` is true plain lines; and nothing when `quiet`. `sinks` get all events too;
+    `robot` is as for `RunnableTree.run`.
     """
     view = None if quiet or lines else _live_view(tree, keys, tree_stays)
     shown: list[Sink] = [view] if view is not None else [] if quiet else [Lines(tree.label, tree.is_action, _print)]
@@ -83,7 +94,7 @@ def run_mission(
         ):
             if file is not None:
                 sinks.append(JsonLog(file, tree.label))
-            outcome = tree.run(speed=speed, rate=rate, time_limit=time_limit, sinks=sinks)
+            outcome = tree.run(speed=speed, rate=rate, time_limit=time_limit, sinks=sinks, robot=robot)
         for error in tree.sink_errors if log is not None else ():
             if isinstance(error, OSError):
                 raise error

@@ -73,7 +73,8 @@ def traced_engine(
 class Runner:
     """Ticks an engine `rate` times a second of the mission until the tree completes.
 
-    `speed` is seconds of the mission per second of real time; math.inf does not wait at all. The service `wake` of the
+    `speed` is seconds of the mission per second of real time; math.inf does not wait at all. `pace` makes what waits
+    between two ticks, and says how much time has passed. The service `wake` of the
     engine ends the wait: the next tick comes at once, after the part of the period that has passed. Where the engine
     has a stopwatch, ticks that take longer than their period are events (Overrun).
 
@@ -92,6 +93,7 @@ class Runner:
         time_limit: float | None = None,
         events: EventStream | None = None,
         controls: Controls | None = None,
+        pace: Callable[[float, Controls], Pace] = Pace,
     ) -> None:
         self._engine = engine
         self._clock = clock
@@ -103,7 +105,7 @@ class Runner:
         self.controls = Controls() if controls is None else controls
         self._suspended = False
         self._began = clock.now
-        self._pace = Pace(speed, self.controls)
+        self._pace = pace(speed, self.controls)
         self._overruns: Overruns | None = None
         if engine.stopwatch is not None and speed < math.inf:
             self._overruns = Overruns(engine, engine.stopwatch, self._pause, clock, self._events)

@@ -155,3 +155,40 @@ def test_the_same_journey_twice():
         return found
 
     assert poses() == poses()
+
+
+def to_pose(robot, pose, seconds=60):
+    journey = robot.navigate_to_pose(pose)
+    for _ in range(seconds * 20):
+        if journey.done:
+            break
+        robot.step(0.05)
+    return journey
+
+
+def test_a_pose_is_reached_facing_as_it_does():
+    robot = SimulatedRobot(HOUSE)
+    journey = to_pose(robot, Pose(3.0, 2.0, -90.0))
+    assert (journey.done, journey.failure) == (True, None)
+    assert robot.pose.distance_to((3.0, 2.0)) < 0.05
+    assert robot.pose.heading == pytest.approx(-90, abs=1.5)
+    assert journey.left == pytest.approx(0, abs=0.05)
+
+
+@pytest.mark.parametrize("x", [100.0, float("inf"), float("nan")])
+def test_a_pose_without_a_way(x):
+    robot = SimulatedRobot(HOUSE)
+    assert to_pose(robot, Pose(x, 2.0)).failure == f"there is no free way to ({x:.2f}, 2.00)"
+
+
+def test_a_pose_on_a_place_is_that_place():
+    place = HOUSE.places[0]
+    robot = SimulatedRobot(HOUSE.replace(faults=(Fault("blocked", place=place.name),)))
+    assert to_pose(robot, Pose(place.x, place.y)).failure == f"there is no free way to the {place.name}"
+
+
+def test_a_pose_on_a_thing_is_reached_to_arms_length():
+    thing = HOUSE.objects[0]
+    robot = SimulatedRobot(HOUSE)
+    assert to_pose(robot, Pose(thing.x, thing.y)).failure is None
+    assert abs(robot.pose.bearing_to((thing.x, thing.y))) < 2

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
+from btlang.engine.leaf import ActionFailed
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 from btlang.engine.watch import repeats
 from btlang.record import Record
@@ -35,9 +36,16 @@ def read_robot(robot: Any) -> Reading | None:
     """The reading of a robot, None where there is no robot. For the thread of the run."""
     if robot is None:
         return None
-    holding = getattr(robot, "holding", None)
-    left, right = (holding("left"), holding("right")) if holding is not None else (None, None)
-    return Reading(getattr(robot, "pose", None), getattr(robot, "battery", None), left, right)
+    hands = (_told(lambda: robot.holding("left")), _told(lambda: robot.holding("right")))
+    return Reading(_told(lambda: robot.pose), _told(lambda: robot.battery), *hands)
+
+
+def _told(ask: Callable[[], Any]) -> Any:
+    """None where the robot has no such sensor, or it is silent."""
+    try:
+        return ask()
+    except (ActionFailed, AttributeError):
+        return None
 
 
 class State:

@@ -1,0 +1,26 @@
+"""Whether ROS 2 is there. Imports none of it, so that it can be asked anywhere."""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.text.source import Source, Span
+
+_INSTALL = "Install it: pip install 'btlang[ros]', or source your ROS 2 Jazzy: . /opt/ros/jazzy/setup.bash"
+
+
+def require_ros(*packages: str) -> None:
+    """Raises MissionError (BT100) where rclpy, or one of the message packages named, cannot be imported."""
+    for package in ("rclpy", *packages):
+        try:
+            import_module(package)
+        except ImportError as error:
+            absent = error.name is not None and error.name.partition(".")[0] == package
+            raise unusable(f"there is no Python package {package}" if absent else str(error), _INSTALL) from None
+
+
+def unusable(reason: str, advice: str = "") -> MissionError:
+    """What to raise where ROS 2 is not there, or is there and does not start (BT100)."""
+    told = reason.strip().rstrip(".")
+    return MissionError([diagnostic("BT100", Span(Source("", "ROS 2"), 0, 0), reason=told, advice=advice)])

@@ -1,0 +1,148 @@
+"""The base of a ROS 2 robot: velocity out, odometry and localization in."""
+
+from __future__ import annotations
+
+from collections import deque
+from math import atan2, cos, degrees, radians, sin
+from threading import RLock
+from typing import Any
+
+from geometry_msgs.msg import PoseWithCovarianceStamped, Twist
+from nav_msgs.msg import Odometry
+from rclpy.duration import Duration
+from rclpy.node import Node
+
+from btlang.robots.geometry import Pose, wrap
+from btlang.robots.robot import RobotError
+from btlang.ros.inbox import Inbox
+
+ODOMETRY, LOCATED, VELOCITY = "/odom", "/amcl_pose", "/cmd_vel"
+_SILENT = 2.0  # seconds without odometry
+_FRESH = 0.5  # seconds for which odometry can say that the robot does not move
+_REMEMBERED = 200  # odometry that a late localization is matched with
+_REST, _TURN_REST = 0.01, 1.0  # metres and degrees a second that odometry reports of a robot that stands
+_STUCK_AFTER, _STUCK_SHARE = 1.0, 0.05
+_ACKNOWLEDGED = Duration(seconds=0.5)
+
+
+class RosBase:
+    """Wanted velocity is told at each step while it is not zero, since robots brake when they hear no more of it.
+
+    The pose is the latest one of the localization, moved on by the odometry since; where nothing localizes the robot,
+    the odometry alone. `halt` may be called from any thread.
+    """
+
+    def __init__(self, node: Node, inbox: Inbox, radius: float) -> None:
+        self._inbox = inbox
+        self._radius = radius
+        self._lock = RLock()  # a signal handler may halt while this thread drives
+        self._wanted = (0.0, 0.0)
+        self._idle = 0.0
+        self._track: deque[tuple[float, Pose]] = deque(maxlen=_REMEMBERED)
+        self._fix: tuple[Pose, Pose] | None = None
+        self._early: Any = None  # a localization that is newer than the odometry
+        self._publisher = node.create_publisher(Twist, VELOCITY, 10)
+        inbox.listen(ODOMETRY, Odometry, "odometry", also=self._moved)
+        inbox.listen(LOCATED, PoseWithCovarianceStamped, "pose", qos="state", also=self._located)
+
+    def drive(self, linear: float, angular: float) -> None:
+        """Metres and degrees a second."""
+        with self._lock:
+            if (linear, angular) == (0.0, 0.0):
+                self._idle = 0.0
+            self._wanted = linear, angular
+            self._tell()
+
+    def halt(self) -> None:
+        """Zero velocity, from any thread."""
+        self.drive(0.0, 0.0)
+
+    def confirm_halt(self) -> None:
+        """Zero velocity, and waits for half a second at most until all who listen have it."""
+        self.halt()
+        self._publisher.wait_for_all_acked(_ACKNOWLEDGED)
+
+    def step(self, dt: float) -> None:
+        """Tells the wanted velocity again; `dt` seconds have passed."""
+        with self._lock:
+            if self._wanted != (0.0, 0.0):
+                self._idle = self._idle + dt if self._pushes() else 0.0
+                self._tell()
+
+    @property
+    def driving(self) -> bool:
+        """Whether it has been told to move."""
+        return self._wanted != (0.0, 0.0)
+
+    @property
+    def stuck(self) -> bool:
+        """True when it has been told to move for a second and does not."""
+        return self._idle >= _STUCK_AFTER
+
+    @property
+    def velocity(self) -> tuple[float, float]:
+        """Metres and degrees a second. Raises RobotError where the odometry is silent."""
+        linear, angular = self._measured(_SILENT)
+        return (linear if abs(linear) > _REST else 0.0), (angular if abs(angular) > _TURN_REST else 0.0)
+
+    @property
+    def pose(self) -> Pose:
+        """Where it is on the map. Raises RobotError where the odometry is silent."""
+        now = _pose(self._inbox.get(ODOMETRY, _SILENT).pose.pose)
+        return now if self._fix is None else _carried(*self._fix, now)
+
+    def _tell(self) -> None:
+        message = Twist()
+        message.linear.x, message.angular.z = self._wanted[0], radians(self._wanted[1])
+        self._publisher.publish(message)
+
+    def _measured(self, limit: float) -> tuple[float, float]:
+        twist = self._inbox.get(ODOMETRY, limit).twist.twist
+        return float(twist.linear.x), degrees(twist.angular.z)
+
+    def _pushes(self) -> bool:
+        """Whether it does not move as it is told to."""
+        try:
+            linear, angular = self._measured(_FRESH)
+        except RobotError:
+            return False  # what asks for the velocity is told
+        wanted = abs(self._wanted[0]) + self._radius * radians(abs(self._wanted[1]))
+        return abs(linear) + self._radius * radians(abs(angular)) < _STUCK_SHARE * wanted
+
+    def _moved(self, message: Any) -> None:
+        self._track.append((_seconds(message), _pose(message.pose.pose)))
+        if self._early is not None:
+            early, self._early = self._early, None
+            self._match(early)
+
+    def _located(self, message: Any) -> None:
+        """A pose is matched with the odometry of its time, which may come a moment later."""
+        if self._track and _seconds(message) <= self._track[-1][0]:
+            self._match(message)
+        else:
+            self._early = message
+
+    def _match(self, message: Any) -> None:
+        at = _seconds(message)
+        odometry = min(self._track, key=lambda entry: abs(entry[0] - at))[1]
+        self._fix = _pose(message.pose.pose), odometry
+
+
+def _seconds(message: Any) -> float:
+    stamp = message.header.stamp
+    return float(stamp.sec + stamp.nanosec * 1e-9)
+
+
+def _pose(pose: Any) -> Pose:
+    """Of a robot that stays upright, a geometry_msgs/Pose in metres and degrees."""
+    q = pose.orientation
+    heading = degrees(atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z)))
+    return Pose(float(pose.position.x), float(pose.position.y), heading)
+
+
+def _carried(located: Pose, before: Pose, now: Pose) -> Pose:
+    """A pose on the map, moved on as the odometry did."""
+    turn = wrap(located.heading - before.heading)
+    c, s = cos(radians(turn)), sin(radians(turn))
+    dx, dy = now.x - before.x, now.y - before.y
+    return Pose(located.x + c * dx - s * dy, located.y + s * dx + c * dy, wrap(now.heading + turn))

@@ -1,0 +1,99 @@
+"""The joints of a ROS 2 robot: a JointTrajectory out, JointState in."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+from math import ceil, degrees, radians
+from typing import Any
+
+from rclpy.node import Node
+from sensor_msgs.msg import JointState
+from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+
+from btlang.robots.joints import LIMITS, RATE
+from btlang.robots.robot import RobotError
+from btlang.ros.inbox import Inbox
+
+STATES, TRAJECTORY = "/joint_states", "/joint_trajectory"
+_SILENT = 2.0  # seconds without joint states
+_CLOSE_ENOUGH = 1.0  # degrees
+_STALLED = 5.0  # seconds in which a joint on its way gets no nearer
+_PROGRESS = 0.5  # degrees that count as nearer
+
+
+class RosJoints:
+    """Degrees here, radians on the wire, where names have `_` for blanks. `freeze` may be called from any thread."""
+
+    def __init__(self, node: Node, inbox: Inbox) -> None:
+        self._inbox = inbox
+        self._targets: dict[str, float] = {}
+        self._nearest: dict[str, tuple[float, float]] = {}  # degrees left at the nearest, and since when
+        self._publisher = node.create_publisher(JointTrajectory, TRAJECTORY, 10)
+        inbox.listen(STATES, JointState, "joint states")
+
+    @property
+    def moving(self) -> bool:
+        """Whether a joint is on its way."""
+        return bool(self._targets)
+
+    def angle(self, name: str) -> float:
+        """Raises RobotError for an unknown joint, and where the joint states are silent."""
+        if name not in LIMITS:
+            raise RobotError(f'the robot has no joint "{name}"')
+        states = self._inbox.get(STATES, _SILENT)
+        wire = _on_wire(name)
+        if wire not in states.name:
+            raise RobotError(f'{STATES} tells nothing of the joint "{wire}"')
+        return degrees(states.position[list(states.name).index(wire)])
+
+    def move(self, targets: Mapping[str, float]) -> None:
+        """Sets off towards the targets, clipped to the limits. Raises RobotError as `angle` does."""
+        clipped = {name: min(max(target, LIMITS[name][0]), LIMITS[name][1]) for name, target in targets.items()}
+        angles = {name: self.angle(name) for name in targets}
+        furthest = max((abs(clipped[name] - angle) for name, angle in angles.items()), default=0.0)
+        self._targets.update(clipped)
+        self._nearest.update(dict.fromkeys(clipped, (float("inf"), time.monotonic())))
+        self._tell(clipped, furthest / RATE)
+
+    def at_target(self, names: tuple[str, ...]) -> bool:
+        """True when none of them is on its way. Raises RobotError where one of them is stuck."""
+        for name in names:
+            target = self._targets.get(name)
+            if target is not None and self._arrived(name, abs(target - self.angle(name))):
+                self._targets.pop(name, None)
+        return not any(name in self._targets for name in names)
+
+    def freeze(self, names: tuple[str, ...] = ()) -> None:
+        """Those of them (without names: of all) that are on their way stay where they are."""
+        under_way = [name for name in (names or tuple(self._targets)) if self._targets.pop(name, None) is not None]
+        try:
+            self._tell({name: self.angle(name) for name in under_way}, 0.0)
+        except RobotError:
+            return  # nobody knows where they are
+
+    def _arrived(self, name: str, left: float) -> bool:
+        if left <= _CLOSE_ENOUGH:
+            return True
+        nearest, since = self._nearest[name]
+        now = time.monotonic()
+        if left < nearest - _PROGRESS:
+            self._nearest[name] = left, now
+        elif now - since > _STALLED:
+            raise RobotError(f"the {name} does not move: it is {left:.0f} degrees from where it should be")
+        return False
+
+    def _tell(self, targets: Mapping[str, float], seconds: float) -> None:
+        if not targets:
+            return
+        point: Any = JointTrajectoryPoint()
+        point.positions = [radians(target) for target in targets.values()]
+        point.time_from_start.sec = ceil(seconds)
+        message = JointTrajectory()
+        message.joint_names = [_on_wire(name) for name in targets]
+        message.points = [point]
+        self._publisher.publish(message)
+
+
+def _on_wire(name: str) -> str:
+    return name.replace(" ", "_")

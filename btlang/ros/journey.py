@@ -1,0 +1,170 @@
+"""Journeys by the action NavigateToPose: one goal each, whose end is always told, with a reason where it failed."""
+
+from __future__ import annotations
+
+import time
+from math import cos, radians, sin
+from threading import Event, RLock
+from typing import Any
+
+from action_msgs.msg import GoalStatus
+from geometry_msgs.msg import PoseStamped
+from nav2_msgs.action import NavigateToPose
+from rclpy.action import ActionClient
+from rclpy.node import Node
+
+from btlang.robots.geometry import Pose
+from btlang.robots.world import said
+
+ACTION = "/navigate_to_pose"
+_SERVER = 2.0  # seconds that a server gets to be there
+_ANSWER = 5.0  # seconds that it gets to accept or reject, and between two of its feedbacks
+_ENDINGS = {GoalStatus.STATUS_CANCELED: "somebody cancelled the way to {name}"}
+
+
+class RosJourney:
+    """One way to one goal; see `btlang.robots.robot.Navigation`. `end` may be called from any thread.
+
+    Nothing waits: `step` looks at what has come, so that a server that never answers costs the tick nothing.
+    """
+
+    def __init__(self, name: str, client: Any, goal: NavigateToPose.Goal) -> None:
+        self.name = name
+        self.done = False
+        self.failure: str | None = None
+        self.withdrawn = Event()
+        """Set when there is nothing left that the server still has to give up."""
+        self._client, self._goal = client, goal
+        self._lock = RLock()
+        self._since = time.monotonic()  # of what it waits for now
+        self._answer: Any = None
+        self._handle: Any = None
+        self._result: Any = None
+        self._heard = False
+
+    def cancel(self) -> None:
+        """Gives up: the goal is withdrawn, as soon as it is accepted where it is not yet."""
+        self.end(f"the way to {said(self.name)} was given up")
+
+    def end(self, failure: str | None, *, withdraw: bool = True) -> None:
+        """Arrived, or the reason why not. Does nothing when done."""
+        with self._lock:
+            if self.done:
+                return
+            self.failure = failure
+            self.done = True
+        if withdraw and self._answer is not None:
+            self._answer.add_done_callback(self._withdraw)
+        else:
+            self.withdrawn.set()
+
+    def step(self) -> None:
+        """Goes on with what has come since the last call."""
+        if self.done:
+            return
+        if self._answer is None:
+            self._send()
+        elif self._handle is None:
+            self._accept()
+        elif self._result.done():
+            self._finish(self._result.result())
+        elif not self._client.server_is_ready():
+            self.end(f"the navigation server on {ACTION} is gone", withdraw=False)
+        elif self._heard and self._waited(_ANSWER):
+            self.end(f"no word from the navigation server on {ACTION} for {_ANSWER:g} s")
+
+    def _waited(self, limit: float) -> bool:
+        return time.monotonic() - self._since > limit
+
+    def _send(self) -> None:
+        if self._client.server_is_ready():
+            with self._lock:
+                if not self.done:
+                    self._answer = self._client.send_goal_async(self._goal, feedback_callback=self._hear)
+            self._since = time.monotonic()
+        elif self._waited(_SERVER):
+            self.end(f"no navigation server on {ACTION}")
+
+    def _hear(self, _: Any) -> None:
+        self._heard, self._since = True, time.monotonic()
+
+    def _accept(self) -> None:
+        if not self._answer.done():
+            if self._waited(_ANSWER):
+                self.end(f"the navigation server on {ACTION} does not answer")
+            return
+        handle = self._answer.result()
+        if not handle.accepted:
+            self.end(f"the navigation server rejected the way to {said(self.name)}", withdraw=False)
+            return
+        self._result = handle.get_result_async()
+        self._since = time.monotonic()
+        self._handle = handle
+
+    def _finish(self, answer: Any) -> None:
+        if answer.status == GoalStatus.STATUS_SUCCEEDED:
+            self.end(None, withdraw=False)
+            return
+        told = _ENDINGS.get(answer.status, "the navigation server gave up on the way to {name}")
+        self.end(answer.result.error_msg or told.format(name=said(self.name)), withdraw=False)
+
+    def _withdraw(self, answer: Any) -> None:
+        """Called with the answer to the goal: at once where it is there, else in the thread that spins."""
+        handle = answer.result()
+        if handle is None or not handle.accepted:
+            self.withdrawn.set()
+        else:
+            handle.cancel_goal_async().add_done_callback(lambda _: self.withdrawn.set())
+
+
+class RosNavigation:
+    """The client of the navigation server, and the journey under way. `stop` may be called from any thread."""
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+        self._client = ActionClient(node, NavigateToPose, ACTION)
+        self._journey: RosJourney | None = None
+        self._given_up: list[RosJourney] = []
+
+    def start(self, name: str, pose: Pose) -> RosJourney:
+        """Sets out; a journey under way is given up."""
+        self.stop(f"the robot set out for {said(name)} instead")
+        goal = NavigateToPose.Goal()
+        goal.pose = _stamped(pose)
+        goal.pose.header.stamp = self._node.get_clock().now().to_msg()
+        self._journey = RosJourney(name, self._client, goal)
+        self._journey.step()
+        return self._journey
+
+    def stop(self, reason: str) -> None:
+        """Gives up the journey under way, if there is one."""
+        journey = self._journey
+        if journey is not None and not journey.done:
+            journey.end(reason)
+
+    def step(self) -> RosJourney | None:
+        """Goes on; returns the journey when it has ended since the last call."""
+        journey = self._journey
+        if journey is None:
+            return None
+        journey.step()
+        if not journey.done:
+            return None
+        self._journey = None
+        self._given_up = [earlier for earlier in (*self._given_up, journey) if not earlier.withdrawn.is_set()]
+        return journey
+
+    def confirm_stop(self, seconds: float) -> None:
+        """Waits so long at most until the server has answered that it gave up all goals that were withdrawn."""
+        until = time.monotonic() + seconds
+        for journey in (*self._given_up, *((self._journey,) if self._journey is not None else ())):
+            journey.withdrawn.wait(max(0.0, until - time.monotonic()))
+
+
+def _stamped(pose: Pose) -> PoseStamped:
+    message = PoseStamped()
+    message.header.frame_id = "map"
+    message.pose.position.x, message.pose.position.y = pose.x, pose.y
+    half = radians(pose.heading) / 2
+    message.pose.orientation.z, message.pose.orientation.w = sin(half), cos(half)
+    return message

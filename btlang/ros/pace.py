@@ -1,0 +1,62 @@
+"""The pace of a run on a ROS 2 robot: time passes by itself, and the mission's clock follows it."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable
+
+from btlang.run.controls import Controls
+from btlang.run.pace import Pace
+
+_STANDING = 2.0  # seconds of real time after which a clock that stands still is not waited for any more
+_LOOK = 0.002  # seconds between two looks at a clock that may run faster than the system's
+
+
+class RosPace(Pace):
+    """Sleeps by `now`: seconds of the system's clock, or of a simulator's.
+
+    What `sleep` returns is all the time since the sleep before it, the tick included. A clock that stands still, as
+    that of a simulator that has died, is not waited for without end: time goes on with the system's clock, so that the
+    mission still ticks and its leaves find out what is wrong.
+    """
+
+    def __init__(self, controls: Controls, now: Callable[[], float]) -> None:
+        super().__init__(1.0, controls)
+        self._now = now
+        self._look = math.inf if now is time.monotonic else _LOOK
+        self._last = 0.0
+        self._seen, self._looked = now(), time.monotonic()
+        self._stands = 0.0
+        self._more = 0.0  # how far the time of the mission is ahead of `now`
+
+    def begin(self) -> None:
+        """A period begins now."""
+        self._last = self._due = self._time()
+
+    def sleep(self, seconds: float) -> float:
+        """Sleeps through a period, unless it is woken or the run is stopped; returns the seconds that have passed."""
+        self._due += seconds
+        now = self._time()
+        if now >= self._due:
+            self.late += 1
+            self._due = now
+        while now < self._due and not self._woken and not self._controls.stopped:
+            self._controls.wait(min(self._due - now, self._look))
+            now = self._time()
+        self._due = min(self._due, now)
+        passed, self._last = now - self._last, now
+        return passed
+
+    def _time(self) -> float:
+        """Never goes back, also where a simulator begins anew."""
+        now, looked = self._now(), time.monotonic()
+        if now == self._seen:
+            self._stands += looked - self._looked
+            if self._stands > _STANDING:
+                self._more += looked - self._looked
+        else:
+            self._stands = 0.0
+            self._more += max(0.0, self._seen - now)
+        self._seen, self._looked = now, looked
+        return now + self._more

@@ -1,0 +1,87 @@
+"""What a ROS 2 robot knows of its surroundings: the names of the world file and the mission, and where they are."""
+
+from __future__ import annotations
+
+from btlang.robots.geometry import Point, Pose
+from btlang.robots.navigation import ARM_REACH, TALKING_DISTANCE
+from btlang.robots.obstacles import Obstacles
+from btlang.robots.planning import Planner
+from btlang.robots.robot import RobotError
+from btlang.robots.world import ROBOT_RADIUS, Place, World
+
+_ROOM = ROBOT_RADIUS + 0.15
+_PUT_AT = ROBOT_RADIUS + 0.2  # metres ahead of the robot that an object lies once it was put down
+
+
+class Places:
+    """Metres on the map, which is that of the world file. Objects move when the robot carries them."""
+
+    def __init__(self, world: World) -> None:
+        self.world = world
+        self._obstacles = Obstacles(world)
+        self._planner = Planner(world, self._obstacles)
+
+    def add(self, place: Place) -> None:
+        """Names one more place; one of the same name is replaced."""
+        self.world = self.world.with_place(place)
+
+    def known(self, name: str) -> str:
+        """The name as the world spells it. Raises RobotError for an unknown one."""
+        names = self.world.names
+        for known in (*names.places, *names.objects, *names.people):
+            if known.lower() == name.lower():
+                return known
+        raise RobotError(f'I do not know where "{name}" is')
+
+    def locate(self, name: str, robot: Pose) -> Point:
+        """Where it is; what the robot carries is where the robot is. Raises RobotError for an unknown name."""
+        known = self.known(name)
+        for place in self.world.places:
+            if place.name == known:
+                return place.x, place.y
+        if self._obstacles.is_carried(known):
+            return robot.x, robot.y
+        thing = self._obstacles.things[known]
+        return thing.x, thing.y
+
+    def goal(self, name: str, robot: Pose) -> Pose:
+        """Where the robot has to stand for it, and which way to face. Raises RobotError for an unknown name.
+
+        Before an object or a person that is where the free way there ends, by the walls and boxes of the world file.
+        """
+        known = self.known(name)
+        point = self.locate(known, robot)
+        for place in self.world.places:
+            if place.name == known:
+                facing = robot.heading + robot.bearing_to(point) if place.facing is None else place.facing
+                return Pose(place.x, place.y, facing)
+        near = TALKING_DISTANCE if known in self.world.names.people else ARM_REACH
+        reach = max(near, self._obstacles.things[known].radius + _ROOM)
+        stand = self._stand(robot, point, reach)
+        return Pose(*stand, stand_heading(stand, point))
+
+    def picked_up(self, name: str) -> None:
+        """The robot carries it from now on."""
+        self._obstacles.pick_up(name)
+
+    def put_down(self, name: str, robot: Pose) -> None:
+        """It lies just in front of the robot."""
+        self._obstacles.put_down(name, *robot.ahead(_PUT_AT))
+
+    def nearby_people(self, within: float, robot: Pose) -> list[str]:
+        """Names, nearest first."""
+        distances = [(robot.distance_to(self.locate(name, robot)), name) for name in self.world.names.people]
+        return [name for distance, name in sorted(distances) if distance <= within]
+
+    def _stand(self, robot: Pose, point: Point, reach: float) -> Point:
+        path = self._planner.path((robot.x, robot.y), point, reach)
+        if path is not None:
+            return path[-1]
+        left = robot.distance_to(point)  # no free way on this map: the server of the robot may know better
+        share = max(0.0, left - reach) / left if left else 0.0
+        return robot.x + share * (point[0] - robot.x), robot.y + share * (point[1] - robot.y)
+
+
+def stand_heading(stand: Point, point: Point) -> float:
+    """Degrees that face a point."""
+    return Pose(*stand).bearing_to(point)

@@ -1,0 +1,83 @@
+"""Arms, head, hands and voice: /joint_states, /joint_trajectory, /left_hand/..., /speech, /speaking, /print."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+from math import degrees, isfinite, radians
+from typing import Any
+
+from rclpy.node import Node
+from sensor_msgs.msg import JointState
+from std_msgs.msg import Bool, String
+from std_srvs.srv import SetBool
+from trajectory_msgs.msg import JointTrajectory
+
+from btlang.robots.joints import LIMITS
+from btlang.robots.robot import Hand
+from btlang.robots.simulated import SimulatedRobot
+from btlang.ros.simulator.inbox import Inbox
+from btlang.ros.simulator.publishing import COMMANDS, Every, Latched, Moment
+
+_JOINTS = {name.replace(" ", "_"): name for name in LIMITS}
+_HANDS: tuple[Hand, Hand] = ("left", "right")
+
+
+class Body:
+    """Moves joints, hands and voice as topics and services say."""
+
+    def __init__(self, node: Node, robot: SimulatedRobot, inbox: Inbox) -> None:
+        self._robot = robot
+        self._inbox = inbox
+        self._joints = node.create_publisher(JointState, "joint_states", COMMANDS)
+        self._joints_due = Every(20)
+        self._speaking = Latched(node, Bool, "speaking", robot.speaking)
+        self._holding = {hand: Latched(node, String, f"{hand}_hand/holding", "") for hand in _HANDS}
+        for hand in _HANDS:
+            node.create_service(SetBool, f"{hand}_hand/close", partial(self._close, hand))
+        for kind, topic, act in (
+            (JointTrajectory, "joint_trajectory", self._move),
+            (String, "speech", self._say),
+            (String, "print", self._print),
+        ):
+            node.create_subscription(kind, topic, partial(self._hand_over, act), COMMANDS)
+
+    def publish(self, now: Moment) -> None:
+        """Tells the state of joints, hands and voice."""
+        self._speaking.set(self._robot.speaking)
+        for hand, topic in self._holding.items():
+            topic.set(self._robot.holding(hand) or "")
+        if self._joints_due.is_due(now.seconds):
+            state = JointState(name=list(_JOINTS))
+            state.header.stamp = now.stamp
+            state.position = [radians(self._robot.joint(name)) for name in _JOINTS.values()]
+            self._joints.publish(state)
+
+    def _hand_over(self, act: Callable[[Any], None], message: Any) -> None:
+        self._inbox.post(lambda: act(message))
+
+    def _close(self, hand: Hand, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
+        job = partial(self._robot.grasp if request.data else self._robot.release, hand)
+        response.success, response.message = self._inbox.ask(job)
+        return response
+
+    def _move(self, message: JointTrajectory) -> None:
+        """The last point counts, and how fast is up to the joints. No point at all: they stay where they are."""
+        names = [_JOINTS[name] for name in message.joint_names if name in _JOINTS]
+        if not message.points:
+            self._robot.freeze_joints(*(names or LIMITS))
+            return
+        positions = dict(zip(message.joint_names, message.points[-1].positions, strict=False))
+        targets = {_JOINTS[name]: degrees(at) for name, at in positions.items() if name in _JOINTS and isfinite(at)}
+        if targets:
+            self._robot.move_joints(targets)
+
+    def _say(self, message: String) -> None:
+        if message.data:
+            self._robot.say(message.data)
+        else:
+            self._robot.silence()
+        self._speaking.set(self._robot.speaking)
+
+    def _print(self, message: String) -> None:
+        self._robot.print(message.data)

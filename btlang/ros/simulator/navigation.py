@@ -1,0 +1,129 @@
+"""The action server /navigate_to_pose: journeys to a pose, around obstacles."""
+
+from __future__ import annotations
+
+from math import isfinite
+
+from builtin_interfaces.msg import Duration
+from nav2_msgs.action import NavigateToPose
+from rclpy.action import ActionServer, CancelResponse
+from rclpy.action.server import ServerGoalHandle
+from rclpy.node import Node
+from rclpy.task import Future
+
+from btlang.robots.geometry import Pose
+from btlang.robots.navigation import SPEED, Journey
+from btlang.robots.simulated import SimulatedRobot
+from btlang.ros.simulator.inbox import Inbox
+from btlang.ros.simulator.poses import MAP, ODOM, pose_message, pose_of
+from btlang.ros.simulator.publishing import Every, Moment
+from btlang.ros.simulator.wheels import Wheels
+
+FAILED = 9000
+"""The error code of all that can go wrong, as of Nav2 for what it has no own code for; `error_msg` says what it is."""
+_BRAKING = 1.0  # simulated seconds that a cancelled goal waits at most until the robot stands still
+
+
+class Ride:
+    """A goal that has been accepted. Its journey begins with the next step, unless it is `refused`."""
+
+    def __init__(self, goal: ServerGoalHandle) -> None:
+        self.goal = goal
+        self.pose = pose_of(goal.request.pose.pose)
+        self.refused = _refusal(goal.request.pose.header.frame_id, self.pose)
+        self.journey: Journey | None = None
+        self.began = 0.0
+        self.cancelled: float | None = None
+        self.ended = Future()
+
+    @property
+    def failure(self) -> str | None:
+        """Why it did not arrive."""
+        return self.refused if self.journey is None else self.journey.failure
+
+
+class Navigation:
+    """One goal at a time; a new one takes the place of the one under way, which is aborted."""
+
+    def __init__(self, node: Node, robot: SimulatedRobot, inbox: Inbox, wheels: Wheels) -> None:
+        self._node = node
+        self._robot = robot
+        self._inbox = inbox
+        self._wheels = wheels
+        self._ride: Ride | None = None
+        self._feedback_due = Every(5)
+        ActionServer(
+            node,
+            NavigateToPose,
+            "navigate_to_pose",
+            self._execute,
+            cancel_callback=lambda goal: CancelResponse.ACCEPT,
+        )
+
+    def publish(self, now: Moment) -> None:
+        """Tells how far the goal has come, or that it is over."""
+        ride = self._ride
+        if ride is None or ride.journey is None:
+            return
+        if ride.cancelled is None and ride.goal.is_cancel_requested:
+            ride.cancelled = now.seconds
+            ride.journey.cancel()
+        if ride.journey.done and not self._brakes(ride, now.seconds):
+            self._ride = None
+            self._end(ride)
+        elif self._feedback_due.is_due(now.seconds):
+            self._tell(ride, ride.journey, now)
+
+    async def _execute(self, goal: ServerGoalHandle) -> NavigateToPose.Result:
+        """Runs in the thread of the executor."""
+        ride = Ride(goal)
+        self._inbox.post(lambda: self._begin(ride))
+        await ride.ended
+        if ride.failure is None:
+            goal.succeed()
+            return NavigateToPose.Result()
+        if goal.is_cancel_requested:
+            goal.canceled()
+        else:
+            goal.abort()
+        return NavigateToPose.Result(error_code=FAILED, error_msg=ride.failure)
+
+    def _begin(self, ride: Ride) -> None:
+        if ride.refused is not None:
+            self._end(ride)
+            return
+        ride.journey, ride.began = self._robot.navigate_to_pose(ride.pose), self._robot.time
+        self._wheels.leave()
+        if self._ride is not None:
+            self._end(self._ride)  # the new journey has ended its own
+        self._ride = ride
+
+    def _brakes(self, ride: Ride, now: float) -> bool:
+        """Whether a cancelled goal has to wait for the robot to stand still."""
+        return ride.cancelled is not None and now - ride.cancelled < _BRAKING and self._robot.velocity != (0.0, 0.0)
+
+    def _end(self, ride: Ride) -> None:
+        ride.ended.set_result(None)
+        self._node.executor.wake()
+
+    def _tell(self, ride: Ride, journey: Journey, now: Moment) -> None:
+        left = journey.left
+        feedback = NavigateToPose.Feedback(distance_remaining=left)
+        feedback.current_pose.header.stamp, feedback.current_pose.header.frame_id = now.stamp, MAP
+        feedback.current_pose.pose = pose_message(self._robot.pose)
+        feedback.navigation_time = _duration(now.seconds - ride.began)
+        feedback.estimated_time_remaining = _duration(left / SPEED)
+        ride.goal.publish_feedback(feedback)
+
+
+def _refusal(frame: str, pose: Pose) -> str | None:
+    if frame not in (MAP, ODOM, ""):
+        return f"the goal is in the frame {frame}, and the robot knows only {MAP} and {ODOM}"
+    if not all(map(isfinite, (pose.x, pose.y, pose.heading))):
+        return "the goal is no pose: one of its numbers is infinite, or not a number"
+    return None
+
+
+def _duration(seconds: float) -> Duration:
+    whole, part = divmod(round(seconds * 1e9), 10**9)
+    return Duration(sec=whole, nanosec=part)

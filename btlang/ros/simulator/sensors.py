@@ -1,0 +1,76 @@
+"""The laser scanner, and the battery with its dock: /scan, /battery_state, /docked, /dock, /undock."""
+
+from __future__ import annotations
+
+from array import array
+from math import nan, radians
+
+from rclpy.node import Node
+from rclpy.qos import qos_profile_sensor_data
+from sensor_msgs.msg import BatteryState, LaserScan
+from std_msgs.msg import Bool
+from std_srvs.srv import Trigger
+
+from btlang.robots.robot import RobotError
+from btlang.robots.scan import RANGE
+from btlang.robots.simulated import SimulatedRobot
+from btlang.ros.simulator.inbox import Inbox
+from btlang.ros.simulator.poses import BASE
+from btlang.ros.simulator.publishing import COMMANDS, Every, Latched, Moment
+
+_SCANS = 10
+
+
+class Sensors:
+    """Publishes what the robot senses; a silent scanner publishes nothing."""
+
+    def __init__(self, node: Node, robot: SimulatedRobot, inbox: Inbox) -> None:
+        self._robot = robot
+        self._scan = node.create_publisher(LaserScan, "scan", qos_profile_sensor_data)
+        self._battery = node.create_publisher(BatteryState, "battery_state", COMMANDS)
+        self._docked = Latched(node, Bool, "docked", robot.docked)
+        self._scan_due, self._battery_due = Every(_SCANS), Every(2)
+
+        def dock(request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+            response.success, response.message = inbox.ask(robot.dock)
+            return response
+
+        def undock(request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+            response.success, response.message = inbox.ask(robot.undock)
+            return response
+
+        node.create_service(Trigger, "dock", dock)
+        node.create_service(Trigger, "undock", undock)
+
+    def publish(self, now: Moment) -> None:
+        """Tells what the robot senses."""
+        self._docked.set(self._robot.docked)
+        if self._battery_due.is_due(now.seconds):
+            self._publish_battery(now)
+        if self._scan_due.is_due(now.seconds):
+            self._publish_scan(now)
+
+    def _publish_scan(self, now: Moment) -> None:
+        try:
+            ranges = self._robot.scan()
+        except RobotError:
+            return
+        step = radians(1)
+        scan = LaserScan(angle_min=0.0, angle_max=359 * step, angle_increment=step, scan_time=1 / _SCANS)
+        scan.range_min, scan.range_max, scan.ranges = 0.0, RANGE, array("f", ranges)
+        scan.header.stamp, scan.header.frame_id = now.stamp, BASE
+        self._scan.publish(scan)
+
+    def _publish_battery(self, now: Moment) -> None:
+        robot = self._robot
+        battery = BatteryState(percentage=robot.battery / 100, present=True)
+        battery.header.stamp = now.stamp
+        battery.voltage = battery.current = battery.charge = battery.capacity = battery.temperature = nan
+        battery.design_capacity = nan
+        if robot.charging:
+            battery.power_supply_status = BatteryState.POWER_SUPPLY_STATUS_CHARGING
+        elif robot.docked:
+            battery.power_supply_status = BatteryState.POWER_SUPPLY_STATUS_FULL
+        else:
+            battery.power_supply_status = BatteryState.POWER_SUPPLY_STATUS_DISCHARGING
+        self._battery.publish(battery)

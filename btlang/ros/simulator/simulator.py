@@ -1,0 +1,106 @@
+"""The simulated robot with all its topics, services and actions."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from importlib.util import find_spec
+from typing import Any, Protocol
+
+from builtin_interfaces.msg import Time
+from rclpy.qos import QoSProfile
+from rosgraph_msgs.msg import Clock
+from std_srvs.srv import Trigger
+
+from btlang.robots.simulated import SimulatedRobot
+from btlang.robots.world import World
+from btlang.ros.node import SpunNode
+from btlang.ros.simulator.body import Body
+from btlang.ros.simulator.inbox import Inbox
+from btlang.ros.simulator.publishing import Moment
+from btlang.ros.simulator.sensors import Sensors
+from btlang.ros.simulator.wheels import Wheels
+
+
+class Part(Protocol):
+    """Some topics, services and actions of the robot."""
+
+    def publish(self, now: Moment) -> None:
+        """Tells what has become of it with the step."""
+
+
+class Simulator:
+    """A node with the simulated robot of a world. To be used with `with`; `work` and `step` from one thread, in turn.
+
+    With `gives_clock` the simulated time is published on /clock and stamps are of that time, else of the system's.
+    `show` gets what the robot says and prints, a line at a time. Without nav2_msgs nothing is offered that navigates.
+    """
+
+    def __init__(self, world: World, *, namespace: str, gives_clock: bool, show: Callable[[str], object]) -> None:
+        self.robot = SimulatedRobot(world)
+        self._show = show
+        self._inbox = Inbox()
+        self._spun = SpunNode("btlang_sim", namespace=namespace)
+        node = self._spun.node
+        self._wheels = Wheels(node, self.robot, self._inbox)
+        self._parts: list[Part] = [
+            self._wheels,
+            Sensors(node, self.robot, self._inbox),
+            Body(node, self.robot, self._inbox),
+        ]
+        if can_navigate():
+            from btlang.ros.simulator.navigation import Navigation
+
+            self._parts.append(Navigation(node, self.robot, self._inbox, self._wheels))
+        self._clock = node.create_publisher(Clock, "/clock", QoSProfile(depth=1)) if gives_clock else None
+        node.create_service(Trigger, "stop", self._stop)
+        self.robot.on_event = self._tell
+
+    def work(self, seconds: float) -> None:
+        """Does what the topics, services and actions ask for, within so many seconds of real time or until `wake`."""
+        self._inbox.work(seconds)
+
+    def wake(self) -> None:
+        """Ends `work`, from any thread and from handlers of signals."""
+        self._inbox.wake()
+
+    def step(self, seconds: float) -> None:
+        """Lets simulated time pass and publishes what has become of the robot."""
+        self._wheels.watch()
+        self.robot.step(seconds)
+        now = self._now()
+        if self._clock is not None:
+            self._clock.publish(Clock(clock=now.stamp))
+        for part in self._parts:
+            part.publish(now)
+
+    def __enter__(self) -> Simulator:
+        self._spun.start()
+        return self
+
+    def __exit__(self, *problem: object) -> None:
+        self._inbox.close()  # first: who waits in the thread of the executor would keep it from ending
+        self._spun.close()
+
+    def _now(self) -> Moment:
+        seconds = self.robot.time
+        if self._clock is None:
+            return Moment(seconds, self._spun.node.get_clock().now().to_msg())
+        whole, part = divmod(round(seconds * 1e9), 10**9)
+        return Moment(seconds, Time(sec=whole, nanosec=part))
+
+    def _stop(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        """In the thread of the executor, at once: it waits for no step."""
+        self.robot.stop()
+        response.success = True
+        return response
+
+    def _tell(self, kind: str, data: Mapping[str, Any]) -> None:
+        if kind == "bump":
+            self._wheels.bumped(data["into"])
+        elif kind in ("say", "print"):
+            self._show(f'{kind}s "{data["text"]}"')
+
+
+def can_navigate() -> bool:
+    """Whether the interfaces of Nav2 are installed."""
+    return find_spec("nav2_msgs") is not None

@@ -1,0 +1,68 @@
+"""The wheels and what tells where the robot is: /cmd_vel, /odom, /amcl_pose, /bump."""
+
+from __future__ import annotations
+
+from math import degrees, isfinite, radians
+
+from geometry_msgs.msg import PoseWithCovarianceStamped, Twist
+from nav_msgs.msg import Odometry
+from rclpy.node import Node
+from std_msgs.msg import String
+
+from btlang.robots.simulated import SimulatedRobot
+from btlang.ros.simulator.inbox import Inbox
+from btlang.ros.simulator.poses import BASE, MAP, ODOM, pose_message
+from btlang.ros.simulator.publishing import COMMANDS, LATCHED, Every, Moment
+
+_SILENCE = 0.5  # simulated seconds without a command after which the robot brakes
+
+
+class Wheels:
+    """Drives as /cmd_vel says. A journey ends with a command to move; a zero, or silence, leaves it alone."""
+
+    def __init__(self, node: Node, robot: SimulatedRobot, inbox: Inbox) -> None:
+        self._robot = robot
+        self._driven = False
+        self._told_at = 0.0
+        self._odometry = node.create_publisher(Odometry, "odom", COMMANDS)
+        self._pose = node.create_publisher(PoseWithCovarianceStamped, "amcl_pose", LATCHED)
+        self._bump = node.create_publisher(String, "bump", COMMANDS)
+        self._due = Every(20)
+        node.create_subscription(Twist, "cmd_vel", lambda twist: inbox.post(lambda: self._drive(twist)), COMMANDS)
+
+    def watch(self) -> None:
+        """Brakes where commands have ceased; to be called before each step."""
+        if self._driven and self._robot.time - self._told_at >= _SILENCE - 1e-6:
+            self.leave()
+            self._robot.drive(0.0, 0.0)
+
+    def leave(self) -> None:
+        """Somebody else drives from now on."""
+        self._driven = False
+
+    def bumped(self, into: str) -> None:
+        """A contact has just begun."""
+        self._bump.publish(String(data=into))
+
+    def publish(self, now: Moment) -> None:
+        """Tells where the robot is and how it moves."""
+        if not self._due.is_due(now.seconds):
+            return
+        linear, angular = self._robot.velocity
+        odometry = Odometry(child_frame_id=BASE)
+        odometry.header.stamp, odometry.header.frame_id = now.stamp, ODOM
+        odometry.pose.pose = pose_message(self._robot.pose)
+        odometry.twist.twist.linear.x, odometry.twist.twist.angular.z = linear, radians(angular)
+        self._odometry.publish(odometry)
+        pose = PoseWithCovarianceStamped()
+        pose.header.stamp, pose.header.frame_id = now.stamp, MAP
+        pose.pose.pose = odometry.pose.pose
+        self._pose.publish(pose)
+
+    def _drive(self, twist: Twist) -> None:
+        linear, angular = twist.linear.x, degrees(twist.angular.z)
+        if not (isfinite(linear) and isfinite(angular)):
+            return
+        if self._driven or linear or angular:
+            self._driven, self._told_at = True, self._robot.time
+            self._robot.drive(linear, angular)

@@ -1,0 +1,101 @@
+"""The stage of a mission on a ROS 2 robot: its node, its clock, and the end that leaves nothing behind."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+from rosgraph_msgs.msg import Clock as ClockMessage
+
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.engine.clock import Clock
+from btlang.robots.world import World
+from btlang.ros.available import require_ros
+from btlang.ros.node import SpunNode
+from btlang.ros.pace import RosPace
+from btlang.ros.preflight import preflight
+from btlang.ros.robot import RosRobot
+from btlang.ros.wire import CLOCK, Interface, needs
+from btlang.run.controls import Controls
+from btlang.run.events import EventStream, RobotEvent
+from btlang.run.pace import Pace
+from btlang.text.source import Source, Span
+from btlang.tree.node import Node, Tree
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.run.events import Sink
+
+
+class RosStage:
+    """See `btlang.run.stage.Stage`. Names and poses are those of the world file, whose map is the robot's.
+
+    With `sim_time` the mission's clock follows the topic /clock, else the system's. Missions run in real time.
+    """
+
+    def __init__(self, world: World, *, sim_time: bool = False) -> None:
+        self.world = world
+        self.clock = Clock()
+        self.events = EventStream()
+        self._sim_time = sim_time
+        self._spun = SpunNode("btlang", use_sim_time=sim_time)
+        try:
+            self.robot = RosRobot(self._spun.node, world, on_event=self._publish)
+            if sim_time:
+                self.robot.inbox.listen(CLOCK.name, ClockMessage, "simulated time")
+            self._spun.start()
+        except BaseException:
+            self._spun.close()
+            raise
+
+    def survey(self, tree: Tree) -> dict[Interface, tuple[Node | None, str]]:
+        """What a tree needs of the robot, the first leaf that needs it, and what is wrong with it, "" for nothing.
+
+        Waits two seconds at most for what is missing. Raises MissionError (BT100) where nav2_msgs is needed and is
+        not installed.
+        """
+        wanted: dict[Interface, Node | None] = {CLOCK: None} if self._sim_time else {}
+        wanted.update(needs(tree))
+        if any(interface.kind == "acts" for interface in wanted):
+            require_ros("nav2_msgs")
+            self.robot.prepare_navigation()
+        found = preflight(self._spun.node, self.robot.inbox, wanted)
+        return {interface: (wanted[interface], reason) for interface, reason in found.items()}
+
+    def check(self, tree: Tree) -> None:
+        """Raises MissionError with all that the tree needs and the robot lacks (BT101)."""
+        lacking = [(i, node, reason) for i, (node, reason) in self.survey(tree).items() if reason]
+        if lacking:
+            raise MissionError([_lack(*lack) for lack in lacking])
+        self.robot.inbox.read()
+
+    def begin(self, sinks: Iterable[Sink]) -> None:
+        """A new run: time starts at 0 and events go to these sinks."""
+        self.clock, self.events = Clock(), EventStream(*sinks)
+
+    def pace(self, speed: float, controls: Controls) -> Pace:
+        """Raises ValueError for another speed than 1: the robot's time passes by itself."""
+        if speed != 1.0:
+            raise ValueError('a ROS 2 robot runs in real time: speed is "real"')
+        return RosPace(controls, self._ros_time if self._sim_time else time.monotonic)
+
+    def close(self) -> None:
+        """Leaves the robot at rest and its goals cancelled, then the ROS graph. Takes about two seconds at most."""
+        try:
+            self.robot.close()
+        finally:
+            self._spun.close()
+
+    def _ros_time(self) -> float:
+        return float(self._spun.node.get_clock().now().nanoseconds) * 1e-9
+
+    def _publish(self, kind: str, data: Mapping[str, Any]) -> None:
+        self.events.publish(RobotEvent(self.clock.now, kind, data))
+
+
+def _lack(interface: Interface, node: Node | None, reason: str) -> Any:
+    span = node.span if node is not None else None
+    words = span.text if span is not None else node.id if node is not None else "--sim-time"
+    place = span or Span(Source("", "ROS 2"), 0, 0)
+    return diagnostic("BT101", place, words=words, sort=interface.sort, name=interface.name, reason=reason)

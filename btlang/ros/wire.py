@@ -1,0 +1,99 @@
+"""What a ROS 2 robot looks like to a mission: its topics, services and actions, and which of them a leaf needs."""
+
+from __future__ import annotations
+
+from btlang.record import Record
+from btlang.tree.node import Node, Tree
+
+
+class Interface(Record):
+    """`kind` is "listens", "tells" (topics, as the robot does), "serves" (a service) or "acts" (an action).
+
+    `type` is as ROS 2 tools write it. What `flows` is told again and again, so that silence is a fault.
+    """
+
+    kind: str
+    name: str
+    type: str
+    flows: bool = False
+
+    @property
+    def sort(self) -> str:
+        """What it is in ROS 2."""
+        return {"serves": "service", "acts": "action"}.get(self.kind, "topic")
+
+
+CLOCK = Interface("tells", "/clock", "rosgraph_msgs/msg/Clock", flows=True)
+_BASE = (
+    Interface("listens", "/cmd_vel", "geometry_msgs/msg/Twist"),
+    Interface("tells", "/odom", "nav_msgs/msg/Odometry", flows=True),
+)
+_HAND = "std_srvs/srv/SetBool"
+_HOLDING = "std_msgs/msg/String"
+CAPABILITIES: dict[str, tuple[Interface, ...]] = {
+    "base": _BASE,
+    "pose": _BASE[1:],
+    "navigation": (Interface("acts", "/navigate_to_pose", "nav2_msgs/action/NavigateToPose"), *_BASE[1:]),
+    "scan": (Interface("tells", "/scan", "sensor_msgs/msg/LaserScan", flows=True),),
+    "bump": (Interface("tells", "/bump", "std_msgs/msg/String"),),
+    "battery": (Interface("tells", "/battery_state", "sensor_msgs/msg/BatteryState", flows=True),),
+    "docked": (Interface("tells", "/docked", "std_msgs/msg/Bool"),),
+    "docking": (
+        Interface("serves", "/dock", "std_srvs/srv/Trigger"),
+        Interface("serves", "/undock", "std_srvs/srv/Trigger"),
+    ),
+    "joints": (
+        Interface("listens", "/joint_trajectory", "trajectory_msgs/msg/JointTrajectory"),
+        Interface("tells", "/joint_states", "sensor_msgs/msg/JointState", flows=True),
+    ),
+    "left hand": (Interface("serves", "/left_hand/close", _HAND),),
+    "right hand": (Interface("serves", "/right_hand/close", _HAND),),
+    "holding": (
+        Interface("tells", "/left_hand/holding", _HOLDING),
+        Interface("tells", "/right_hand/holding", _HOLDING),
+    ),
+    "voice": (Interface("listens", "/speech", "std_msgs/msg/String"),),
+    "print": (Interface("listens", "/print", "std_msgs/msg/String"),),
+}
+"""What the robot needs for each thing that it can do."""
+
+_DOES = {
+    ("base",): "MoveForward MoveBackward TurnLeft TurnRight TurnAround Stop Stuck FacePlace FacePerson FaceObject",
+    ("navigation",): "GoTo GoToPerson Approach",
+    ("navigation", "docking", "docked"): "Dock",
+    ("base", "docking", "docked"): "Undock",
+    ("navigation", "docking", "docked", "battery"): "Charge",
+    ("joints",): (
+        "Wave PointLeft PointRight PointAhead Nod ShakeHead LookAround LookLeft LookRight LookAhead LookUp LookDown "
+        "RaiseArm RaiseLeftArm RaiseBothArms LowerArm LowerLeftArm LowerBothArms StretchArm StretchLeftArm "
+        "RetractArm RetractLeftArm"
+    ),
+    ("joints", "pose"): "PointAtPerson PointAtObject PointAtPlace LookAtPerson LookAtObject LookAtPlace",
+    ("voice",): "Say",
+    ("print",): "Print",
+    ("scan",): "WallInFront WallOnLeft WallOnRight WallBehind PathClear DistanceAhead",
+    ("bump",): "Bumped",
+    ("battery",): "BatteryLow BatteryFull Battery Charging",
+    ("docked",): "Docked",
+    ("pose",): (
+        "AtPlace PersonNear SomeoneNear PeopleNear DistanceToPlace DistanceToPerson DistanceToObject"
+    ),
+    ("holding",): "Holding HoldingSomething HandEmpty",
+    ("left hand",): "OpenLeftHand CloseLeftHand",
+    ("right hand",): "OpenHand CloseHand Grasp",
+    ("left hand", "right hand", "holding"): "Release",
+    ("left hand", "right hand", "holding", "joints"): "PutDown",
+    ("navigation", "right hand", "holding", "joints"): "PickUp",
+}  # fmt: skip
+LEAVES = {leaf: capabilities for capabilities, leaves in _DOES.items() for leaf in leaves.split()}
+"""What the leaves that ship need the robot to be able to do, by their ids."""
+
+
+def needs(tree: Tree) -> dict[Interface, Node]:
+    """What a tree needs of the robot, each with the first leaf that needs it."""
+    found: dict[Interface, Node] = {}
+    for node in tree.walk():
+        for capability in LEAVES.get(node.id, ()):
+            for interface in CAPABILITIES[capability]:
+                found.setdefault(interface, node)
+    return found

@@ -1,0 +1,81 @@
+"""A program of a user, with rclpy alone: what it hears, and how it asks."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from threading import Condition, Event
+from typing import Any
+
+from rclpy.action import ActionClient
+from rclpy.qos import DurabilityPolicy, QoSProfile
+
+from btlang.ros.node import SpunNode
+from tests.ros.processes import LONG, wait_until
+
+LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+
+class Heard:
+    """The messages of a topic, from the subscription on."""
+
+    def __init__(self) -> None:
+        self.messages: list[Any] = []
+        self._news = Condition()
+
+    def __call__(self, message: Any) -> None:
+        with self._news:
+            self.messages.append(message)
+            self._news.notify_all()
+
+    def wait(self, wanted: Callable[[Any], object] = lambda message: True) -> Any:
+        """The last message, or else the next one, that is as wanted."""
+        with self._news:
+            found = self._news.wait_for(lambda: self.messages and wanted(self.messages[-1]), LONG)
+            assert found, f"the last of {len(self.messages)} messages: {self.messages[-1:]}"
+            return self.messages[-1]
+
+    def next(self) -> Any:
+        """A message that is not there yet."""
+        count = len(self.messages)
+        return self.wait(lambda _: len(self.messages) > count)
+
+
+class Client:
+    """A node that is spun in the background. Every wait has an end."""
+
+    def __init__(self, domain: int) -> None:
+        self._spun = SpunNode("client", domain_id=domain)
+        self.node = self._spun.node
+        self._spun.start()
+
+    def close(self) -> None:
+        self._spun.close()
+
+    def hear(self, kind: type[Any], topic: str, qos: QoSProfile | int = 10) -> Heard:
+        heard = Heard()
+        self.node.create_subscription(kind, topic, heard, qos)
+        return heard
+
+    def publisher(self, kind: type[Any], topic: str) -> Any:
+        """A publisher that somebody listens to."""
+        publisher = self.node.create_publisher(kind, topic, 10)
+        wait_until(publisher.get_subscription_count, f"a listener of {topic}")
+        return publisher
+
+    def call(self, kind: type[Any], service: str, **fields: Any) -> Any:
+        client = self.node.create_client(kind, service)
+        assert client.wait_for_service(LONG), service
+        return answer(client.call_async(kind.Request(**fields)))
+
+    def action(self, kind: type[Any], name: str) -> ActionClient:
+        client = ActionClient(self.node, kind, name)
+        assert client.wait_for_server(LONG), name
+        return client
+
+
+def answer(future: Any) -> Any:
+    """What a future of rclpy comes to."""
+    done = Event()
+    future.add_done_callback(lambda _: done.set())
+    assert done.wait(LONG), "no answer"
+    return future.result()

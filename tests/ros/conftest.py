@@ -1,0 +1,137 @@
+"""For tests with real ROS 2: each has a domain of its own, stays on this machine, and ends what it started.
+
+Without rclpy the whole folder is skipped.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import importlib
+import os
+import random
+import subprocess
+import sys
+import tempfile
+from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
+from importlib.util import find_spec
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import pytest
+
+from btlang.ros import interfaces
+from tests.ros.processes import REPOSITORY, ROOM, Command
+
+if TYPE_CHECKING:
+    from tests.ros.client import Client
+
+HERE = Path(__file__).parent
+_DOMAINS = range(1, 102)  # the ports of higher ones are among those that the system hands out
+_NAV2 = "nav2_msgs.action"
+
+
+class _Skipped(pytest.Module):
+    def collect(self) -> list[pytest.Item]:
+        pytest.skip("ROS 2 is not installed: pip install 'btlang[ros]'", allow_module_level=True)
+
+
+def pytest_pycollect_makemodule(module_path: Path, parent: pytest.Collector) -> pytest.Module | None:
+    return _Skipped.from_parent(parent, path=module_path) if find_spec("rclpy") is None else None
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _isolated() -> Iterator[None]:
+    """Nothing leaves this machine, and nodes find each other fast."""
+    with pytest.MonkeyPatch.context() as patch:
+        patch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+        patch.setenv("FASTRTPS_DEFAULT_PROFILES_FILE", str(HERE / "fast_discovery.xml"))
+        patch.delenv("ROS_STATIC_PEERS", raising=False)
+        yield
+
+
+@pytest.fixture
+def domain() -> Iterator[int]:
+    """The number of a domain that no other test on this machine uses at the same time."""
+    folder = Path(tempfile.gettempdir(), "btlang-ros-domains")
+    folder.mkdir(exist_ok=True)
+    with ExitStack() as stack:
+        for number in random.sample(_DOMAINS, len(_DOMAINS)):
+            file = stack.enter_context((folder / str(number)).open("w"))
+            try:
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                continue
+            yield number
+            return
+        pytest.fail("all domains are in use")
+
+
+@pytest.fixture(scope="session", autouse=True)
+def _interfaces() -> None:
+    """Compiles what Nav2 would bring, once for all workers; where that cannot be, `nav2` skips."""
+    with _lock(Path(sys.prefix, ".btlang-interfaces.lock")):
+        if _found(_NAV2) or interfaces.missing_tools() is not None:
+            return
+        command = [sys.executable, "-m", "btlang.ros.interfaces", str(HERE / "nav2_msgs")]
+        environment = {**os.environ, "PYTHONPATH": str(REPOSITORY)}
+        subprocess.run(command, env=environment, check=True, timeout=120, stdout=subprocess.DEVNULL)
+    importlib.invalidate_caches()
+
+
+@pytest.fixture
+def nav2() -> Any:
+    """The action NavigateToPose."""
+    if not _found(_NAV2):
+        pytest.skip(f"nav2_msgs is not installed and cannot be compiled: {interfaces.missing_tools()}")
+    return importlib.import_module(_NAV2).NavigateToPose
+
+
+@pytest.fixture
+def client(domain: int) -> Iterator[Client]:
+    """A user's program in this process."""
+    from tests.ros.client import Client
+
+    client = Client(domain)
+    yield client
+    client.close()
+
+
+@pytest.fixture
+def start_sim(tmp_path: Path, domain: int) -> Iterator[Callable[..., Command]]:
+    """Starts `btc sim-ros` in a process of its own; it has to end as asked, and to complain of nothing."""
+    started: list[Command] = []
+
+    def start(*options: str, **environment: str | None) -> Command:
+        folder = tmp_path / f"sim{len(started)}"
+        folder.mkdir()
+        arguments = ["sim-ros", "--world", str(ROOM), "--speed", "20", *options]
+        command = Command(folder, domain, *arguments, **environment)
+        started.append(command)
+        command.wait_for("ready")
+        return command
+
+    yield start
+    codes = [command.end() for command in started]
+    assert set(codes) <= {129, 130, 143}
+    assert [command.err for command in started] == [""] * len(started)
+
+
+@pytest.fixture
+def sim(start_sim: Callable[..., Command]) -> Command:
+    """The simulated robot in the room of `room.toml`, at 20 times real time."""
+    return start_sim()
+
+
+def _found(module: str) -> bool:
+    try:
+        return find_spec(module) is not None
+    except ModuleNotFoundError:
+        return False
+
+
+@contextmanager
+def _lock(path: Path) -> Iterator[None]:
+    with path.open("w") as file:
+        fcntl.flock(file, fcntl.LOCK_EX)
+        yield

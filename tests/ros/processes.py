@@ -1,0 +1,77 @@
+"""Commands of btlang that run in processes of their own while a test talks to them."""
+
+from __future__ import annotations
+
+import os
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+
+REPOSITORY = Path(__file__).parents[2]
+ROOM = Path(__file__).parent / "room.toml"
+LONG = 20.0
+"""Seconds within which everything that a test waits for happens, on a slow machine too."""
+
+
+def wait_until(condition: Callable[[], object], what: str, seconds: float = LONG) -> None:
+    """Fails where something does not become true in time."""
+    end = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < end, f"{what}: not within {seconds} s"
+        time.sleep(0.005)
+
+
+class Command:
+    """`btc` with arguments, in a process group of its own, with what it printed so far. `folder` keeps that."""
+
+    program: tuple[str, ...] = ("-m", "btlang")
+
+    def __init__(self, folder: Path, domain: int, *arguments: str, **environment: str | None) -> None:
+        self._out, self._err = folder / "out.txt", folder / "err.txt"
+        changed = {**os.environ, "PYTHONPATH": str(REPOSITORY), "ROS_DOMAIN_ID": str(domain), **environment}
+        with self._out.open("w") as out, self._err.open("w") as err:
+            self.process = subprocess.Popen(
+                [sys.executable, *self.program, *arguments],
+                env={name: value for name, value in changed.items() if value is not None},
+                stdout=out,
+                stderr=err,
+                stdin=subprocess.DEVNULL,
+                start_new_session=True,
+            )
+
+    @property
+    def out(self) -> str:
+        return self._out.read_text(encoding="utf-8")
+
+    @property
+    def err(self) -> str:
+        return self._err.read_text(encoding="utf-8")
+
+    def wait_for(self, text: str) -> None:
+        """Until it has printed this. Fails where it ends before."""
+        wait_until(lambda: text in self.out or self.process.poll() is not None, f"'{text}' printed")
+        assert text in self.out, self.err
+
+    def end(self, number: signal.Signals = signal.SIGINT) -> int:
+        """Sends a signal and waits; returns the exit code. Fails where a process is left over."""
+        if self.process.poll() is None:
+            self.process.send_signal(number)
+        try:
+            code = self.process.wait(LONG)
+        finally:
+            left = self._group_is_alive()
+            if left:
+                os.killpg(self.process.pid, signal.SIGKILL)
+                self.process.wait()
+        assert not left
+        return code
+
+    def _group_is_alive(self) -> bool:
+        try:
+            os.killpg(self.process.pid, 0)
+        except ProcessLookupError:
+            return False
+        return True

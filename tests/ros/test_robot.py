@@ -1,0 +1,217 @@
+"""Missions on a ROS 2 robot in another process: they do what they say, and end with a reason where they cannot."""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import subprocess
+import sys
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.ros.processes import LONG, REPOSITORY, Command, wait_until
+
+
+class Script:
+    """A scripted robot (see scripted_robot.py) and what it was told."""
+
+    def __init__(self, folder: Path, domain: int, *parts: str) -> None:
+        self._out = folder / "robot.txt"
+        environment = {**os.environ, "PYTHONPATH": str(REPOSITORY), "ROS_DOMAIN_ID": str(domain)}
+        with self._out.open("w") as out:
+            self.process = subprocess.Popen(
+                [sys.executable, "-m", "tests.ros.scripted_robot", *parts],
+                env=environment,
+                stdout=out,
+                start_new_session=True,
+            )
+        self.wait_for("ready")
+
+    @property
+    def lines(self) -> list[str]:
+        return self._out.read_text().splitlines()
+
+    def wait_for(self, line: str) -> None:
+        """Until it has printed this line, or one that begins so."""
+        wait_until(lambda: any(said.startswith(line) for said in self.lines), f"'{line}' printed by the robot")
+
+    @property
+    def place(self) -> float:
+        """Where the base was when it was last told to do something else: metres along its way."""
+        return float(self.drives[-1].split()[-1])
+
+    @property
+    def drives(self) -> list[str]:
+        return [line for line in self.lines if line.startswith("drive ")]
+
+    def kill(self) -> None:
+        self.process.kill()
+        self.process.wait()
+
+
+@pytest.fixture
+def robot(tmp_path: Path, domain: int) -> Iterator[Callable[..., Script]]:
+    """Starts a scripted robot."""
+    started: list[Script] = []
+
+    def start(*parts: str) -> Script:
+        folder = tmp_path / f"robot{len(started)}"
+        folder.mkdir()
+        started.append(Script(folder, domain, *parts))
+        return started[-1]
+
+    yield start
+    for script in started:
+        script.kill()
+
+
+@pytest.fixture
+def btc(tmp_path: Path, domain: int) -> Iterator[Callable[..., Command]]:
+    """Starts `btc run --robot ros` with a mission; it has to be over when the test is."""
+    started: list[Command] = []
+
+    def start(mission: str, *options: str) -> Command:
+        folder = tmp_path / f"btc{len(started)}"
+        folder.mkdir()
+        started.append(Command(folder, domain, "run", "--robot", "ros", "-c", mission, *options))
+        return started[-1]
+
+    yield start
+    for command in started:
+        command.process.kill()
+        command.process.wait()
+
+
+def code_of(command: Command, seconds: float = LONG) -> int:
+    """Its exit code; it told no traceback."""
+    code = command.process.wait(seconds)
+    assert "Traceback" not in command.err + command.out
+    return code
+
+
+def test_a_robot_moves_as_far_as_it_is_told(robot: Callable[..., Script], btc: Callable[..., Command]) -> None:
+    script = robot("base")
+    command = btc("move forward 1 meter")
+    assert code_of(command) == 0, command.err
+    assert script.drives[-1].startswith("drive 0.000 0.000")
+    assert script.place == pytest.approx(1.0, abs=0.03)
+    assert "The mission succeeded in " in command.out
+
+
+def test_turning(robot: Callable[..., Script], btc: Callable[..., Command]) -> None:
+    robot("base")
+    command = btc("turn left 90 degrees then turn right 45 degrees then stop")
+    assert code_of(command) == 0, command.err
+
+
+@pytest.mark.parametrize(
+    ("parts", "mission", "reason"),
+    [
+        (["base=mute"], "move forward 1 m", "MoveForward: no odometry for 2 s: /odom is silent"),
+        (["base=frozen"], "move forward 1 m", "MoveForward: stuck after 0.00 m"),
+        (["base", "navigation=reject"], "go to the kitchen", "GoTo: the navigation server rejected the way to the kit"),
+        (["base", "navigation=abort"], "go to the kitchen", "GoTo: the door is shut"),
+        (["base", "navigation=mute"], "go to the kitchen", "GoTo: the navigation server on /navigate_to_pose does not"),
+        (["base", "navigation=hang"], "go to the kitchen", "GoTo: no word from the navigation server on /navigate_to_"),
+        (["hand=full"], "close the hand", "CloseHand: the right hand already holds the cup"),
+        (["hand=mute"], "close the hand", "CloseHand: no answer from /right_hand/close for 3 s"),
+    ],
+)
+def test_what_goes_wrong_is_a_failure_with_its_reason(
+    parts: list[str], mission: str, reason: str, robot: Callable[..., Script], btc: Callable[..., Command], nav2: object
+) -> None:
+    script = robot(*parts)
+    command = btc(mission)
+    assert code_of(command) == 1
+    assert reason in command.err
+    if "base=mute" in parts:
+        assert script.drives[-1].startswith("drive 0.000 0.000")
+
+
+def test_a_journey_arrives(robot: Callable[..., Script], btc: Callable[..., Command], nav2: object) -> None:
+    script = robot("base", "navigation=arrive")
+    command = btc("go to the kitchen")
+    assert code_of(command) == 0, command.err
+    assert "cancel" not in script.lines
+
+
+def test_a_navigation_server_that_is_killed(
+    robot: Callable[..., Script], btc: Callable[..., Command], nav2: object
+) -> None:
+    robot("base")
+    server = robot("navigation=hang")
+    command = btc("go to the kitchen")
+    server.wait_for("accepted")
+    server.kill()
+    assert code_of(command, 40) == 1
+    assert re.search(r"GoTo: (no word from )?the navigation server on /navigate_to_pose (is gone|for 5 s)", command.err)
+
+
+def test_a_base_that_is_killed(robot: Callable[..., Script], btc: Callable[..., Command]) -> None:
+    script = robot("base")
+    command = btc("move forward 9 m")
+    script.wait_for("drive 0.5")
+    script.kill()
+    assert code_of(command) == 1
+    assert "MoveForward: no odometry for 2 s: /odom is silent" in command.err
+
+
+@pytest.mark.parametrize("when", ["goal", "accepted"])
+def test_a_goal_is_cancelled_when_the_mission_is(
+    when: str, robot: Callable[..., Script], btc: Callable[..., Command], nav2: object
+) -> None:
+    """Also one that is not accepted yet."""
+    script = robot("base", "navigation=slow")
+    command = btc("go to the kitchen")
+    script.wait_for(when)
+    command.process.send_signal(signal.SIGINT)
+    assert code_of(command) == 130
+    script.wait_for("cancelled")
+
+
+@pytest.mark.parametrize(
+    ("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 130), (signal.SIGHUP, 130), (signal.SIGQUIT, 131)]
+)
+def test_a_signal_leaves_the_robot_at_rest(
+    number: signal.Signals, code: int, robot: Callable[..., Script], btc: Callable[..., Command]
+) -> None:
+    script = robot("base")
+    command = btc("move forward 9 m")
+    script.wait_for("drive 0.5")
+    command.process.send_signal(number)
+    assert code_of(command) == code
+    wait_until(lambda: script.drives[-1].startswith("drive 0.000 0.000"), "zero velocity", 1.0)
+    assert script.place < 3.0
+
+
+def test_a_time_limit_leaves_the_robot_at_rest(robot: Callable[..., Script], btc: Callable[..., Command]) -> None:
+    script = robot("base")
+    assert code_of(btc("move forward 9 m", "--for", "1s")) == 0
+    assert script.drives[-1].startswith("drive 0.000 0.000")
+    assert 0.2 < script.place < 0.8
+
+
+def test_what_is_missing_is_told_before_the_run(btc: Callable[..., Command], nav2: object) -> None:
+    began = time.monotonic()
+    command = btc("move forward then go to the kitchen")
+    assert code_of(command) == 2
+    assert time.monotonic() - began < 10
+    assert "error BT101: 'move forward' needs the topic /cmd_vel, but nothing subscribes to it." in command.err
+    assert "error BT101: 'move forward' needs the topic /odom, but nothing publishes it." in command.err
+    assert "error BT101: 'go to the kitchen' needs the action /navigate_to_pose, but nothing serves it" in command.err
+
+
+def test_preflight(robot: Callable[..., Script], btc: Callable[..., Command]) -> None:
+    script = robot("base", "speech")
+    ready = btc("move forward then say done", "--preflight")
+    assert code_of(ready) == 0, ready.err
+    assert ready.out.splitlines()[-1] == "The robot has all that the mission needs."
+    lacking = btc("move forward until there is a wall in front", "--preflight")
+    assert code_of(lacking) == 1
+    assert re.search(r"^topic   /scan +sensor_msgs/msg/LaserScan +missing: nothing publishes it$", lacking.out, re.M)
+    assert lacking.out.splitlines()[-1] == "The robot lacks 1 of 3."
+    assert script.drives == []
