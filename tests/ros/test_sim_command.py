@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import signal
 import subprocess
+import time
 
 import pytest
 from rosgraph_msgs.msg import Clock
@@ -76,3 +77,10 @@ def test_without_nav2_it_does_all_the_rest(tmp_path, domain: int, client: Client
     client.hear(Clock, "/clock").wait()
     assert sim.end() == 130
     assert sim.err == "btlang sim-ros: no /navigate_to_pose: the package nav2_msgs is not installed\n"
+
+
+def test_a_signal_does_not_wait_for_the_next_step(start_sim):
+    sim = start_sim("--rate", "1", "--speed", "0.05")  # a step takes 20 s
+    began = time.monotonic()
+    assert sim.end() == 130
+    assert time.monotonic() - began < 5
