@@ -98,6 +98,11 @@ _ALL = (
     Code("BT080", "The command '{id}' cannot run: {reason}."),
     Code("BT081", "Pictures are drawn by matplotlib, which is not installed.", "Install it: pip install 'btlang[pictures]'"),
     Code("BT090", "There is no code '{name}'.", "All of them: btc explain"),
+    Code("BT102", "The ros table of '{phrase}' cannot be used: {reason}.", "All its keys are in docs/ros.md."),
+    Code("BT103", "The ros table of '{phrase}' uses a slot {{{slot}}}, and the phrase has none of that name."),
+    Code("BT104", "'{phrase}' needs the ROS 2 interface {type}, which is not installed here.", "{advice}"),
+    Code("BT105", "{type} has no field '{field}', which the ros table of '{phrase}' names.", "{advice}"),
+    Code("BT106", "The ros table of '{phrase}' does not fit {type}: {reason}."),
 )  # fmt: skip
 
 CODES = {entry.code: entry for entry in _ALL}

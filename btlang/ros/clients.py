@@ -1,0 +1,172 @@
+"""What leaves share of a ROS 2 node: one publisher, subscription or client for each name and type.
+
+rclpy's clients lose an answer that comes while another thread still sends the request. So all requests are made in the
+thread that spins the node: leaves hand them over with `post`, and look at what came back.
+"""
+
+from __future__ import annotations
+
+import time
+from collections import deque
+from collections.abc import Callable
+
+from rclpy.action import ActionClient, get_action_names_and_types
+from rclpy.clock import Clock, ClockType
+from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
+
+from btlang.engine.leaf import described
+from btlang.ros.latest import Latest, NodeClock
+from btlang.ros.word import type_name
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any, Protocol
+
+    class Ending(Protocol):
+        """Something that was halted and has to be waited for: "" when it has ended, else what it waits for."""
+
+        def waits_for(self) -> str: ...
+
+
+_LOOK = 0.01  # seconds between two looks at what is waited for
+
+
+class Clients:
+    """The clients on one node, which somebody else spins. Made and used by the thread that ticks.
+
+    Call `close` while the node is still spun.
+    """
+
+    def __init__(self, node: Any) -> None:
+        self.node = node
+        self.clock = NodeClock(node)
+        self.steady = Clock(clock_type=ClockType.STEADY_TIME)
+        """For timers that go on while simulated time stands still."""
+        self.problems: list[str] = []
+        """What went wrong in requests, which nobody could be told of at once."""
+        self.endings: list[Ending] = []
+        """What was halted and may not have ended yet."""
+        self._made: dict[tuple[object, ...], Any] = {}
+        self._needs: list[Callable[[], str]] = []
+        self._posted: deque[Callable[[], object]] = deque()
+        self._guard = node.create_guard_condition(self._work)
+
+    def post(self, work: Callable[[], object]) -> None:
+        """Lets the thread that spins do it; from any thread, in the order of calls."""
+        self._posted.append(work)
+        self._guard.trigger()
+
+    def publisher(self, cls: Any, name: str, latched: bool = False) -> Any:
+        """Of messages that get to all who listen; those of a latched topic also to who listens later."""
+        return self._once(
+            ("publisher", cls, name, latched), lambda: self.node.create_publisher(cls, name, _qos(latched))
+        )
+
+    def latest(self, cls: Any, name: str, latched: bool = False) -> Latest:
+        """The latest message of a topic. One that is not latched is heard from reliable and other publishers."""
+
+        def make() -> Latest:
+            made = Latest(name, self.clock.now, lambda: self._no_publisher(cls, name))
+            qos = _qos(True) if latched else QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
+            self.node.create_subscription(cls, name, made.store, qos)
+            self._needs.append(made.why_not)
+            return made
+
+        return self._once(("latest", cls, name, latched), make)  # type: ignore[no-any-return]
+
+    def action(self, cls: Any, name: str) -> Any:
+        """An rclpy ActionClient; its requests are for `post`."""
+        return self._once(("action", cls, name), lambda: self._needed(ActionClient(self.node, cls, name), cls, name))
+
+    def service(self, cls: Any, name: str) -> Any:
+        """An rclpy Client; its requests are for `post`."""
+        return self._once(("service", cls, name), lambda: self._needed(self.node.create_client(cls, name), cls, name))
+
+    def once(self, key: tuple[object, ...], make: Callable[[], Any], need: Callable[[Any], str]) -> Any:
+        """Anything else that is shared. `need` tells of it what is missing, "" for nothing."""
+
+        def made() -> Any:
+            thing = make()
+            self._needs.append(lambda: need(thing))
+            return thing
+
+        return self._once(key, made)
+
+    def missing(self) -> list[str]:
+        """For each server and topic that leaves need and that is not there, a line that says so."""
+        return [reason for need in self._needs if (reason := need())]
+
+    def wait(self, limit: float) -> list[str]:
+        """Blocks until nothing is missing, for so many real seconds at most; returns what still is."""
+        until = time.monotonic() + limit
+        while (missing := self.missing()) and time.monotonic() < until:
+            time.sleep(_LOOK)
+        return missing
+
+    def close(self, limit: float) -> list[str]:
+        """Waits until all that was halted has ended, for so many real seconds at most; says what has not."""
+        until = time.monotonic() + limit
+        while (left := [reason for ending in self.endings if (reason := ending.waits_for())]) or self._posted:
+            if time.monotonic() >= until:
+                break
+            time.sleep(_LOOK)
+        self.endings.clear()
+        return left
+
+    def no_server(self, cls: Any, name: str) -> str:
+        """Why there is no server of a type: nobody offers the name, or as another type."""
+        full = self.node.resolve_service_name(name)
+        if cls.__module__.split(".")[1] == "action":
+            offered = dict(get_action_names_and_types(self.node)).get(full, [])
+            kind = "action"
+        else:
+            offered = dict(self.node.get_service_names_and_types()).get(full, [])
+            kind = "service"
+        others = [other for other in offered if other != type_name(cls)]
+        if others:
+            return f"the {kind} {name} is of the type {others[0]}, not {type_name(cls)}"
+        return f"there is no {kind} server {name}"
+
+    def no_listener(self, cls: Any, name: str) -> str:
+        """Why nobody hears what is published."""
+        return self._mismatch(cls, name, self.node.get_subscriptions_info_by_topic) or f"nobody listens to {name}"
+
+    def _no_publisher(self, cls: Any, name: str) -> str:
+        """Why nothing comes on a topic, "" where it is only silent."""
+        if not self.node.count_publishers(name):
+            return f"nobody publishes {name}"
+        return self._mismatch(cls, name, self.node.get_publishers_info_by_topic)
+
+    def _mismatch(self, cls: Any, name: str, endpoints: Callable[[str], Any]) -> str:
+        types = {end.topic_type for end in endpoints(name)}
+        if types and type_name(cls) not in types:
+            return f"the topic {name} is of the type {min(types)}, not {type_name(cls)}"
+        return ""
+
+    def _needed(self, client: Any, cls: Any, name: str) -> Any:
+        self._needs.append(lambda: "" if is_ready(client) else self.no_server(cls, name))
+        return client
+
+    def _once(self, key: tuple[object, ...], make: Callable[[], Any]) -> Any:
+        if key not in self._made:
+            self._made[key] = make()
+        return self._made[key]
+
+    def _work(self) -> None:
+        while self._posted:
+            work = self._posted[0]
+            try:
+                work()
+            except Exception as problem:  # it would end the thread that spins
+                self.problems.append(described(problem))
+            self._posted.popleft()  # only now, so that `close` waits for it
+
+
+def is_ready(client: Any) -> bool:
+    """Whether there is a server of an action or a service."""
+    return bool(client.server_is_ready() if isinstance(client, ActionClient) else client.service_is_ready())
+
+
+def _qos(latched: bool) -> QoSProfile:
+    durability = DurabilityPolicy.TRANSIENT_LOCAL if latched else DurabilityPolicy.VOLATILE
+    return QoSProfile(depth=1 if latched else 10, reliability=ReliabilityPolicy.RELIABLE, durability=durability)
