@@ -15,13 +15,15 @@ from btlang.ros.leaves.parameters import parameter_leaf
 from btlang.ros.leaves.publishing import publish_leaf
 from btlang.ros.leaves.services import service_leaf
 from btlang.ros.leaves.topics import topic_leaf
-from btlang.ros.word import Locate, Word
+from btlang.ros.word import Word
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.vocabulary import Vocabulary
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
+
+    from btlang.ros.word import Locate
 
 _LEAVES: dict[str, Callable[[Word, Clients], Callable[..., Any]]] = {
     "action": action_leaf,

@@ -1,0 +1,70 @@
+"""An action server of nav2_msgs/action/NavigateToPose. `navigator.py MODE [SECONDS]`
+
+MODE is `arrive` (after SECONDS), `hang` (until cancelled), `slow` (accepts after SECONDS, then hangs), `reject`, `abort`,
+`blame` (succeeds with an error code) or `cancelled` (says that somebody cancelled it).
+"""
+
+from __future__ import annotations
+
+import sys
+import threading
+import time
+from typing import Any
+
+from nav2_msgs.action import NavigateToPose
+from rclpy.action import ActionServer, CancelResponse, GoalResponse
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.node import Node
+
+from tests.ros.peers.peer import serve, tell
+
+MODE = sys.argv[1]
+SECONDS = float(sys.argv[2]) if len(sys.argv) > 2 else 0.2
+
+
+def _goal(goal: Any) -> GoalResponse:
+    pose = goal.pose
+    tell("goal", pose.header.frame_id, *(f"{v:.3f}" for v in (pose.pose.position.x, pose.pose.position.y)),
+         f"{pose.pose.orientation.z:.3f}", f"{pose.pose.orientation.w:.3f}")  # fmt: skip
+    if MODE == "slow":
+        time.sleep(SECONDS)
+    return GoalResponse.REJECT if MODE == "reject" else GoalResponse.ACCEPT
+
+
+def _cancel(handle: Any) -> CancelResponse:
+    tell("cancel")
+    return CancelResponse.ACCEPT
+
+
+def _execute(handle: Any) -> NavigateToPose.Result:
+    tell("executing")
+    result = NavigateToPose.Result()
+    until = time.monotonic() + SECONDS
+    while MODE in ("hang", "slow") or time.monotonic() < until:
+        if handle.is_cancel_requested:
+            handle.canceled()
+            tell("cancelled")
+            return result
+        time.sleep(0.01)
+    if MODE == "abort":
+        result.error_code, result.error_msg = 7, "the way is blocked by a box"
+        handle.abort()
+    elif MODE == "blame":
+        result.error_code, result.error_msg = 9, "the map is too old"
+        handle.succeed()
+    else:
+        handle.succeed()
+    tell("ended")
+    return result
+
+
+def _make(node: Node) -> object:
+    return ActionServer(
+        node, NavigateToPose, "/navigate_to_pose", _execute, goal_callback=_goal, cancel_callback=_cancel,
+        callback_group=ReentrantCallbackGroup(),
+    )  # fmt: skip
+
+
+if __name__ == "__main__":
+    threading.stack_size(512 * 1024)
+    serve("navigator", _make)
