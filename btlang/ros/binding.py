@@ -7,7 +7,7 @@ from inspect import Parameter, Signature, signature
 
 from btlang.backends.engine import leaf_binding
 from btlang.engine.leaf import LeafBinding
-from btlang.ros.clients import Clients
+from btlang.ros.clients import Clients, Unusable
 from btlang.ros.leaves.actions import action_leaf
 from btlang.ros.leaves.driving import drive_leaf
 from btlang.ros.leaves.joints import joints_leaf
@@ -16,7 +16,7 @@ from btlang.ros.leaves.publishing import publish_leaf
 from btlang.ros.leaves.services import service_leaf
 from btlang.ros.leaves.topics import topic_leaf
 from btlang.ros.word import Word
-from btlang.vocabulary.entry import Entry
+from btlang.vocabulary.entry import COMPARISONS, Entry
 from btlang.vocabulary.vocabulary import Vocabulary
 
 TYPE_CHECKING = False
@@ -44,8 +44,13 @@ def bind_ros(entry: Entry, vocabulary: Vocabulary, clients: Clients, locate: Loc
     """
     if entry.ros is None:
         return None
-    call = _LEAVES[entry.ros.kind](Word(entry, vocabulary, locate), clients)
-    _name_parameters(call, [slot.name for slot in entry.slots])
+    word = Word(entry, vocabulary, locate)
+    try:
+        call = _LEAVES[entry.ros.kind](word, clients)
+    except Unusable as error:
+        raise word.misfit(entry.ros.interface, entry.ros.name, str(error)) from None
+    compared = COMPARISONS if entry.measures else ()  # which are for what compares the quantity
+    _name_parameters(call, [slot.name for slot in entry.slots if slot.name not in compared])
     return leaf_binding(entry, vocabulary, call, entry.slots)
 
 

@@ -10,6 +10,7 @@ import time
 from collections import deque
 from collections.abc import Callable
 
+from rclpy._rclpy_pybind11 import RCLError
 from rclpy.action import ActionClient, get_action_names_and_types
 from rclpy.clock import Clock, ClockType
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
@@ -31,6 +32,10 @@ if TYPE_CHECKING:
 _LOOK = 0.01  # seconds between two looks at what is waited for
 
 
+class Unusable(Exception):
+    """No client can be made; the text says why."""
+
+
 class Clients:
     """The clients on one node, which somebody else spins. Made and used by the thread that ticks.
 
@@ -46,6 +51,7 @@ class Clients:
         """What went wrong in requests, which nobody could be told of at once."""
         self.endings: list[Ending] = []
         """What was halted and may not have ended yet."""
+        self._types: dict[tuple[str, str], Any] = {}
         self._made: dict[tuple[object, ...], Any] = {}
         self._needs: list[Callable[[], str]] = []
         self._posted: deque[Callable[[], object]] = deque()
@@ -58,6 +64,7 @@ class Clients:
 
     def publisher(self, cls: Any, name: str, latched: bool = False) -> Any:
         """Of messages that get to all who listen; those of a latched topic also to who listens later."""
+        self._claim("topic", cls, name)
         return self._once(
             ("publisher", cls, name, latched), lambda: self.node.create_publisher(cls, name, _qos(latched))
         )
@@ -72,14 +79,17 @@ class Clients:
             self._needs.append(made.why_not)
             return made
 
+        self._claim("topic", cls, name)
         return self._once(("latest", cls, name, latched), make)  # type: ignore[no-any-return]
 
     def action(self, cls: Any, name: str) -> Any:
         """An rclpy ActionClient; its requests are for `post`."""
+        self._claim("action", cls, name)
         return self._once(("action", cls, name), lambda: self._needed(ActionClient(self.node, cls, name), cls, name))
 
     def service(self, cls: Any, name: str) -> Any:
         """An rclpy Client; its requests are for `post`."""
+        self._claim("service", cls, name)
         return self._once(("service", cls, name), lambda: self._needed(self.node.create_client(cls, name), cls, name))
 
     def once(self, key: tuple[object, ...], make: Callable[[], Any], need: Callable[[Any], str]) -> Any:
@@ -147,9 +157,18 @@ class Clients:
         self._needs.append(lambda: "" if is_ready(client) else self.no_server(cls, name))
         return client
 
+    def _claim(self, kind: str, cls: Any, name: str) -> None:
+        """One node can use a name with one type. Raises Unusable for a second one."""
+        first = self._types.setdefault((kind, name), cls)
+        if first is not cls:
+            raise Unusable(f"another word uses the {kind} {name} with the type {type_name(first)}")
+
     def _once(self, key: tuple[object, ...], make: Callable[[], Any]) -> Any:
         if key not in self._made:
-            self._made[key] = make()
+            try:
+                self._made[key] = make()
+            except (RCLError, ValueError) as error:  # ValueError: what rclpy raises for a name
+                raise Unusable(f"ROS 2 refuses it: {str(error).partition(', at ')[0]}") from None
         return self._made[key]
 
     def _work(self) -> None:

@@ -30,6 +30,11 @@ PLACES = {"kitchen": (4.0, -1.0, 1.5707963), "lobby": (1.0, 2.0, None)}
 _domains = itertools.count(os.getpid() * 7)
 
 
+def words(name: str) -> str:
+    """A keyword file of tests/ros/words."""
+    return (Path(__file__).parent / "words" / f"{name}.toml").read_text(encoding="utf-8")
+
+
 class Peer:
     """A program of tests/ros/peers in a process of its own; its lines are read in a thread."""
 
@@ -123,6 +128,13 @@ class Robot:
 
         self.engine = Engine(tree.tree, lambda id: bind_leaf(id, tree.vocabulary, own), clock=self._clock)
         return self.engine
+
+    def wait_for(self, holds: Callable[[], bool], limit: float = LIMIT) -> None:
+        """Waits without ticking."""
+        end = time.monotonic() + limit
+        while not holds():
+            assert time.monotonic() < end, self.clients.missing()
+            time.sleep(0.02)
 
     def tick(self, until: Callable[[], bool], limit: float = LIMIT) -> int:
         """Ticks at 50 Hz until something holds or the mission has ended; no tick may block."""

@@ -5,19 +5,13 @@ from __future__ import annotations
 import pytest
 
 from btlang.engine.status import RUNNING, SUCCESS
-from tests.ros.declared import Robot, robot
+from tests.ros.declared import Robot, robot, words
 
 __all__ = ["robot"]
 
 pytest.importorskip("nav2_msgs", reason="nav2_msgs is not installed")
 
-WORDS = """
-[[action]]
-phrase = "go to {place}"
-id = "GoTo"
-call = "btlang.actions.navigation:go_to"
-ros = { action = "nav2_msgs/action/NavigateToPose", name = "/navigate_to_pose", goal = { "pose.header.frame_id" = "map", "pose" = "{place}" } }
-"""
+WORDS = words("navigation")
 MISSION = "go to the kitchen"
 
 
@@ -127,6 +121,6 @@ def test_the_server_starts_late(robot: Robot) -> None:
 
 
 def test_there_is_no_server(robot: Robot) -> None:
-    words = WORDS.replace("goal = {", "wait = 0.5, goal = {")
-    assert robot.run(MISSION, words) == "there is no action server /navigate_to_pose"
+    text = WORDS.replace("goal = {", "wait = 0.5, goal = {")
+    assert robot.run(MISSION, text) == "there is no action server /navigate_to_pose"
     assert robot.clients.missing() == ["there is no action server /navigate_to_pose"]

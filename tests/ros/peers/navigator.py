@@ -1,13 +1,12 @@
 """An action server of nav2_msgs/action/NavigateToPose. `navigator.py MODE [SECONDS]`
 
-MODE is `arrive` (after SECONDS), `hang` (until cancelled), `slow` (accepts after SECONDS, then hangs), `reject`, `abort`,
-`blame` (succeeds with an error code) or `cancelled` (says that somebody cancelled it).
+MODE is `arrive` (after SECONDS), `hang` (until it is cancelled), `slow` (accepts after SECONDS, then hangs), `reject`,
+`abort` (for a reason) or `blame` (succeeds with an error code).
 """
 
 from __future__ import annotations
 
 import sys
-import threading
 import time
 from typing import Any
 
@@ -66,5 +65,4 @@ def _make(node: Node) -> object:
 
 
 if __name__ == "__main__":
-    threading.stack_size(512 * 1024)
     serve("navigator", _make)

@@ -1,4 +1,4 @@
-"""A small robot. `robot.py [PART ...]` with the parts drive, stamped, stuck, scan, battery, arm, services and speech."""
+"""A small robot. `robot.py [PART ...]` with drive, stamped, stuck, scan, battery, arm, services or speech."""
 
 from __future__ import annotations
 
