@@ -76,7 +76,7 @@ def _maker(word: Word, owner: Any, name: str, kind: str, value: Value, now: Now)
         shown = (
             f'"{value}"' if isinstance(value, str) else str(value).lower() if isinstance(value, bool) else str(value)
         )
-        return word.misfit(owner, name, reason or f"{name} is {kind}, and {shown} is none")
+        return word.misfit(owner, name, reason or f"{name} is {kind}, which cannot hold {shown}")
 
     array = array_of(kind)
     if array is not None:
