@@ -16,6 +16,7 @@ from rclpy.clock import Clock, ClockType
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
 from btlang.engine.leaf import described
+from btlang.record import Record
 from btlang.ros.latest import Latest, NodeClock
 from btlang.ros.word import type_name
 
@@ -30,6 +31,17 @@ if TYPE_CHECKING:
 
 
 _LOOK = 0.01  # seconds between two looks at what is waited for
+
+
+class Need(Record):
+    """Something of the robot that a leaf needs: `kind` is "action", "service", "publisher", "listener" or "node",
+    `type` that of its interface; `missing` says why it is not there, "" where it is.
+    """
+
+    kind: str
+    name: str
+    type: str
+    missing: str
 
 
 class Unusable(Exception):
@@ -53,7 +65,7 @@ class Clients:
         """What was halted and may not have ended yet."""
         self._types: dict[tuple[str, str], Any] = {}
         self._made: dict[tuple[object, ...], Any] = {}
-        self._needs: list[Callable[[], str]] = []
+        self._needs: list[tuple[str, str, str, Callable[[], str]]] = []
         self._posted: deque[Callable[[], object]] = deque()
         self._guard = node.create_guard_condition(self._work)
 
@@ -64,10 +76,17 @@ class Clients:
 
     def publisher(self, cls: Any, name: str, latched: bool = False) -> Any:
         """Of messages that get to all who listen; those of a latched topic also to who listens later."""
+
+        def make() -> Any:
+            made = self.node.create_publisher(cls, name, _qos(latched))
+            if not latched:
+                self._need(
+                    "listener", name, cls, lambda: "" if made.get_subscription_count() else self.no_listener(cls, name)
+                )
+            return made
+
         self._claim("topic", cls, name)
-        return self._once(
-            ("publisher", cls, name, latched), lambda: self.node.create_publisher(cls, name, _qos(latched))
-        )
+        return self._once(("publisher", cls, name, latched), make)
 
     def latest(self, cls: Any, name: str, latched: bool = False) -> Latest:
         """The latest message of a topic. One that is not latched is heard from reliable and other publishers."""
@@ -76,7 +95,7 @@ class Clients:
             made = Latest(name, self.clock.now, lambda: self._no_publisher(cls, name))
             qos = _qos(True) if latched else QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
             self.node.create_subscription(cls, name, made.store, qos)
-            self._needs.append(made.why_not)
+            self._need("publisher", name, cls, made.why_not)
             return made
 
         self._claim("topic", cls, name)
@@ -84,27 +103,29 @@ class Clients:
 
     def action(self, cls: Any, name: str) -> Any:
         """An rclpy ActionClient; its requests are for `post`."""
-        self._claim("action", cls, name)
-        return self._once(("action", cls, name), lambda: self._needed(ActionClient(self.node, cls, name), cls, name))
+        return self._client("action", cls, name, lambda: ActionClient(self.node, cls, name))
 
     def service(self, cls: Any, name: str) -> Any:
         """An rclpy Client; its requests are for `post`."""
-        self._claim("service", cls, name)
-        return self._once(("service", cls, name), lambda: self._needed(self.node.create_client(cls, name), cls, name))
+        return self._client("service", cls, name, lambda: self.node.create_client(cls, name))
 
-    def once(self, key: tuple[object, ...], make: Callable[[], Any], need: Callable[[Any], str]) -> Any:
-        """Anything else that is shared. `need` tells of it what is missing, "" for nothing."""
+    def parameter(self, node: str, parameter: str, make: Callable[[], Latest]) -> Latest:
+        """The latest value of a parameter of another node; `make` begins to ask for it."""
 
-        def made() -> Any:
-            thing = make()
-            self._needs.append(lambda: need(thing))
-            return thing
+        def made() -> Latest:
+            latest = make()
+            self._needs.append(("node", node, parameter, latest.why_not))
+            return latest
 
-        return self._once(key, made)
+        return self._once(("parameter", node, parameter), made)  # type: ignore[no-any-return]
+
+    def needs(self) -> list[Need]:
+        """All that leaves need of the robot, in the order in which they were bound."""
+        return [Need(kind, name, type, missing()) for kind, name, type, missing in self._needs]
 
     def missing(self) -> list[str]:
-        """For each server and topic that leaves need and that is not there, a line that says so."""
-        return [reason for need in self._needs if (reason := need())]
+        """For each of them that is not there, a line that says so."""
+        return [need.missing for need in self.needs() if need.missing]
 
     def wait(self, limit: float) -> list[str]:
         """Blocks until nothing is missing, for so many real seconds at most; returns what still is."""
@@ -153,9 +174,17 @@ class Clients:
             return f"the topic {name} is of the type {min(types)}, not {type_name(cls)}"
         return ""
 
-    def _needed(self, client: Any, cls: Any, name: str) -> Any:
-        self._needs.append(lambda: "" if is_ready(client) else self.no_server(cls, name))
-        return client
+    def _client(self, kind: str, cls: Any, name: str, make: Callable[[], Any]) -> Any:
+        def made() -> Any:
+            client = make()
+            self._need(kind, name, cls, lambda: "" if is_ready(client) else self.no_server(cls, name))
+            return client
+
+        self._claim(kind, cls, name)
+        return self._once((kind, cls, name), made)
+
+    def _need(self, kind: str, name: str, cls: Any, missing: Callable[[], str]) -> None:
+        self._needs.append((kind, name, type_name(cls), missing))
 
     def _claim(self, kind: str, cls: Any, name: str) -> None:
         """One node can use a name with one type. Raises Unusable for a second one."""

@@ -28,6 +28,7 @@ def test_a_goal_arrives(robot: Robot) -> None:
         ("reject", "/navigate_to_pose rejected the goal"),
         ("abort", "the way is blocked by a box"),
         ("blame", "the map is too old"),
+        ("meddle", "somebody else cancelled the goal of /navigate_to_pose"),
     ],
 )
 def test_a_goal_fails_with_the_reason_of_the_server(robot: Robot, mode: str, reason: str) -> None:

@@ -104,6 +104,27 @@ def test_nobody_listens(robot: Robot) -> None:
     assert robot.run("say hello", DEEDS) == "nobody listens to /speech"
 
 
+def test_a_listener_of_another_type(robot: Robot) -> None:
+    robot.peer("robot", "speech")
+    text = DEEDS.replace("std_msgs/msg/String", "std_msgs/msg/Bool").replace('data = "I say: {text}"', "data = true")
+    text = text.replace('data = "hm"', "data = true").replace('data = "silence"', "data = false")
+    assert robot.run("say hello", text) == (
+        "the topic /speech is of the type std_msgs/msg/String, not std_msgs/msg/Bool"
+    )
+
+
+def test_needs(robot: Robot) -> None:
+    robot.load("dock then say hello then check robot is careful", DEEDS)
+    assert [(need.kind, need.name, need.type, need.missing) for need in robot.clients.needs()] == [
+        ("service", "/dock", "std_srvs/srv/Trigger", "there is no service server /dock"),
+        ("listener", "/speech", "std_msgs/msg/String", "nobody listens to /speech"),
+        ("service", "/robot/get_parameters", "rcl_interfaces/srv/GetParameters", "there is no node /robot"),
+        ("node", "/robot", "max_speed", "there is no node /robot"),
+    ]
+    robot.peer("robot", "services", "speech")
+    assert robot.clients.wait(10.0) == []
+
+
 def test_services(robot: Robot) -> None:
     peer = robot.peer("robot", "services")
     assert robot.run("close the left hand", DEEDS) == ""
@@ -120,6 +141,18 @@ def test_a_service_of_another_type(robot: Robot) -> None:
     assert robot.run("dock", DEEDS.replace("Trigger", "SetBool")) == (
         "the service /dock is of the type std_srvs/srv/Trigger, not std_srvs/srv/SetBool"
     )
+
+
+def test_a_service_that_does_not_answer(robot: Robot) -> None:
+    peer = robot.peer("robot", "services")
+    text = DEEDS.replace('"/think"', '"/think", limit = 0.5')
+    assert robot.run("think", text) == "/think has not answered within 0.5 s"
+    engine = robot.load("think", DEEDS)
+    robot.tick(lambda: peer.has_told("thinking"))
+    peer.kill()
+    robot.tick(lambda: False)
+    assert engine.failure is not None
+    assert engine.failure.reason == "the server of /think is gone"
 
 
 def test_joints(robot: Robot) -> None:

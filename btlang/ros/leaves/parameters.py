@@ -67,9 +67,7 @@ def _value(word: Word) -> Callable[[Mapping[str, Any]], Any]:
 def _asking(word: Word, clients: Clients) -> Callable[..., Any]:
     node, parameter = word.ros.name, word.ros.interface
     shown = f"{parameter} of {node}"
-    latest = clients.once(
-        ("parameter", node, parameter), lambda: _polled(clients, node, parameter, shown), Latest.why_not
-    )
+    latest = clients.parameter(node, parameter, lambda: _polled(clients, node, parameter, shown))
     age = word.ros.get("age", AGE)
 
     def value() -> Any:

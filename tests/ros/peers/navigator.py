@@ -1,7 +1,7 @@
 """An action server of nav2_msgs/action/NavigateToPose. `navigator.py MODE [SECONDS]`
 
 MODE is `arrive` (after SECONDS), `hang` (until it is cancelled), `slow` (accepts after SECONDS, then hangs), `reject`,
-`abort` (for a reason) or `blame` (succeeds with an error code).
+`abort` (for a reason), `blame` (succeeds with an error code) or `meddle` (cancels its goals after SECONDS).
 """
 
 from __future__ import annotations
@@ -10,6 +10,7 @@ import sys
 import time
 from typing import Any
 
+from action_msgs.srv import CancelGoal
 from nav2_msgs.action import NavigateToPose
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.callback_groups import ReentrantCallbackGroup
@@ -39,7 +40,7 @@ def _execute(handle: Any) -> NavigateToPose.Result:
     tell("executing")
     result = NavigateToPose.Result()
     until = time.monotonic() + SECONDS
-    while MODE in ("hang", "slow") or time.monotonic() < until:
+    while MODE in ("hang", "slow", "meddle") or time.monotonic() < until:
         if handle.is_cancel_requested:
             handle.canceled()
             tell("cancelled")
@@ -58,6 +59,9 @@ def _execute(handle: Any) -> NavigateToPose.Result:
 
 
 def _make(node: Node) -> object:
+    if MODE == "meddle":  # a request that names no goal is for all of them
+        client = node.create_client(CancelGoal, "/navigate_to_pose/_action/cancel_goal")
+        node.create_timer(SECONDS, lambda: client.call_async(CancelGoal.Request()))
     return ActionServer(
         node, NavigateToPose, "/navigate_to_pose", _execute, goal_callback=_goal, cancel_callback=_cancel,
         callback_group=ReentrantCallbackGroup(),

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import sys
+import time
 from typing import Any
 
 from geometry_msgs.msg import Twist, TwistStamped
@@ -40,6 +41,7 @@ class Robot:
             node.create_subscription(JointTrajectory, "/joint_trajectory", self.move, 10)
         if "services" in PARTS:
             node.create_service(Trigger, "/dock", self.dock)
+            node.create_service(Trigger, "/think", self.think)
             node.create_service(SetBool, "/left_hand/close", self.close)
             docked = node.create_publisher(
                 Bool, "/docked", QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
@@ -63,6 +65,11 @@ class Robot:
 
     def dock(self, request: Any, response: Any) -> Any:
         response.success, response.message = False, "the dock is taken"
+        return response
+
+    def think(self, request: Any, response: Any) -> Any:
+        tell("thinking")
+        time.sleep(4.0)
         return response
 
     def close(self, request: Any, response: Any) -> Any:
