@@ -120,8 +120,9 @@ class Clients:
         return self._once(("parameter", node, parameter), made)  # type: ignore[no-any-return]
 
     def needs(self) -> list[Need]:
-        """All that leaves need of the robot, in the order in which they were bound."""
-        return [Need(kind, name, type, missing()) for kind, name, type, missing in self._needs]
+        """All that leaves need of the robot, by kind and name."""
+        needs = [Need(kind, name, type, missing()) for kind, name, type, missing in self._needs]
+        return sorted(needs, key=lambda need: (need.kind, need.name))
 
     def missing(self) -> list[str]:
         """For each of them that is not there, a line that says so."""

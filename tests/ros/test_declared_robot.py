@@ -116,10 +116,9 @@ def test_a_listener_of_another_type(robot: Robot) -> None:
 def test_needs(robot: Robot) -> None:
     robot.load("dock then say hello then check robot is careful", DEEDS)
     assert [(need.kind, need.name, need.type, need.missing) for need in robot.clients.needs()] == [
-        ("service", "/dock", "std_srvs/srv/Trigger", "there is no service server /dock"),
         ("listener", "/speech", "std_msgs/msg/String", "nobody listens to /speech"),
-        ("service", "/robot/get_parameters", "rcl_interfaces/srv/GetParameters", "there is no node /robot"),
         ("node", "/robot", "max_speed", "there is no node /robot"),
+        ("service", "/dock", "std_srvs/srv/Trigger", "there is no service server /dock"),
     ]
     robot.peer("robot", "services", "speech")
     assert robot.clients.wait(10.0) == []

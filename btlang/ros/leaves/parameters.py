@@ -79,7 +79,7 @@ def _asking(word: Word, clients: Clients) -> Callable[..., Any]:
 def _polled(clients: Clients, node: str, parameter: str, shown: str) -> Latest:
     """The value of a parameter, which is asked for as long as the node runs: a condition is to be answered at once."""
     name = f"{node}/get_parameters"
-    client = clients.service(GetParameters, name)
+    client = clients.node.create_client(GetParameters, name)
     absent = False
 
     def absence() -> str:
