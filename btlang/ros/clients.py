@@ -13,6 +13,7 @@ from collections.abc import Callable
 from rclpy._rclpy_pybind11 import RCLError
 from rclpy.action import ActionClient, get_action_names_and_types
 from rclpy.clock import Clock, ClockType
+from rclpy.duration import Duration
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
 from btlang.engine.leaf import described
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
 
 
 _LOOK = 0.01  # seconds between two looks at what is waited for
+_HEARD = 0.5  # seconds that those who listen to one topic get to acknowledge
 
 
 class Need(Record):
@@ -63,6 +65,7 @@ class Clients:
         """What went wrong in requests, which nobody could be told of at once."""
         self.endings: list[Ending] = []
         """What was halted and may not have ended yet."""
+        self._publishers: list[Any] = []
         self._types: dict[tuple[str, str], Any] = {}
         self._made: dict[tuple[object, ...], Any] = {}
         self._needs: list[tuple[str, str, str, Callable[[], str]]] = []
@@ -79,6 +82,7 @@ class Clients:
 
         def make() -> Any:
             made = self.node.create_publisher(cls, name, _qos(latched))
+            self._publishers.append(made)
             if not latched:
                 self._need(
                     "listener", name, cls, lambda: "" if made.get_subscription_count() else self.no_listener(cls, name)
@@ -136,12 +140,17 @@ class Clients:
         return missing
 
     def close(self, limit: float) -> list[str]:
-        """Waits until all that was halted has ended, for so many real seconds at most; says what has not."""
+        """Waits until all that was halted has ended and who listens has heard it, for so many real seconds at most.
+
+        Says what has not ended.
+        """
         until = time.monotonic() + limit
         while (left := [reason for ending in self.endings if (reason := ending.waits_for())]) or self._posted:
             if time.monotonic() >= until:
                 break
             time.sleep(_LOOK)
+        for publisher in self._publishers:
+            publisher.wait_for_all_acked(Duration(seconds=max(0.0, min(_HEARD, until - time.monotonic()))))
         self.endings.clear()
         return left
 

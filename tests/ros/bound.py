@@ -9,6 +9,7 @@ import pytest
 
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.vocabulary.load import load_vocabulary
+from tests.ros.declared import free_domain
 
 
 def bind_words(file: str) -> int:
@@ -21,7 +22,7 @@ def bind_words(file: str) -> int:
 
     vocabulary = load_vocabulary([file])
     problems = []
-    with SpunNode("bound", domain_id=os.getpid() % 100 + 1) as spun:
+    with free_domain() as domain, SpunNode("bound", domain_id=domain) as spun:
         clients = Clients(spun.node)
         for entry in (entry for same in vocabulary.entries.values() for entry in same):
             try:

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-import itertools
+import fcntl
 import os
 import queue
+import random
 import signal
 import subprocess
 import sys
+import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterator
+from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -27,7 +30,7 @@ ROOT = Path(__file__).parent.parent.parent
 PROFILE = str(Path(__file__).parent / "peers" / "profile.xml")
 LIMIT = 15.0  # real seconds that anything is waited for
 PLACES = {"kitchen": (4.0, -1.0, 1.5707963), "lobby": (1.0, 2.0, None)}
-_domains = itertools.count(os.getpid() * 7)
+_DOMAINS = range(1, 102)  # the ports of higher ones are among those that the system hands out
 
 
 def words(name: str) -> str:
@@ -94,11 +97,11 @@ class Peer:
 class Robot:
     """A node in a domain of its own, and the missions that run on it."""
 
-    def __init__(self, folder: Path) -> None:
+    def __init__(self, folder: Path, domain: int) -> None:
         from btlang.ros.clients import Clients
         from btlang.ros.node import SpunNode
 
-        self.domain = next(_domains) % 100 + 1
+        self.domain = domain
         self.spun = SpunNode("declared", domain_id=self.domain)
         self.clients = Clients(self.spun.node)
         self.spun.start()
@@ -177,12 +180,30 @@ class Robot:
             assert self.clients.problems == []
 
 
+@contextmanager
+def free_domain() -> Iterator[int]:
+    """The number of a domain that no other test on this machine uses at the same time."""
+    folder = Path(tempfile.gettempdir(), "btlang-ros-domains")
+    folder.mkdir(exist_ok=True)
+    with ExitStack() as stack:
+        for number in random.sample(_DOMAINS, len(_DOMAINS)):
+            file = stack.enter_context((folder / str(number)).open("w"))
+            try:
+                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            except BlockingIOError:
+                continue
+            yield number
+            return
+        pytest.fail("all domains are in use")
+
+
 @pytest.fixture
-def robot(tmp_path: Path) -> Iterator[Robot]:
+def robot(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Robot]:
     """A robot whose node and peers end with the test. Skips where ROS 2 is not installed."""
     pytest.importorskip("rclpy", reason="ROS 2 is not installed")
-    os.environ["ROS_AUTOMATIC_DISCOVERY_RANGE"] = "LOCALHOST"
-    os.environ["FASTRTPS_DEFAULT_PROFILES_FILE"] = PROFILE
-    os.environ["FASTDDS_BUILTIN_TRANSPORTS"] = "UDPv4"  # shared memory of a killed peer may block a writer for a second
-    with Robot(tmp_path) as made:
+    monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+    monkeypatch.setenv("FASTRTPS_DEFAULT_PROFILES_FILE", PROFILE)
+    # with shared memory, a peer that is killed may block who writes to it for a second
+    monkeypatch.setenv("FASTDDS_BUILTIN_TRANSPORTS", "UDPv4")
+    with free_domain() as domain, Robot(tmp_path, domain) as made:
         yield made
