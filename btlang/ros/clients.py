@@ -11,13 +11,14 @@ from collections import deque
 from collections.abc import Callable
 
 from rclpy._rclpy_pybind11 import RCLError
-from rclpy.action import ActionClient, get_action_names_and_types
+from rclpy.action import ActionClient
 from rclpy.clock import Clock, ClockType
 from rclpy.duration import Duration
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
 from btlang.engine.leaf import described
 from btlang.record import Record
+from btlang.ros.graph import is_ready, no_listener, no_publisher, no_server
 from btlang.ros.latest import Latest, NodeClock
 from btlang.ros.word import type_name
 
@@ -85,7 +86,10 @@ class Clients:
             self._publishers.append(made)
             if not latched:
                 self._need(
-                    "listener", name, cls, lambda: "" if made.get_subscription_count() else self.no_listener(cls, name)
+                    "listener",
+                    name,
+                    cls,
+                    lambda: "" if made.get_subscription_count() else no_listener(self.node, cls, name),
                 )
             return made
 
@@ -96,7 +100,7 @@ class Clients:
         """The latest message of a topic. One that is not latched is heard from reliable and other publishers."""
 
         def make() -> Latest:
-            made = Latest(name, self.clock.now, lambda: self._no_publisher(cls, name))
+            made = Latest(name, self.clock.now, lambda: no_publisher(self.node, cls, name))
             qos = _qos(True) if latched else QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
             self.node.create_subscription(cls, name, made.store, qos)
             self._need("publisher", name, cls, made.why_not)
@@ -154,40 +158,10 @@ class Clients:
         self.endings.clear()
         return left
 
-    def no_server(self, cls: Any, name: str) -> str:
-        """Why there is no server of a type: nobody offers the name, or as another type."""
-        full = self.node.resolve_service_name(name)
-        if cls.__module__.split(".")[1] == "action":
-            offered = dict(get_action_names_and_types(self.node)).get(full, [])
-            kind = "action"
-        else:
-            offered = dict(self.node.get_service_names_and_types()).get(full, [])
-            kind = "service"
-        others = [other for other in offered if other != type_name(cls)]
-        if others:
-            return f"the {kind} {name} is of the type {others[0]}, not {type_name(cls)}"
-        return f"there is no {kind} server {name}"
-
-    def no_listener(self, cls: Any, name: str) -> str:
-        """Why nobody hears what is published."""
-        return self._mismatch(cls, name, self.node.get_subscriptions_info_by_topic) or f"nobody listens to {name}"
-
-    def _no_publisher(self, cls: Any, name: str) -> str:
-        """Why nothing comes on a topic, "" where it is only silent."""
-        if not self.node.count_publishers(name):
-            return f"nobody publishes {name}"
-        return self._mismatch(cls, name, self.node.get_publishers_info_by_topic)
-
-    def _mismatch(self, cls: Any, name: str, endpoints: Callable[[str], Any]) -> str:
-        types = {end.topic_type for end in endpoints(name)}
-        if types and type_name(cls) not in types:
-            return f"the topic {name} is of the type {min(types)}, not {type_name(cls)}"
-        return ""
-
     def _client(self, kind: str, cls: Any, name: str, make: Callable[[], Any]) -> Any:
         def made() -> Any:
             client = make()
-            self._need(kind, name, cls, lambda: "" if is_ready(client) else self.no_server(cls, name))
+            self._need(kind, name, cls, lambda: "" if is_ready(client) else no_server(self.node, cls, name))
             return client
 
         self._claim(kind, cls, name)
@@ -218,11 +192,6 @@ class Clients:
             except Exception as problem:  # it would end the thread that spins
                 self.problems.append(described(problem))
             self._posted.popleft()  # only now, so that `close` waits for it
-
-
-def is_ready(client: Any) -> bool:
-    """Whether there is a server of an action or a service."""
-    return bool(client.server_is_ready() if isinstance(client, ActionClient) else client.service_is_ready())
 
 
 def _qos(latched: bool) -> QoSProfile:

@@ -86,7 +86,7 @@ def _maker(word: Word, owner: Any, name: str, kind: str, value: Value, now: Now)
         if length is not None and len(value) != length:
             raise misfit(f"{name} has {length} values, not {len(value)}")
         makers = [_maker(word, owner, name, element, item, now) for item in value]
-        return lambda values: [make(values) for make in makers]
+        return lambda values: [_element(word, element, make(values)) for make in makers]
     if isinstance(value, Fields):
         if "/" not in kind:
             raise misfit()
@@ -111,6 +111,15 @@ def _maker(word: Word, owner: Any, name: str, kind: str, value: Value, now: Now)
     except ValueError:
         raise misfit() from None
     return lambda values: fitted
+
+
+def _element(word: Word, kind: str, value: Any) -> Any:
+    """An element of an array; a place is written into a new message."""
+    if not callable(value):
+        return value
+    message = message_class(word, kind)()
+    value(message)
+    return message
 
 
 def _fitted(value: Any, kind: str) -> Any:

@@ -9,6 +9,7 @@ from nav_msgs.msg import Odometry
 
 from btlang.engine.leaf import ActionFailed, Failed
 from btlang.ros.clients import Clients
+from btlang.ros.graph import no_listener
 from btlang.ros.latest import Latest
 from btlang.ros.word import Word, type_name
 
@@ -84,7 +85,7 @@ def _ready(clients: Clients, cls: Any, name: str, publisher: Any, odometry: Late
     until = clients.clock.now() + patience
     while not publisher.get_subscription_count() or not odometry.has_come:
         if clients.clock.now() >= until:
-            raise ActionFailed(odometry.why_not() or clients.no_listener(cls, name))
+            raise ActionFailed(odometry.why_not() or no_listener(clients.node, cls, name))
         yield
 
 

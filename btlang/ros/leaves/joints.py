@@ -10,6 +10,7 @@ from trajectory_msgs.msg import JointTrajectoryPoint
 from btlang.engine.leaf import ActionFailed, Failed
 from btlang.ros.clients import Clients
 from btlang.ros.filling import duration
+from btlang.ros.graph import no_listener
 from btlang.ros.latest import AGE
 from btlang.ros.word import Word, type_name
 from btlang.vocabulary.ros_table import SLOT
@@ -43,7 +44,7 @@ def joints_leaf(word: Word, clients: Clients) -> Callable[..., Any]:
         until = now() + patience
         while not publisher.get_subscription_count() or not states.has_come:
             if now() >= until:
-                raise ActionFailed(states.why_not() or clients.no_listener(cls, name))
+                raise ActionFailed(states.why_not() or no_listener(clients.node, cls, name))
             yield
         at = _positions(states.take(AGE), wanted, states.named)
         send(wanted, length)

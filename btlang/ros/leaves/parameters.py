@@ -8,7 +8,8 @@ from rcl_interfaces.srv import GetParameters, SetParameters
 from rclpy.parameter import Parameter, parameter_value_to_python
 
 from btlang.engine.leaf import Failed
-from btlang.ros.clients import Clients, is_ready
+from btlang.ros.clients import Clients
+from btlang.ros.graph import is_ready
 from btlang.ros.latest import AGE, Latest
 from btlang.ros.leaves.server import WAIT, awaited, nothing
 from btlang.ros.leaves.services import LIMIT, answered

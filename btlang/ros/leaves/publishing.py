@@ -8,6 +8,7 @@ from collections.abc import Callable, Generator
 from btlang.engine.leaf import ActionFailed
 from btlang.ros.clients import Clients
 from btlang.ros.filling import filler
+from btlang.ros.graph import no_listener
 from btlang.ros.leaves.server import WAIT
 from btlang.ros.word import Word
 
@@ -39,7 +40,7 @@ def publish_leaf(word: Word, clients: Clients) -> Callable[..., Any]:
         until = time.monotonic() + wait
         while not latched and not publisher.get_subscription_count():
             if time.monotonic() >= until:
-                raise ActionFailed(clients.no_listener(cls, name))
+                raise ActionFailed(no_listener(clients.node, cls, name))
             yield
         if not timed and not again:
             publisher.publish(message)

@@ -6,8 +6,9 @@ import time
 from collections.abc import Callable, Generator
 
 from btlang.engine.leaf import ActionFailed, Failed
-from btlang.ros.clients import Clients, is_ready
+from btlang.ros.clients import Clients
 from btlang.ros.fields import field_types
+from btlang.ros.graph import is_ready, no_server
 from btlang.ros.word import Word
 
 TYPE_CHECKING = False
@@ -25,7 +26,7 @@ def awaited(clients: Clients, client: Any, cls: Any, name: str, limit: float) ->
     until = time.monotonic() + limit
     while not is_ready(client):
         if time.monotonic() >= until:
-            raise ActionFailed(clients.no_server(cls, name))
+            raise ActionFailed(no_server(clients.node, cls, name))
         yield
 
 

@@ -6,8 +6,9 @@ import time
 from collections.abc import Callable, Generator
 
 from btlang.engine.leaf import ActionFailed, Failed, described
-from btlang.ros.clients import Clients, is_ready
+from btlang.ros.clients import Clients
 from btlang.ros.filling import filler
+from btlang.ros.graph import is_ready
 from btlang.ros.leaves.server import WAIT, Judge, awaited, nothing
 from btlang.ros.word import Word
 
