@@ -24,7 +24,10 @@ from btlang.ros.word import type_name
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any, Protocol
+    from typing import Any, Protocol, TypeAlias
+
+    Missing: TypeAlias = Callable[[], str]
+    Key: TypeAlias = tuple[str, str, str, bool]  # kind, name and type of a Need; whether it is latched
 
     class Ending(Protocol):
         """Something that was halted and has to be waited for: "" when it has ended, else what it waits for."""
@@ -68,8 +71,8 @@ class Clients:
         """What was halted and may not have ended yet."""
         self._publishers: list[Any] = []
         self._types: dict[tuple[str, str], Any] = {}
-        self._made: dict[tuple[object, ...], Any] = {}
-        self._needs: list[tuple[str, str, str, Callable[[], str]]] = []
+        self._made: dict[Key, tuple[Any, Missing]] = {}  # each with what tells why it is of no use yet
+        self._used: dict[Key, None] = {}  # since the mission began
         self._posted: deque[Callable[[], object]] = deque()
         self._guard = node.create_guard_condition(self._work)
 
@@ -81,33 +84,26 @@ class Clients:
     def publisher(self, cls: Any, name: str, latched: bool = False) -> Any:
         """Of messages that get to all who listen; those of a latched topic also to who listens later."""
 
-        def make() -> Any:
+        def make() -> tuple[Any, Missing]:
             made = self.node.create_publisher(cls, name, _qos(latched))
             self._publishers.append(made)
-            if not latched:
-                self._need(
-                    "listener",
-                    name,
-                    cls,
-                    lambda: "" if made.get_subscription_count() else no_listener(self.node, cls, name),
-                )
-            return made
+            heard = made.get_subscription_count
+            return made, lambda: "" if latched or heard() else no_listener(self.node, cls, name)
 
         self._claim("topic", cls, name)
-        return self._once(("publisher", cls, name, latched), make)
+        return self._once(("listener", name, type_name(cls), latched), make)
 
     def latest(self, cls: Any, name: str, latched: bool = False) -> Latest:
         """The latest message of a topic. One that is not latched is heard from reliable and other publishers."""
 
-        def make() -> Latest:
+        def make() -> tuple[Latest, Missing]:
             made = Latest(name, self.clock.now, lambda: no_publisher(self.node, cls, name))
             qos = _qos(True) if latched else QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
             self.node.create_subscription(cls, name, made.store, qos)
-            self._need("publisher", name, cls, made.why_not)
-            return made
+            return made, made.why_not
 
         self._claim("topic", cls, name)
-        return self._once(("latest", cls, name, latched), make)  # type: ignore[no-any-return]
+        return self._once(("publisher", name, type_name(cls), latched), make)  # type: ignore[no-any-return]
 
     def action(self, cls: Any, name: str) -> Any:
         """An rclpy ActionClient; its requests are for `post`."""
@@ -117,19 +113,22 @@ class Clients:
         """An rclpy Client; its requests are for `post`."""
         return self._client("service", cls, name, lambda: self.node.create_client(cls, name))
 
-    def parameter(self, node: str, parameter: str, make: Callable[[], Latest]) -> Latest:
-        """The latest value of a parameter of another node; `make` begins to ask for it."""
+    def parameter(self, node: str, parameter: str, ask: Callable[[], Latest]) -> Latest:
+        """The latest value of a parameter of another node; `ask` begins to ask for it."""
 
-        def made() -> Latest:
-            latest = make()
-            self._needs.append(("node", node, parameter, latest.why_not))
-            return latest
+        def make() -> tuple[Latest, Missing]:
+            latest = ask()
+            return latest, latest.why_not
 
-        return self._once(("parameter", node, parameter), made)  # type: ignore[no-any-return]
+        return self._once(("node", node, parameter, False), make)  # type: ignore[no-any-return]
+
+    def begin(self) -> None:
+        """For a new mission: what leaves need is what they ask for from now on. Clients stay."""
+        self._used.clear()
 
     def needs(self) -> list[Need]:
         """All that leaves need of the robot, by kind and name."""
-        needs = [Need(kind, name, type, missing()) for kind, name, type, missing in self._needs]
+        needs = [Need(kind, name, type, self._made[key][1]()) for key in self._used for kind, name, type, _ in [key]]
         return sorted(needs, key=lambda need: (need.kind, need.name))
 
     def missing(self) -> list[str]:
@@ -158,17 +157,13 @@ class Clients:
         self.endings.clear()
         return left
 
-    def _client(self, kind: str, cls: Any, name: str, make: Callable[[], Any]) -> Any:
-        def made() -> Any:
-            client = make()
-            self._need(kind, name, cls, lambda: "" if is_ready(client) else no_server(self.node, cls, name))
-            return client
+    def _client(self, kind: str, cls: Any, name: str, create: Callable[[], Any]) -> Any:
+        def make() -> tuple[Any, Missing]:
+            client = create()
+            return client, lambda: "" if is_ready(client) else no_server(self.node, cls, name)
 
         self._claim(kind, cls, name)
-        return self._once((kind, cls, name), made)
-
-    def _need(self, kind: str, name: str, cls: Any, missing: Callable[[], str]) -> None:
-        self._needs.append((kind, name, type_name(cls), missing))
+        return self._once((kind, name, type_name(cls), False), make)
 
     def _claim(self, kind: str, cls: Any, name: str) -> None:
         """One node can use a name with one type. Raises Unusable for a second one."""
@@ -176,13 +171,14 @@ class Clients:
         if first is not cls:
             raise Unusable(f"another word uses the {kind} {name} with the type {type_name(first)}")
 
-    def _once(self, key: tuple[object, ...], make: Callable[[], Any]) -> Any:
+    def _once(self, key: Key, make: Callable[[], tuple[Any, Missing]]) -> Any:
         if key not in self._made:
             try:
                 self._made[key] = make()
             except (RCLError, ValueError) as error:  # ValueError: what rclpy raises for a name
                 raise Unusable(f"ROS 2 refuses it: {str(error).partition(', at ')[0]}") from None
-        return self._made[key]
+        self._used[key] = None
+        return self._made[key][0]
 
     def _work(self) -> None:
         while self._posted:
