@@ -349,7 +349,7 @@ class RunnableTree:
         try:
             engine = traced_engine(
                 self.tree,
-                cache(lambda id: bind_leaf(id, self.vocabulary)),
+                cache(lambda id: bind_leaf(id, self.vocabulary, getattr(stage, "bind", None))),
                 clock=stage.clock,
                 events=stage.events,
                 services={"robot": stage.robot},

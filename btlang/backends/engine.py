@@ -21,17 +21,37 @@ if TYPE_CHECKING:
     from typing import Any
 
 
-def bind_leaf(node_id: str, vocabulary: Vocabulary) -> LeafBinding | None:
-    """None where no keyword entry has the id. Raises EngineError where its `call` leads nowhere or is of no use."""
+def bind_leaf(
+    node_id: str, vocabulary: Vocabulary, own: Callable[[Entry], LeafBinding | None] | None = None
+) -> LeafBinding | None:
+    """None where no keyword entry has the id. Raises EngineError where its `call` leads nowhere or is of no use.
+
+    `own` is how the robot of the run binds an entry; what it leaves is bound by `call`. The latest entry that it binds
+    counts, so that a keyword file can bind words that ship.
+    """
+    entries = vocabulary.entries.get(node_id, ())
+    for entry in reversed(entries) if own is not None else ():
+        binding = own(entry)  # type: ignore[misc]
+        if binding is not None:
+            return binding
+    if not entries:
+        return None
+    entry = entries[0]
+    slots = {slot.name: slot for other in entries for slot in other.slots}
+    return leaf_binding(entry, vocabulary, _imported(entry), tuple(slots.values()))
+
+
+def leaf_binding(
+    entry: Entry, vocabulary: Vocabulary, call: Callable[..., Any], slots: tuple[SlotSpec, ...]
+) -> LeafBinding:
+    """What does the work of an entry, with the values of slots as its parameters.
+
+    Raises EngineError where it is of no use for such an entry.
+    """
     from inspect import iscoroutinefunction
 
-    entry = vocabulary.entry(node_id)
-    if entry is None:
-        return None
-    slots: dict[str, SlotSpec] = {slot.name: slot for other in vocabulary.entries[node_id] for slot in other.slots}
-    converters = {name: _converter(slot, vocabulary) for name, slot in slots.items()}
-    defaults = {name: slot.default for name, slot in slots.items() if slot.default is not None}
-    call = _imported(entry)
+    converters = {slot.name: _converter(slot, vocabulary) for slot in slots}
+    defaults = {slot.name: slot.default for slot in slots if slot.default is not None}
     if entry.sort == "condition" and iscoroutinefunction(call):
         raise EngineError("it is asynchronous, and a condition is asked at once", Node(entry.id, span=entry.span))
     if not entry.measures:
@@ -39,8 +59,8 @@ def bind_leaf(node_id: str, vocabulary: Vocabulary) -> LeafBinding | None:
         return binding if entry.sort == "action" else binding.replace(refusal="it is not true")
 
     def say(given: Mapping[str, Any], value: str) -> str:
-        ports = {name: str(given[name]) for name in slots if name in given}
-        return leaf_words(node_id, {**ports, "equal": value}, vocabulary) or f"it is {value}"
+        ports = {slot.name: str(given[slot.name]) for slot in slots if slot.name in given}
+        return leaf_words(entry.id, {**ports, "equal": value}, vocabulary) or f"it is {value}"
 
     try:
         return LeafBinding(comparing(call, say), converters, defaults, (MEASURED,))

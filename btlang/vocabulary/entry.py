@@ -10,6 +10,8 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from typing import Any
 
+    from btlang.vocabulary.ros_binding import RosBinding
+
 
 class SlotSpec(Record):
     """A slot of an entry: the name of its port, its type, and the port text that an absent value stands for."""
@@ -33,7 +35,8 @@ class Entry(Record, uncompared=("span",)):
     quantity of it; the vocabulary makes the phrases that compare it of the `quantity` ones and the words for comparing.
     `instant` and `uninterruptible` are what an action says of itself: that it ends in the tick in which it starts, and
     that it should not be halted half-way. Warnings are made of them; they change nothing in a run. With `thread` the
-    `call`, a plain function, works in a thread of its own, beside the tick.
+    `call`, a plain function, works in a thread of its own, beside the tick. `ros` stands in place of `call` on a robot
+    that speaks ROS 2.
     """
 
     sort: str  # "action" or "condition"
@@ -50,6 +53,7 @@ class Entry(Record, uncompared=("span",)):
     instant: bool = False
     uninterruptible: bool = False
     thread: bool = False
+    ros: RosBinding | None = None
     span: Span | None = None
 
     def slot(self, name: str) -> SlotSpec:

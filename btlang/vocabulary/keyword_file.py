@@ -11,6 +11,8 @@ from btlang.text.source import Source, Span
 from btlang.vocabulary.entry import COMPARISONS, MEASURED, Entry, SlotSpec
 from btlang.vocabulary.language_tables import TABLES, WORD_LISTS, problems
 from btlang.vocabulary.pattern import PatternError, Slot, forms
+from btlang.vocabulary.ros_binding import RosBinding
+from btlang.vocabulary.ros_table import read_ros, unknown_slots
 from btlang.vocabulary.values import Unit, ValueType
 
 TYPE_CHECKING = False
@@ -58,6 +60,13 @@ class _Reader:
     def wrong(self, reason: str, near: str = "", code: str = "BT060") -> None:
         self.problems.append(diagnostic(code, self.span(near), reason=reason))
 
+    def wrong_ros(self, code: str, phrase: str, near: str, **texts: str) -> None:
+        """At the text after the phrase, where the table stands; else at the phrase."""
+        text, after = self.source.text, self.span(phrase).end
+        start = max(text.find(f'"{near}"', after) + 1, 0) or text.find(near, after)
+        place = self.span(phrase) if start < 0 else Span(self.source, start, start + len(near))
+        self.problems.append(diagnostic(code, place, (), None, phrase=phrase, **texts))
+
     def span(self, near: str) -> Span:
         """TOML readers give no places: the first time that the text stands in quotes, else stands at all."""
         start = self.source.text.find(f'"{near}"') + 1 if near else 0
@@ -96,8 +105,19 @@ class _Reader:
         made = Entry(
             sort, name, tuple(phrases), str(call), slots, tuple(resources), topic, help, example, span=self.span(near),
             instant=instant, uninterruptible=uninterruptible, thread=thread,
+            ros=self.ros(table["ros"], sort, slots, near) if "ros" in table else None,
         )  # fmt: skip
         return self.quantity(made, table, near) if sort == "quantity" else made
+
+    def ros(self, table: object, sort: str, slots: tuple[SlotSpec, ...], near: str) -> RosBinding | None:
+        binding, wrong = read_ros(table, sort)
+        for reason, text in wrong:
+            self.wrong_ros("BT102", near, text, reason=reason)
+        names = [slot.name for slot in slots]
+        for name in unknown_slots(binding, names) if binding is not None else ():
+            known = f"It has {', '.join(f'{{{slot}}}' for slot in names)}." if names else "It has no slots."
+            self.wrong_ros("BT103", near, f"{{{name}", slot=name, help=known)
+        return binding
 
     def quantity(self, entry: Entry, table: dict[str, Any], near: str) -> Entry:
         """A condition whose phrases are made when the words for comparing are known."""

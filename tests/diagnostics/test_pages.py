@@ -1,8 +1,9 @@
 """Every code has a page, and the examples of a page do what it says: the wrong one gets its code, the right one none.
 
 A label, an empty line and indented lines are an example. Labels are `Wrong:` and `Right:` for a mission, `Wrong
-keyword file:` and `Wrong world:` for a file that a mission is checked with, `Wrong command:` for a command, and `The
-file NAME:` for a file beside it. `, saved as ENCODING` may end a label.
+keyword file:` and `Wrong world:` for a file that a mission is checked with, `Wrong ros keyword file:` for one whose
+words are bound to ROS 2, `Wrong command:` for a command, and `The file NAME:` for a file beside it. `, saved as
+ENCODING` may end a label.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from btlang.cli import main
 from btlang.diagnostics.codes import CODES, NAMES
 from btlang.diagnostics.explain import PAGES
 from tests.conftest import take_away_what_is_missed
+from tests.ros.bound import bind_words
 
 TEXTS = {path.stem: path.read_text(encoding="utf-8") for path in Path(PAGES).iterdir()}
 _LABELLED = re.compile(r"^(Wrong|Right|The file)(?: ([\w. ]+))?(?:, saved as ([\w-]+))?:\n\n((?: {4}.*\n?)+)", re.M)
@@ -51,6 +53,9 @@ def said(example: Example, page: str, folder: Path, capsys: pytest.CaptureFixtur
         assert btc == "btc"
     else:
         (folder / "example.txt").write_text(example.text, encoding=example.encoding)
+        if example.of == "ros keyword file":
+            (folder / "example.txt").rename(folder / "example.toml")
+            return bind_words("example.toml"), capsys.readouterr().err
         command = _COMMANDS[example.of].replace("FILE", "example.txt").split()
     code = main(command)
     return code, capsys.readouterr().err
@@ -108,7 +113,7 @@ def test_explain_lists_all_codes(capsys: pytest.CaptureFixture[str]) -> None:
     ("written", "told"),
     [
         ("BT031", "The nearest: BT032, BT029"),
-        ("BT9999999999999", "The nearest: BT101, BT100"),
+        ("BT9999999999999", "The nearest: BT106, BT105"),
         ("BT" + "9" * 6000, "The nearest: "),
         ("BT", "A code is BT and three digits"),
         ("", "A code is BT and three digits"),

@@ -1,6 +1,7 @@
 """Every code of a message has a bad sample in `bad/`, and its exact output beside it.
 
-A sample is compiled with `btc check`; a first line `# btc VERB FILE ...` asks for another command.
+A sample is compiled with `btc check`; a first line `# btc VERB FILE ...` asks for another command, and `# ros FILE`
+binds the words of a keyword file to ROS 2.
 """
 
 from __future__ import annotations
@@ -12,6 +13,7 @@ import pytest
 from btlang.cli import main
 from btlang.diagnostics.codes import CODES
 from tests.conftest import matches_golden, take_away_what_is_missed
+from tests.ros.bound import bind_words
 
 BAD = Path(__file__).parent / "bad"
 SAMPLES = sorted(BAD.glob("*.txt"))
@@ -22,13 +24,21 @@ def test_message(sample: Path, capsys: pytest.CaptureFixture[str], monkeypatch: 
     monkeypatch.chdir(BAD)
     take_away_what_is_missed(sample.stem[:5], monkeypatch)
     first = sample.read_text(encoding="latin-1").splitlines()[0]
-    command = first.removeprefix("# btc ").split() if first.startswith("# btc ") else ["check", "FILE"]
-    code = main([sample.name if word == "FILE" else word for word in command])
+    if first.startswith("# ros "):
+        code = bind_words(first.removeprefix("# ros "))
+    else:
+        code = run_sample(sample, first)
     errors = capsys.readouterr().err
     assert sample.stem[:5] in errors
     assert "Traceback" not in errors
     assert code == (0 if CODES[sample.stem[:5]].severity == "warning" else 2)
     matches_golden(errors, sample.with_suffix(".out"))
+
+
+def run_sample(sample: Path, first: str) -> int:
+    """The exit code of the command that the first line asks for."""
+    command = first.removeprefix("# btc ").split() if first.startswith("# btc ") else ["check", "FILE"]
+    return main([sample.name if word == "FILE" else word for word in command])
 
 
 @pytest.mark.parametrize("sample", SAMPLES, ids=[s.stem for s in SAMPLES])

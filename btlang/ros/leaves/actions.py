@@ -1,0 +1,122 @@
+"""An action of ROS 2 as a leaf: sends a goal, is RUNNING until its result, and cancels it when it is halted."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Generator
+
+from action_msgs.msg import GoalStatus
+from action_msgs.srv import CancelGoal
+
+from btlang.engine.leaf import Failed, described
+from btlang.ros.clients import Clients
+from btlang.ros.filling import filler
+from btlang.ros.leaves.server import WAIT, Judge, Presence, awaited, nothing
+from btlang.ros.word import Word
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+
+class Goal:
+    """One goal. Methods with an underscore are for the thread that spins, the others for the one that ticks.
+
+    `answer` is the response with the result, or the reason why there is none; None as long as it goes on.
+    """
+
+    def __init__(self, clients: Clients, client: Any, name: str, message: Any, wake: Callable[[], object]) -> None:
+        self.answer: Any = None
+        self._clients = clients
+        self._client = client
+        self._name = name
+        self._message = message
+        self._wake = wake
+        self._handle: Any = None
+        self._cancelled = False
+        self._waits_for = ""
+
+    def send(self) -> None:
+        """Asks the server to begin."""
+        self._clients.post(self._send)
+
+    def cancel(self) -> None:
+        """Asks the server to end, as soon as it has accepted the goal; nothing where it has ended."""
+        if self.answer is None and not self._cancelled:
+            self._cancelled = True
+            self._waits_for = f"{self._name} has not answered the goal that was halted"
+            self._clients.endings.append(self)
+            self._clients.post(self._cancel)
+
+    def waits_for(self) -> str:
+        """What a halted goal waits for; "" when it has ended."""
+        return self._waits_for if self.answer is None else ""
+
+    def _send(self) -> None:
+        if self._cancelled:
+            self._end("it was halted before it was sent")
+            return
+        try:
+            self._client.send_goal_async(self._message).add_done_callback(self._answered)
+        except Exception as problem:
+            self._end(f"the goal could not be sent to {self._name}: {described(problem)}")
+
+    def _answered(self, future: Any) -> None:
+        handle = future.result()
+        if handle is None or not handle.accepted:
+            self._end(f"{self._name} rejected the goal")
+            return
+        self._handle = handle
+        handle.get_result_async().add_done_callback(lambda ended: self._end(ended.result()))
+        if self._cancelled:
+            self._cancel()
+
+    def _cancel(self) -> None:
+        if self._handle is not None and self.answer is None:
+            self._waits_for = f"{self._name} has not ended the goal that was cancelled"
+            self._handle.cancel_goal_async().add_done_callback(self._cancel_answered)
+
+    def _cancel_answered(self, future: Any) -> None:
+        if future.result().return_code == CancelGoal.Response.ERROR_REJECTED:
+            self._waits_for = f"{self._name} refused to cancel its goal"
+
+    def _end(self, answer: Any) -> None:
+        self.answer = answer if answer is not None else "the answer got lost"
+        self._wake()
+
+
+def action_leaf(word: Word, clients: Clients) -> Callable[..., Any]:
+    """A generator leaf. FAILURE with a reason where there is no server, or where it rejects, aborts or is lost."""
+    cls, name = word.interface(), word.ros.name
+    make = filler(word, cls.Goal, word.ros.get("goal"), clients.clock.message)
+    judge = Judge(word, cls.Result)
+    client, limit = clients.action(cls, name), word.ros.get("wait", WAIT)
+    status = clients.node.resolve_topic_name(f"{name}/_action/status")
+
+    def servers() -> set[bytes]:
+        return {bytes(end.endpoint_gid) for end in clients.node.get_publishers_info_by_topic(status)}
+
+    def act(wake: Callable[[], object] = nothing, **values: Any) -> Generator[None, None, bool | Failed]:
+        goal = Goal(clients, client, name, make(values), wake)
+        yield from awaited(clients, client, cls, name, limit)
+        presence = Presence(servers)
+        try:
+            goal.send()
+            while goal.answer is None:
+                yield
+                if goal.answer is None and presence.is_lost():
+                    goal.answer = f"the server of {name} is gone"
+        finally:
+            goal.cancel()
+        return outcome(goal.answer)
+
+    def outcome(answer: Any) -> bool | Failed:
+        if isinstance(answer, str):
+            return Failed(answer)
+        said = judge.said(answer.result)
+        if answer.status == GoalStatus.STATUS_SUCCEEDED:
+            return judge.tell(answer.result)
+        if answer.status == GoalStatus.STATUS_CANCELED:
+            return Failed(said or f"somebody else cancelled the goal of {name}")
+        return Failed(said or f"{name} gave up")
+
+    return act

@@ -1,0 +1,113 @@
+"""Driving and turning by velocities, with odometry to tell how far the robot has come."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Generator
+
+from nav_msgs.msg import Odometry
+
+from btlang.engine.leaf import ActionFailed, Failed
+from btlang.ros.clients import Clients
+from btlang.ros.graph import no_listener
+from btlang.ros.latest import Latest
+from btlang.ros.word import Word, type_name
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+SPEED, TURN = 0.3, math.radians(45)
+"""Metres and radians a second where neither the table nor the mission gives a speed."""
+_GAIN = 3.0  # speed per way that is left; twice as much would swing where odometry comes 0.1 s late
+_SLOWEST = (0.03, 0.08)  # metres and radians a second that still move a robot
+_CLOSE = (0.01, math.radians(1.0))
+_ODOMETRY_AGE = 1.0  # seconds; a robot that does not know where it is should not drive on
+_PATIENCE = 5.0
+_STEP = 0.2  # of the way to what counts as being close: less is no progress
+
+
+def drive_leaf(word: Word, clients: Clients) -> Callable[..., Any]:
+    """A generator leaf. FAILURE where odometry is silent or the robot does not get on; zero velocity at each end."""
+    cls, name = word.interface(), word.ros.name
+    if type_name(cls) not in ("geometry_msgs/msg/Twist", "geometry_msgs/msg/TwistStamped"):
+        raise word.misfit(cls, word.ros.interface, "a drive takes geometry_msgs/msg/Twist or TwistStamped")
+    [way] = [way for way in ("forward", "backward", "left", "right") if word.ros.get(way) is not None]
+    turns, sign = way in ("left", "right"), -1.0 if way in ("backward", "right") else 1.0
+    amount, speed = word.amount(way, 0.0), word.amount("speed", TURN if turns else SPEED)
+    close = word.ros.get("tolerance", _CLOSE[turns])
+    patience = word.ros.get("patience", _PATIENCE)
+    publisher = clients.publisher(cls, name)
+    odometry = clients.latest(Odometry, word.ros.get("odometry", "/odom"))
+    now = clients.clock.now
+
+    def send(velocity: float, turning: float = 0.0) -> None:
+        message = cls()
+        twist = message
+        if hasattr(message, "header"):
+            message.header.stamp, message.header.frame_id = clients.clock.message(), "base_link"
+            twist = message.twist
+        if turns:
+            twist.angular.z = velocity
+        else:
+            twist.linear.x, twist.angular.z = velocity, turning
+        publisher.publish(message)
+
+    def drive(**values: Any) -> Generator[None, None, bool | Failed]:
+        way_to_go, fastest = sign * amount(values), abs(speed(values))
+        if not publisher.get_subscription_count() or not odometry.has_come:
+            yield from _ready(clients, cls, name, publisher, odometry, patience)
+        travelled = _turned if turns else _driven
+        start = pose = _pose(odometry.take(_ODOMETRY_AGE))
+        done, best, since = 0.0, math.inf, now()
+        try:
+            while True:
+                before, pose = pose, _pose(odometry.take(_ODOMETRY_AGE))
+                done = done + travelled(before, pose) if turns else travelled(start, pose)
+                left = way_to_go - done
+                if abs(left) <= close:
+                    return True
+                if abs(left) < best - _STEP * close:
+                    best, since = abs(left), now()
+                elif now() - since > patience:
+                    return Failed(_stuck(done, way_to_go, turns))
+                velocity = math.copysign(min(fastest, max(_SLOWEST[turns], abs(left) * _GAIN)), left)
+                send(velocity, 0.0 if turns else -_GAIN * _turned(start, pose))
+                yield
+        finally:
+            send(0.0)
+
+    return drive
+
+
+def _ready(clients: Clients, cls: Any, name: str, publisher: Any, odometry: Latest, patience: float) -> Generator[None]:
+    """Yields until somebody listens and odometry has come."""
+    until = clients.clock.now() + patience
+    while not publisher.get_subscription_count() or not odometry.has_come:
+        if clients.clock.now() >= until:
+            raise ActionFailed(odometry.why_not() or no_listener(clients.node, cls, name))
+        yield
+
+
+def _pose(message: Any) -> tuple[float, float, float]:
+    """x, y in metres and the direction in radians."""
+    position, q = message.pose.pose.position, message.pose.pose.orientation
+    return position.x, position.y, math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))
+
+
+def _driven(start: tuple[float, float, float], pose: tuple[float, float, float]) -> float:
+    """Metres ahead, in the direction at the start."""
+    return (pose[0] - start[0]) * math.cos(start[2]) + (pose[1] - start[1]) * math.sin(start[2])
+
+
+def _turned(start: tuple[float, float, float], pose: tuple[float, float, float]) -> float:
+    """Radians to the left, less than half a turn."""
+    return math.remainder(pose[2] - start[2], math.tau)
+
+
+def _stuck(done: float, wanted: float, turns: bool) -> str:
+    if turns:
+        return (
+            f"the robot does not turn on: {abs(math.degrees(done)):.0f} of {abs(math.degrees(wanted)):.0f} degrees done"
+        )
+    return f"the robot does not get on: {abs(done):.2f} of {abs(wanted):.2f} m done"

@@ -1,0 +1,97 @@
+"""The latest message of a topic as a condition or a quantity."""
+
+from __future__ import annotations
+
+import operator
+from collections.abc import Callable, Mapping
+
+from btlang.engine.leaf import ActionFailed, Failed
+from btlang.ros.clients import Clients
+from btlang.ros.fields import reader
+from btlang.ros.latest import AGE
+from btlang.ros.word import Word
+from btlang.vocabulary.ros_table import LIMITS, SLOT
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+_HOLDS: dict[str, Callable[[Any, Any], bool]] = {
+    "below": operator.lt, "above": operator.gt, "at_least": operator.ge, "at_most": operator.le,
+    "equal": operator.eq, "not_equal": operator.ne,
+}  # fmt: skip
+_NUMBERS = (int, float)
+
+
+def topic_leaf(word: Word, clients: Clients) -> Callable[..., Any]:
+    """A function that compares, or gives a number where the word is a quantity. FAILURE where the topic is silent."""
+    cls, latched = word.interface(), word.ros.get("latched", False)
+    read = reader(word, cls) if word.ros.get("field") else None
+    latest = clients.latest(cls, word.ros.name, latched)
+    age = word.ros.get("age", None if latched else AGE)
+
+    def value() -> Any:
+        message = latest.take(age)
+        try:
+            return read(message) if read is not None else True
+        except ValueError as problem:
+            raise ActionFailed(f"{problem} in what came on {word.ros.name}") from None
+
+    shown = word.ros.get("field", "") and f"{word.ros.get('field')} of {word.ros.name}"
+    return measuring(word, value, shown) if word.measured is not None else comparing(word, cls, value, shown)
+
+
+def measuring(word: Word, value: Callable[[], Any], shown: str) -> Callable[..., Any]:
+    """A function that gives a value in the unit of the word's type. Raises ActionFailed where it is no number."""
+    scale = word.scale
+
+    def measure(**values: Any) -> float:
+        found = value()
+        if not isinstance(found, _NUMBERS):
+            raise ActionFailed(f"{shown} is {found!r}, which is no number")
+        if found != found:
+            raise ActionFailed(f"{shown} is not known")
+        return float(found) * scale
+
+    return measure
+
+
+def comparing(word: Word, cls: Any, value: Callable[[], Any], shown: str) -> Callable[..., Any]:
+    """A function that holds where all comparisons of the table do; without any, where the value is not empty or 0."""
+    limits = [
+        (_HOLDS[key], key, _limit(word, cls, word.ros.get(key))) for key in LIMITS if word.ros.get(key) is not None
+    ]
+    scale = float(word.ros.get("scale", 1.0))
+
+    def hold(**values: Any) -> bool | Failed:
+        found = value()
+        if scale != 1.0 and isinstance(found, _NUMBERS):
+            found *= scale
+        try:
+            good = all(holds(found, limit(values)) for holds, _, limit in limits) if limits else bool(found)
+        except TypeError:
+            return Failed(f"{shown} is {found!r}, which cannot be compared so")
+        return good or Failed(lambda: f"{shown} is {f'{found:.3g}' if isinstance(found, float) else found}")
+
+    return hold
+
+
+def _limit(word: Word, cls: Any, given: Any) -> Callable[[Mapping[str, Any]], Any]:
+    """What is compared with: a slot in SI, the constant of a message by its name, or the value itself."""
+    slot = SLOT.fullmatch(given) if isinstance(given, str) else None
+    if slot is None:
+        constant = getattr(cls, given, given) if isinstance(given, str) and given.isupper() else given
+        return lambda values: constant
+    name, unit = slot[1], slot[2] or ""
+    try:
+        factor = word.factor(name, unit)
+    except LookupError as error:
+        raise word.misfit(cls, given, str(error)) from None
+
+    def limit(values: Mapping[str, Any]) -> Any:
+        if name not in values:
+            raise ActionFailed(f"it needs a value for {name}")
+        value = values[name]
+        return value * factor if isinstance(value, _NUMBERS) else value
+
+    return limit

@@ -1,0 +1,35 @@
+"""All words of a keyword file bound to ROS 2 interfaces, for tests of what is said where that fails."""
+
+from __future__ import annotations
+
+import os
+import sys
+
+import pytest
+
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.vocabulary.load import load_vocabulary
+from tests.ros.declared import free_domain
+
+
+def bind_words(file: str) -> int:
+    """Prints what is wrong and returns the exit code, as `btc` does. Skips where ROS 2 is not installed."""
+    pytest.importorskip("rclpy", reason="ROS 2 is not installed")
+    os.environ.setdefault("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
+    from btlang.ros.binding import bind_ros
+    from btlang.ros.clients import Clients
+    from btlang.ros.node import SpunNode
+
+    vocabulary = load_vocabulary([file])
+    problems = []
+    with free_domain() as domain, SpunNode("bound", domain_id=domain) as spun:
+        clients = Clients(spun.node)
+        for entry in (entry for same in vocabulary.entries.values() for entry in same):
+            try:
+                bind_ros(entry, vocabulary, clients, {}.__getitem__)
+            except MissionError as error:
+                problems += error.diagnostics
+    if not problems:
+        return 0
+    print(MissionError(problems), file=sys.stderr)
+    return 2

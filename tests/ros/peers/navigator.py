@@ -1,0 +1,72 @@
+"""An action server of nav2_msgs/action/NavigateToPose. `navigator.py MODE [SECONDS]`
+
+MODE is `arrive` (after SECONDS), `hang` (until it is cancelled), `slow` (accepts after SECONDS, then hangs), `reject`,
+`abort` (for a reason), `blame` (succeeds with an error code) or `meddle` (cancels its goals after SECONDS).
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+from typing import Any
+
+from action_msgs.srv import CancelGoal
+from nav2_msgs.action import NavigateToPose
+from rclpy.action import ActionServer, CancelResponse, GoalResponse
+from rclpy.callback_groups import ReentrantCallbackGroup
+from rclpy.node import Node
+
+from tests.ros.peers.peer import serve, tell
+
+MODE = sys.argv[1]
+SECONDS = float(sys.argv[2]) if len(sys.argv) > 2 else 0.2
+
+
+def _goal(goal: Any) -> GoalResponse:
+    pose = goal.pose
+    tell("goal", pose.header.frame_id, *(f"{v:.3f}" for v in (pose.pose.position.x, pose.pose.position.y)),
+         f"{pose.pose.orientation.z:.3f}", f"{pose.pose.orientation.w:.3f}")  # fmt: skip
+    if MODE == "slow":
+        time.sleep(SECONDS)
+    return GoalResponse.REJECT if MODE == "reject" else GoalResponse.ACCEPT
+
+
+def _cancel(handle: Any) -> CancelResponse:
+    tell("cancel")
+    return CancelResponse.ACCEPT
+
+
+def _execute(handle: Any) -> NavigateToPose.Result:
+    tell("executing")
+    result = NavigateToPose.Result()
+    until = time.monotonic() + SECONDS
+    while MODE in ("hang", "slow", "meddle") or time.monotonic() < until:
+        if handle.is_cancel_requested:
+            handle.canceled()
+            tell("cancelled")
+            return result
+        time.sleep(0.01)
+    if MODE == "abort":
+        result.error_code, result.error_msg = 7, "the way is blocked by a box"
+        handle.abort()
+    elif MODE == "blame":
+        result.error_code, result.error_msg = 9, "the map is too old"
+        handle.succeed()
+    else:
+        handle.succeed()
+    tell("ended")
+    return result
+
+
+def _make(node: Node) -> object:
+    if MODE == "meddle":  # a request that names no goal is for all of them
+        client = node.create_client(CancelGoal, "/navigate_to_pose/_action/cancel_goal")
+        node.create_timer(SECONDS, lambda: client.call_async(CancelGoal.Request()))
+    return ActionServer(
+        node, NavigateToPose, "/navigate_to_pose", _execute, goal_callback=_goal, cancel_callback=_cancel,
+        callback_group=ReentrantCallbackGroup(),
+    )  # fmt: skip
+
+
+if __name__ == "__main__":
+    serve("navigator", _make)
