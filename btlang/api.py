@@ -344,12 +344,12 @@ class RunnableTree:
 
         for fact in all_facts(self.mission) if self.mission is not None else ():
             stage.robot.add_place(Place(fact.name, fact.x, fact.y, fact.facing))
-        stage.check(self.tree)
+        stage.check(self.tree, self.vocabulary)
         stage.begin(sinks)
         try:
             engine = traced_engine(
                 self.tree,
-                cache(lambda id: bind_leaf(id, self.vocabulary, getattr(stage, "bind", None))),
+                cache(lambda id: bind_leaf(id, self.vocabulary, stage.bind)),
                 clock=stage.clock,
                 events=stage.events,
                 services={"robot": stage.robot},

@@ -67,7 +67,7 @@ def _run(options: argparse.Namespace) -> int:
     robot = chosen_robot(options)
     tree = _tree(options)
     if options.preflight:
-        ready = print_preflight(tree.tree, read_world(options.world), sim_time=options.sim_time)
+        ready = print_preflight(tree.tree, tree.vocabulary, read_world(options.world), sim_time=options.sim_time)
         return SUCCESS if ready else FAILED
     with pictures_of(tree, options.picture, options.tree_picture) as sinks:
         return run_mission(

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 def bind_leaf(
-    node_id: str, vocabulary: Vocabulary, own: Callable[[Entry], LeafBinding | None] | None = None
+    node_id: str, vocabulary: Vocabulary, own: Callable[[Entry, Vocabulary], LeafBinding | None] | None = None
 ) -> LeafBinding | None:
     """None where no keyword entry has the id. Raises EngineError where its `call` leads nowhere or is of no use.
 
@@ -31,7 +31,7 @@ def bind_leaf(
     """
     entries = vocabulary.entries.get(node_id, ())
     for entry in reversed(entries) if own is not None else ():
-        binding = own(entry)  # type: ignore[misc]
+        binding = own(entry, vocabulary)  # type: ignore[misc]
         if binding is not None:
             return binding
     if not entries:

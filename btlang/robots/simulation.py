@@ -13,10 +13,13 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+    from btlang.engine.leaf import LeafBinding
     from btlang.run.controls import Controls
     from btlang.run.events import Event, Sink
     from btlang.run.pace import Pace
     from btlang.tree.node import Tree
+    from btlang.vocabulary.entry import Entry
+    from btlang.vocabulary.vocabulary import Vocabulary
 
 
 class Simulation:
@@ -36,7 +39,11 @@ class Simulation:
             self.events.publish(event)
         self._untold.clear()
 
-    def check(self, tree: Tree) -> None:
+    def bind(self, entry: Entry, vocabulary: Vocabulary) -> LeafBinding | None:
+        """None: words are done by their `call`."""
+        return None
+
+    def check(self, tree: Tree, vocabulary: Vocabulary) -> None:
         """The simulated robot can do all that the shipped leaves need."""
 
     def pace(self, speed: float, controls: Controls) -> Pace:

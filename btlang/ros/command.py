@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from btlang.ros.stage import RosStage
     from btlang.run.stage import Stage
     from btlang.tree.node import Tree
+    from btlang.vocabulary.vocabulary import Vocabulary
 
 _PACKAGES = ("geometry_msgs", "nav_msgs", "rosgraph_msgs", "sensor_msgs", "std_msgs", "std_srvs", "trajectory_msgs")
 
@@ -51,10 +52,10 @@ def chosen_robot(options: Namespace) -> str | Callable[[World], Stage]:
     return partial(ros_stage, sim_time=options.sim_time)
 
 
-def print_preflight(tree: Tree, world: World, *, sim_time: bool) -> bool:
+def print_preflight(tree: Tree, vocabulary: Vocabulary, world: World, *, sim_time: bool) -> bool:
     """Prints what a tree needs of the robot, a line each; returns whether all of it is there. Raises MissionError."""
     with closing(ros_stage(world, sim_time=sim_time)) as stage:
-        found = stage.survey(tree)
+        found = stage.survey(tree, vocabulary)
     for interface, (_, reason) in found.items():
         state = f"missing: {reason}" if reason else "found"
         print(f"{interface.sort:<7} {interface.name:<20} {interface.type:<36} {state}")

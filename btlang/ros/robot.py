@@ -166,6 +166,15 @@ class RosRobot:
         """True when it has been told to move for a second and does not."""
         return self._base.stuck
 
+    def located(self, name: str) -> tuple[float, float, float | None]:
+        """Where a name of the world is: metres, and the direction to face in radians, None for any. Raises KeyError."""
+        try:
+            point = self._places.locate(self._places.known(name), Pose(0.0, 0.0, 0.0))
+        except RobotError:
+            raise KeyError(name) from None
+        facing = next((place.facing for place in self._places.world.places if place.name == name), None)
+        return *point, None if facing is None else radians(facing)
+
     def navigate_to(self, name: str) -> Navigation:
         """Sends NavigateToPose. Raises RobotError for an unknown name, and where nobody knows where the robot is."""
         known = self._places.known(name)

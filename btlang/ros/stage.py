@@ -12,9 +12,11 @@ from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.engine.clock import Clock
 from btlang.robots.world import World
 from btlang.ros.available import require_ros
+from btlang.ros.binding import bind_ros
+from btlang.ros.clients import Clients
 from btlang.ros.node import SpunNode
 from btlang.ros.pace import RosPace
-from btlang.ros.preflight import preflight
+from btlang.ros.preflight import DISCOVERY, preflight
 from btlang.ros.robot import RosRobot
 from btlang.ros.wire import CLOCK, Interface, needs
 from btlang.run.controls import Controls
@@ -25,7 +27,12 @@ from btlang.tree.node import Node, Tree
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from btlang.engine.leaf import LeafBinding
     from btlang.run.events import Sink
+    from btlang.vocabulary.entry import Entry
+    from btlang.vocabulary.vocabulary import Vocabulary
+
+_LAST_ANSWERS = 2.0  # seconds that goals which were halted get to end
 
 
 class RosStage:
@@ -44,28 +51,48 @@ class RosStage:
             self.robot = RosRobot(self._spun.node, world, on_event=self._publish)
             if sim_time:
                 self.robot.inbox.listen(CLOCK.name, ClockMessage, "simulated time")
+            self._clients = Clients(self._spun.node)
             self._spun.start()
         except BaseException:
             self._spun.close()
             raise
 
-    def survey(self, tree: Tree) -> dict[Interface, tuple[Node | None, str]]:
+    def bind(self, entry: Entry, vocabulary: Vocabulary) -> LeafBinding | None:
+        """As a client of what its `ros` table names; None without one. Raises MissionError (BT104 to BT106)."""
+        return bind_ros(entry, vocabulary, self._clients, self.robot.located)
+
+    def survey(self, tree: Tree, vocabulary: Vocabulary) -> dict[Interface, tuple[Node | None, str]]:
         """What a tree needs of the robot, the first leaf that needs it, and what is wrong with it, "" for nothing.
 
         Waits two seconds at most for what is missing. Raises MissionError (BT100) where nav2_msgs is needed and is
         not installed.
         """
         wanted: dict[Interface, Node | None] = {CLOCK: None} if self._sim_time else {}
-        wanted.update(needs(tree))
+        declared = self._bound(tree, vocabulary)
+        wanted.update(needs(tree, but=declared.keys()))
         if any(interface.kind == "acts" for interface in wanted):
             require_ros("nav2_msgs")
             self.robot.prepare_navigation()
         found = preflight(self._spun.node, self.robot.inbox, wanted)
-        return {interface: (wanted[interface], reason) for interface, reason in found.items()}
+        self._clients.wait(DISCOVERY)
+        own = {
+            Interface(need.kind, need.name, need.type): (next(iter(declared.values())), need.missing)
+            for need in self._clients.needs()
+        }
+        return {**{interface: (wanted[interface], reason) for interface, reason in found.items()}, **own}
 
-    def check(self, tree: Tree) -> None:
+    def _bound(self, tree: Tree, vocabulary: Vocabulary) -> dict[str, Node]:
+        """The leaves that are done by `ros` tables, by their ids; their clients are made."""
+        return {
+            node.id: node
+            for node in tree.walk()
+            for entry in vocabulary.entries.get(node.id, ())
+            if self.bind(entry, vocabulary) is not None
+        }
+
+    def check(self, tree: Tree, vocabulary: Vocabulary) -> None:
         """Raises MissionError with all that the tree needs and the robot lacks (BT101)."""
-        lacking = [(i, node, reason) for i, (node, reason) in self.survey(tree).items() if reason]
+        lacking = [(i, node, reason) for i, (node, reason) in self.survey(tree, vocabulary).items() if reason]
         if lacking:
             raise MissionError([_lack(*lack) for lack in lacking])
         self.robot.inbox.read()
@@ -83,6 +110,7 @@ class RosStage:
     def close(self) -> None:
         """Leaves the robot at rest and its goals cancelled, then the ROS graph. Takes about two seconds at most."""
         try:
+            self._clients.close(_LAST_ANSWERS)
             self.robot.close()
         finally:
             self._spun.close()

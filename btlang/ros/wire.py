@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Collection
+
 from btlang.record import Record
 from btlang.tree.node import Node, Tree
 
@@ -20,7 +22,9 @@ class Interface(Record):
     @property
     def sort(self) -> str:
         """What it is in ROS 2."""
-        return {"serves": "service", "acts": "action"}.get(self.kind, "topic")
+        return {"serves": "service", "acts": "action", "listener": "topic", "publisher": "topic"}.get(
+            self.kind, "topic" if self.kind in ("listens", "tells") else self.kind
+        )
 
 
 CLOCK = Interface("tells", "/clock", "rosgraph_msgs/msg/Clock", flows=True)
@@ -89,11 +93,11 @@ LEAVES = {leaf: capabilities for capabilities, leaves in _DOES.items() for leaf 
 """What the leaves that ship need the robot to be able to do, by their ids."""
 
 
-def needs(tree: Tree) -> dict[Interface, Node]:
-    """What a tree needs of the robot, each with the first leaf that needs it."""
+def needs(tree: Tree, but: Collection[str] = ()) -> dict[Interface, Node]:
+    """What a tree needs of the robot, each with the first leaf that needs it; but for leaves of some ids."""
     found: dict[Interface, Node] = {}
     for node in tree.walk():
-        for capability in LEAVES.get(node.id, ()):
+        for capability in LEAVES.get(node.id, ()) if node.id not in but else ():
             for interface in CAPABILITIES[capability]:
                 found.setdefault(interface, node)
     return found

@@ -13,7 +13,10 @@ from btlang.tree.node import Tree
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from btlang.engine.leaf import LeafBinding
     from btlang.run.events import Sink
+    from btlang.vocabulary.entry import Entry
+    from btlang.vocabulary.vocabulary import Vocabulary
 
 
 class Stage(Protocol):
@@ -31,7 +34,10 @@ class Stage(Protocol):
     def robot(self) -> Any:
         """The robot (btlang.robots.robot.Robot), to which a mission may add places."""
 
-    def check(self, tree: Tree) -> None:
+    def bind(self, entry: Entry, vocabulary: Vocabulary) -> LeafBinding | None:
+        """How the robot itself does what an entry says; None where its `call` does. Raises MissionError."""
+
+    def check(self, tree: Tree, vocabulary: Vocabulary) -> None:
         """Raises MissionError where the robot lacks what the leaves of the tree need."""
 
     def begin(self, sinks: Iterable[Sink]) -> None:

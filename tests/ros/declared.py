@@ -126,7 +126,7 @@ class Robot:
         self._file.write_text(words, encoding="utf-8")
         tree = btlang.parse_tree(mission, keywords=[str(self._file)])
 
-        def own(entry: Any) -> Any:
+        def own(entry: Any, vocabulary: Any) -> Any:
             return bind_ros(entry, tree.vocabulary, self.clients, PLACES.__getitem__)
 
         self.engine = Engine(tree.tree, lambda id: bind_leaf(id, tree.vocabulary, own), clock=self._clock)
