@@ -68,27 +68,32 @@ class RosStage:
         not installed.
         """
         wanted: dict[Interface, Node | None] = {CLOCK: None} if self._sim_time else {}
-        declared = self._bound(tree, vocabulary)
-        wanted.update(needs(tree, but=declared.keys()))
+        declared, own = self._bound(tree, vocabulary)
+        wanted.update(needs(tree, but=declared))
         if any(interface.kind == "acts" for interface in wanted):
             require_ros("nav2_msgs")
             self.robot.prepare_navigation()
         found = preflight(self._spun.node, self.robot.inbox, wanted)
         self._clients.wait(DISCOVERY)
-        own = {
-            Interface(need.kind, need.name, need.type): (next(iter(declared.values())), need.missing)
-            for need in self._clients.needs()
-        }
-        return {**{interface: (wanted[interface], reason) for interface, reason in found.items()}, **own}
-
-    def _bound(self, tree: Tree, vocabulary: Vocabulary) -> dict[str, Node]:
-        """The leaves that are done by `ros` tables, by their ids; their clients are made."""
+        lacking = {Interface(need.kind, need.name, need.type): need.missing for need in self._clients.needs()}
         return {
-            node.id: node
-            for node in tree.walk()
-            for entry in vocabulary.entries.get(node.id, ())
-            if self.bind(entry, vocabulary) is not None
+            **{interface: (wanted[interface], reason) for interface, reason in found.items()},
+            **{interface: (node, lacking[interface]) for interface, node in own.items()},
         }
+
+    def _bound(self, tree: Tree, vocabulary: Vocabulary) -> tuple[set[str], dict[Interface, Node]]:
+        """The ids of leaves that are done by `ros` tables, and what these need, each with the first such leaf."""
+        self._clients.begin()
+        ids: set[str] = set()
+        own: dict[Interface, Node] = {}
+        for node in tree.walk():
+            entries = vocabulary.entries.get(node.id, ()) if node.id not in ids else ()
+            entry = next((entry for entry in reversed(entries) if self.bind(entry, vocabulary) is not None), None)
+            if entry is not None:
+                ids.add(node.id)
+                for need in self._clients.needs():
+                    own.setdefault(Interface(need.kind, need.name, need.type), node)
+        return ids, own
 
     def check(self, tree: Tree, vocabulary: Vocabulary) -> None:
         """Raises MissionError with all that the tree needs and the robot lacks (BT101)."""
