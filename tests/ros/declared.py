@@ -29,6 +29,7 @@ from btlang.engine.status import RUNNING, SUCCESS
 ROOT = Path(__file__).parent.parent.parent
 PROFILE = str(Path(__file__).parent / "peers" / "profile.xml")
 LIMIT = 15.0  # real seconds that anything is waited for
+_BLOCKED = 2.0  # seconds: a tick that waits for an answer takes longer, one on a busy machine does not
 PLACES = {"kitchen": (4.0, -1.0, 1.5707963), "lobby": (1.0, 2.0, None)}
 _DOMAINS = range(1, 102)  # the ports of higher ones are among those that the system hands out
 
@@ -147,7 +148,7 @@ class Robot:
             before = time.monotonic()
             status = self.engine.tick()
             took = time.monotonic() - before
-            assert took < 0.5, f"a tick took {took:.2f} s"
+            assert took < _BLOCKED, f"a tick took {took:.2f} s"
             if status != RUNNING or until():
                 return status
             assert time.monotonic() < end, f"it runs on; peers told {[peer.told for peer in self.peers]}"
