@@ -29,7 +29,7 @@ def test_twenty_runs_leave_no_thread_behind(sim: Command) -> None:
 
 
 def test_an_emergency_stop_from_another_thread(sim: Command) -> None:
-    tree = btlang.parse_tree("move forward 50 m")
+    tree = btlang.parse_tree("turn left 99999 degrees")
     timer = threading.Timer(2.0, tree.emergency_stop)
     timer.start()
     outcome = tree.run(robot=partial(ros_stage, sim_time=True))

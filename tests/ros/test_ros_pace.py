@@ -15,7 +15,7 @@ class Times:
     def __init__(self, monkeypatch: pytest.MonkeyPatch, factor: float = 1.0) -> None:
         self.real, self.simulated, self.factor = 100.0, 5.0, factor
         self.controls = Controls()
-        monkeypatch.setattr(module.time, "monotonic", lambda: self.real)
+        monkeypatch.setattr(module, "monotonic", lambda: self.real)
         monkeypatch.setattr(self.controls, "wait", lambda seconds: self.pass_by(seconds))
 
     def pass_by(self, seconds: float) -> None:
