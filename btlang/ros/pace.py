@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable
+from time import monotonic
 
 from btlang.run.controls import Controls
 from btlang.run.pace import Pace
@@ -24,9 +24,9 @@ class RosPace(Pace):
     def __init__(self, controls: Controls, now: Callable[[], float]) -> None:
         super().__init__(1.0, controls)
         self._now = now
-        self._look = math.inf if now is time.monotonic else _LOOK
+        self._look = math.inf if now is monotonic else _LOOK
         self._last = 0.0
-        self._seen, self._looked = now(), time.monotonic()
+        self._seen, self._looked = now(), monotonic()
         self._stands = 0.0
         self._more = 0.0  # how far the time of the mission is ahead of `now`
 
@@ -50,7 +50,7 @@ class RosPace(Pace):
 
     def _time(self) -> float:
         """Never goes back, also where a simulator begins anew."""
-        now, looked = self._now(), time.monotonic()
+        now, looked = self._now(), monotonic()
         if now == self._seen:
             self._stands += looked - self._looked
             if self._stands > _STANDING:
