@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from threading import Condition, Event
 from typing import Any
@@ -13,6 +14,8 @@ from btlang.ros.node import SpunNode
 from tests.ros.processes import LONG, wait_until
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+
+_SETTLE = 0.3  # seconds: a server that has not yet found the client's reader drops its answer, and no call tells when
 
 
 class Heard:
@@ -65,11 +68,13 @@ class Client:
     def call(self, kind: type[Any], service: str, **fields: Any) -> Any:
         client = self.node.create_client(kind, service)
         assert client.wait_for_service(LONG), service
+        time.sleep(_SETTLE)
         return answer(client.call_async(kind.Request(**fields)))
 
     def action(self, kind: type[Any], name: str) -> ActionClient:
         client = ActionClient(self.node, kind, name)
         assert client.wait_for_server(LONG), name
+        time.sleep(_SETTLE)
         return client
 
 

@@ -88,17 +88,17 @@ def test_it_arrives_and_faces_as_told(nav2, navigator, odometry: Heard):
     assert feedback[0].estimated_time_remaining.sec >= 5
 
 
-def test_cancelled_half_way_it_stands_still(nav2, navigator, odometry: Heard):
-    handle = under_way(navigator, goal(nav2, 5.0, 1.0), odometry)
-    asked = seconds(odometry.messages[-1].header.stamp)
+def test_cancelled_half_way_it_stands_still(nav2, start_sim, client: Client):
+    start_sim("--speed", "2")
+    odometry = client.hear(Odometry, "/odom")
+    handle = under_way(client.action(nav2, "/navigate_to_pose"), goal(nav2, 5.0, 1.0), odometry)
     assert len(answer(handle.cancel_goal_async()).goals_canceling) == 1
+    cancelled = seconds(odometry.messages[-1].header.stamp)
     status, _, reason = ended(handle)
     assert (status, reason) == (GoalStatus.STATUS_CANCELED, "the way was given up")
-    still = odometry.wait(stands)
-    assert still.pose.pose.position.x < 4.0
-    assert seconds(still.header.stamp) - asked < 3.0  # of which the answers take some: 20 s pass in a second
+    assert odometry.wait(stands).pose.pose.position.x < 4.0
     rolling = [message for message in odometry.messages if not stands(message)]
-    assert seconds(still.header.stamp) - seconds(rolling[-1].header.stamp) < 0.1
+    assert seconds(rolling[-1].header.stamp) - cancelled < 1.0
 
 
 def test_cancelled_at_once(nav2, navigator, odometry: Heard):
