@@ -29,7 +29,7 @@ if TYPE_CHECKING:
     from typing import Any, TypeAlias
 
     from btlang.engine.background import Background
-    from btlang.engine.leaves import Plan
+    from btlang.engine.bind import Plan
     from btlang.engine.timing import Stopwatch
     from btlang.engine.watch import Watch
 

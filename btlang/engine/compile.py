@@ -18,6 +18,7 @@ from btlang.engine import (
     timed,
     updates,
 )
+from btlang.engine.bind import Plan, bound_leaf
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.build import EngineError, Shared, Site, halt_nothing
 from btlang.engine.clock import Clock
@@ -217,10 +218,10 @@ def _compile_leaf(site: Site, children: Sequence[Compiled]) -> Compiled:
         binding = shared.bind(node_id)
         if binding is None:
             raise site.error(f"nothing is bound to {node_id}")
-        plan = shared.plans[node_id] = leaves.Plan(binding)
+        plan = shared.plans[node_id] = Plan(binding)
     if children:
         raise site.error(f"{node_id} is a leaf, but has {len(children)} children")
-    compiled = leaves.bound_leaf(site, plan)
+    compiled = bound_leaf(site, plan)
     return compiled if shared.stopwatch is None else shared.stopwatch.wrap(site.index, compiled)
 
 

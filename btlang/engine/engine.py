@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Mapping, Sequence
+from _thread import get_ident  # `threading` takes longer to import
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.build import EngineError, Fault, Shared, Site, blackboard_key
 from btlang.engine.clock import Clock
 from btlang.engine.compile import compile_sites, expand
 from btlang.engine.leaf import REFUSED, LeafBinding, told
+from btlang.engine.script_values import as_text
 from btlang.engine.status import FAILURE, IDLE
 from btlang.engine.watch import Trace
 from btlang.garbage import no_collection
@@ -81,6 +83,7 @@ class Engine:
             self._tick, self._halt = compile_sites(self._sites, self._trace)
         self._frames = _depth(self._sites) * _FRAMES_PER_LEVEL + _FRAMES_FOR_LEAVES
         self._deep = self._frames > _FRAMES_ASSUMED
+        self._keyed = frozenset([s.index for s in self._sites if any("{" in text for _, text in s.node.ports)])
         self._busy = False
         self.status = IDLE
         self._fault: Fault | Site | None = None
@@ -173,6 +176,12 @@ class Engine:
         ports = tuple((port, text if key is None else scope.argument(key) or text) for port, text, key in keys)
         return node if ports == node.ports else node.replace(ports=ports)
 
+    def valued(self, indices: Iterable[int]) -> dict[int, Node]:
+        """Those of these nodes whose ports name keys, with the texts and numbers that are under them now."""
+        if not self._keyed:
+            return {}
+        return {index: self._with_values(self._sites[index]) for index in indices if index in self._keyed}
+
     def path(self, index: int) -> str:
         """Where a node is: `/` is the root, `/0/1` the second child of its first child; a SubTree's tree is child 0."""
         steps: list[str] = []
@@ -183,8 +192,11 @@ class Engine:
         return "/" + "/".join(reversed(steps))
 
     def tell(self) -> None:
-        """Hands to the listener what has changed since it was last told; also from within a leaf."""
-        if self._trace is not None:
+        """Hands to the listener what has changed since it was last told; also from within a leaf.
+
+        In another thread than that of the latest tick it does nothing: that tick may go on.
+        """
+        if self._trace is not None and self._trace.thread == get_ident():
             self._trace.tell()
 
     def parent(self, index: int) -> int:
@@ -208,6 +220,10 @@ class Engine:
         while fault is not None and fault.index < index:  # causes are below
             fault = fault.cause
         return self._text(fault) if fault is not None and fault.index == index else ""
+
+    def _with_values(self, site: Site) -> Node:
+        ports = tuple((port, _valued(site.scope, port, text)) for port, text in site.node.ports)
+        return site.node.replace(ports=ports)  # type: ignore[no-any-return]
 
     def _wake(self) -> None:
         if self.on_wake is not None:
@@ -252,7 +268,8 @@ class Engine:
         if not keep:
             self._failed = self.failure
             self.status = IDLE
-        self.tell()
+        if self._trace is not None:
+            self._trace.tell()
         if interrupted is not None:
             raise interrupted
 
@@ -273,6 +290,12 @@ class Engine:
         return Failure(
             index, self.node(index), self.path(index), self._text(fault), fault.exception, self.span(index), around
         )
+
+
+def _valued(scope: Blackboard, port: str, text: str) -> str:
+    key = blackboard_key(port, text)
+    value = scope.get(key) if key is not None and key in scope else text
+    return as_text(value) if isinstance(value, str | int | float) else text
 
 
 def _depth(sites: Sequence[Site]) -> int:

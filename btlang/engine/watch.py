@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from _thread import get_ident  # `threading` takes longer to import
 from collections.abc import Callable, Iterator
 
 from btlang.engine.leaves import FunctionLeaf, as_function, failed, status_of
@@ -59,12 +60,13 @@ class Trace:
     takes time starts and when it has ended, and whenever somebody calls `tell`.
     """
 
-    __slots__ = ("changes", "listener", "shared", "tick")
+    __slots__ = ("changes", "listener", "shared", "thread", "tick")
 
     def __init__(self, shared: Shared, listener: Listener) -> None:
         self.shared = shared
         self.listener = listener
         self.tick = 0
+        self.thread = 0  # that of the latest tick
         self.changes = Changes()
 
     def tell(self) -> None:
@@ -84,7 +86,7 @@ class Watch:
     told, so are the statuses below it that are those of the run before; what this run has not reached is forgotten.
     """
 
-    __slots__ = ("below", "every", "index", "last", "reached", "told", "trace")
+    __slots__ = ("below", "every", "index", "last", "reached", "told", "told_by_leaf", "trace")
 
     def __init__(self, index: int, every: bool, below: list[Watch], trace: Trace) -> None:
         self.index = index
@@ -93,6 +95,7 @@ class Watch:
         self.trace = trace
         self.last = IDLE
         self.reached = self.told = 0  # the ticks in which it last had a status, and in which that was noted
+        self.told_by_leaf = False  # so that a leaf needs no wrapper while it is RUNNING
 
     def change(self, status: int) -> None:
         """The node has this status now."""
@@ -106,6 +109,13 @@ class Watch:
             self.note()
             if took_time:
                 self.trace.tell()
+
+    def ended(self, status: int) -> int:
+        """To be called by a leaf that tells by itself how it ended; returns the status."""
+        if self.told_by_leaf:
+            self.reached = self.trace.tick
+            self.change(status)
+        return status
 
     def note(self) -> None:
         """Its status is news."""
@@ -123,6 +133,8 @@ class Watch:
         leaf = as_function(tick)
         if leaf is not None and self.index and not self.every:
             return self._watched_function(leaf), self._watched_halt(halt)
+        if self.told_by_leaf:
+            return tick, self._watched_halt(halt)
         trace = self.trace
 
         def watched_tick() -> int:
@@ -134,6 +146,7 @@ class Watch:
 
         def root_tick() -> int:
             trace.tick += 1
+            trace.thread = get_ident()
             return watched_tick()
 
         return (watched_tick if self.index else root_tick), self._watched_halt(halt)

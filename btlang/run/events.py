@@ -56,12 +56,14 @@ class StatusChanged(Record):
 class StatusesChanged(Record):
     """Nodes have new statuses; iterating gives each as a StatusChanged, oldest first.
 
-    They come together because making an event of each would take ten times as long as the tick.
+    They come together because making an event of each would take ten times as long as the tick. `valued` has those
+    nodes whose ports name keys, with the values that these had (see Engine.valued).
     """
 
     t: float
     changes: Changes
     nodes: Nodes
+    valued: Mapping[int, Node] = {}
 
     def __iter__(self) -> Iterator[StatusChanged]:
         nodes = self.nodes

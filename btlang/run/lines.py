@@ -36,13 +36,13 @@ class Lines:
         elif isinstance(event, StatusesChanged):
             for change in event:
                 if (change.node.id == "Sleep" and change.node.span) or self._is_action(change.node):
-                    self._action(change)
+                    self._action(change, event.valued.get(change.index, change.node))
         elif isinstance(event, Overrun):
             self._overrun(event)
 
-    def _action(self, event: StatusChanged) -> None:
+    def _action(self, event: StatusChanged, node: Node) -> None:
         reason = f": {event.reason}" if event.reason else ""
-        self._line(event.t, _WORDS.get(event.status, "done"), self._label(event.node) + reason)
+        self._line(event.t, _WORDS.get(event.status, "done"), self._label(node) + reason)
 
     def _overrun(self, event: Overrun) -> None:
         if event.node is not None and event.path not in self._slow:

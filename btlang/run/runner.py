@@ -61,7 +61,7 @@ def traced_engine(
     """An engine whose status changes go into the stream."""
 
     def changed(changes: Changes) -> None:
-        events.publish(StatusesChanged(clock.now, changes, engine))
+        events.publish(StatusesChanged(clock.now, changes, engine, engine.valued(changes.indices)))
 
     engine = Engine(
         tree, bind, clock=clock, services=services, blackboard=blackboard, listener=changed, stopwatch=stopwatch

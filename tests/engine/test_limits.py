@@ -9,7 +9,9 @@ from copy import copy, deepcopy
 
 import pytest
 
+from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine
+from btlang.engine.leaf import LeafBinding
 from btlang.engine.status import FAILURE, RUNNING, SUCCESS
 from btlang.tree.dump import outline, plain
 from btlang.tree.node import Node, Tree
@@ -212,3 +214,20 @@ def test_a_tree_refuses_to_be_ticked_from_within() -> None:
     assert engine.failure is not None
     assert "the tree is being ticked" in engine.failure.reason
     assert engine.tick() == FAILURE
+
+
+def test_changes_are_not_told_in_another_thread_than_that_of_the_tick() -> None:
+    told: list[list[int]] = []
+    engines: list[Engine] = []
+
+    def call() -> None:
+        thread = threading.Thread(target=engines[0].tell)
+        thread.start()
+        thread.join(60)
+        assert told == []
+
+    bindings = {"A": LeafBinding(lambda: True), "B": LeafBinding(call)}
+    root = n("Sequence", n("A"), n("B"))
+    engines.append(Engine(Tree(root), bindings.get, clock=Clock(), listener=lambda c: told.append(list(c.indices))))
+    assert engines[0].tick() == SUCCESS
+    assert told == [[1, 2, 0]]

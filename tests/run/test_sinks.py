@@ -5,6 +5,7 @@ from __future__ import annotations
 import io
 import json
 
+import btlang
 from btlang.engine.build import Fault, Site
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 from btlang.engine.watch import Changes
@@ -107,4 +108,20 @@ def test_human_lines() -> None:
         "   2.20  drops  cup",
         "   2.30  stuck",
         "   2.40  fault  the laser scanner is silent",
+    ]
+
+
+def test_lines_show_the_values_that_a_command_worked_with() -> None:
+    tree = btlang.parse_tree(
+        'meet {someone} is say "hello {someone}"\nfor each spot in door, hall: go to spot\nmeet Alice\n'
+    )
+    written: list[str] = []
+    tree.run(speed="max", sinks=[Lines(tree.label, tree.is_action, written.append)])
+    assert [line.split(None, 1)[1] for line in written if "says" not in line] == [
+        "start  go to door",
+        "done   go to door",
+        "start  go to hall",
+        "done   go to hall",
+        'start  say "hello Alice"',
+        'done   say "hello Alice"',
     ]
