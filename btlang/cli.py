@@ -201,6 +201,12 @@ def _sim_ros(options: argparse.Namespace) -> int:
     )
 
 
+def _ros_node(options: argparse.Namespace) -> int:
+    from btlang.ros.mission.command import serve
+
+    return serve(options)
+
+
 def _repl(options: argparse.Namespace) -> int:
     from btlang.repl.loop import run_repl
 
@@ -217,6 +223,7 @@ _VERBS = {
     "explain": _explain,
     "format": _format,
     "sim-ros": _sim_ros,
+    "ros-node": _ros_node,
 }
 
 
@@ -353,6 +360,14 @@ def _sim_ros_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--namespace", type=_namespace, default="", metavar="NS", help="of all topics (default: none)")
 
 
+def _ros_node_options(parser: argparse.ArgumentParser) -> None:
+    from btlang.ros.mission.command import add_node_options
+
+    _reading_options(parser)
+    _speed_option(parser)
+    add_node_options(parser)
+
+
 _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "repl": ("type a mission line by line; what `btc` alone does", _repl_options),
     "run": ("run a mission on the simulated robot, or a ROS 2 robot", _run_options),
@@ -363,6 +378,7 @@ _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "explain": ("show how a mission is read, or tell of a message", _explain_options),
     "format": ("lay out missions: indentation, spaces, empty lines", _format_options),
     "sim-ros": ("offer the simulated robot over ROS 2", _sim_ros_options),
+    "ros-node": ("run missions as a ROS 2 node, for other programs", _ros_node_options),
 }
 
 

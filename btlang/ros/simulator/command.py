@@ -35,7 +35,7 @@ def serve(world: World, *, speed: float, rate: float, gives_clock: bool, namespa
     from btlang.ros.simulator.simulator import Simulator, can_navigate
 
     controls = Controls()
-    with _ended_by_signals(controls) as signals:
+    with ended_by_signals(controls) as signals:
         simulator = Simulator(world, namespace=namespace, gives_clock=gives_clock, show=_print)
         with simulator, emergency_signal(simulator.robot.stop):
             if not can_navigate():
@@ -52,7 +52,7 @@ def serve(world: World, *, speed: float, rate: float, gives_clock: bool, namespa
 
 
 @contextmanager
-def _ended_by_signals(controls: Controls) -> Iterator[list[int]]:
+def ended_by_signals(controls: Controls) -> Iterator[list[int]]:
     """Signals to end do so between two steps; the list has those that came. One that is ignored stays so."""
     came: list[int] = []
 
