@@ -3,9 +3,10 @@
     python -m btlang.ros.interfaces FOLDER ...
     python -m btlang.ros.interfaces --own
 
-The second form compiles btlang's own interfaces, which `btc ros-node` needs. Each folder is a package: its name, with `msg/`, `srv/` and `action/` in it. It takes seconds, gcc, g++ and the headers
-of Python, and no colcon. What comes out speaks to nodes whose package was built by colcon from the same files. Where
-ROS 2 is a sourced installation, build the package there with colcon instead.
+The second form compiles btlang's own interfaces, which `btc ros-node` needs. Each folder is a package: its name, with
+`msg/`, `srv/` and `action/` in it. It takes seconds, gcc, g++ and the headers of Python, and no colcon. What comes
+out speaks to nodes whose package was built by colcon from the same files. Where ROS 2 is a sourced installation,
+build the package there with colcon instead.
 """
 
 from __future__ import annotations

@@ -31,8 +31,8 @@ if TYPE_CHECKING:
 class RosStage:
     """See `btlang.run.stage.Stage`. Names and poses are those of the world file, whose map is the robot's.
 
-    With `sim_time` the mission's clock follows the topic /clock, else the system's. Missions run in real time. `name` is
-    that of the node.
+    With `sim_time` the mission's clock follows the topic /clock, else the system's. Missions run in real time.
+    `name` is that of the node.
     """
 
     def __init__(self, world: World, *, sim_time: bool = False, name: str = "btlang") -> None:

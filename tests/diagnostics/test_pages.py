@@ -11,6 +11,7 @@ import re
 import shlex
 import sys
 from pathlib import Path
+from types import ModuleType
 from typing import NamedTuple
 
 import pytest
@@ -62,7 +63,8 @@ def test_examples(
 ) -> None:
     monkeypatch.chdir(tmp_path)
     monkeypatch.setitem(sys.modules, "matplotlib", None)  # so that BT081 can be shown
-    monkeypatch.setitem(sys.modules, "rclpy", None)  # and BT100
+    monkeypatch.setitem(sys.modules, "rclpy", ModuleType("rclpy") if code == "BT110" else None)  # and BT100
+    monkeypatch.setitem(sys.modules, "btlang_interfaces", None)
     page = TEXTS[code]
     [wrong] = [example for example in examples(page) if example.sort == "Wrong"]
     [right] = [example for example in examples(page) if example.sort == "Right"]

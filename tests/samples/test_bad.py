@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import sys
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 
@@ -22,7 +23,8 @@ SAMPLES = sorted(BAD.glob("*.txt"))
 def test_message(sample: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(BAD)
     monkeypatch.setitem(sys.modules, "matplotlib", None)  # so that BT081 can be shown
-    monkeypatch.setitem(sys.modules, "rclpy", None)  # and BT100
+    monkeypatch.setitem(sys.modules, "rclpy", ModuleType("rclpy") if sample.stem == "BT110" else None)  # and BT100
+    monkeypatch.setitem(sys.modules, "btlang_interfaces", None)
     first = sample.read_text(encoding="latin-1").splitlines()[0]
     command = first.removeprefix("# btc ").split() if first.startswith("# btc ") else ["check", "FILE"]
     code = main([sample.name if word == "FILE" else word for word in command])

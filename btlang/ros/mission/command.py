@@ -28,9 +28,7 @@ def add_node_options(parser: argparse.ArgumentParser) -> None:
         default=True,
         help="configure and activate the node at once (default), or leave that to a lifecycle manager",
     )
-    parser.add_argument(
-        "--ros-args", nargs=argparse.REMAINDER, help="arguments of ROS 2, as of any node; the last ones"
-    )
+    parser.add_argument("--ros-args", nargs=argparse.REMAINDER, help="the rest are arguments of ROS 2")
     parser.set_defaults(refuse=parser.error)
 
 

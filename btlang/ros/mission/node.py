@@ -30,7 +30,7 @@ _END = 8.0  # seconds of real time that a mission gets to halt and to bring the 
 _PERIOD = 0.05  # seconds in which a robot that stood still anyway takes note that it was stopped
 
 
-class MissionNode(LifecycleNode):
+class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as untyped
     """configure compiles the mission of the parameters `mission` or `mission_file` and reaches for the robot; activate
     runs it; deactivate halts it; cleanup lets go of both.
 

@@ -53,7 +53,7 @@ class MissionServer:
         return GoalResponse.REJECT
 
     def _accept(self, goal: Any) -> None:
-        # goal.execute() would occupy the executor until the mission ends: it is told to execute now, and done at the end
+        # goal.execute() would occupy the executor until the mission ends: the goal only says that it executes
         goal._update_state(GoalEvent.EXECUTE)
 
         def changed(news: News) -> None:
