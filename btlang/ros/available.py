@@ -23,7 +23,8 @@ def require_ros(*packages: str) -> None:
 def require_interfaces() -> None:
     """Raises MissionError (BT110) where the interfaces of btlang are not compiled for this Python."""
     try:
-        import_module("btlang_interfaces.action")
+        import_module("btlang_interfaces")
+        import_module("btlang_interfaces.action")  # where it was compiled for another Python, this fails
     except ImportError as error:
         absent = error.name == "btlang_interfaces"
         reason = "there is no Python package btlang_interfaces" if absent else str(error)
