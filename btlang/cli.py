@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import argparse
 import errno
-import math
 import os
 import sys
 from collections.abc import Callable, Sequence
 from functools import partial
 
 import btlang
-from btlang.api import RATES, SLOWEST, RunnableTree, format_mission, parse_tree, read_world, world_vocabulary
+from btlang.api import RATES, RunnableTree, format_mission, parse_tree, read_world, world_vocabulary
+from btlang.arguments import between, duration, namespace, picture, real_speed, speed
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.reading import read_source, reason_of
 from btlang.diagnostics.report import FORMATS, Report
@@ -285,7 +285,7 @@ def _mission_options(parser: argparse.ArgumentParser) -> None:
 
 
 def _speed_option(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--speed", type=_speed, default="real", help="real, max, or a factor of real time")
+    parser.add_argument("--speed", type=speed, default="real", help="real, max, or a factor of real time")
 
 
 def _repl_options(parser: argparse.ArgumentParser) -> None:
@@ -298,16 +298,14 @@ def _run_options(parser: argparse.ArgumentParser) -> None:
 
     _mission_options(parser)
     _speed_option(parser)
-    parser.add_argument(
-        "--rate", type=_between(*RATES), default=20.0, metavar="HZ", help="ticks a second (default: 20)"
-    )
-    parser.add_argument("--for", type=_seconds, dest="time_limit", metavar="DURATION", help="stop after e.g. 60s, 2min")
+    parser.add_argument("--rate", type=between(*RATES), default=20.0, metavar="HZ", help="ticks a second (default: 20)")
+    parser.add_argument("--for", type=duration, dest="time_limit", metavar="DURATION", help="stop after e.g. 60s, 2min")
     parser.add_argument("--log", metavar="FILE", help="write every event as a line of JSON")
     parser.add_argument(
-        "--picture", type=_picture(".svg", ".png", ".gif"), metavar="FILE", help="draw the run: .svg, .png or .gif"
+        "--picture", type=picture(".svg", ".png", ".gif"), metavar="FILE", help="draw the run: .svg, .png or .gif"
     )
     parser.add_argument(
-        "--tree-picture", type=_picture(".svg", ".png"), metavar="FILE", help="draw the tree and how its nodes ended"
+        "--tree-picture", type=picture(".svg", ".png"), metavar="FILE", help="draw the tree and how its nodes ended"
     )
     parser.add_argument("--lines", action="store_true", help="plain lines also where the output is a terminal")
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
@@ -317,7 +315,7 @@ def _run_options(parser: argparse.ArgumentParser) -> None:
 def _tree_options(parser: argparse.ArgumentParser) -> None:
     _mission_options(parser)
     parser.add_argument("--plain", action="store_true", help="one line a node: Id port=value")
-    parser.add_argument("--picture", type=_picture(".svg", ".png"), metavar="FILE", help="draw the tree: .svg or .png")
+    parser.add_argument("--picture", type=picture(".svg", ".png"), metavar="FILE", help="draw the tree: .svg or .png")
     parser.add_argument("--apart", action="store_true", help="draw each named subtree once, below the tree")
 
 
@@ -348,16 +346,14 @@ def _format_options(parser: argparse.ArgumentParser) -> None:
 
 def _sim_ros_options(parser: argparse.ArgumentParser) -> None:
     _world_option(parser)
+    parser.add_argument("--speed", type=real_speed, default="real", help="real, or a factor of real time")
     parser.add_argument(
-        "--speed", type=_finite_speed, default="real", help="real, or a factor of real time (default: real)"
-    )
-    parser.add_argument(
-        "--rate", type=_between(*RATES), default=20.0, metavar="HZ", help="steps a simulated second (default: 20)"
+        "--rate", type=between(*RATES), default=20.0, metavar="HZ", help="steps a simulated second (default: 20)"
     )
     parser.add_argument(
         "--clock", action=argparse.BooleanOptionalAction, default=True, help="give the simulated time on /clock"
     )
-    parser.add_argument("--namespace", type=_namespace, default="", metavar="NS", help="of all topics (default: none)")
+    parser.add_argument("--namespace", type=namespace, default="", metavar="NS", help="of all topics (default: none)")
 
 
 def _ros_node_options(parser: argparse.ArgumentParser) -> None:
@@ -398,59 +394,6 @@ class _Help(argparse.HelpFormatter):
 class _Parser(argparse.ArgumentParser):
     def __init__(self, prog: str | None = None, **options: Any) -> None:
         super().__init__(prog, formatter_class=_Help, **options)
-
-
-def _speed(text: str) -> float | str:
-    return text if text in ("real", "max") else _between(SLOWEST, 1e6)(text)
-
-
-def _finite_speed(text: str) -> float | str:
-    return text if text == "real" else _between(SLOWEST, 1e6)(text)
-
-
-def _namespace(text: str) -> str:
-    if text and not all(part.isidentifier() and part.isascii() for part in text.removeprefix("/").split("/")):
-        raise argparse.ArgumentTypeError(f"names of letters, digits and _ with / between are needed, not '{text}'")
-    return text
-
-
-def _between(least: float, most: float) -> Callable[[str], float]:
-    def number(text: str) -> float:
-        try:
-            value = float(text)
-        except ValueError:
-            value = math.nan
-        if not least <= value <= most:
-            raise argparse.ArgumentTypeError(f"a number from {least:g} to {most:g} is needed, not '{text}'")
-        return value
-
-    return number
-
-
-def _picture(*endings: str) -> Callable[[str], str]:
-    def path(text: str) -> str:
-        from btlang.pictures.files import ending
-
-        try:
-            ending(text, endings)
-        except ValueError as problem:
-            raise argparse.ArgumentTypeError(str(problem)) from None
-        return text
-
-    return path
-
-
-def _seconds(text: str) -> float:
-    """Seconds, as a number or in the words of the language. Raises ArgumentTypeError."""
-    try:
-        value = float(text)
-    except ValueError:
-        from btlang.vocabulary.load import load_vocabulary
-
-        value = float(load_vocabulary().value("duration", text) or math.nan)
-    if not 0 < value < math.inf:
-        raise argparse.ArgumentTypeError(f"a duration such as 60s or 2min is needed, not '{text}'")
-    return value
 
 
 if __name__ == "__main__":

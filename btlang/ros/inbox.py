@@ -19,11 +19,15 @@ QOS = {"sensor": qos_profile_sensor_data, "events": QoSProfile(depth=100), "stat
 
 
 class Inbox:
-    """Times are those of arrival, by the system's clock: a robot whose own clock stands still is silent too."""
+    """Ages are counted from arrival, by the system's clock, so that a robot whose own clock stands still is silent too.
 
-    def __init__(self, node: Node) -> None:
+    They are counted by `now` as well, the seconds of a simulator that may be faster than real time.
+    """
+
+    def __init__(self, node: Node, now: Callable[[], float] = time.monotonic) -> None:
         self._node = node
-        self._latest: dict[str, tuple[Any, float]] = {}
+        self._now = now
+        self._latest: dict[str, tuple[Any, float, float]] = {}
         self._events: dict[str, deque[Any]] = {}
         self._read: dict[str, Any] = {}
         self._called: dict[str, str] = {}
@@ -41,13 +45,13 @@ class Inbox:
                 also(message)
             if qos != "sensor":
                 self._events[topic].append(message)
-            self._latest[topic] = message, time.monotonic()
+            self._latest[topic] = message, time.monotonic(), self._now()
 
         self._node.create_subscription(kind, topic, arrived, QOS[qos])
 
     def read(self) -> None:
         """From now on `get` gives what has arrived until now, so that all leaves of a tick see the same."""
-        self._read = {topic: message for topic, (message, _) in self._latest.copy().items()}
+        self._read = {topic: message for topic, (message, *_) in self._latest.copy().items()}
 
     def events(self, topic: str) -> list[Any]:
         """The messages since the last call, oldest first."""
@@ -63,7 +67,7 @@ class Inbox:
         what = self._called[topic]
         if topic not in self._read:
             raise RobotError(f"no {what}: nothing has come on {topic}")
-        arrived = self._latest[topic][1]  # after a tick that took long, newer ones are there but not read yet
-        if limit is not None and time.monotonic() - arrived > limit:
+        _, *arrived = self._latest[topic]  # after a tick that took long, newer ones are there but not read yet
+        if limit is not None and max(time.monotonic() - arrived[0], self._now() - arrived[1]) > limit:
             raise RobotError(f"no {what} for {limit:g} s: {topic} is silent")
         return self._read[topic]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from math import cos, radians, sin
 from threading import Event, RLock
 from typing import Any
@@ -25,22 +26,23 @@ _ENDINGS = {GoalStatus.STATUS_CANCELED: "somebody cancelled the way to {name}"}
 class RosJourney:
     """One way to one goal; see `btlang.robots.robot.Navigation`. `end` may be called from any thread.
 
-    Nothing waits: `step` looks at what has come, so that a server that never answers costs the tick nothing.
+    Nothing waits: `step` looks at what has come, so that a server that never answers costs the tick nothing. `spin` has
+    a function called in the thread that spins, where alone the client of an action may be used: elsewhere it could
+    meet an answer before it has noted the question.
     """
 
-    def __init__(self, name: str, client: Any, goal: NavigateToPose.Goal) -> None:
+    def __init__(self, name: str, client: Any, goal: NavigateToPose.Goal, spin: Callable[[Callable[[], None]], object]):
         self.name = name
         self.done = False
         self.failure: str | None = None
         self.withdrawn = Event()
         """Set when there is nothing left that the server still has to give up."""
-        self._client, self._goal = client, goal
+        self._client, self._goal, self._spin = client, goal, spin
         self._lock = RLock()
         self._since = time.monotonic()  # of what it waits for now
-        self._answer: Any = None
+        self._sent = self._heard = False
         self._handle: Any = None
         self._result: Any = None
-        self._heard = False
 
     def cancel(self) -> None:
         """Gives up: the goal is withdrawn, as soon as it is accepted where it is not yet."""
@@ -53,8 +55,8 @@ class RosJourney:
                 return
             self.failure = failure
             self.done = True
-        if withdraw and self._answer is not None:
-            self._answer.add_done_callback(self._withdraw)
+        if withdraw and self._sent:
+            self._spin(self._withdraw)
         else:
             self.withdrawn.set()
 
@@ -62,10 +64,11 @@ class RosJourney:
         """Goes on with what has come since the last call."""
         if self.done:
             return
-        if self._answer is None:
-            self._send()
-        elif self._handle is None:
-            self._accept()
+        if not self._sent:
+            self._set_out()
+        elif self._result is None:
+            if self._waited(_ANSWER):
+                self.end(f"the navigation server on {ACTION} does not answer")
         elif self._result.done():
             self._finish(self._result.result())
         elif not self._client.server_is_ready():
@@ -76,30 +79,12 @@ class RosJourney:
     def _waited(self, limit: float) -> bool:
         return time.monotonic() - self._since > limit
 
-    def _send(self) -> None:
+    def _set_out(self) -> None:
         if self._client.server_is_ready():
-            with self._lock:
-                if not self.done:
-                    self._answer = self._client.send_goal_async(self._goal, feedback_callback=self._hear)
-            self._since = time.monotonic()
+            self._sent, self._since = True, time.monotonic()
+            self._spin(self._send)
         elif self._waited(_SERVER):
             self.end(f"no navigation server on {ACTION}")
-
-    def _hear(self, _: Any) -> None:
-        self._heard, self._since = True, time.monotonic()
-
-    def _accept(self) -> None:
-        if not self._answer.done():
-            if self._waited(_ANSWER):
-                self.end(f"the navigation server on {ACTION} does not answer")
-            return
-        handle = self._answer.result()
-        if not handle.accepted:
-            self.end(f"the navigation server rejected the way to {said(self.name)}", withdraw=False)
-            return
-        self._result = handle.get_result_async()
-        self._since = time.monotonic()
-        self._handle = handle
 
     def _finish(self, answer: Any) -> None:
         if answer.status == GoalStatus.STATUS_SUCCEEDED:
@@ -108,13 +93,28 @@ class RosJourney:
         told = _ENDINGS.get(answer.status, "the navigation server gave up on the way to {name}")
         self.end(answer.result.error_msg or told.format(name=said(self.name)), withdraw=False)
 
-    def _withdraw(self, answer: Any) -> None:
-        """Called with the answer to the goal: at once where it is there, else in the thread that spins."""
+    # In the thread that spins
+    def _send(self) -> None:
+        self._client.send_goal_async(self._goal, feedback_callback=self._hear).add_done_callback(self._answered)
+
+    def _hear(self, _: Any) -> None:
+        self._heard, self._since = True, time.monotonic()
+
+    def _answered(self, answer: Any) -> None:
         handle = answer.result()
-        if handle is None or not handle.accepted:
+        if not handle.accepted:
+            self.end(f"the navigation server rejected the way to {said(self.name)}", withdraw=False)
             self.withdrawn.set()
-        else:
-            handle.cancel_goal_async().add_done_callback(lambda _: self.withdrawn.set())
+            return
+        self._since = time.monotonic()
+        self._handle, self._result = handle, handle.get_result_async()
+        if self.done:
+            self._withdraw()
+
+    def _withdraw(self) -> None:
+        """A goal that is not accepted yet is withdrawn when it is."""
+        if self._handle is not None:
+            self._handle.cancel_goal_async().add_done_callback(lambda _: self.withdrawn.set())
 
 
 class RosNavigation:
@@ -132,7 +132,7 @@ class RosNavigation:
         goal = NavigateToPose.Goal()
         goal.pose = _stamped(pose)
         goal.pose.header.stamp = self._node.get_clock().now().to_msg()
-        self._journey = RosJourney(name, self._client, goal)
+        self._journey = RosJourney(name, self._client, goal, self._node.executor.create_task)
         self._journey.step()
         return self._journey
 

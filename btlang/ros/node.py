@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from contextlib import suppress
 from threading import Thread
 
 import rclpy
@@ -18,6 +17,8 @@ from btlang.ros.available import unusable
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from types import TracebackType
+
+_LAST_DOMAIN = 232
 
 
 class SpunNode:
@@ -41,6 +42,7 @@ class SpunNode:
         overrides = [Parameter("use_sim_time", Parameter.Type.BOOL, use_sim_time)]
         try:
             rclpy.init(context=self.context, domain_id=domain_id, signal_handler_options=SignalHandlerOptions.NO)
+            self._check_domain()
             self.node = make(name, namespace=namespace, context=self.context, parameter_overrides=overrides)
         except RuntimeError as error:  # no such domain, no network, a log that cannot be written
             raise unusable(str(error)) from None
@@ -70,6 +72,20 @@ class SpunNode:
     ) -> None:
         self.close()
 
+    def _check_domain(self) -> None:
+        """Fast DDS would end the process."""
+        number = self.context.get_domain_id()
+        if number > _LAST_DOMAIN:
+            rclpy.shutdown(context=self.context)
+            raise RuntimeError(f"there is no domain {number}, they are 0 to {_LAST_DOMAIN} (ROS_DOMAIN_ID)")
+
     def _spin(self) -> None:
-        with suppress(ExternalShutdownException):
-            self._executor.spin()
+        """A callback that raises is told in the log, and the others go on."""
+        while self.context.ok():
+            try:
+                self._executor.spin()
+                return
+            except ExternalShutdownException:
+                return
+            except Exception as error:
+                self.node.get_logger().error(f"{type(error).__name__}: {error}")

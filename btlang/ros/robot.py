@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+import time
+from collections.abc import Callable, Mapping
 from math import inf, radians
 from typing import Any
 
@@ -41,7 +42,8 @@ class RosRobot:
     """Implements `btlang.robots.robot.Robot`; the pose is on the map of the world file.
 
     A sensor that is silent is a RobotError for who asks for it, never a wait. The hands and the dock are services,
-    which the tick waits for, a few seconds at most. The node has to be spun in a thread of its own.
+    which the tick waits for, a few seconds at most. The node has to be spun in a thread of its own. Sensors get old
+    by the seconds of `now`, and by those of the system's clock.
     """
 
     moves_by_itself = True
@@ -50,11 +52,17 @@ class RosRobot:
     max_speed = 1.0
     normal_turn = 90.0
 
-    def __init__(self, node: Node, world: World, on_event: OnEvent | None = None) -> None:
+    def __init__(
+        self,
+        node: Node,
+        world: World,
+        on_event: OnEvent | None = None,
+        now: Callable[[], float] = time.monotonic,
+    ) -> None:
         self.on_event = on_event
         self.stops = 0
         self.bumps = 0
-        self.inbox = inbox = Inbox(node)
+        self.inbox = inbox = Inbox(node, now)
         self._node = node
         self._places = Places(world)
         self._base = RosBase(node, inbox, self.radius)
@@ -66,6 +74,7 @@ class RosRobot:
         self._stopping = self._closed = self._stuck_told = False
         self._contact: Pose | None = None
         self._holding: dict[Hand, str] = {}
+        self._docked: bool | None = None
         inbox.listen(_SCAN, LaserScan, "laser scan")
         inbox.listen(_BATTERY, BatteryState, "battery state")
         inbox.listen(_BUMP, String, "bumps", qos="events")
@@ -92,6 +101,8 @@ class RosRobot:
         self._base.step(dt)
         self._voice.step(dt)
         arrived = self._navigation.step() if self._navigation is not None else None
+        for message in self.inbox.events(_DOCKED):
+            self._docked = bool(message.data)
         self._hear_hands()
         self._tell_contacts()
         if arrived is not None and arrived.failure is None:
@@ -217,7 +228,7 @@ class RosRobot:
     @property
     def docked(self) -> bool:
         """True while connected to the dock. Raises RobotError where nothing tells of it."""
-        return bool(self.inbox.get(_DOCKED).data)
+        return self._docked if self._docked is not None else bool(self.inbox.get(_DOCKED).data)
 
     @property
     def charging(self) -> bool:
@@ -227,11 +238,13 @@ class RosRobot:
     def dock(self) -> None:
         """Connects to the charger. Raises RobotError with the robot's reason."""
         self._services.call("/dock")
+        self._docked = True  # before the topic tells so
         self._emit("dock")
 
     def undock(self) -> None:
         """Disconnects. Raises RobotError with the robot's reason."""
         self._services.call("/undock")
+        self._docked = False
         self._emit("undock")
 
     # Arms, hands, head

@@ -41,8 +41,9 @@ class RosStage:
         self.events = EventStream()
         self._sim_time = sim_time
         self._spun = SpunNode(name, use_sim_time=sim_time)
+        self._now = self._ros_time if sim_time else time.monotonic
         try:
-            self.robot = RosRobot(self._spun.node, world, on_event=self._publish)
+            self.robot = RosRobot(self._spun.node, world, on_event=self._publish, now=self._now)
             if sim_time:
                 self.robot.inbox.listen(CLOCK.name, ClockMessage, "simulated time")
             self._spun.start()
@@ -79,7 +80,7 @@ class RosStage:
         """Raises ValueError for another speed than 1: the robot's time passes by itself."""
         if speed != 1.0:
             raise ValueError('a ROS 2 robot runs in real time: speed is "real"')
-        return RosPace(controls, self._ros_time if self._sim_time else time.monotonic)
+        return RosPace(controls, self._now)
 
     def close(self) -> None:
         """Leaves the robot at rest and its goals cancelled, then the ROS graph. Takes about two seconds at most."""

@@ -9,7 +9,8 @@ from btlang.tree.node import Node, Tree
 class Interface(Record):
     """`kind` is "listens", "tells" (topics, as the robot does), "serves" (a service) or "acts" (an action).
 
-    `type` is as ROS 2 tools write it. What `flows` is told again and again, so that silence is a fault.
+    `type` is as ROS 2 tools write it. What `flows` tells who listens how it is, at once or again and again, so that
+    silence is a fault.
     """
 
     kind: str
@@ -37,7 +38,7 @@ CAPABILITIES: dict[str, tuple[Interface, ...]] = {
     "scan": (Interface("tells", "/scan", "sensor_msgs/msg/LaserScan", flows=True),),
     "bump": (Interface("tells", "/bump", "std_msgs/msg/String"),),
     "battery": (Interface("tells", "/battery_state", "sensor_msgs/msg/BatteryState", flows=True),),
-    "docked": (Interface("tells", "/docked", "std_msgs/msg/Bool"),),
+    "docked": (Interface("tells", "/docked", "std_msgs/msg/Bool", flows=True),),
     "docking": (
         Interface("serves", "/dock", "std_srvs/srv/Trigger"),
         Interface("serves", "/undock", "std_srvs/srv/Trigger"),
@@ -49,8 +50,8 @@ CAPABILITIES: dict[str, tuple[Interface, ...]] = {
     "left hand": (Interface("serves", "/left_hand/close", _HAND),),
     "right hand": (Interface("serves", "/right_hand/close", _HAND),),
     "holding": (
-        Interface("tells", "/left_hand/holding", _HOLDING),
-        Interface("tells", "/right_hand/holding", _HOLDING),
+        Interface("tells", "/left_hand/holding", _HOLDING, flows=True),
+        Interface("tells", "/right_hand/holding", _HOLDING, flows=True),
     ),
     "voice": (Interface("listens", "/speech", "std_msgs/msg/String"),),
     "print": (Interface("listens", "/print", "std_msgs/msg/String"),),

@@ -9,9 +9,7 @@ from __future__ import annotations
 
 import re
 import shlex
-import sys
 from pathlib import Path
-from types import ModuleType
 from typing import NamedTuple
 
 import pytest
@@ -19,6 +17,7 @@ import pytest
 from btlang.cli import main
 from btlang.diagnostics.codes import CODES, NAMES
 from btlang.diagnostics.explain import PAGES
+from tests.conftest import take_away_what_is_missed
 
 TEXTS = {path.stem: path.read_text(encoding="utf-8") for path in Path(PAGES).iterdir()}
 _LABELLED = re.compile(r"^(Wrong|Right|The file)(?: ([\w. ]+))?(?:, saved as ([\w-]+))?:\n\n((?: {4}.*\n?)+)", re.M)
@@ -62,9 +61,7 @@ def test_examples(
     code: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setitem(sys.modules, "matplotlib", None)  # so that BT081 can be shown
-    monkeypatch.setitem(sys.modules, "rclpy", ModuleType("rclpy") if code == "BT110" else None)  # and BT100
-    monkeypatch.setitem(sys.modules, "btlang_interfaces", None)
+    take_away_what_is_missed(code, monkeypatch)
     page = TEXTS[code]
     [wrong] = [example for example in examples(page) if example.sort == "Wrong"]
     [right] = [example for example in examples(page) if example.sort == "Right"]
@@ -111,7 +108,7 @@ def test_explain_lists_all_codes(capsys: pytest.CaptureFixture[str]) -> None:
     ("written", "told"),
     [
         ("BT031", "The nearest: BT032, BT029"),
-        ("BT9999999999999", "The nearest: BT090, BT081"),
+        ("BT9999999999999", "The nearest: BT101, BT100"),
         ("BT" + "9" * 6000, "The nearest: "),
         ("BT", "A code is BT and three digits"),
         ("", "A code is BT and three digits"),

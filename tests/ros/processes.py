@@ -25,14 +25,16 @@ def wait_until(condition: Callable[[], object], what: str, seconds: float = LONG
 
 
 class Command:
-    """`btc` with arguments, in a process group of its own, with what it printed so far."""
+    """`btc` with arguments, in a process group of its own, with what it printed so far. `folder` keeps that."""
+
+    program: tuple[str, ...] = ("-m", "btlang")
 
     def __init__(self, folder: Path, domain: int, *arguments: str, **environment: str | None) -> None:
         self._out, self._err = folder / "out.txt", folder / "err.txt"
         changed = {**os.environ, "PYTHONPATH": str(REPOSITORY), "ROS_DOMAIN_ID": str(domain), **environment}
         with self._out.open("w") as out, self._err.open("w") as err:
             self.process = subprocess.Popen(
-                [sys.executable, "-m", "btlang", *arguments],
+                [sys.executable, *self.program, *arguments],
                 env={name: value for name, value in changed.items() if value is not None},
                 stdout=out,
                 stderr=err,

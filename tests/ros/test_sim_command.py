@@ -2,17 +2,15 @@
 
 from __future__ import annotations
 
-import os
 import signal
 import subprocess
-import sys
 
 import pytest
 from rosgraph_msgs.msg import Clock
 
 from btlang.cli import main
 from tests.ros.client import Client
-from tests.ros.processes import REPOSITORY, Command
+from tests.ros.processes import Command
 
 
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129)])
@@ -66,15 +64,15 @@ def test_wrong_options(options: list[str], capsys: pytest.CaptureFixture[str]):
     assert "usage: btc sim-ros" in capsys.readouterr().err
 
 
+class WithoutNav2(Command):
+    """`btc` where nav2_msgs is not installed."""
+
+    program = ("-c", "import sys; sys.modules['nav2_msgs'] = None; from btlang.cli import main; sys.exit(main())")
+
+
 def test_without_nav2_it_does_all_the_rest(tmp_path, domain: int, client: Client):
-    program = "import sys; sys.modules['nav2_msgs'] = None; from btlang.cli import main; sys.exit(main(['sim-ros']))"
-    environment = {**os.environ, "ROS_DOMAIN_ID": str(domain), "PYTHONPATH": str(REPOSITORY)}
-    with subprocess.Popen(
-        [sys.executable, "-c", program], env=environment, text=True, stdout=subprocess.PIPE, stderr=subprocess.PIPE
-    ) as process:
-        client.hear(Clock, "/clock").wait()
-        process.send_signal(signal.SIGINT)
-        out, err = process.communicate(timeout=20)
-    assert process.returncode == 130
-    assert "ready" in out
-    assert err == "btlang sim-ros: no /navigate_to_pose: the package nav2_msgs is not installed\n"
+    sim = WithoutNav2(tmp_path, domain, "sim-ros")
+    sim.wait_for("ready")
+    client.hear(Clock, "/clock").wait()
+    assert sim.end() == 130
+    assert sim.err == "btlang sim-ros: no /navigate_to_pose: the package nav2_msgs is not installed\n"

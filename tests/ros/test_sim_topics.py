@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import re
 import threading
+from itertools import pairwise
 from math import degrees, pi, radians
 
 import numpy as np
@@ -19,7 +21,7 @@ from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
 from btlang.robots.simulated import SimulatedRobot
 from btlang.robots.world_file import load_world
 from tests.ros.client import LATCHED, Client
-from tests.ros.processes import ROOM
+from tests.ros.processes import REPOSITORY, ROOM, wait_until
 
 
 def seconds(stamp) -> float:
@@ -43,7 +45,7 @@ def test_the_clock_never_goes_back_and_stamps_are_of_it(sim, client: Client):
     times = [seconds(message.clock) for message in clock.messages]
     assert times[0] > 0
     assert times == sorted(times)
-    assert min(b - a for a, b in zip(times, times[1:], strict=False)) == pytest.approx(0.05)
+    assert min(b - a for a, b in pairwise(times)) == pytest.approx(0.05)
     assert times[0] - 1 < seconds(odometry.messages[-1].header.stamp) <= seconds(clock.next().clock)
 
 
@@ -218,3 +220,22 @@ def test_two_clients_do_not_leave_threads(sim, client: Client):
     other.close()
     other.close()
     assert threading.active_count() == before
+
+
+def test_the_table_of_the_documentation_is_complete(nav2, sim, client: Client):
+    page = (REPOSITORY / "docs" / "ros.md").read_text(encoding="utf-8")
+    told = dict(re.findall(r"^\| `(/[\w/]+)` \| `(\w+/(?:msg|srv|action)/\w+)` \|", page, re.M))
+    wait_until(lambda: "btlang_sim" in client.node.get_node_names(), "the node")
+
+    def offered() -> dict[str, str]:
+        node = ("btlang_sim", "/")
+        found = client.node.get_publisher_names_and_types_by_node(*node)
+        found += client.node.get_subscriber_names_and_types_by_node(*node)
+        found += client.node.get_service_names_and_types_by_node(*node)
+        found = [(name, kind.replace("_FeedbackMessage", "")) for name, [kind] in found]
+        found = [(name.removesuffix("/_action/feedback"), kind) for name, kind in found]
+        return {name: kind for name, kind in found if "/_action/" not in name and "btlang_sim" not in name}
+
+    wait_until(lambda: set(offered()) >= set(told), "all names")
+    everywhere = {"/rosout": "rcl_interfaces/msg/Log", "/parameter_events": "rcl_interfaces/msg/ParameterEvent"}
+    assert offered() == told | everywhere

@@ -5,15 +5,13 @@ A sample is compiled with `btc check`; a first line `# btc VERB FILE ...` asks f
 
 from __future__ import annotations
 
-import sys
 from pathlib import Path
-from types import ModuleType
 
 import pytest
 
 from btlang.cli import main
 from btlang.diagnostics.codes import CODES
-from tests.conftest import matches_golden
+from tests.conftest import matches_golden, take_away_what_is_missed
 
 BAD = Path(__file__).parent / "bad"
 SAMPLES = sorted(BAD.glob("*.txt"))
@@ -22,9 +20,7 @@ SAMPLES = sorted(BAD.glob("*.txt"))
 @pytest.mark.parametrize("sample", SAMPLES, ids=[s.stem for s in SAMPLES])
 def test_message(sample: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.chdir(BAD)
-    monkeypatch.setitem(sys.modules, "matplotlib", None)  # so that BT081 can be shown
-    monkeypatch.setitem(sys.modules, "rclpy", ModuleType("rclpy") if sample.stem == "BT110" else None)  # and BT100
-    monkeypatch.setitem(sys.modules, "btlang_interfaces", None)
+    take_away_what_is_missed(sample.stem[:5], monkeypatch)
     first = sample.read_text(encoding="latin-1").splitlines()[0]
     command = first.removeprefix("# btc ").split() if first.startswith("# btc ") else ["check", "FILE"]
     code = main([sample.name if word == "FILE" else word for word in command])

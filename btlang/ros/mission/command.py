@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import signal
 import time
 from functools import partial
 from typing import Any
@@ -47,7 +46,7 @@ def serve(options: argparse.Namespace) -> int:
     from btlang.ros.mission.node import MissionNode
     from btlang.ros.mission.setup import Setup
     from btlang.ros.node import SpunNode
-    from btlang.ros.simulator.command import ended_by_signals
+    from btlang.ros.simulator.command import ending_signals
     from btlang.run.controls import Controls
     from btlang.run.emergency import emergency_signal
 
@@ -56,7 +55,8 @@ def serve(options: argparse.Namespace) -> int:
         options.mission, options.keywords, options.world, options.parser,
     )  # fmt: skip
     controls = Controls()
-    with ended_by_signals(controls) as signals:
+    with ending_signals() as came:
+        came.on_arrival = controls.wake
         spun = SpunNode(options.name, use_sim_time=options.sim_time, make=partial(MissionNode, setup, _print))
         node: Any = spun.node
         try:
@@ -68,7 +68,7 @@ def serve(options: argparse.Namespace) -> int:
             with emergency_signal(node.emergency_stop):
                 spun.start()
                 _print(f"btlang ros-node: ready as {node.get_fully_qualified_name()}; Ctrl-C ends it")
-                while not controls.stopped:
+                while not came.numbers:
                     controls.wait(None)
                 node.halt()
                 _wait_for_answers(node)
@@ -78,7 +78,7 @@ def serve(options: argparse.Namespace) -> int:
                 spun.close()
             finally:
                 node.release()
-    return 128 + (signals[0] if signals else signal.SIGINT)
+    return 128 + came.numbers[0]
 
 
 def _wait_for_answers(node: Any) -> None:

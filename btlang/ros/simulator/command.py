@@ -5,13 +5,12 @@ from __future__ import annotations
 import os
 import signal
 import sys
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from time import monotonic
 
 from btlang.run.command import ENDING_SIGNALS
-from btlang.run.controls import Controls
 from btlang.run.emergency import emergency_signal
-from btlang.run.pace import Pace
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -34,36 +33,43 @@ def serve(world: World, *, speed: float, rate: float, gives_clock: bool, namespa
     require_ros(*PACKAGES)
     from btlang.ros.simulator.simulator import Simulator, can_navigate
 
-    controls = Controls()
-    with ended_by_signals(controls) as signals:
+    with ending_signals() as came:
         simulator = Simulator(world, namespace=namespace, gives_clock=gives_clock, show=_print)
         with simulator, emergency_signal(simulator.robot.stop):
+            came.on_arrival = simulator.wake
+            simulator.step(1 / rate)
             if not can_navigate():
                 print("btlang sim-ros: no /navigate_to_pose: the package nav2_msgs is not installed", file=sys.stderr)
-            simulator.step(1 / rate)
             where = f"domain {os.environ.get('ROS_DOMAIN_ID') or 0}, namespace /{namespace.strip('/')}"
             _print(f"btlang sim-ros: ready at speed {speed:g} ({where}); Ctrl-C ends it")
-            pace = Pace(speed, controls)
-            pace.begin()
-            while not controls.stopped:
-                pace.sleep(1 / rate)
+            due = monotonic()
+            while not came.numbers:
+                due = max(due + 1 / (rate * speed), monotonic())  # time after a late step is not caught up with
+                simulator.work(due - monotonic())
                 simulator.step(1 / rate)
-    return 128 + signals[0]
+    return 128 + came.numbers[0]
+
+
+class EndingSignals:
+    """Those that have come; `on_arrival` is called by each."""
+
+    def __init__(self) -> None:
+        self.numbers: list[int] = []
+        self.on_arrival: Callable[[], object] = int
+
+    def __call__(self, number: int, frame: object) -> None:
+        self.numbers.append(number)
+        self.on_arrival()
 
 
 @contextmanager
-def ended_by_signals(controls: Controls) -> Iterator[list[int]]:
-    """Signals to end do so between two steps; the list has those that came. One that is ignored stays so."""
-    came: list[int] = []
-
-    def end(number: int, frame: object) -> None:
-        came.append(number)
-        controls.stop()
-
+def ending_signals() -> Iterator[EndingSignals]:
+    """Ctrl-C and signals to end are kept instead of ending the process at once. One that is ignored stays so."""
+    came = EndingSignals()
     before = {number: signal.getsignal(number) for number in (signal.SIGINT, *ENDING_SIGNALS)}
     taken = [number for number, handler in before.items() if handler != signal.SIG_IGN]
     for number in taken:
-        signal.signal(number, end)
+        signal.signal(number, came)
     try:
         yield came
     finally:

@@ -6,6 +6,7 @@ from collections.abc import Callable
 from concurrent.futures import CancelledError, Future
 from queue import Empty, SimpleQueue
 from threading import Lock
+from time import monotonic
 
 from btlang.robots.robot import RobotError
 
@@ -14,7 +15,7 @@ class Inbox:
     """`post` and `ask` are for any thread but the one that calls `work`, which does it all, in order."""
 
     def __init__(self) -> None:
-        self._jobs: SimpleQueue[Callable[[], object]] = SimpleQueue()
+        self._jobs: SimpleQueue[Callable[[], object] | None] = SimpleQueue()
         self._questions: set[Future[str]] = set()
         self._lock = Lock()
         self._closed = False
@@ -47,14 +48,21 @@ class Inbox:
         finally:
             self._questions.discard(answer)
 
-    def work(self) -> None:
-        """Does what has been handed over."""
+    def work(self, seconds: float) -> None:
+        """Does what is handed over within so many seconds of real time, or until `wake`."""
+        end = monotonic() + seconds
         while True:
             try:
-                job = self._jobs.get_nowait()
+                job = self._jobs.get(timeout=max(0.0, end - monotonic()))
             except Empty:
                 return
+            if job is None:
+                return
             job()
+
+    def wake(self) -> None:
+        """Ends `work`, from any thread and from handlers of signals."""
+        self._jobs.put(None)
 
     def close(self) -> None:
         """Nobody works any more: who asks is told so, also who is waiting now."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from importlib.util import find_spec
-from typing import Any
+from typing import Any, Protocol
 
 from builtin_interfaces.msg import Time
 from rclpy.qos import QoSProfile
@@ -21,8 +21,15 @@ from btlang.ros.simulator.sensors import Sensors
 from btlang.ros.simulator.wheels import Wheels
 
 
+class Part(Protocol):
+    """Some topics, services and actions of the robot."""
+
+    def publish(self, now: Moment) -> None:
+        """Tells what has become of it with the step."""
+
+
 class Simulator:
-    """A node with the simulated robot of a world. To be used with `with`; `step` always from the same thread.
+    """A node with the simulated robot of a world. To be used with `with`; `work` and `step` from one thread, in turn.
 
     With `gives_clock` the simulated time is published on /clock and stamps are of that time, else of the system's.
     `show` gets what the robot says and prints, a line at a time. Without nav2_msgs nothing is offered that navigates.
@@ -35,8 +42,11 @@ class Simulator:
         self._spun = SpunNode("btlang_sim", namespace=namespace)
         node = self._spun.node
         self._wheels = Wheels(node, self.robot, self._inbox)
-        self._parts: list[Any] = [self._wheels, Sensors(node, self.robot, self._inbox)]
-        self._parts.append(Body(node, self.robot, self._inbox))
+        self._parts: list[Part] = [
+            self._wheels,
+            Sensors(node, self.robot, self._inbox),
+            Body(node, self.robot, self._inbox),
+        ]
         if can_navigate():
             from btlang.ros.simulator.navigation import Navigation
 
@@ -45,9 +55,16 @@ class Simulator:
         node.create_service(Trigger, "stop", self._stop)
         self.robot.on_event = self._tell
 
+    def work(self, seconds: float) -> None:
+        """Does what the topics, services and actions ask for, within so many seconds of real time or until `wake`."""
+        self._inbox.work(seconds)
+
+    def wake(self) -> None:
+        """Ends `work`, from any thread and from handlers of signals."""
+        self._inbox.wake()
+
     def step(self, seconds: float) -> None:
-        """Does what was asked for since the last step, lets time pass and publishes what has become of it."""
-        self._inbox.work()
+        """Lets simulated time pass and publishes what has become of the robot."""
         self._wheels.watch()
         self.robot.step(seconds)
         now = self._now()

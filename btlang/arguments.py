@@ -1,0 +1,69 @@
+"""What the options of the command line take: a text becomes a value, or argparse's error that says what is needed."""
+
+from __future__ import annotations
+
+import argparse
+import math
+from collections.abc import Callable
+
+from btlang.api import SLOWEST
+
+
+def speed(text: str) -> float | str:
+    """The words "real" and "max", or a factor of real time."""
+    return text if text in ("real", "max") else between(SLOWEST, 1e6)(text)
+
+
+def real_speed(text: str) -> float | str:
+    """The word "real", or a factor of real time."""
+    return text if text == "real" else between(SLOWEST, 1e6)(text)
+
+
+def namespace(text: str) -> str:
+    """Of ROS 2: "" or names with slashes between, and perhaps before them."""
+    if text and not all(part.isidentifier() and part.isascii() for part in text.removeprefix("/").split("/")):
+        raise argparse.ArgumentTypeError(f"names of letters, digits and _ with / between are needed, not '{text}'")
+    return text
+
+
+def between(least: float, most: float) -> Callable[[str], float]:
+    """A number from `least` to `most`."""
+
+    def number(text: str) -> float:
+        try:
+            value = float(text)
+        except ValueError:
+            value = math.nan
+        if not least <= value <= most:
+            raise argparse.ArgumentTypeError(f"a number from {least:g} to {most:g} is needed, not '{text}'")
+        return value
+
+    return number
+
+
+def picture(*endings: str) -> Callable[[str], str]:
+    """The path of a file with one of these endings."""
+
+    def path(text: str) -> str:
+        from btlang.pictures.files import ending
+
+        try:
+            ending(text, endings)
+        except ValueError as problem:
+            raise argparse.ArgumentTypeError(str(problem)) from None
+        return text
+
+    return path
+
+
+def duration(text: str) -> float:
+    """Seconds, as a number or in the words of the language."""
+    try:
+        value = float(text)
+    except ValueError:
+        from btlang.vocabulary.load import load_vocabulary
+
+        value = float(load_vocabulary().value("duration", text) or math.nan)
+    if not 0 < value < math.inf:
+        raise argparse.ArgumentTypeError(f"a duration such as 60s or 2min is needed, not '{text}'")
+    return value

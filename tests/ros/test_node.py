@@ -1,0 +1,47 @@
+"""A node that is spun in the background: what becomes of its thread."""
+
+from __future__ import annotations
+
+import threading
+
+import pytest
+from std_msgs.msg import String
+
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.ros.node import SpunNode
+from tests.ros.processes import wait_until
+
+
+def test_a_callback_that_raises_does_not_end_the_others(domain: int, capfd: pytest.CaptureFixture[str]):
+    heard = []
+
+    def hear(message: String) -> None:
+        heard.append(message.data)
+        raise ValueError("no such thing")
+
+    with SpunNode("listener", domain_id=domain) as spun:
+        spun.node.create_subscription(String, "news", hear, 10)
+        publisher = spun.node.create_publisher(String, "news", 10)
+        wait_until(publisher.get_subscription_count, "the listener")
+        for count in (1, 2):
+            publisher.publish(String(data="hello"))
+            wait_until(lambda count=count: len(heard) == count, f"message {count}")
+    told = capfd.readouterr().err
+    assert "ValueError: no such thing" in told
+    assert "Traceback" not in told
+
+
+def test_it_may_be_closed_twice_and_before_it_starts(domain: int):
+    before = threading.active_count()
+    never_started = SpunNode("idle", domain_id=domain)
+    never_started.close()
+    never_started.close()
+    with SpunNode("busy", domain_id=domain) as spun:
+        pass
+    spun.close()
+    assert threading.active_count() == before
+
+
+def test_a_domain_that_cannot_be():
+    with pytest.raises(MissionError, match="BT100: ROS 2 cannot be used: there is no domain 233, they are 0 to 232"):
+        SpunNode("node", domain_id=233)

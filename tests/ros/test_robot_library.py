@@ -1,0 +1,59 @@
+"""A mission on a ROS 2 robot from Python."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from functools import partial
+from pathlib import Path
+
+import pytest
+
+import btlang
+from btlang.engine.status import SUCCESS
+from btlang.ros.command import ros_stage
+from tests.ros.processes import Command, wait_until
+
+
+@pytest.fixture(autouse=True)
+def _here(domain: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
+
+
+def test_twenty_runs_leave_no_thread_behind(sim: Command) -> None:
+    tree = btlang.parse_tree("say done")
+    before = set(threading.enumerate())
+    for _ in range(20):
+        assert tree.run(robot="ros").status == SUCCESS
+    assert set(threading.enumerate()) == before
+
+
+def test_an_emergency_stop_from_another_thread(sim: Command) -> None:
+    tree = btlang.parse_tree("move forward 50 m")
+    timer = threading.Timer(2.0, tree.emergency_stop)
+    timer.start()
+    outcome = tree.run(robot=partial(ros_stage, sim_time=True))
+    timer.join()
+    assert outcome.stopped == "emergency stop"
+    tree.emergency_stop()  # the robot is gone; nothing happens
+
+
+def test_a_robot_that_lacks_something(tmp_path: Path) -> None:
+    with pytest.raises(btlang.MissionError, match="BT101"):
+        btlang.parse_tree("move forward").run(robot="ros")
+
+
+def test_what_does_not_go_together(start_sim: Callable[..., Command], tmp_path: Path, domain: int) -> None:
+    tree = btlang.parse_tree("say done")
+    with pytest.raises(ValueError, match="robot is 'simulated' or 'ros'"):
+        tree.run(robot="toaster")
+    start_sim()
+    with pytest.raises(ValueError, match="a ROS 2 robot runs in real time"):
+        tree.run(robot="ros", speed="max")
+    for number, options in enumerate((["--robot", "ros", "--speed", "max"], ["--sim-time"], ["--preflight"])):
+        folder = tmp_path / str(number)
+        folder.mkdir()
+        command = Command(folder, domain, "run", "-c", "say done", *options)
+        wait_until(lambda command=command: command.process.poll() is not None, "the end")  # type: ignore[misc]
+        assert command.process.returncode == 2
+        assert "btc run: error: --" in command.err

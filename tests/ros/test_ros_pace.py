@@ -1,0 +1,67 @@
+"""The pace of a run whose time passes by itself. Needs no ROS 2."""
+
+from __future__ import annotations
+
+import pytest
+
+from btlang.ros import pace as module
+from btlang.ros.pace import RosPace
+from btlang.run.controls import Controls
+
+
+class Times:
+    """A system's clock and a simulator's, `factor` times as fast, that waiting moves on."""
+
+    def __init__(self, monkeypatch: pytest.MonkeyPatch, factor: float = 1.0) -> None:
+        self.real, self.simulated, self.factor = 100.0, 5.0, factor
+        self.controls = Controls()
+        monkeypatch.setattr(module.time, "monotonic", lambda: self.real)
+        monkeypatch.setattr(self.controls, "wait", lambda seconds: self.pass_by(seconds))
+
+    def pass_by(self, seconds: float) -> None:
+        self.real += seconds
+        self.simulated += seconds * self.factor
+
+    def pace(self) -> RosPace:
+        pace = RosPace(self.controls, lambda: self.simulated)
+        pace.begin()
+        return pace
+
+
+def test_a_period_is_one_of_the_simulator(monkeypatch: pytest.MonkeyPatch) -> None:
+    times = Times(monkeypatch, factor=4.0)
+    assert times.pace().sleep(0.05) == pytest.approx(0.05, abs=0.01)
+    assert times.real - 100.0 == pytest.approx(0.0125, abs=0.003)
+
+
+def test_a_tick_that_takes_long_counts(monkeypatch: pytest.MonkeyPatch) -> None:
+    times = Times(monkeypatch)
+    pace = times.pace()
+    times.pass_by(0.3)
+    assert pace.sleep(0.05) == pytest.approx(0.3)
+    assert pace.late == 1
+    assert pace.sleep(0.05) == pytest.approx(0.05, abs=0.003)
+
+
+def test_waking_ends_the_sleep(monkeypatch: pytest.MonkeyPatch) -> None:
+    times = Times(monkeypatch)
+    pace = times.pace()
+    times.pass_by(0.01)
+    pace.wake()
+    assert pace.sleep(0.05) == pytest.approx(0.01)
+
+
+def test_a_clock_that_stands_still_is_not_waited_for_without_end(monkeypatch: pytest.MonkeyPatch) -> None:
+    times = Times(monkeypatch, factor=0.0)
+    pace = times.pace()
+    assert pace.sleep(0.05) == pytest.approx(0.05, abs=0.01)
+    assert times.real - 100.0 == pytest.approx(2.05, abs=0.01)
+    assert pace.sleep(0.05) == pytest.approx(0.05, abs=0.01)
+    assert times.real - 100.0 == pytest.approx(2.1, abs=0.02)
+
+
+def test_time_does_not_go_back_where_a_simulator_begins_anew(monkeypatch: pytest.MonkeyPatch) -> None:
+    times = Times(monkeypatch)
+    pace = times.pace()
+    times.simulated = 0.0
+    assert 0.0 <= pace.sleep(0.05) <= 0.06
