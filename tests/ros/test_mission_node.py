@@ -28,10 +28,16 @@ class Goal:
         self.feedback = Heard()
         self._server = client.action(run_mission, "/btlang/run_mission")
         goal = run_mission.Goal(mission=mission, **fields)
-        self.handle = answer(self._server.send_goal_async(goal, lambda message: self.feedback(message.feedback)))
+        self._client = client
+        self.handle = client.ask(
+            lambda: self._server.send_goal_async(goal, lambda message: self.feedback(message.feedback))
+        )
 
     def result(self) -> Any:
-        return answer(self.handle.get_result_async())
+        return self._client.ask(self.handle.get_result_async)
+
+    def cancel(self) -> None:
+        assert self._client.ask(self.handle.cancel_goal_async).goals_canceling
 
 
 def test_a_sentence_runs(start_node, client: Client, run_mission: Any):
@@ -89,7 +95,7 @@ def test_one_mission_at_a_time(start_node, client: Client, run_mission: Any):
     second = Goal(client, run_mission, "say hello")
     assert not second.handle.accepted
     wait_until(lambda: "a mission is rejected: another one runs" in node.err, "the reason on the log")
-    answer(first.handle.cancel_goal_async())
+    first.cancel()
     assert first.result().status == GoalStatus.STATUS_CANCELED
     assert Goal(client, run_mission, "wait 0.1 seconds").result().result.success
 
@@ -105,7 +111,7 @@ def test_cancelled_half_way_over_ros(start_sim, start_node, client: Client, run_
     goal = Goal(client, run_mission, "turn around then move forward 2 meters")
     goal.feedback.wait(lambda news: news.running == "move forward 2 m")
     odometry.wait(lambda message: message.pose.pose.position.y < start - 0.5)
-    answer(goal.handle.cancel_goal_async())
+    goal.cancel()
     end = goal.result()
     still = odometry.next()
     assert (end.status, end.result.outcome) == (GoalStatus.STATUS_CANCELED, "stopped")
@@ -134,9 +140,9 @@ def test_a_signal_ends_a_mission(start_node, client: Client, run_mission: Any, n
     node: Command = start_node()
     goal = Goal(client, run_mission, FAR)
     goal.feedback.wait()
-    result = goal.handle.get_result_async()
+    result = client.node.executor.create_task(goal.handle.get_result_async)
     assert node.end(number) == code
-    assert answer(result).result.outcome == "stopped"
+    assert answer(answer(result)).result.outcome == "stopped"
     assert node.err == ""
 
 
