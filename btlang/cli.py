@@ -201,6 +201,12 @@ def _sim_ros(options: argparse.Namespace) -> int:
     )
 
 
+def _ros_node(options: argparse.Namespace) -> int:
+    from btlang.ros.mission.command import serve
+
+    return serve(options)
+
+
 def _repl(options: argparse.Namespace) -> int:
     from btlang.repl.loop import run_repl
 
@@ -217,6 +223,7 @@ _VERBS = {
     "explain": _explain,
     "format": _format,
     "sim-ros": _sim_ros,
+    "ros-node": _ros_node,
 }
 
 
@@ -339,9 +346,7 @@ def _format_options(parser: argparse.ArgumentParser) -> None:
 
 def _sim_ros_options(parser: argparse.ArgumentParser) -> None:
     _world_option(parser)
-    parser.add_argument(
-        "--speed", type=real_speed, default="real", help="real, or a factor of real time (default: real)"
-    )
+    parser.add_argument("--speed", type=real_speed, default="real", help="real, or a factor of real time")
     parser.add_argument(
         "--rate", type=between(*RATES), default=20.0, metavar="HZ", help="steps a simulated second (default: 20)"
     )
@@ -349,6 +354,14 @@ def _sim_ros_options(parser: argparse.ArgumentParser) -> None:
         "--clock", action=argparse.BooleanOptionalAction, default=True, help="give the simulated time on /clock"
     )
     parser.add_argument("--namespace", type=namespace, default="", metavar="NS", help="of all topics (default: none)")
+
+
+def _ros_node_options(parser: argparse.ArgumentParser) -> None:
+    from btlang.ros.mission.command import add_node_options
+
+    _reading_options(parser)
+    _speed_option(parser)
+    add_node_options(parser)
 
 
 _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
@@ -361,6 +374,7 @@ _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "explain": ("show how a mission is read, or tell of a message", _explain_options),
     "format": ("lay out missions: indentation, spaces, empty lines", _format_options),
     "sim-ros": ("offer the simulated robot over ROS 2", _sim_ros_options),
+    "ros-node": ("run missions as a ROS 2 node, for other programs", _ros_node_options),
 }
 
 

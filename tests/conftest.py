@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from pathlib import Path
+from types import ModuleType
 
 import pytest
 from hypothesis import HealthCheck, settings
@@ -28,8 +29,9 @@ def matches_golden(actual: str, path: Path) -> None:
 def take_away_what_is_missed(code: str, patch: pytest.MonkeyPatch) -> None:
     """So that a message about what is not there can be shown: matplotlib, ROS 2, or a robot that speaks it."""
     patch.setitem(sys.modules, "matplotlib", None)  # BT081
+    patch.setitem(sys.modules, "btlang_interfaces", None)  # BT110
     if code != "BT101":
-        patch.setitem(sys.modules, "rclpy", None)  # BT100
+        patch.setitem(sys.modules, "rclpy", ModuleType("rclpy") if code == "BT110" else None)  # BT100
         return
     pytest.importorskip("rclpy", reason="ROS 2 is not installed")
     patch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF")

@@ -3,7 +3,7 @@
 BT00x reading, BT01x words, BT02x and BT03x how a sentence is put together, BT04x what it means,
 BT05x what is allowed but probably not meant, BT06x keyword files,
 BT07x worlds, BT08x the Python behind the words and what else has to be installed, BT09x the codes themselves,
-BT10x ROS 2.
+BT10x ROS 2, BT11x missions as ROS 2 nodes.
 
 BT05x and others that are warnings have a `name`, by which a mission silences them: `# allow: two readings`.
 Each code has a page in `pages/`, which `btc explain` prints.
@@ -106,6 +106,7 @@ _ALL = (
     Code("BT104", "'{phrase}' needs the ROS 2 interface {type}, which is not installed here.", "{advice}"),
     Code("BT105", "{type} has no field '{field}', which the ros table of '{phrase}' names.", "{advice}"),
     Code("BT106", "The ros table of '{phrase}' does not fit {type}: {reason}."),
+    Code("BT110", "The ROS 2 interfaces of btlang are not compiled: {reason}.", "Compile them, once: python -m btlang.ros.interfaces --own"),
 )  # fmt: skip
 
 CODES = {entry.code: entry for entry in _ALL}

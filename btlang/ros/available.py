@@ -20,6 +20,17 @@ def require_ros(*packages: str) -> None:
             raise unusable(f"there is no Python package {package}" if absent else str(error), _INSTALL) from None
 
 
+def require_interfaces() -> None:
+    """Raises MissionError (BT110) where the interfaces of btlang are not compiled for this Python."""
+    try:
+        import_module("btlang_interfaces")
+        import_module("btlang_interfaces.action")  # where it was compiled for another Python, this fails
+    except ImportError as error:
+        absent = error.name == "btlang_interfaces"
+        reason = "there is no Python package btlang_interfaces" if absent else str(error)
+        raise MissionError([diagnostic("BT110", Span(Source("", "ROS 2"), 0, 0), reason=reason)]) from None
+
+
 def unusable(reason: str, advice: str = "") -> MissionError:
     """What to raise where ROS 2 is not there, or is there and does not start (BT100)."""
     told = reason.strip().rstrip(".")

@@ -21,12 +21,12 @@ if TYPE_CHECKING:
 _PACKAGES = ("geometry_msgs", "nav_msgs", "rosgraph_msgs", "sensor_msgs", "std_msgs", "std_srvs", "trajectory_msgs")
 
 
-def ros_stage(world: World, *, sim_time: bool = False) -> RosStage:
+def ros_stage(world: World, *, sim_time: bool = False, name: str = "btlang") -> RosStage:
     """The stage of a mission on the ROS 2 robot that is there. Raises MissionError (BT100) without ROS 2."""
     require_ros(*_PACKAGES)
     from btlang.ros.stage import RosStage
 
-    return RosStage(world, sim_time=sim_time)
+    return RosStage(world, sim_time=sim_time, name=name)
 
 
 def add_robot_options(parser: ArgumentParser) -> None:

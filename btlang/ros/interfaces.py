@@ -1,10 +1,12 @@
 """Compiles ROS 2 interfaces (.msg, .srv, .action) for Python into an environment that has ROS 2 from PyPI.
 
     python -m btlang.ros.interfaces FOLDER ...
+    python -m btlang.ros.interfaces --own
 
-Each folder is a package: its name, with `msg/`, `srv/` and `action/` in it. It takes seconds, gcc, g++ and the headers
-of Python, and no colcon. What comes out speaks to nodes whose package was built by colcon from the same files. Where
-ROS 2 is a sourced installation, build the package there with colcon instead.
+The second form compiles btlang's own interfaces, which `btc ros-node` needs. Each folder is a package: its name, with
+`msg/`, `srv/` and `action/` in it. It takes seconds, gcc, g++ and the headers of Python, and no colcon. What comes
+out speaks to nodes whose package was built by colcon from the same files. Where ROS 2 is a sourced installation,
+build the package there with colcon instead.
 """
 
 from __future__ import annotations
@@ -24,6 +26,8 @@ from io import StringIO
 from pathlib import Path
 
 _PREFIX = Path(sys.prefix)
+OWN = Path(__file__).parent / "btlang_interfaces"
+"""The package of btlang's own interfaces."""
 _LIB, _SHARE, _INCLUDE = _PREFIX / "lib", _PREFIX / "share", _PREFIX / "include"
 _SUPPORTS = ("fastrtps_c", "introspection_c")  # rmw_fastrtps_cpp needs both: the second one describes types to peers
 _LIBRARIES = ("generator_c", "generator_py", "typesupport_c", *(f"typesupport_{name}" for name in _SUPPORTS))
@@ -190,9 +194,9 @@ def main(folders: Sequence[str]) -> int:
     if not folders or folders[0] in ("-h", "--help"):
         print(__doc__)
         return 0 if folders else 2
-    for folder in folders:
+    for folder in [OWN if folder == "--own" else Path(folder) for folder in folders]:
         try:
-            print(f"{Path(folder).resolve().name} is compiled: {compile_interfaces(Path(folder))}")
+            print(f"{folder.resolve().name} is compiled: {compile_interfaces(folder)}")
         except InterfaceError as error:
             print(f"error: {error}", file=sys.stderr)
             return 2

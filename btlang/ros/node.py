@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from threading import Thread
 
 import rclpy
@@ -24,20 +25,25 @@ class SpunNode:
     """`node` in a ROS context of its own; its callbacks run in a thread of their own, one at a time.
 
     Use it with `with`, or call `close`: a thread that spins when the process ends would abort it. Signals stay with
-    the program. With `use_sim_time` the node's clock is the topic /clock. Raises MissionError (BT100).
+    the program. With `use_sim_time` the node's clock is the topic /clock. `make` makes another sort of node. Raises
+    MissionError (BT100).
     """
 
     def __init__(
-        self, name: str, *, namespace: str = "", use_sim_time: bool = False, domain_id: int | None = None
+        self,
+        name: str,
+        *,
+        namespace: str = "",
+        use_sim_time: bool = False,
+        domain_id: int | None = None,
+        make: Callable[..., Node] = Node,
     ) -> None:
         self.context = Context()
         overrides = [Parameter("use_sim_time", Parameter.Type.BOOL, use_sim_time)]
         try:
             rclpy.init(context=self.context, domain_id=domain_id, signal_handler_options=SignalHandlerOptions.NO)
             self._check_domain()
-            self.node: Node = rclpy.create_node(
-                name, namespace=namespace, context=self.context, parameter_overrides=overrides
-            )
+            self.node = make(name, namespace=namespace, context=self.context, parameter_overrides=overrides)
         except RuntimeError as error:  # no such domain, no network, a log that cannot be written
             raise unusable(str(error)) from None
         self._executor = SingleThreadedExecutor(context=self.context)

@@ -39,14 +39,15 @@ class RosStage:
     """See `btlang.run.stage.Stage`. Names and poses are those of the world file, whose map is the robot's.
 
     With `sim_time` the mission's clock follows the topic /clock, else the system's. Missions run in real time.
+    `name` is that of the node.
     """
 
-    def __init__(self, world: World, *, sim_time: bool = False) -> None:
+    def __init__(self, world: World, *, sim_time: bool = False, name: str = "btlang") -> None:
         self.world = world
         self.clock = Clock()
         self.events = EventStream()
         self._sim_time = sim_time
-        self._spun = SpunNode("btlang", use_sim_time=sim_time)
+        self._spun = SpunNode(name, use_sim_time=sim_time)
         self._now = self._ros_time if sim_time else time.monotonic
         try:
             self.robot = RosRobot(self._spun.node, world, on_event=self._publish, now=self._now)

@@ -77,6 +77,10 @@ class Client:
         time.sleep(_SETTLE)
         return client
 
+    def ask(self, question: Callable[[], Any]) -> Any:
+        """What the future of an action client comes to; asked by the thread that spins, else an answer may be lost."""
+        return answer(answer(self.node.executor.create_task(question)))
+
 
 def answer(future: Any) -> Any:
     """What a future of rclpy comes to."""

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 HERE = Path(__file__).parent
 _DOMAINS = range(1, 102)  # the ports of higher ones are among those that the system hands out
-_NAV2 = "nav2_msgs.action"
+_NAV2, _OWN = "nav2_msgs.action", "btlang_interfaces.action"
 
 
 class _Skipped(pytest.Module):
@@ -69,11 +69,13 @@ def domain() -> Iterator[int]:
 
 @pytest.fixture(scope="session", autouse=True)
 def _interfaces() -> None:
-    """Compiles what Nav2 would bring, once for all workers; where that cannot be, `nav2` skips."""
+    """Compiles btlang's own and what Nav2 would bring, once for all workers; where that cannot be, tests skip."""
+    packages = {_NAV2: str(HERE / "nav2_msgs"), _OWN: "--own"}
     with _lock(Path(sys.prefix, ".btlang-interfaces.lock")):
-        if _found(_NAV2) or interfaces.missing_tools() is not None:
+        missing = [folder for module, folder in packages.items() if not _found(module)]
+        if not missing or interfaces.missing_tools() is not None:
             return
-        command = [sys.executable, "-m", "btlang.ros.interfaces", str(HERE / "nav2_msgs")]
+        command = [sys.executable, "-m", "btlang.ros.interfaces", *missing]
         environment = {**os.environ, "PYTHONPATH": str(REPOSITORY)}
         subprocess.run(command, env=environment, check=True, timeout=120, stdout=subprocess.DEVNULL)
     importlib.invalidate_caches()
@@ -85,6 +87,33 @@ def nav2() -> Any:
     if not _found(_NAV2):
         pytest.skip(f"nav2_msgs is not installed and cannot be compiled: {interfaces.missing_tools()}")
     return importlib.import_module(_NAV2).NavigateToPose
+
+
+@pytest.fixture
+def run_mission() -> Any:
+    """The action RunMission."""
+    if not _found(_OWN):
+        pytest.skip(f"btlang_interfaces is not installed and cannot be compiled: {interfaces.missing_tools()}")
+    return importlib.import_module(_OWN).RunMission
+
+
+@pytest.fixture
+def start_node(tmp_path: Path, domain: int, run_mission: Any) -> Iterator[Callable[..., Command]]:
+    """Starts `btc ros-node` in a process of its own; it has to end as asked, without a traceback."""
+    started: list[Command] = []
+
+    def start(*options: str) -> Command:
+        folder = tmp_path / f"node{len(started)}"
+        folder.mkdir()
+        command = Command(folder, domain, "ros-node", *options)
+        started.append(command)
+        command.wait_for("ready")
+        return command
+
+    yield start
+    codes = [command.end() for command in started]
+    assert set(codes) <= {130, 131, 143}
+    assert not any("Traceback" in command.out + command.err for command in started)
 
 
 @pytest.fixture

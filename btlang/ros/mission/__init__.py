@@ -1,0 +1,1 @@
+"""A mission as a ROS 2 node."""

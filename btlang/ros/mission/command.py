@@ -1,0 +1,99 @@
+"""What `btc ros-node` does: missions as a ROS 2 node, until a signal ends it. Imports no ROS before it is asked for."""
+
+from __future__ import annotations
+
+import argparse
+import time
+from functools import partial
+from typing import Any
+
+from btlang.robots.stages import ROBOTS
+from btlang.ros.available import require_interfaces, require_ros
+
+PACKAGES = ("diagnostic_msgs", "lifecycle_msgs", "std_msgs", "std_srvs")
+"""The packages of messages that it needs beside rclpy and btlang_interfaces."""
+_ANSWERS = 1.0  # seconds that the last answers to clients get
+
+
+def add_node_options(parser: argparse.ArgumentParser) -> None:
+    """The options of `btc ros-node` that are about the node."""
+    parser.add_argument("--mission", default="", metavar="FILE", help="run this one when the node is activated")
+    parser.add_argument("--robot", choices=list(ROBOTS), default="simulated", help="(default: %(default)s)")
+    parser.add_argument("--sim-time", action="store_true", help="with --robot ros: time is that of the topic /clock")
+    parser.add_argument("--name", default="btlang", type=_name, help="of the node (default: %(default)s)")
+    parser.add_argument(
+        "--autostart",
+        action=argparse.BooleanOptionalAction,
+        default=True,
+        help="configure and activate the node at once (default), or leave that to a lifecycle manager",
+    )
+    parser.add_argument("--ros-args", nargs=argparse.REMAINDER, help="the rest are arguments of ROS 2")
+    parser.set_defaults(refuse=parser.error)
+
+
+def serve(options: argparse.Namespace) -> int:
+    """Spins the node until a signal comes; returns the exit code, 128 and the number of the signal.
+
+    Raises MissionError where ROS 2 is not there (BT100, BT110), or where the node cannot be configured at its start.
+    """
+    if options.sim_time and options.robot != "ros":
+        options.refuse("--sim-time is for --robot ros")
+    if options.speed != "real" and options.robot == "ros":
+        options.refuse("--robot ros runs in real time, so it takes no --speed")
+    require_ros()
+    require_interfaces()
+    require_ros(*PACKAGES)
+    from btlang.ros.mission.node import MissionNode
+    from btlang.ros.mission.setup import Setup
+    from btlang.ros.node import SpunNode
+    from btlang.ros.simulator.command import ending_signals
+    from btlang.run.controls import Controls
+    from btlang.run.emergency import emergency_signal
+
+    setup = Setup(
+        options.name, options.robot, options.sim_time, options.speed,
+        options.mission, options.keywords, options.world, options.parser,
+    )  # fmt: skip
+    controls = Controls()
+    with ending_signals() as came:
+        came.on_arrival = controls.wake
+        spun = SpunNode(options.name, use_sim_time=options.sim_time, make=partial(MissionNode, setup, _print))
+        node: Any = spun.node
+        try:
+            if options.autostart:
+                node.trigger_configure()
+                if node.error is not None:
+                    raise node.error
+                node.trigger_activate()
+            with emergency_signal(node.emergency_stop):
+                spun.start()
+                _print(f"btlang ros-node: ready as {node.get_fully_qualified_name()}; Ctrl-C ends it")
+                while not came.numbers:
+                    controls.wait(None)
+                node.halt()
+                _wait_for_answers(node)
+        finally:
+            try:
+                node.halt()
+                spun.close()
+            finally:
+                node.release()
+    return 128 + came.numbers[0]
+
+
+def _wait_for_answers(node: Any) -> None:
+    """Until the executor has done what was asked of it before now."""
+    task = node.executor.create_task(lambda: None)
+    end = time.monotonic() + _ANSWERS
+    while not task.done() and time.monotonic() < end:
+        time.sleep(0.01)
+
+
+def _name(text: str) -> str:
+    if not (text.isidentifier() and text.isascii()):
+        raise argparse.ArgumentTypeError(f"a name of letters, digits and _ is needed, not '{text}'")
+    return text
+
+
+def _print(line: str) -> None:
+    print(line, flush=True)

@@ -1,0 +1,112 @@
+"""One mission on a stage, in a thread of its own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from threading import Thread
+
+from btlang.api import RunnableTree
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.render import render
+from btlang.engine.status import FAILURE, NAMES
+from btlang.record import Record
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.run.events import Sink
+    from btlang.run.runner import Outcome
+    from btlang.run.stage import Stage
+
+
+class Report(Record):
+    """How a mission ended, in words: `outcome` is "success", "failure", "skipped" or "stopped"."""
+
+    outcome: str
+    reason: str = ""
+    seconds: float = 0.0
+
+    @property
+    def success(self) -> bool:
+        """Whether it did what it should; a mission that had nothing to do did."""
+        return self.outcome in ("success", "skipped")
+
+    def __str__(self) -> str:
+        told = {"success": "succeeded", "failure": "failed", "skipped": "had nothing to do", "stopped": "was stopped"}
+        reason = f": {self.reason}" if self.reason else ""
+        return f"the mission {told[self.outcome]} after {self.seconds:.1f} s{reason}"
+
+
+class MissionRun:
+    """Begins at once, in its own thread, which compiles the mission too.
+
+    `compiled` makes the tree, and `watch` what watches it. `ended` is told the report once the robot stands still.
+    All of them are called in the thread of the run; `stop` and the like come from any.
+    """
+
+    def __init__(
+        self,
+        stage: Stage,
+        compiled: Callable[[], RunnableTree],
+        watch: Callable[[RunnableTree], list[Sink]],
+        ended: Callable[[Report], object],
+        speed: float | str = "real",
+    ) -> None:
+        self.over = False
+        """Whether another mission may begin."""
+        self._stage, self._speed = stage, speed
+        self._compiled, self._watch, self._ended = compiled, watch, ended
+        self._tree: RunnableTree | None = None
+        self._stopped = ""
+        self._thread = Thread(target=self._work, name="btlang mission", daemon=True)
+        self._thread.start()
+
+    def stop(self) -> None:
+        """Halts the mission and brings the robot to rest; waits for nothing."""
+        self._stopped = self._stopped or "interrupted"
+        if self._tree is not None:
+            self._tree.stop()
+
+    def emergency_stop(self) -> None:
+        """Stops the robot at once, in the thread of who asks, then ends the mission."""
+        self._stopped = "emergency stop"
+        if self._tree is not None:
+            self._tree.emergency_stop()
+        else:
+            self._stage.robot.stop()
+
+    def join(self, seconds: float) -> bool:
+        """Whether the run is over, `ended` included, within so many seconds."""
+        self._thread.join(seconds)
+        return not self._thread.is_alive()
+
+    def _work(self) -> None:
+        try:
+            report = self._run()
+        except MissionError as error:
+            report = Report("failure", problems(error))
+        except Exception as error:  # nothing may end the node but its user
+            report = Report("failure", f"an error inside btlang: {error!r}")
+        self.over = True
+        self._ended(report)
+
+    def _run(self) -> Report:
+        tree = self._compiled()
+        tree.stage = self._stage
+        tree.controls  # noqa: B018  # made by this thread, before others ask for them
+        self._tree = tree
+        sinks = self._watch(tree)
+        if self._stopped:  # while it was compiled
+            return Report("stopped", self._stopped)
+        return _report(tree, tree.run(speed=self._speed, sinks=sinks))
+
+
+def problems(error: MissionError) -> str:
+    """All that is wrong, as `btc` tells it."""
+    return "\n".join(render(diagnostic) for diagnostic in error.diagnostics)
+
+
+def _report(tree: RunnableTree, outcome: Outcome) -> Report:
+    if outcome.stopped:
+        return Report("stopped", outcome.stopped, outcome.seconds)
+    reason = tree.why() if outcome.status == FAILURE else ""
+    return Report(NAMES[outcome.status].lower(), reason, outcome.seconds)

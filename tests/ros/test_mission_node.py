@@ -1,0 +1,160 @@
+"""Any ROS 2 program sends a sentence to `btc ros-node` and gets a running tree; the clients here know rclpy alone."""
+
+from __future__ import annotations
+
+import signal
+import sys
+import time
+from typing import Any
+
+import pytest
+from action_msgs.msg import GoalStatus
+from diagnostic_msgs.msg import DiagnosticArray
+from nav_msgs.msg import Odometry
+from std_msgs.msg import String
+from std_srvs.srv import Trigger
+
+from btlang.cli import main
+from tests.ros.client import LATCHED, Client, Heard, answer
+from tests.ros.processes import Command, wait_until
+
+FAR = "move forward 3 meters at 0.2 meters per second"
+
+
+class Goal:
+    """A mission that was sent; it has to be accepted."""
+
+    def __init__(self, client: Client, run_mission: Any, mission: str, **fields: Any) -> None:
+        self.feedback = Heard()
+        self._server = client.action(run_mission, "/btlang/run_mission")
+        goal = run_mission.Goal(mission=mission, **fields)
+        self._client = client
+        self.handle = client.ask(
+            lambda: self._server.send_goal_async(goal, lambda message: self.feedback(message.feedback))
+        )
+
+    def result(self) -> Any:
+        return self._client.ask(self.handle.get_result_async)
+
+    def cancel(self) -> None:
+        assert self._client.ask(self.handle.cancel_goal_async).goals_canceling
+
+
+def test_a_sentence_runs(start_node, client: Client, run_mission: Any):
+    start_node("--speed", "10")
+    goal = Goal(client, run_mission, "move forward 1 meter then say done")
+    assert goal.handle.accepted
+    end = goal.result()
+    assert end.status == GoalStatus.STATUS_SUCCEEDED
+    assert (end.result.success, end.result.outcome, end.result.reason) == (True, "success", "")
+    assert 2 < end.result.seconds < 6
+    news = goal.feedback.messages
+    assert [message.running for message in news] == ["move forward 1 m", "say done", ""]
+    assert (list(news[-1].paths), list(news[-1].statuses)) == (["/1", "/"], [1, 1])
+    assert [message.time for message in news] == sorted(message.time for message in news)
+
+
+def test_what_it_tells_on_topics(start_node, client: Client, run_mission: Any):
+    from btlang_interfaces.msg import TreeStatus
+
+    start_node("--speed", "10")
+    log = client.hear(String, "/btlang/log")
+    health = client.hear(DiagnosticArray, "/diagnostics")
+    health.wait(lambda array: array.status[0].message == "no mission has run yet")
+    goal = Goal(client, run_mission, "say hello then go to the moon")
+    assert goal.result().status == GoalStatus.STATUS_ABORTED
+    Goal(client, run_mission, "say hello").result()
+    outline = client.hear(String, "/btlang/tree", LATCHED).wait()  # whoever comes later hears it too
+    assert outline.data == "Say: say hello"
+    status = client.hear(TreeStatus, "/btlang/status", LATCHED).wait()
+    assert (list(status.paths), list(status.statuses)) == (["/"], [TreeStatus.SUCCESS])
+    log.wait(lambda line: line.data.startswith("the mission succeeded after"))
+    assert any('says   "hello"' in line.data for line in log.messages)
+    found = health.wait(lambda array: array.status[0].message.startswith("the mission succeeded"))
+    assert found.status[0].name == "btlang: mission"
+
+
+def test_why_it_fails(start_node, client: Client, run_mission: Any):
+    node = start_node("--speed", "10")
+    wrong = Goal(client, run_mission, "move forwarrd 1 meter").result()
+    assert wrong.status == GoalStatus.STATUS_ABORTED
+    assert (wrong.result.success, wrong.result.outcome) == (False, "failure")
+    assert "mission:1:1: error BT010" in wrong.result.reason
+    absent = Goal(client, run_mission, "wave", keywords=["nowhere.toml"]).result()
+    assert "nowhere.toml" in absent.result.reason
+    failed = Goal(client, run_mission, "move forward 100 meters").result()
+    assert failed.result.outcome == "failure"
+    assert "move forward 100 meters" in failed.result.reason
+    assert node.err == ""
+
+
+def test_one_mission_at_a_time(start_node, client: Client, run_mission: Any):
+    node = start_node()
+    first = Goal(client, run_mission, "wait 1 minute")
+    first.feedback.wait()
+    second = Goal(client, run_mission, "say hello")
+    assert not second.handle.accepted
+    wait_until(lambda: "a mission is rejected: another one runs" in node.err, "the reason on the log")
+    first.cancel()
+    assert first.result().status == GoalStatus.STATUS_CANCELED
+    assert Goal(client, run_mission, "wait 0.1 seconds").result().result.success
+
+
+def test_cancelled_half_way_over_ros(start_sim, start_node, client: Client, run_mission: Any, nav2: Any):
+    start_sim("--speed", "2")
+    start_node("--robot", "ros", "--sim-time")
+    odometry = client.hear(Odometry, "/odom")
+    done = Goal(client, run_mission, "move forward 1 meter then say done").result()
+    assert done.result.success, done.result.reason
+    start = odometry.next().pose.pose.position.y
+    assert start == pytest.approx(3.0, abs=0.1)
+    goal = Goal(client, run_mission, "turn around then move forward 2 meters")
+    goal.feedback.wait(lambda news: news.running == "move forward 2 m")
+    odometry.wait(lambda message: message.pose.pose.position.y < start - 0.5)
+    goal.cancel()
+    end = goal.result()
+    still = odometry.next()
+    assert (end.status, end.result.outcome) == (GoalStatus.STATUS_CANCELED, "stopped")
+    assert abs(still.twist.twist.linear.x) < 1e-3
+    time.sleep(0.3)
+    assert odometry.next().pose.pose.position.y == pytest.approx(still.pose.pose.position.y, abs=1e-3)
+    assert still.pose.pose.position.y > start - 1.5
+
+
+def test_emergency_stop(start_node, client: Client, run_mission: Any):
+    start_node()
+    goal = Goal(client, run_mission, FAR)
+    goal.feedback.wait()
+    began = time.monotonic()
+    assert client.call(Trigger, "/btlang/stop").success
+    assert time.monotonic() - began < 1
+    end = goal.result()
+    assert end.status == GoalStatus.STATUS_ABORTED
+    assert (end.result.outcome, end.result.reason) == ("stopped", "emergency stop")
+    assert client.call(Trigger, "/btlang/stop").success  # nothing runs
+    assert Goal(client, run_mission, "move forward 10 centimeters then say on").result().result.success
+
+
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
+def test_a_signal_ends_a_mission(start_node, client: Client, run_mission: Any, number: signal.Signals, code: int):
+    node: Command = start_node()
+    goal = Goal(client, run_mission, FAR)
+    goal.feedback.wait()
+    result = client.node.executor.create_task(goal.handle.get_result_async)
+    assert node.end(number) == code
+    assert answer(answer(result)).result.outcome == "stopped"
+    assert node.err == ""
+
+
+def test_without_its_interfaces(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):
+    monkeypatch.setitem(sys.modules, "btlang_interfaces", None)
+    assert main(["ros-node"]) == 2
+    assert "python -m btlang.ros.interfaces --own" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("options", [["--sim-time"], ["--robot", "ros", "--speed", "2"], ["--name", "a-b"]])
+def test_wrong_options(options: list[str], capsys: pytest.CaptureFixture[str]):
+    with pytest.raises(SystemExit) as caught:
+        main(["ros-node", *options])
+    assert caught.value.code == 2
+    assert "usage: btc ros-node" in capsys.readouterr().err
