@@ -30,7 +30,7 @@ def parse(tokens: Sequence[Token], build: Builder) -> Ast:
     with _one_at_a_time:
         to_ast.build = build
         try:
-            return lark.parse(tokens)  # type: ignore[return-value]
+            return lark.parse(tokens)
         except UnexpectedInput as error:
             raise ParseError(str(error)) from None
 
