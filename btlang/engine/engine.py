@@ -83,7 +83,8 @@ class Engine:
             self._tick, self._halt = compile_sites(self._sites, self._trace)
         self._frames = _depth(self._sites) * _FRAMES_PER_LEVEL + _FRAMES_FOR_LEAVES
         self._deep = self._frames > _FRAMES_ASSUMED
-        self._keyed = frozenset([s.index for s in self._sites if any("{" in text for _, text in s.node.ports)])
+        listened = self._sites if listener is not None else ()
+        self._keyed = frozenset([s.index for s in listened if any("{" in text for _, text in s.node.ports)])
         self._busy = False
         self.status = IDLE
         self._fault: Fault | Site | None = None
@@ -177,7 +178,10 @@ class Engine:
         return node if ports == node.ports else node.replace(ports=ports)
 
     def valued(self, indices: Iterable[int]) -> dict[int, Node]:
-        """Those of these nodes whose ports name keys, with the texts and numbers that are under them now."""
+        """Those of these nodes whose ports name keys, with the texts and numbers that are under them now.
+
+        None in an engine without a listener.
+        """
         if not self._keyed:
             return {}
         return {index: self._with_values(self._sites[index]) for index in indices if index in self._keyed}

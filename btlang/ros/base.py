@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from math import atan2, cos, degrees, radians, sin
+from math import cos, degrees, radians, sin
 from threading import RLock
 from typing import Any
 
@@ -15,6 +15,8 @@ from rclpy.node import Node
 from btlang.robots.geometry import Pose, wrap
 from btlang.robots.robot import RobotError
 from btlang.ros.inbox import Inbox
+from btlang.ros.poses import pose_of
+from btlang.ros.times import seconds_of
 
 ODOMETRY, LOCATED, VELOCITY = "/odom", "/amcl_pose", "/cmd_vel"
 _SILENT = 2.0  # seconds without odometry
@@ -88,7 +90,7 @@ class RosBase:
     @property
     def pose(self) -> Pose:
         """Where it is on the map. Raises RobotError where the odometry is silent."""
-        now = _pose(self._inbox.get(ODOMETRY, _SILENT).pose.pose)
+        now = pose_of(self._inbox.get(ODOMETRY, _SILENT).pose.pose)
         return now if self._fix is None else _carried(*self._fix, now)
 
     def _tell(self) -> None:
@@ -110,34 +112,22 @@ class RosBase:
         return abs(linear) + self._radius * radians(abs(angular)) < _STUCK_SHARE * wanted
 
     def _moved(self, message: Any) -> None:
-        self._track.append((_seconds(message), _pose(message.pose.pose)))
+        self._track.append((seconds_of(message.header.stamp), pose_of(message.pose.pose)))
         if self._early is not None:
             early, self._early = self._early, None
             self._match(early)
 
     def _located(self, message: Any) -> None:
         """A pose is matched with the odometry of its time, which may come a moment later."""
-        if self._track and _seconds(message) <= self._track[-1][0]:
+        if self._track and seconds_of(message.header.stamp) <= self._track[-1][0]:
             self._match(message)
         else:
             self._early = message
 
     def _match(self, message: Any) -> None:
-        at = _seconds(message)
+        at = seconds_of(message.header.stamp)
         odometry = min(self._track, key=lambda entry: abs(entry[0] - at))[1]
-        self._fix = _pose(message.pose.pose), odometry
-
-
-def _seconds(message: Any) -> float:
-    stamp = message.header.stamp
-    return float(stamp.sec + stamp.nanosec * 1e-9)
-
-
-def _pose(pose: Any) -> Pose:
-    """Of a robot that stays upright, a geometry_msgs/Pose in metres and degrees."""
-    q = pose.orientation
-    heading = degrees(atan2(2.0 * (q.w * q.z + q.x * q.y), 1.0 - 2.0 * (q.y * q.y + q.z * q.z)))
-    return Pose(float(pose.position.x), float(pose.position.y), heading)
+        self._fix = pose_of(message.pose.pose), odometry
 
 
 def _carried(located: Pose, before: Pose, now: Pose) -> Pose:

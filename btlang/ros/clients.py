@@ -126,6 +126,10 @@ class Clients:
         """For a new mission: what leaves need is what they ask for from now on. Clients stay."""
         self._used.clear()
 
+    def used(self) -> list[tuple[str, str, str]]:
+        """Kind, name and type of each need, without a look at whether it is there."""
+        return [(kind, name, type) for kind, name, type, _ in self._used]
+
     def needs(self) -> list[Need]:
         """All that leaves need of the robot, by kind and name."""
         needs = [Need(kind, name, type, self._made[key][1]()) for key in self._used for kind, name, type, _ in [key]]

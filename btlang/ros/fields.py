@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Callable
 
+from btlang.ros.times import seconds_of
 from btlang.ros.word import Word
 
 TYPE_CHECKING = False
@@ -84,7 +85,7 @@ def reader(word: Word, cls: Any) -> Callable[[Any], Any]:
         return message
 
     if kind in _TIMES:
-        return lambda message: (time := follow(message)).sec + time.nanosec * 1e-9
+        return lambda message: seconds_of(follow(message))
     array = array_of(kind)
     if "/" in kind:
         raise word.misfit(cls, path, f"{path} is {kind}: name one of its fields")

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 
 from btlang.engine.leaf import ActionFailed
 from btlang.ros.fields import INTEGERS, array_of, field_types, inner_class, message_class
+from btlang.ros.poses import MAP, set_yaw
+from btlang.ros.times import duration
 from btlang.ros.word import Word, type_name
 from btlang.vocabulary.ros_binding import Fields
 from btlang.vocabulary.ros_table import SLOT, slots_of
@@ -25,7 +26,6 @@ if TYPE_CHECKING:
 NOW = "now"
 """What a field of the type builtin_interfaces/Time may be given."""
 _POINTS = ("Point", "Point32", "Pose", "PoseStamped", "Pose2D")
-_MAP = "map"
 
 
 def filler(word: Word, cls: Any, fields: Fields | None, now: Now) -> Make:
@@ -171,22 +171,13 @@ def _placed(kind: str, pose: tuple[float, float, float | None]) -> Callable[[Any
 
     def write(message: Any) -> None:
         if kind == "PoseStamped":
-            message.header.frame_id = message.header.frame_id or _MAP
+            message.header.frame_id = message.header.frame_id or MAP
             message = message.pose
         if kind in ("Pose", "PoseStamped"):
-            yaw = facing or 0.0
-            message.orientation.z, message.orientation.w = math.sin(yaw / 2), math.cos(yaw / 2)
+            set_yaw(message.orientation, facing or 0.0)
             message = message.position
         message.x, message.y = x, y
         if kind == "Pose2D":
             message.theta = facing or 0.0
 
     return write
-
-
-def duration(seconds: float) -> Any:
-    """Seconds as builtin_interfaces/Duration."""
-    from builtin_interfaces.msg import Duration
-
-    whole = math.floor(seconds)
-    return Duration(sec=whole, nanosec=min(round((seconds - whole) * 1e9), 999_999_999))

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from math import cos, radians, sin
 from threading import Event, RLock
 from typing import Any
 
@@ -16,6 +15,7 @@ from rclpy.node import Node
 
 from btlang.robots.geometry import Pose
 from btlang.robots.world import said
+from btlang.ros.poses import MAP, pose_message
 
 ACTION = "/navigate_to_pose"
 _SERVER = 2.0  # seconds that a server gets to be there
@@ -162,9 +162,6 @@ class RosNavigation:
 
 
 def _stamped(pose: Pose) -> PoseStamped:
-    message = PoseStamped()
-    message.header.frame_id = "map"
-    message.pose.position.x, message.pose.position.y = pose.x, pose.y
-    half = radians(pose.heading) / 2
-    message.pose.orientation.z, message.pose.orientation.w = sin(half), cos(half)
+    message = PoseStamped(pose=pose_message(pose))
+    message.header.frame_id = MAP
     return message

@@ -10,6 +10,7 @@ from rclpy.context import Context
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
 from rclpy.parameter import Parameter
+from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.signals import SignalHandlerOptions
 
 from btlang.ros.available import unusable
@@ -19,6 +20,9 @@ if TYPE_CHECKING:
     from types import TracebackType
 
 _LAST_DOMAIN = 232
+
+LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
+"""Who subscribes later gets the last message."""
 
 
 class SpunNode:

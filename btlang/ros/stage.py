@@ -93,8 +93,8 @@ class RosStage:
             entry = next((entry for entry in reversed(entries) if self.bind(entry, vocabulary) is not None), None)
             if entry is not None:
                 ids.add(node.id)
-                for need in self._clients.needs():
-                    own.setdefault(Interface(need.kind, need.name, need.type), node)
+                for need in self._clients.used():
+                    own.setdefault(Interface(*need), node)
         return ids, own
 
     def check(self, tree: Tree, vocabulary: Vocabulary) -> None:

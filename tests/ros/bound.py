@@ -9,7 +9,7 @@ import pytest
 
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.vocabulary.load import load_vocabulary
-from tests.ros.declared import free_domain
+from tests.ros.domains import free_domain
 
 
 def bind_words(file: str) -> int:

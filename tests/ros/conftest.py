@@ -8,12 +8,10 @@ from __future__ import annotations
 import fcntl
 import importlib
 import os
-import random
 import subprocess
 import sys
-import tempfile
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
+from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -21,13 +19,13 @@ from typing import TYPE_CHECKING, Any
 import pytest
 
 from btlang.ros import interfaces
+from tests.ros.domains import free_domain
 from tests.ros.processes import REPOSITORY, ROOM, Command
 
 if TYPE_CHECKING:
     from tests.ros.client import Client
 
 HERE = Path(__file__).parent
-_DOMAINS = range(1, 102)  # the ports of higher ones are among those that the system hands out
 _NAV2, _OWN = "nav2_msgs.action", "btlang_interfaces.action"
 
 
@@ -53,18 +51,8 @@ def _isolated() -> Iterator[None]:
 @pytest.fixture
 def domain() -> Iterator[int]:
     """The number of a domain that no other test on this machine uses at the same time."""
-    folder = Path(tempfile.gettempdir(), "btlang-ros-domains")
-    folder.mkdir(exist_ok=True)
-    with ExitStack() as stack:
-        for number in random.sample(_DOMAINS, len(_DOMAINS)):
-            file = stack.enter_context((folder / str(number)).open("w"))
-            try:
-                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError:
-                continue
-            yield number
-            return
-        pytest.fail("all domains are in use")
+    with free_domain() as number:
+        yield number
 
 
 @pytest.fixture(scope="session", autouse=True)

@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import fcntl
 import os
 import queue
-import random
 import signal
 import subprocess
 import sys
-import tempfile
 import threading
 import time
 from collections.abc import Callable, Iterator
-from contextlib import ExitStack, contextmanager
 from pathlib import Path
 from types import TracebackType
 from typing import Any
@@ -25,13 +21,13 @@ from btlang.backends.engine import bind_leaf
 from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine
 from btlang.engine.status import RUNNING, SUCCESS
+from tests.ros.domains import free_domain
 
 ROOT = Path(__file__).parent.parent.parent
 PROFILE = str(Path(__file__).parent / "peers" / "profile.xml")
 LIMIT = 15.0  # real seconds that anything is waited for
 _BLOCKED = 2.0  # seconds: a tick that waits for an answer takes longer, one on a busy machine does not
 PLACES = {"kitchen": (4.0, -1.0, 1.5707963), "lobby": (1.0, 2.0, None)}
-_DOMAINS = range(1, 102)  # the ports of higher ones are among those that the system hands out
 
 
 def words(name: str) -> str:
@@ -179,23 +175,6 @@ class Robot:
             peer.close()
         if kind is None:
             assert self.clients.problems == []
-
-
-@contextmanager
-def free_domain() -> Iterator[int]:
-    """The number of a domain that no other test on this machine uses at the same time."""
-    folder = Path(tempfile.gettempdir(), "btlang-ros-domains")
-    folder.mkdir(exist_ok=True)
-    with ExitStack() as stack:
-        for number in random.sample(_DOMAINS, len(_DOMAINS)):
-            file = stack.enter_context((folder / str(number)).open("w"))
-            try:
-                fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-            except BlockingIOError:
-                continue
-            yield number
-            return
-        pytest.fail("all domains are in use")
 
 
 @pytest.fixture

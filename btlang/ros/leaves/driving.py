@@ -11,6 +11,7 @@ from btlang.engine.leaf import ActionFailed, Failed
 from btlang.ros.clients import Clients
 from btlang.ros.graph import no_listener
 from btlang.ros.latest import Latest
+from btlang.ros.poses import BASE, yaw_of
 from btlang.ros.word import Word, type_name
 
 TYPE_CHECKING = False
@@ -45,7 +46,7 @@ def drive_leaf(word: Word, clients: Clients) -> Callable[..., Any]:
         message = cls()
         twist = message
         if hasattr(message, "header"):
-            message.header.stamp, message.header.frame_id = clients.clock.message(), "base_link"
+            message.header.stamp, message.header.frame_id = clients.clock.message(), BASE
             twist = message.twist
         if turns:
             twist.angular.z = velocity
@@ -91,8 +92,8 @@ def _ready(clients: Clients, cls: Any, name: str, publisher: Any, odometry: Late
 
 def _pose(message: Any) -> tuple[float, float, float]:
     """x, y in metres and the direction in radians."""
-    position, q = message.pose.pose.position, message.pose.pose.orientation
-    return position.x, position.y, math.atan2(2 * (q.w * q.z + q.x * q.y), 1 - 2 * (q.y * q.y + q.z * q.z))
+    pose = message.pose.pose
+    return pose.position.x, pose.position.y, yaw_of(pose.orientation)
 
 
 def _driven(start: tuple[float, float, float], pose: tuple[float, float, float]) -> float:

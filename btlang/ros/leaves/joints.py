@@ -9,9 +9,9 @@ from trajectory_msgs.msg import JointTrajectoryPoint
 
 from btlang.engine.leaf import ActionFailed, Failed
 from btlang.ros.clients import Clients
-from btlang.ros.filling import duration
 from btlang.ros.graph import no_listener
 from btlang.ros.latest import AGE
+from btlang.ros.times import duration
 from btlang.ros.word import Word, type_name
 from btlang.vocabulary.ros_table import SLOT
 

@@ -43,10 +43,10 @@ def serve(options: argparse.Namespace) -> int:
     require_ros()
     require_interfaces()
     require_ros(*PACKAGES)
+    from btlang.ros.ending import ending_signals
     from btlang.ros.mission.node import MissionNode
     from btlang.ros.mission.setup import Setup
     from btlang.ros.node import SpunNode
-    from btlang.ros.simulator.command import ending_signals
     from btlang.run.controls import Controls
     from btlang.run.emergency import emergency_signal
 

@@ -8,10 +8,10 @@ from btlang_interfaces.msg import TreeStatus
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile
 from std_msgs.msg import String
 
 from btlang.api import RunnableTree
+from btlang.ros.node import LATCHED
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from btlang.ros.mission.progress import News
 
 OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
-_KEPT = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _PERIOD = 1.0  # seconds between two diagnostics
 
 
@@ -34,8 +33,8 @@ class Topics:
         self, node: Node, show: Callable[[str], object], health: Callable[[], tuple[bytes, str, dict[str, str]]]
     ) -> None:
         self._node, self._show, self._health = node, show, health
-        self._tree = node.create_publisher(String, "~/tree", _KEPT)
-        self._status = node.create_publisher(TreeStatus, "~/status", _KEPT)
+        self._tree = node.create_publisher(String, "~/tree", LATCHED)
+        self._status = node.create_publisher(TreeStatus, "~/status", LATCHED)
         self._log = node.create_publisher(String, "~/log", 100)
         self._diagnostics = node.create_publisher(DiagnosticArray, "/diagnostics", 10)
         # of the machine's time, so that a simulated one that stands still is told of too

@@ -3,13 +3,10 @@
 from __future__ import annotations
 
 import os
-import signal
 import sys
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from time import monotonic
 
-from btlang.run.command import ENDING_SIGNALS
+from btlang.ros.ending import ending_signals
 from btlang.run.emergency import emergency_signal
 
 TYPE_CHECKING = False
@@ -48,33 +45,6 @@ def serve(world: World, *, speed: float, rate: float, gives_clock: bool, namespa
                 simulator.work(due - monotonic())
                 simulator.step(1 / rate)
     return 128 + came.numbers[0]
-
-
-class EndingSignals:
-    """Those that have come; `on_arrival` is called by each."""
-
-    def __init__(self) -> None:
-        self.numbers: list[int] = []
-        self.on_arrival: Callable[[], object] = int
-
-    def __call__(self, number: int, frame: object) -> None:
-        self.numbers.append(number)
-        self.on_arrival()
-
-
-@contextmanager
-def ending_signals() -> Iterator[EndingSignals]:
-    """Ctrl-C and signals to end are kept instead of ending the process at once. One that is ignored stays so."""
-    came = EndingSignals()
-    before = {number: signal.getsignal(number) for number in (signal.SIGINT, *ENDING_SIGNALS)}
-    taken = [number for number, handler in before.items() if handler != signal.SIG_IGN]
-    for number in taken:
-        signal.signal(number, came)
-    try:
-        yield came
-    finally:
-        for number in taken:
-            signal.signal(number, before[number])
 
 
 def _print(line: str) -> None:

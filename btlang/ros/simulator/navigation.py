@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from math import isfinite
 
-from builtin_interfaces.msg import Duration
 from nav2_msgs.action import NavigateToPose
 from rclpy.action import ActionServer, CancelResponse
 from rclpy.action.server import ServerGoalHandle
@@ -14,10 +13,11 @@ from rclpy.task import Future
 from btlang.robots.geometry import Pose
 from btlang.robots.navigation import SPEED, Journey
 from btlang.robots.simulated import SimulatedRobot
+from btlang.ros.poses import MAP, ODOM, pose_message, pose_of
 from btlang.ros.simulator.inbox import Inbox
-from btlang.ros.simulator.poses import MAP, ODOM, pose_message, pose_of
 from btlang.ros.simulator.publishing import Every, Moment
 from btlang.ros.simulator.wheels import Wheels
+from btlang.ros.times import duration
 
 FAILED = 9000
 """The error code of all that can go wrong, as of Nav2 for what it has no own code for; `error_msg` says what it is."""
@@ -111,8 +111,8 @@ class Navigation:
         feedback = NavigateToPose.Feedback(distance_remaining=left)
         feedback.current_pose.header.stamp, feedback.current_pose.header.frame_id = now.stamp, MAP
         feedback.current_pose.pose = pose_message(self._robot.pose)
-        feedback.navigation_time = _duration(now.seconds - ride.began)
-        feedback.estimated_time_remaining = _duration(left / SPEED)
+        feedback.navigation_time = duration(now.seconds - ride.began)
+        feedback.estimated_time_remaining = duration(left / SPEED)
         ride.goal.publish_feedback(feedback)
 
 
@@ -122,8 +122,3 @@ def _refusal(frame: str, pose: Pose) -> str | None:
     if not all(map(isfinite, (pose.x, pose.y, pose.heading))):
         return "the goal is no pose: one of its numbers is infinite, or not a number"
     return None
-
-
-def _duration(seconds: float) -> Duration:
-    whole, part = divmod(round(seconds * 1e9), 10**9)
-    return Duration(sec=whole, nanosec=part)

@@ -6,12 +6,10 @@ from typing import Any
 
 from builtin_interfaces.msg import Time
 from rclpy.node import Node
-from rclpy.qos import DurabilityPolicy, QoSProfile
 
 from btlang.record import Record
+from btlang.ros.node import LATCHED
 
-LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
-"""Who subscribes later gets the last message."""
 COMMANDS = 10
 """How many commands of a topic may wait."""
 

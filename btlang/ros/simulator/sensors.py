@@ -14,8 +14,8 @@ from std_srvs.srv import Trigger
 from btlang.robots.robot import RobotError
 from btlang.robots.scan import RANGE
 from btlang.robots.simulated import SimulatedRobot
+from btlang.ros.poses import BASE
 from btlang.ros.simulator.inbox import Inbox
-from btlang.ros.simulator.poses import BASE
 from btlang.ros.simulator.publishing import COMMANDS, Every, Latched, Moment
 
 _SCANS = 10

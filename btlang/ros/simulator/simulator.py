@@ -6,7 +6,6 @@ from collections.abc import Callable, Mapping
 from importlib.util import find_spec
 from typing import Any, Protocol
 
-from builtin_interfaces.msg import Time
 from rclpy.qos import QoSProfile
 from rosgraph_msgs.msg import Clock
 from std_srvs.srv import Trigger
@@ -19,6 +18,7 @@ from btlang.ros.simulator.inbox import Inbox
 from btlang.ros.simulator.publishing import Moment
 from btlang.ros.simulator.sensors import Sensors
 from btlang.ros.simulator.wheels import Wheels
+from btlang.ros.times import stamp
 
 
 class Part(Protocol):
@@ -85,8 +85,7 @@ class Simulator:
         seconds = self.robot.time
         if self._clock is None:
             return Moment(seconds, self._spun.node.get_clock().now().to_msg())
-        whole, part = divmod(round(seconds * 1e9), 10**9)
-        return Moment(seconds, Time(sec=whole, nanosec=part))
+        return Moment(seconds, stamp(seconds))
 
     def _stop(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
         """In the thread of the executor, at once: it waits for no step."""
