@@ -10,9 +10,10 @@ from rclpy.node import Node
 from std_msgs.msg import String
 
 from btlang.robots.simulated import SimulatedRobot
+from btlang.ros.node import LATCHED
 from btlang.ros.poses import BASE, MAP, ODOM, pose_message
 from btlang.ros.simulator.inbox import Inbox
-from btlang.ros.simulator.publishing import COMMANDS, LATCHED, Every, Moment
+from btlang.ros.simulator.publishing import COMMANDS, Every, Moment
 
 _SILENCE = 0.5  # simulated seconds without a command after which the robot brakes
 
