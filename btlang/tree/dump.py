@@ -12,7 +12,8 @@ def plain(tree: Tree) -> str:
 
     Nothing in it depends on how the mission was spelled or laid out.
     """
-    lines = [f"{'  ' * depth}{described(node)}" for depth, node in _nodes(tree.root)]
+    lines = [f"BehaviorTree ID={_value(tree.name)} main=true"] if tree.name else []
+    lines += [f"{'  ' * depth}{described(node)}" for depth, node in _nodes(tree.root)]
     for name, root in sorted(tree.subtrees):
         lines.append(f"BehaviorTree ID={_value(name)}")
         lines += [f"{'  ' * (depth + 1)}{described(node)}" for depth, node in _nodes(root)]
