@@ -107,6 +107,9 @@ _ALL = (
     Code("BT105", "{type} has no field '{field}', which the ros table of '{phrase}' names.", "{advice}"),
     Code("BT106", "The ros table of '{phrase}' does not fit {type}: {reason}."),
     Code("BT110", "The ROS 2 interfaces of btlang are not compiled: {reason}.", "Compile them, once: python -m btlang.ros.interfaces --own"),
+    Code("BT140", "There is no subtree '{name}'.", "Define it, at the left margin: \"{name}\" means: ..."),
+    Code("BT141", "I cannot read '{words}' any further: {wanted} is needed.", "Write for example: do \"OpenGripper\" with width 0.05"),
+    Code("BT142", "This tree cannot be said in English: {reason}."),
 )  # fmt: skip
 
 CODES = {entry.code: entry for entry in _ALL}

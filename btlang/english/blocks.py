@@ -10,7 +10,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator
 
-from btlang.english.naming import each_head
+from btlang.english.exact import exact_block
+from btlang.english.naming import definition_head, each_head
 from btlang.english.pieces import COLON, Pieces, is_longer, mark
 from btlang.english.sentence import is_flat_fallback, statements
 from btlang.english.speaker import THEN, Speaker
@@ -129,7 +130,7 @@ def _definition(node: ast.Definition, speaker: Speaker) -> Iterator[Section]:
     if isinstance(body, ast.Chain) and body.operator in ("all", "any"):
         return
     if not isinstance(body, ast.Phrase | ast.Name | ast.Compared | ast.Not):
-        yield (mark(node.name), mark(speaker.word("define_strong").text)), statements(body)
+        yield definition_head(node, speaker), statements(body)
 
 
 def _none(_node: ast.Ast, _speaker: Speaker) -> Iterator[Section]:
@@ -149,5 +150,6 @@ _SECTIONS: dict[type[ast.Ast], Callable[[Any, Speaker], Iterator[Section]]] = {
     ast.Delay: _timed("delay"),
     ast.ForEach: _for_each,
     ast.Definition: _definition,
+    ast.Exact: exact_block,
 }
 """The forms that have blocks; any other statement stays in one line."""

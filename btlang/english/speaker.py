@@ -60,7 +60,8 @@ class Speaker:
                 (defined.name, dict(defined.parameters)) if isinstance(defined, ast.Definition) else (defined, {})
             )
             self._parameters[name] = types
-            add(self.names, name_form(name), types, Meaning("name"))
+            if not (isinstance(defined, ast.Definition) and defined.is_quoted):
+                add(self.names, name_form(name), types, Meaning("name"))
 
     def say(self, node: ast.Ast) -> Said:
         """What is said of a node (any but a Mission)."""
