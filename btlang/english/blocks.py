@@ -129,6 +129,8 @@ def _definition(node: ast.Definition, speaker: Speaker) -> Iterator[Section]:
     body = node.body
     if isinstance(body, ast.Chain) and body.operator in ("all", "any"):
         return
+    if isinstance(body, ast.Exact) and body.is_condition:
+        return
     if not isinstance(body, ast.Phrase | ast.Name | ast.Compared | ast.Not):
         yield definition_head(node, speaker), statements(body)
 

@@ -26,20 +26,28 @@ def _chain(operator: str) -> Form:
         if len(children) < 2:
             return
         rounds = operator == "parallel"
-        items = [_round(child, checked) if rounds else child.command for child in children]
+        items = [_round(child, checked, _line) if rounds else child.command for child in children]
         if all(item is not None for item in items):
             yield ast.Chain(operator, tuple(item for item in items if item is not None), True, NOWHERE)
 
     return forms
 
 
-def _round(child: Raised, checked: Checked) -> ast.Ast | None:
+def _block(raised: Raised) -> ast.Ast:
+    return raised.part
+
+
+def _line(raised: Raised) -> ast.Ast:
+    return raised.command
+
+
+def _round(child: Raised, checked: Checked, said: Callable[[Raised], ast.Ast] = _block) -> ast.Ast | None:
     """The body of a form that counts a skipped round as a round; None where that is not as it stands."""
     if child.node.id == "Sequence" and len(child.children) == 2 and not child.node.ports and not child.node.name:
         body, rest = child.children
-        if checked.can_skip(body.part) and _is_plain(rest.node, "AlwaysSuccess"):
-            return body.part
-    return child.part if not checked.can_skip(child.part) else None
+        if checked.can_skip(said(body)) and _is_plain(rest.node, "AlwaysSuccess"):
+            return said(body)
+    return said(child) if not checked.can_skip(said(child)) else None
 
 
 def _is_plain(node: Node, node_id: str) -> bool:
