@@ -9,7 +9,7 @@ from functools import cache, partial
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.frontends.mission import DEFAULT_PARSER, read_mission
 from btlang.garbage import no_collection
-from btlang.passes import compile_mission
+from btlang.passes import checked, compile_mission
 from btlang.passes.lint import lint
 from btlang.text.source import Source, Span
 from btlang.tree.ast import Mission, all_facts
@@ -47,16 +47,22 @@ def parse_tree(
     parser: str = DEFAULT_PARSER,
     keywords: Sequence[str | Entry | Callable[..., Any]] = (),
     world: str | None = None,
+    main: str = "",
 ) -> RunnableTree:
-    """Compiles a mission in English.
+    """Compiles a mission in English, or a tree in XML of BehaviorTree.CPP: a text that begins with `<`.
 
     `parser` is "shunting-yard" or "lark" (both read the same); `keywords` are paths of keyword files, names of
     installed packs, or functions made words by `action` or `condition`; `world` is the path of a world file, by
-    default the world that ships. Raises MissionError, which holds every diagnostic.
+    default the world that ships; `main` is the ID of the tree to run, where XML has several. Raises MissionError, which
+    holds every diagnostic.
     """
     source = Source(text) if isinstance(text, str) else text
     with no_collection:
         vocabulary = world_vocabulary(keywords, world)
+        if source.text.lstrip("\ufeff \t\r\n")[:1] == "<":  # as no mission begins
+            from btlang.frontends.btcpp.reader import read_xml
+
+            return RunnableTree(checked(read_xml(source, main), vocabulary), vocabulary, world)
         reading = read_mission(source, vocabulary, parser)
         tree = compile_mission(reading.mission, vocabulary)
         warnings = lint(reading.mission, tree, vocabulary, reading.warnings)
