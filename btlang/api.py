@@ -28,7 +28,6 @@ if TYPE_CHECKING:
     from btlang.robots.simulation import Simulation
     from btlang.robots.stages import MakeStage
     from btlang.robots.world import World
-    from btlang.robots.world_file import WorldError
     from btlang.run.controls import Controls
     from btlang.run.events import Sink
     from btlang.run.runner import Outcome, Runner
@@ -101,7 +100,9 @@ def _names_by_type(world: str | None) -> dict[str, tuple[str, ...]]:
     try:
         names = world_names(world)
     except WorldError as error:
-        raise _world_problem(error) from None
+        from btlang.robots.world_problem import world_problem
+
+        raise world_problem(error) from None
     return {"place": names.places, "person": names.people, "object": names.objects}
 
 
@@ -115,11 +116,12 @@ def load_simulation(world: str | None = None) -> Simulation:
 def read_world(world: str | None = None) -> World:
     """The world in a file, by default the world that ships. Raises MissionError (BT070)."""
     from btlang.robots.world_file import WorldError, load_world
+    from btlang.robots.world_problem import world_problem
 
     try:
         return load_world(world)
     except WorldError as error:
-        raise _world_problem(error) from None
+        raise world_problem(error) from None
 
 
 def action(
@@ -388,15 +390,3 @@ class RunnableTree:
         if node.children or node.id not in self.vocabulary.entries:
             return described(node)
         return f"{node.id}: {self.label(node)}"
-
-
-def _world_problem(error: WorldError) -> MissionError:
-    from btlang.diagnostics.reading import read_source
-
-    try:
-        source = read_source(error.path)
-    except MissionError:
-        source = Source("", error.path)
-    start = source.offset(error.line or 1)
-    end = start + len(source.line(error.line).rstrip()) if error.line and source.text else start
-    return MissionError([diagnostic("BT070", Span(source, start, end), reason=error.message)])

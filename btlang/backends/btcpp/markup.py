@@ -90,4 +90,4 @@ class Markers:
 
 
 def _escaped(item: Element | Markup | str) -> Element | Markup | str:
-    return item.translate(_IN_TEXTS) if isinstance(item, str) else item
+    return item.strip().translate(_IN_TEXTS) if isinstance(item, str) else item

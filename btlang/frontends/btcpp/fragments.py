@@ -63,7 +63,7 @@ class Notes:
 
 def as_items(notes: list[Note]) -> Items:
     """Texts and comments."""
-    return [note.text.strip() if note.is_text else Markup(note.text) for note in notes]
+    return [note.text if note.is_text else Markup(note.text) for note in notes]
 
 
 def fragment(document: Document, notes: Notes, index: int) -> Element:
