@@ -151,7 +151,8 @@ def _explain_mission(options: argparse.Namespace) -> int:
     from shutil import get_terminal_size
 
     width = get_terminal_size((100, 24)).columns
-    print(_tree(options).explain(min(width, _WIDEST)))
+    tree = _tree(options)
+    print(tree if tree.mission is None else tree.explain(min(width, _WIDEST)))
     return SUCCESS
 
 
@@ -230,7 +231,7 @@ _VERBS = {
 def _tree(options: argparse.Namespace) -> RunnableTree:
     """Compiles what the options name; warnings go to the report."""
     source = Source(options.text, "<command line>") if options.text is not None else read_source(options.file)
-    tree = parse_tree(source, parser=options.parser, keywords=options.keywords, world=options.world)
+    tree = parse_tree(source, parser=options.parser, keywords=options.keywords, world=options.world, main=options.main)
     for warning in tree.warnings:
         options.report.add([warning])
     return tree
@@ -254,7 +255,7 @@ def _parsed(arguments: Sequence[str] | None) -> argparse.Namespace:
 
 
 _DEFAULTS: dict[str, Any] = {
-    "keywords": [], "world": None, "parser": DEFAULT_PARSER, "speed": "real", "format": "text"
+    "keywords": [], "world": None, "parser": DEFAULT_PARSER, "speed": "real", "format": "text", "main": ""
 }  # fmt: skip
 
 
@@ -279,6 +280,7 @@ def _mission_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--format", choices=FORMATS, default="text", help="of messages: text, or json for programs (default: text)"
     )
+    parser.add_argument("--main", default="", metavar="ID", help="tree to take of an XML file that has several")
     text = parser.add_mutually_exclusive_group(required=True)
     text.add_argument("file", nargs="?", metavar="FILE", help="mission, or - for standard input")
     text.add_argument("-c", dest="text", metavar="TEXT", help="mission as text")
@@ -394,7 +396,3 @@ class _Help(argparse.HelpFormatter):
 class _Parser(argparse.ArgumentParser):
     def __init__(self, prog: str | None = None, **options: Any) -> None:
         super().__init__(prog, formatter_class=_Help, **options)
-
-
-if __name__ == "__main__":
-    sys.exit(main())

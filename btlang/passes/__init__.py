@@ -25,11 +25,7 @@ def compile_mission(mission: Mission, vocabulary: Vocabulary, *, needs_command: 
     A text that only defines names is refused; where it needs no command, its tree does nothing.
     Raises MissionError with everything that the passes find (BT005, BT014, BT040 to BT042, BT140).
     """
-    tree = lower_mission(mission, vocabulary, needs_command=needs_command)
-    problems = [problem for check in PASSES for problem in check(tree, vocabulary)]
-    if problems:
-        raise MissionError(problems)
-    return tree
+    return checked(lower_mission(mission, vocabulary, needs_command=needs_command), vocabulary)
 
 
 def lower_mission(mission: Mission, vocabulary: Vocabulary, *, needs_command: bool = True) -> Tree:
@@ -48,3 +44,11 @@ def lower_mission(mission: Mission, vocabulary: Vocabulary, *, needs_command: bo
         raise MissionError([diagnostic("BT005", mission.span, example=example)])
     root = Node("AlwaysSuccess") if mission.body is None else lower(mission.body, scope).node
     return Tree(root, tuple(subtrees), mission.name)
+
+
+def checked(tree: Tree, vocabulary: Vocabulary) -> Tree:
+    """The tree itself. Raises MissionError with everything that the passes find."""
+    problems = [problem for check in PASSES for problem in check(tree, vocabulary)]
+    if problems:
+        raise MissionError(problems)
+    return tree
