@@ -15,14 +15,14 @@ from btlang.text.source import Source, Span
 from btlang.tree.ast import Mission, all_facts
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.cache import kept
-from btlang.vocabulary.entry import Entry, SlotSpec
+from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.load import load_vocabulary
 from btlang.vocabulary.shipped import DEFAULT_WORLD
 from btlang.vocabulary.vocabulary import Vocabulary
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any, TypeVar
+    from typing import Any
 
     from btlang.engine.blackboard import Blackboard
     from btlang.robots.simulation import Simulation
@@ -34,8 +34,6 @@ if TYPE_CHECKING:
     from btlang.run.runner import Outcome, Runner
     from btlang.run.stage import Stage
     from btlang.run.story import Story
-
-    Call = TypeVar("Call", bound=Callable[..., Any])
 
 SLOWEST = 0.001  # seconds of the mission per second; slower than that is a mistake
 RATES = (1.0, 1000.0)  # ticks a second; below, a robot drives blind for too long between two
@@ -114,48 +112,6 @@ def read_world(world: str | None = None) -> World:
         return load_world(world)
     except WorldError as error:
         raise _world_problem(error) from None
-
-
-def action(
-    phrase: str | Sequence[str],
-    *,
-    id: str = "",
-    slots: dict[str, str] | None = None,
-    resources: Sequence[str] = (),
-    thread: bool = False,
-) -> Callable[[Call], Call]:
-    """Makes a function, generator function, `async def` function or class a command: `parse_tree(keywords=[...])`.
-
-    `phrase` is one pattern or several, `slots` gives types to slots whose name is not a type, `id` is the node's name,
-    by default that of the function in CamelCase. With `thread` a plain function works in a thread of its own. See
-    btlang/engine/leaf.py for what a leaf may be.
-    """
-    return _word("action", phrase, id, slots or {}, resources, thread)
-
-
-def condition(
-    phrase: str | Sequence[str], *, id: str = "", slots: dict[str, str] | None = None
-) -> Callable[[Call], Call]:
-    """Makes a function that returns a bool a condition; as `action`."""
-    return _word("condition", phrase, id, slots or {}, (), False)
-
-
-def _word(
-    sort: str, phrase: str | Sequence[str], node_id: str, slots: dict[str, str], resources: Sequence[str], thread: bool
-) -> Callable[[Call], Call]:
-    from btlang.vocabulary.pattern import Slot, forms
-
-    phrases = (phrase,) if isinstance(phrase, str) else tuple(phrase)
-
-    def decorate(call: Call) -> Call:
-        names = dict.fromkeys(p.name for text in phrases for form in forms(text) for p in form if isinstance(p, Slot))
-        specs = tuple(SlotSpec(name, slots.get(name, name)) for name in names)
-        made = node_id or "".join(part.title() for part in call.__name__.split("_"))
-        entry = Entry(sort, made, phrases, call, specs, tuple(resources), help=call.__doc__ or "", thread=thread)
-        call.btlang_entry = entry  # type: ignore[attr-defined]
-        return call
-
-    return decorate
 
 
 class RunnableTree:
