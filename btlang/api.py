@@ -12,7 +12,7 @@ from btlang.garbage import no_collection
 from btlang.passes import compile_mission
 from btlang.passes.lint import lint
 from btlang.text.source import Source, Span
-from btlang.tree.ast import Mission, all_facts
+from btlang.tree.ast import Fact, Mission, all_facts
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.cache import kept
 from btlang.vocabulary.entry import Entry
@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from typing import Any
 
     from btlang.engine.blackboard import Blackboard
+    from btlang.engine.engine import EngineError
     from btlang.robots.simulation import Simulation
     from btlang.robots.stages import MakeStage
     from btlang.robots.world import World
@@ -139,6 +140,8 @@ class RunnableTree:
         self.warnings = tuple(warnings)
         self.stage = stage
         self._blackboard = blackboard
+        self.facts: Sequence[Fact] = all_facts(mission) if mission is not None else ()
+        """Places of this mission, beside those of the world."""
         self.sink_errors: list[Exception] = []
         """What sinks of the latest run raised; such a sink gets no more events, and the mission goes on."""
         self._controls: Controls | None = None
@@ -165,6 +168,28 @@ class RunnableTree:
         if self.mission is None:
             raise ValueError("this tree was not compiled from a mission")
         return explain_mission(self.mission, self.tree, self.vocabulary, self._described, width)
+
+    def check(self) -> None:
+        """Raises MissionError with all that would keep it from running, as far as that is known without the robot.
+
+        A tree that was compiled from a mission has nothing of the kind.
+        """
+        if self.mission is not None:
+            return
+        from btlang.backends.checking import tree_problems
+
+        problems = tree_problems(self.tree, self.vocabulary)
+        if problems:
+            raise MissionError(problems)
+
+    def to(self, target: str, **options: Any) -> str | bytes:
+        """The tree as "xml", "english", "json" or another target of btlang.backends.targets.
+
+        Raises ValueError for a target or an option that is not known, MissionError where the tree cannot be told so.
+        """
+        from btlang.backends.targets import compiled
+
+        return compiled(self.tree, self.vocabulary, target, given={"world": self.world, "facts": self.facts}, **options)
 
     def label(self, node: Node) -> str:
         """The English of a leaf, `Id port=value` of any other node."""
@@ -298,7 +323,7 @@ class RunnableTree:
         from btlang.run.runner import Runner, traced_engine
         from btlang.run.story import Story
 
-        for fact in all_facts(self.mission) if self.mission is not None else ():
+        for fact in self.facts:
             stage.robot.add_place(Place(fact.name, fact.x, fact.y, fact.facing))
         stage.check(self.tree, self.vocabulary)
         stage.begin(sinks)
@@ -313,8 +338,7 @@ class RunnableTree:
                 stopwatch=Stopwatch() if speed < math.inf else None,
             )
         except EngineError as error:
-            span = error.node.span or Span(Source(""), 0, 0)
-            raise MissionError([diagnostic("BT080", span, id=error.node.id, reason=error.message)]) from None
+            raise MissionError(self._refused(error, stage)) from None
         self._story = Story(engine)
         stage.events.add(self._story)
         self.sink_errors = stage.events.errors
@@ -331,6 +355,18 @@ class RunnableTree:
             pace=stage.pace,
         )
         return self._runner
+
+    def _refused(self, error: EngineError, stage: Stage) -> list[Diagnostic]:
+        """What to say of a tree that no engine runs: of one that was no mission, all that is wrong with it."""
+        span = error.node.span or Span(Source(""), 0, 0)
+        told = diagnostic("BT080", span, id=error.node.id, reason=error.message)
+        if self.mission is not None:
+            return [told]
+        from btlang.backends.checking import tree_problems
+        from btlang.backends.engine import bind_leaf
+
+        bind = cache(lambda id: bind_leaf(id, self.vocabulary, stage.bind))
+        return tree_problems(self.tree, self.vocabulary, bind, {"robot": stage.robot}) or [told]
 
     def _described(self, node: Node) -> str:
         from btlang.tree.dump import described

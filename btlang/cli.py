@@ -77,7 +77,7 @@ def _run(options: argparse.Namespace) -> int:
 
 
 def _check(options: argparse.Namespace) -> int:
-    _tree(options)
+    _tree(options).check()
     if not options.report.is_json:
         print("The mission is fine.")
     return SUCCESS
@@ -101,6 +101,27 @@ def _draw_tree(tree: RunnableTree, path: str, apart: bool) -> None:
     check_picture(path)
     draw_tree(tree.tree, tree.label, tree.is_action, path, apart=apart)
     print(f"The tree is drawn in {path}.")
+
+
+def _compile(options: argparse.Namespace) -> int:
+    from btlang.backends.mission_file import write_file
+    from btlang.backends.targets import TARGETS, target_of
+
+    name = options.to or (target_of(options.out) if options.out is not None else "")
+    if not name:
+        options.usage_error(f"--to says what to compile to: {', '.join(TARGETS)}")
+    if options.out is None and TARGETS[name].binary and sys.stdout.isatty():
+        options.usage_error(f"{name} is no text for a terminal: -o FILE writes it to a file")
+    if options.dialect is not None and "dialect" not in TARGETS[name].options:
+        options.usage_error(f"--dialect is for xml, not for {name}")
+    made = _tree(options).to(name, dialect=options.dialect)
+    if options.out is not None:
+        write_file(options.out, made)
+    elif isinstance(made, bytes):
+        sys.stdout.buffer.write(made)
+    else:
+        sys.stdout.write(made)
+    return SUCCESS
 
 
 def _words(options: argparse.Namespace) -> int:
@@ -211,6 +232,7 @@ _VERBS = {
     "run": _run,
     "check": _check,
     "tree": _show_tree,
+    "compile": _compile,
     "words": _words,
     "examples": _examples,
     "explain": _explain,

@@ -102,6 +102,18 @@ def _tree_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--apart", action="store_true", help="draw each named subtree once, below the tree")
 
 
+def _compile_options(parser: argparse.ArgumentParser) -> None:
+    from btlang.backends.targets import TARGETS
+
+    _mission_options(parser)
+    parser.add_argument(
+        "--to", choices=list(TARGETS), metavar="TARGET", help="what to compile to: " + ", ".join(TARGETS)
+    )
+    parser.add_argument("-o", dest="out", metavar="OUT", help="file to write, whose ending may tell the target")
+    parser.add_argument("--dialect", type=int, choices=(3, 4), help="version of BehaviorTree.CPP, of XML (default: 4)")
+    parser.set_defaults(usage_error=parser.error)
+
+
 def _listing_options(parser: argparse.ArgumentParser) -> None:
     _words_options(parser)
     parser.add_argument("search", nargs="*", metavar="SEARCH", help="only this topic, or what has these words")
@@ -152,6 +164,7 @@ _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "run": ("run a mission on the simulated robot, or a ROS 2 robot", _run_options),
     "check": ("say what is wrong with a mission", _mission_options),
     "tree": ("print the behavior tree of a mission", _tree_options),
+    "compile": ("write the tree of a mission as XML, English, JSON, a picture ...", _compile_options),
     "words": ("list what can be said", _listing_options),
     "examples": ("list the missions that ship, print them or copy them", _examples_options),
     "explain": ("show how a mission is read, or tell of a message", _explain_options),

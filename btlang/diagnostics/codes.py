@@ -3,7 +3,7 @@
 BT00x reading, BT01x words, BT02x and BT03x how a sentence is put together, BT04x what it means,
 BT05x what is allowed but probably not meant, BT06x keyword files,
 BT07x worlds, BT08x the Python behind the words and what else has to be installed, BT09x the codes themselves,
-BT10x ROS 2, BT11x missions as ROS 2 nodes.
+BT10x ROS 2, BT11x missions as ROS 2 nodes, BT13x trees that were not written as missions.
 
 BT05x and others that are warnings have a `name`, by which a mission silences them: `# allow: two readings`.
 Each code has a page in `pages/`, which `btc explain` prints.
@@ -107,6 +107,12 @@ _ALL = (
     Code("BT105", "{type} has no field '{field}', which the ros table of '{phrase}' names.", "{advice}"),
     Code("BT106", "The ros table of '{phrase}' does not fit {type}: {reason}."),
     Code("BT110", "The ROS 2 interfaces of btlang are not compiled: {reason}.", "Compile them, once: python -m btlang.ros.interfaces --own"),
+    Code("BT130", "No keyword entry has the id '{id}'."),
+    Code("BT131", "There is no node '{id}' that has children."),
+    Code("BT132", "There is no subtree '{name}'."),
+    Code("BT133", "The node '{id}' cannot be used so: {reason}."),
+    Code("BT134", "This is no tree in JSON: {reason}.", "Its form is in docs/targets.md."),
+    Code("BT135", "The node '{id}' cannot be told to {target}: {reason}."),
 )  # fmt: skip
 
 CODES = {entry.code: entry for entry in _ALL}
