@@ -33,31 +33,33 @@ class Statements:
         """The expression of a tree; `call` makes that of a node from those of its children."""
 
         def combine(node: Node, children: list[Source]) -> Source:
-            made = call(node, children)
-            return made if made.depth < _DEEPEST else self._named(made)
+            return self.named_if_deep(call(node, children))
 
         return fold(root, lambda node: node.children, combine)
 
-    def _named(self, made: Source) -> Source:
+    def named_if_deep(self, made: Source) -> Source:
+        """The expression, or the name that a statement gives it."""
+        if made.depth < _DEEPEST:
+            return made
         self._count += 1
         name = f"{self._prefix}{self._count}"
         self.lines += [f"{name} = {made.lines[0]}", *made.lines[1:]]
         return Source((name,), 0)
 
 
-def called(function: str, arguments: Sequence[str | Source]) -> Source:
-    """A call, or with an empty `function` a tuple: on one line where it fits, else an argument a line."""
+def called(function: str, arguments: Sequence[str | Source], brackets: str = "()") -> Source:
+    """A call, or with an empty `function` a tuple or list: on one line where it fits, else an argument a line."""
     depth = 1 + max((argument.depth for argument in arguments if isinstance(argument, Source)), default=0)
     texts = [(argument,) if isinstance(argument, str) else argument.lines for argument in arguments]
-    comma = "," if not function and len(texts) == 1 else ""
-    line = f"{function}({', '.join(text[0] for text in texts)}{comma})"
+    comma = "," if not function and len(texts) == 1 and brackets == "()" else ""
+    line = f"{function}{brackets[0]}{', '.join(text[0] for text in texts)}{comma}{brackets[1]}"
     if all(len(text) == 1 for text in texts) and len(line) + depth * len(_INDENT) <= _WIDEST:
         return Source((line,), depth)
-    lines = [f"{function}("]
+    lines = [f"{function}{brackets[0]}"]
     for text in texts:
         lines += [_INDENT + part for part in text]
         lines[-1] += ","
-    return Source((*lines, ")"), depth)
+    return Source((*lines, brackets[1]), depth)
 
 
 def literal(value: object) -> str:

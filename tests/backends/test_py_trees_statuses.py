@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from functools import cache
+from typing import Any
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -11,6 +12,8 @@ from py_trees.common import Status
 
 from btlang.api import world_vocabulary
 from btlang.backends.py_trees.build import to_py_trees
+from btlang.backends.py_trees.module import to_module
+from btlang.tree.model import NodeModel
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.vocabulary import Vocabulary
 
@@ -90,21 +93,26 @@ def vocabulary() -> Vocabulary:
 class Twins:
     """The same tree in both, with leaves that are alike."""
 
-    def __init__(self, shape: Node) -> None:
+    def __init__(self, shape: Node, in_module: bool) -> None:
         self.world = World()
         self.words: dict[str, str] = {}
         self.scripts: dict[str, Script] = {}
         self.subtrees: dict[int, tuple[str, Node]] = {}
         tree = Tree(self._named(shape), ())
-        tree = tree.replace(subtrees=tuple(self.subtrees.values()))
+        models = tuple(NodeModel("Condition", id) for id in self.words if id.startswith("F"))
+        tree = tree.replace(subtrees=tuple(self.subtrees.values()), models=models)
         self.ours = self.world.engine(tree)
-        self.theirs = to_py_trees(
-            tree,
-            vocabulary(),
-            bind=self._their_leaf,
-            is_action=lambda node: node.id.startswith("C"),
-            now=lambda: self.world.clock.now,
-        )
+        if not in_module:
+            self.theirs = to_py_trees(
+                tree, vocabulary(), bind=lambda node: self._their_leaf("", node.id, {}), now=self._now
+            )
+        else:
+            names: dict[str, Any] = {"__name__": "made"}
+            exec(to_module(tree, vocabulary()), names)
+            self.theirs = names["create_root"](self._their_leaf, self._now)
+
+    def _now(self) -> float:
+        return self.world.clock.now
 
     def _named(self, node: Node) -> Node:
         if ":" in node.id:
@@ -120,9 +128,8 @@ class Twins:
             return Node("SubTree", ports=(("ID", self.subtrees[id(body)][0]), *node.ports))
         return Node(node.id, tuple(self._named(child) for child in node.children), node.ports)
 
-    def _their_leaf(self, node: Node) -> Behaviour:
-        script = self.scripts.setdefault(node.id, Script(node.id, self.words[node.id], []))
-        return TheirLeaf(script)
+    def _their_leaf(self, name: str, id: str, ports: dict[str, str]) -> Behaviour:
+        return TheirLeaf(self.scripts.setdefault(id, Script(id, self.words[id], [])))
 
     def step(self, order: str) -> tuple[str, str]:
         """Ticks or halts both; the letters of their statuses."""
@@ -136,10 +143,19 @@ class Twins:
         return found
 
 
-@settings(max_examples=1500, deadline=None)
+@settings(max_examples=1000, deadline=None)
 @given(TREES, letters("ttttth", 3, 12))
 def test_statuses_are_the_same(shape: Node, orders: str) -> None:
-    twins = Twins(shape)
+    compare(Twins(shape, in_module=False), orders)
+
+
+@settings(max_examples=50, deadline=None)
+@given(TREES, letters("ttttth", 3, 12))
+def test_statuses_of_a_module_are_the_same(shape: Node, orders: str) -> None:
+    compare(Twins(shape, in_module=True), orders)
+
+
+def compare(twins: Twins, orders: str) -> None:
     for order in orders:
         ours, theirs = twins.step(order)
         assert ours == theirs

@@ -42,14 +42,14 @@ class InOrder(Node):
         return SKIPPED if skipped == len(self.children) else self.passes
 
 
-class AllInOrder(InOrder, composites.Sequence):
+class SkippableSequence(InOrder, composites.Sequence):
     """Sequence of the engine."""
 
     def __init__(self, name: str, children: Sequence[Behaviour]) -> None:
         super().__init__(name, children, memory=True)
 
 
-class AnyInOrder(InOrder, composites.Selector):
+class SkippableFallback(InOrder, composites.Selector):
     """Fallback of the engine."""
 
     passes = FAILURE
@@ -58,7 +58,7 @@ class AnyInOrder(InOrder, composites.Selector):
         super().__init__(name, children, memory=True)
 
 
-class SequenceWithMemory(AllInOrder):
+class SequenceWithMemory(SkippableSequence):
     """A sequence that goes on with the child that failed or was stopped."""
 
     remembers = True

@@ -210,8 +210,8 @@ _SKIPS: dict[str, Callable[[list[bool]], bool]] = {
 
 _INTERRUPTS = (("interrupts", Name("interrupts")),)
 _OURS = {
-    "Sequence": "AllInOrder",
-    "Fallback": "AnyInOrder",
+    "Sequence": "SkippableSequence",
+    "Fallback": "SkippableFallback",
     **{id: id for id in ("SequenceWithMemory", "IfThenElse", "PipelineSequence", "RoundRobin", "SubTree")},
     **{id: id for id in ("Inverter", "ForceSuccess", "ForceFailure", "KeepRunningUntilFailure")},
 }
