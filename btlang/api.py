@@ -9,7 +9,7 @@ from functools import cache, partial
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.frontends.mission import DEFAULT_PARSER, read_mission
 from btlang.garbage import no_collection
-from btlang.passes import compile_mission
+from btlang.passes import checked, compile_mission
 from btlang.passes.lint import lint
 from btlang.text.source import Source, Span
 from btlang.tree.ast import Fact, Mission, all_facts
@@ -29,7 +29,6 @@ if TYPE_CHECKING:
     from btlang.robots.simulation import Simulation
     from btlang.robots.stages import MakeStage
     from btlang.robots.world import World
-    from btlang.robots.world_file import WorldError
     from btlang.run.controls import Controls
     from btlang.run.events import Sink
     from btlang.run.runner import Outcome, Runner
@@ -46,16 +45,22 @@ def parse_tree(
     parser: str = DEFAULT_PARSER,
     keywords: Sequence[str | Entry | Callable[..., Any]] = (),
     world: str | None = None,
+    main: str = "",
 ) -> RunnableTree:
-    """Compiles a mission in English.
+    """Compiles a mission in English, or a tree in XML of BehaviorTree.CPP: a text that begins with `<`.
 
     `parser` is "shunting-yard" or "lark" (both read the same); `keywords` are paths of keyword files, names of
     installed packs, or functions made words by `action` or `condition`; `world` is the path of a world file, by
-    default the world that ships. Raises MissionError, which holds every diagnostic.
+    default the world that ships; `main` is the ID of the tree to run, where XML has several. Raises MissionError, which
+    holds every diagnostic.
     """
     source = Source(text) if isinstance(text, str) else text
     with no_collection:
         vocabulary = world_vocabulary(keywords, world)
+        if source.text.lstrip("\ufeff \t\r\n")[:1] == "<":  # as no mission begins
+            from btlang.frontends.btcpp.reader import read_xml
+
+            return RunnableTree(checked(read_xml(source, main), vocabulary), vocabulary, world)
         reading = read_mission(source, vocabulary, parser)
         tree = compile_mission(reading.mission, vocabulary)
         warnings = lint(reading.mission, tree, vocabulary, reading.warnings)
@@ -94,7 +99,9 @@ def _names_by_type(world: str | None) -> dict[str, tuple[str, ...]]:
     try:
         names = world_names(world)
     except WorldError as error:
-        raise _world_problem(error) from None
+        from btlang.robots.world_problem import world_problem
+
+        raise world_problem(error) from None
     return {"place": names.places, "person": names.people, "object": names.objects}
 
 
@@ -108,11 +115,12 @@ def load_simulation(world: str | None = None) -> Simulation:
 def read_world(world: str | None = None) -> World:
     """The world in a file, by default the world that ships. Raises MissionError (BT070)."""
     from btlang.robots.world_file import WorldError, load_world
+    from btlang.robots.world_problem import world_problem
 
     try:
         return load_world(world)
     except WorldError as error:
-        raise _world_problem(error) from None
+        raise world_problem(error) from None
 
 
 class RunnableTree:
@@ -374,15 +382,3 @@ class RunnableTree:
         if node.children or node.id not in self.vocabulary.entries:
             return described(node)
         return f"{node.id}: {self.label(node)}"
-
-
-def _world_problem(error: WorldError) -> MissionError:
-    from btlang.diagnostics.reading import read_source
-
-    try:
-        source = read_source(error.path)
-    except MissionError:
-        source = Source("", error.path)
-    start = source.offset(error.line or 1)
-    end = start + len(source.line(error.line).rstrip()) if error.line and source.text else start
-    return MissionError([diagnostic("BT070", Span(source, start, end), reason=error.message)])

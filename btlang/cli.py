@@ -165,7 +165,8 @@ def _explain_mission(options: argparse.Namespace) -> int:
     from shutil import get_terminal_size
 
     width = get_terminal_size((100, 24)).columns
-    print(_tree(options).explain(min(width, WIDEST)))
+    tree = _tree(options)
+    print(tree if tree.mission is None else tree.explain(min(width, WIDEST)))
     return SUCCESS
 
 
@@ -245,7 +246,7 @@ _VERBS = {
 def _tree(options: argparse.Namespace) -> RunnableTree:
     """Compiles what the options name; warnings go to the report."""
     source = Source(options.text, "<command line>") if options.text is not None else read_source(options.file)
-    tree = parse_tree(source, parser=options.parser, keywords=options.keywords, world=options.world)
+    tree = parse_tree(source, parser=options.parser, keywords=options.keywords, world=options.world, main=options.main)
     for warning in tree.warnings:
         options.report.add([warning])
     return tree

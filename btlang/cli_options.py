@@ -37,7 +37,7 @@ def parsed(arguments: Sequence[str] | None) -> argparse.Namespace:
 
 
 _DEFAULTS: dict[str, Any] = {
-    "keywords": [], "world": None, "parser": DEFAULT_PARSER, "speed": "real", "format": "text"
+    "keywords": [], "world": None, "parser": DEFAULT_PARSER, "speed": "real", "format": "text", "main": ""
 }  # fmt: skip
 
 
@@ -62,6 +62,7 @@ def _mission_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--format", choices=FORMATS, default="text", help="of messages: text, or json for programs (default: text)"
     )
+    parser.add_argument("--main", default="", metavar="ID", help="tree to take of an XML file that has several")
     text = parser.add_mutually_exclusive_group(required=True)
     text.add_argument("file", nargs="?", metavar="FILE", help="mission, or - for standard input")
     text.add_argument("-c", dest="text", metavar="TEXT", help="mission as text")

@@ -40,7 +40,11 @@ def compile_mission(mission: Mission, vocabulary: Vocabulary, *, needs_command: 
         example = mission.definitions[-1].name if mission.definitions else "move forward 1 m"
         raise MissionError([diagnostic("BT005", mission.span, example=example)])
     root = Node("AlwaysSuccess") if mission.body is None else lower(mission.body, scope).node
-    tree = Tree(root, tuple(subtrees))
+    return checked(Tree(root, tuple(subtrees)), vocabulary)
+
+
+def checked(tree: Tree, vocabulary: Vocabulary) -> Tree:
+    """The tree itself. Raises MissionError with everything that the passes find."""
     problems = [problem for check in PASSES for problem in check(tree, vocabulary)]
     if problems:
         raise MissionError(problems)
