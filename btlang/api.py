@@ -47,7 +47,7 @@ def parse_tree(
     world: str | None = None,
     main: str = "",
 ) -> RunnableTree:
-    """Compiles a mission in English, or a tree in XML of BehaviorTree.CPP: a text that begins with `<`.
+    """Compiles a mission in English, or a tree: a text that begins with `<` is XML of BehaviorTree.CPP, with `{` JSON.
 
     `parser` is "shunting-yard" or "lark" (both read the same); `keywords` are paths of keyword files, names of
     installed packs, or functions made words by `action` or `condition`; `world` is the path of a world file, by
@@ -57,14 +57,24 @@ def parse_tree(
     source = Source(text) if isinstance(text, str) else text
     with no_collection:
         vocabulary = world_vocabulary(keywords, world)
-        if source.text.lstrip("\ufeff \t\r\n")[:1] == "<":  # as no mission begins
-            from btlang.frontends.btcpp.reader import read_xml
-
-            return RunnableTree(checked(read_xml(source, main), vocabulary), vocabulary, world)
+        start = source.text.lstrip("\ufeff \t\r\n")[:1]
+        if start in ("<", "{"):  # as no mission begins
+            tree = _read_data(source, start, main)
+            return RunnableTree(checked(tree, vocabulary), vocabulary, world)
         reading = read_mission(source, vocabulary, parser)
         tree = compile_mission(reading.mission, vocabulary)
         warnings = lint(reading.mission, tree, vocabulary, reading.warnings)
     return RunnableTree(tree, vocabulary, world, warnings, mission=reading.mission)
+
+
+def _read_data(source: Source, start: str, main: str) -> Tree:
+    if start == "<":
+        from btlang.frontends.btcpp.reader import read_xml
+
+        return read_xml(source, main)
+    from btlang.backends.json_tree import read_json
+
+    return read_json(source)
 
 
 def format_mission(

@@ -28,7 +28,7 @@ def tree_problems(
     bind: Callable[[str], LeafBinding | None] | None = None,
     services: Mapping[str, Any] = {},
 ) -> list[Diagnostic]:
-    """Unknown leaves (BT130) and nodes (BT131), subtrees (BT132), and whatever the engine would refuse (BT133).
+    """Unknown leaves (BT130) and nodes (BT131), subtrees (BT126), and whatever the engine would refuse (BT132).
 
     `bind` and `services` are those of a run, by default what a keyword entry says, without the robot: a `call` that
     cannot be loaded here is no problem then, as it may be there on the robot.
@@ -47,9 +47,9 @@ def _told(error: EngineError, tree: Tree, vocabulary: Vocabulary, entries: dict[
     span = node.span or Span(Source(""), 0, 0)
     if isinstance(error, UnknownSubTree):
         near = nearest(node.port("ID").lower(), [name for name, _ in tree.subtrees])
-        return diagnostic("BT132", span, name=node.port("ID"), help=_near(near))
+        return diagnostic("BT126", span, name=node.port("ID"), help=_near(near))
     if not isinstance(error, UnknownNode):
-        return diagnostic("BT133", span, id=node.id, reason=error.message)
+        return diagnostic("BT132", span, id=node.id, reason=error.message)
     if node.children:
         near = nearest(node.id.lower(), [id for id, kind in NODE_TYPES.items() if kind.most])
         return diagnostic("BT131", span, id=node.id, help=_near(near))

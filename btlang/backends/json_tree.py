@@ -7,6 +7,7 @@ have to nest as deep as a tree does.
 from __future__ import annotations
 
 import os
+import re
 
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.english.phrase import phrase_of
@@ -82,58 +83,81 @@ def _model(model: NodeModel) -> dict[str, Any]:
 
 
 def read_json(text: str | Source) -> Tree:
-    """The tree of a document. Raises MissionError (BT134) where it is no such document."""
+    """The tree of a document, with spans of the ids there. Raises MissionError (BT133) where it is no such document."""
     import json
 
     source = Source(text) if isinstance(text, str) else text
     try:
-        return _tree(json.loads(source.text))
+        return _tree(json.loads(source.text), _Places(source))
     except json.JSONDecodeError as error:
         at, reason = error.pos, f"it is not JSON: {error.msg}"
     except RecursionError:
         at, reason = 0, "it is nested too deep"
     except _Wrong as error:
         at, reason = 0, str(error)
-    raise MissionError([diagnostic("BT134", Span(source, at, at), reason=reason)])
+    raise MissionError([diagnostic("BT133", Span(source, at, at), reason=reason)])
 
 
 class _Wrong(Exception):
     """The document does not hold a tree; the message says where and why."""
 
 
-def _tree(document: Any) -> Tree:
+class _Places:
+    """Finds where the ids of nodes stand, one after the other: readers of JSON give no places."""
+
+    def __init__(self, source: Source) -> None:
+        self._source = source
+        self._at = 0
+
+    def next(self, id: str) -> Span | None:
+        """None where it is spelled with escapes, or the keys stand in an order in which it is not found."""
+        found = re.compile(rf'"id"\s*:\s*"{re.escape(id)}"').search(self._source.text, self._at)
+        if found is None:
+            self._at = len(self._source.text)  # else each node after it would search the rest again
+            return None
+        self._at = found.end()
+        return Span(self._source, found.start(), found.end())
+
+
+def _tree(document: Any, places: _Places) -> Tree:
     if _of(document, dict, "the document").get("format") != FORMAT:
         raise _Wrong(f'"format" is not {FORMAT}')
     trees = _of(document.get("trees"), list, '"trees"')
     if not trees:
         raise _Wrong('"trees" holds no tree')
-    read = [_root(item, f"tree {at}") for at, item in enumerate(trees)]
+    read = [_root(item, f"tree {at}", places) for at, item in enumerate(trees)]
     models = [
         _read_model(item, f"model {at}") for at, item in enumerate(_of(document.get("models", []), list, "models"))
     ]
     return Tree(read[0][1], tuple(read[1:]), read[0][0], tuple(models))
 
 
-def _root(item: Any, where: str) -> tuple[str, Node]:
+def _root(item: Any, where: str, places: _Places) -> tuple[str, Node]:
     """The name and the root of a tree. Children come after their parents, so that the last node is made first."""
     name = _of(_of(item, dict, where).get("name", ""), str, f"the name of {where}")
     nodes = _of(item.get("nodes"), list, f'"nodes" of {where}')
+    ids = [
+        _of(_of(node, dict, f"node {at} of {where}").get("id"), str, f"the id of node {at} of {where}")
+        for at, node in enumerate(nodes)
+    ]
+    spans = [places.next(id) for id in ids]
     made: dict[int, Node] = {}
     for at in range(len(nodes) - 1, -1, -1):
         place = f"node {at} of {where}"
-        node = _of(nodes[at], dict, place)
+        node = nodes[at]
         children = _of(node.get("children", []), list, f"children of {place}")
         for child in children:
             if type(child) is not int or not at < child < len(nodes):
-                raise _Wrong(f"children of {place} come after it in the list: {child!r} does not")
+                raise _Wrong(f"{place} has the child {child!r}, and children are nodes after it in the list")
             if child not in made:
                 raise _Wrong(f"node {child} of {where} is the child of two nodes")
         ports = _of(node.get("ports", {}), dict, f"ports of {place}")
         made[at] = Node(
-            _of(node.get("id"), str, f"the id of {place}"),
+            ids[at],
             tuple([made.pop(child) for child in children]),
             tuple((port, _of(text, str, f"the port {port} of {place}")) for port, text in ports.items()),
             _of(node.get("name", ""), str, f"the name of {place}"),
+            spans[at],
         )
     if len(made) != 1:
         raise _Wrong(f"{where} has {len(made)} roots instead of one")

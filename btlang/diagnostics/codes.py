@@ -120,10 +120,9 @@ _ALL = (
     Code("BT129", "'{words}' cannot stand in XML: {reason}."),
     Code("BT130", "No keyword entry has the id '{id}'."),
     Code("BT131", "There is no node '{id}' that has children."),
-    Code("BT132", "There is no subtree '{name}'."),
-    Code("BT133", "The node '{id}' cannot be used so: {reason}."),
-    Code("BT134", "This is no tree in JSON: {reason}.", "Its form is in docs/targets.md."),
-    Code("BT135", "The node '{id}' cannot be told to {target}: {reason}."),
+    Code("BT132", "The node '{id}' cannot be used so: {reason}."),
+    Code("BT133", "This is no tree in JSON: {reason}.", "Its form is in docs/targets.md."),
+    Code("BT134", "The node '{id}' cannot be told to {target}: {reason}."),
 )  # fmt: skip
 
 CODES = {entry.code: entry for entry in _ALL}

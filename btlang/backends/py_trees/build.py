@@ -43,8 +43,8 @@ def to_py_trees(
     leaves take more than one tick, by default those that are no conditions. `now` is the time in seconds, `values` are
     those of the mission.
 
-    Raises MissionError with all that is wrong with the tree (BT131 to BT133), a leaf that has no keyword entry or
-    cannot be bound (BT133), or all that cannot be told to py_trees (BT135).
+    Raises MissionError with all that is wrong with the tree (BT126, BT131, BT132), a leaf that has no keyword entry or
+    cannot be bound (BT132), or all that cannot be told to py_trees (BT134).
     """
     plan = plan_of(tree, vocabulary, is_action)
     known: dict[str, Any] = {
@@ -76,7 +76,7 @@ def to_py_trees(
         return fold(plan.root, lambda part: part.children, made)
     except EngineError as error:
         span = error.node.span or Span(Source(""), 0, 0)
-        raise MissionError([diagnostic("BT133", span, id=error.node.id, reason=error.message)]) from None
+        raise MissionError([diagnostic("BT132", span, id=error.node.id, reason=error.message)]) from None
 
 
 _CLASSES: dict[str, Callable[..., Behaviour]] = {

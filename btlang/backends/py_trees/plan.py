@@ -68,7 +68,7 @@ class _Untold(Exception):
 def plan_of(tree: Tree, vocabulary: Vocabulary, is_action: Callable[[Node], bool] | None = None) -> Plan:
     """The plan of a tree, each use of a subtree for itself. `is_action` says which leaves take more than one tick.
 
-    Raises MissionError with all that is wrong with the tree (BT131 to BT133), or all that cannot be told (BT135).
+    Raises MissionError with all that is wrong with the tree (BT126, BT131, BT132), or all that cannot be told (BT134).
     """
     problems = tree_problems(tree, vocabulary, lambda id: LeafBinding(_anything))
     if problems:
@@ -142,7 +142,7 @@ class _Planner:
                 part = self._told(site, below, children)
         except _Untold as problem:
             span = node.span or Span(Source(""), 0, 0)
-            self._problems.append(diagnostic("BT135", span, id=node.id, target="py_trees", reason=str(problem)))
+            self._problems.append(diagnostic("BT134", span, id=node.id, target="py_trees", reason=str(problem)))
         self._uses.add(part.make)
         if part.starts:
             self._uses.add("interrupting")
