@@ -3,7 +3,7 @@
 BT00x reading, BT01x words, BT02x and BT03x how a sentence is put together, BT04x what it means,
 BT05x what is allowed but probably not meant, BT06x keyword files,
 BT07x worlds, BT08x the Python behind the words and what else has to be installed, BT09x the codes themselves,
-BT10x ROS 2, BT11x missions as ROS 2 nodes, BT12x trees in XML.
+BT10x ROS 2, BT11x missions as ROS 2 nodes, BT12x trees in XML, BT13x trees that were not written as missions.
 
 BT05x and others that are warnings have a `name`, by which a mission silences them: `# allow: two readings`.
 Each code has a page in `pages/`, which `btc explain` prints.
@@ -118,6 +118,11 @@ _ALL = (
     Code("BT127", "There are two trees '{name}'.", "Give each of them an ID of its own."),
     Code("BT128", "'{path}' cannot be included: {reason}."),
     Code("BT129", "'{words}' cannot stand in XML: {reason}."),
+    Code("BT130", "No keyword entry has the id '{id}'."),
+    Code("BT131", "There is no node '{id}' that has children."),
+    Code("BT132", "The node '{id}' cannot be used so: {reason}."),
+    Code("BT133", "This is no tree in JSON: {reason}.", "Its form is in docs/targets.md."),
+    Code("BT134", "The node '{id}' cannot be told to {target}: {reason}."),
     Code("BT140", "There is no subtree '{name}'.", "Define it, at the left margin: \"{name}\" means: ..."),
     Code("BT141", "I cannot read '{words}' any further: {wanted} is needed.", "Write for example: do \"OpenGripper\" with width 0.05"),
     Code("BT142", "This tree cannot be said in English: {reason}."),

@@ -16,7 +16,7 @@ from btlang.vocabulary.vocabulary import Vocabulary
 _BARE = re.compile(r"-?\d+(\.\d+)?|\{[A-Za-z_][A-Za-z0-9_]*\}")
 _WORDS = re.compile(r"[a-z][a-z0-9]*(_[a-z][a-z0-9]*)*")
 # A text as pieces: what double quotes can hold, marks that would end it, and what no quotes can hold.
-_PIECE = re.compile(r'(?P<plain>[^"“”„«»\x00-\x1f\x7f\ufeff]+)|(?P<marks>["“”„«»]+)|(?P<odd>.)', re.DOTALL)  # noqa: RUF001
+_PIECE = re.compile(r'(?P<plain>[^"“”„«»\x00-\x1f\x7f\ufeff]+)|(?P<marks>["“”„«»]+)|(?P<odd>.)', re.DOTALL)
 
 
 def exact(node: ast.Exact, _parts: list[Said], speaker: Speaker) -> Said:

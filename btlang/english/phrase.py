@@ -14,6 +14,8 @@ from btlang.vocabulary.trie import TrieNode, longest
 from btlang.vocabulary.values import ValueType, with_unit
 from btlang.vocabulary.vocabulary import DEFINING, Vocabulary
 
+_MARKUP = ("<", '"')  # what XML and JSON begin with, and no sentence
+
 
 def phrase_of(node: Node, vocabulary: Vocabulary) -> str:
     """The English of a node: `move forward 2 m`, `wait 5 s`, the name of a subtree; else `Id port=value`.
@@ -23,7 +25,7 @@ def phrase_of(node: Node, vocabulary: Vocabulary) -> str:
     if node.id == "SubTree":
         return _filled_name(node)
     computed = node.id in ("Script", "ScriptCondition") or any(text.startswith("{_") for _, text in node.ports)
-    if node.span is not None and (computed or node.port(MEASURED)):
+    if node.span is not None and (computed or node.port(MEASURED)) and node.span.text[:1] not in _MARKUP:
         return node.span.text
     if node.id == "Sleep":
         return f"{vocabulary.word('wait')} {seconds(node.port('msec'))}"

@@ -39,7 +39,7 @@ _OWN_LEAVES = ("FollowPath", "open_gripper", "2fast", "Do It", "IsOk", "Then", "
 texts = st.one_of(
     st.sampled_from(
         ["", "1", "1.0", "-5", "{key}", "{a b}", "{=}", "true", "x := 1; y := 'a'", 'say "hi"', "“so”", "it's"]
-    ),  # noqa: RUF001
+    ),
     st.text(st.characters(codec="utf-8", exclude_categories=["Cs"]), max_size=8),
 )
 _keys = st.one_of(

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import pytest
 from hypothesis import given, note, settings
 
 from btlang.api import world_vocabulary
@@ -11,7 +10,7 @@ from btlang.frontends.mission import read_mission
 from btlang.passes import lower_mission
 from btlang.text.source import Source
 from btlang.tree.dump import plain
-from btlang.tree.node import Node, Tree
+from btlang.tree.node import Tree
 from tests.backends.any_tree import trees
 
 PARSERS = ("shunting-yard", "lark")

@@ -79,14 +79,14 @@ class Raiser:
             for made in forms(node, children, self._checked) if forms is not None else ():
                 if self._checked.says(made, node):
                     return made
-        made: ast.Ast | None = None
+        said: ast.Ast | None
         if isinstance(condition, ast.Not) or (condition is not None and not children):
-            made = ast.Check(condition, NOWHERE) if not isinstance(condition, ast.Exact) else None
+            said = ast.Check(condition, NOWHERE) if not isinstance(condition, ast.Exact) else None
         elif node.id == "SubTree":
-            made = self._name(node)
+            said = self._name(node)
         else:
-            made = self._phrase(node, "action")
-        return made if made is not None and self._checked.says(made, node) else None
+            said = self._phrase(node, "action")
+        return said if said is not None and self._checked.says(said, node) else None
 
     def _condition(self, node: Node, children: tuple[Raised, ...]) -> ast.Ast | None:
         made: ast.Ast | None = None
