@@ -13,7 +13,8 @@ class Scope:
     """State of lowering one mission, whose defined names and types of values are given.
 
     `skipping` are the names whose trees can end SKIPPED, `free` the keys of the mission's values that the tree of a
-    name needs from outside, in their order. `bodies` are the subtrees, used ones before their users.
+    name needs from outside, in their order. `bodies` are the subtrees, used ones before their users. `made` is how many
+    keys of its own it has made.
     """
 
     def __init__(self, names: Iterable[str], types: Mapping[str, ValueType]) -> None:
@@ -22,7 +23,7 @@ class Scope:
         self.free: dict[str, tuple[str, ...]] = {}
         self.bodies: list[tuple[str, Node]] = []
         self._names = set(names)
-        self._keys = 0
+        self.made = 0
 
     def is_number(self, kind: str) -> bool:
         """Whether values of a type are numbers."""
@@ -30,8 +31,8 @@ class Scope:
 
     def new_key(self) -> str:
         """A key on the blackboard that no mission can name: its names start with a letter."""
-        self._keys += 1
-        return f"_{self._keys}"
+        self.made += 1
+        return f"_{self.made}"
 
     def new_name(self, key: str) -> str:
         """A name for the body of a loop over values."""

@@ -12,7 +12,8 @@ from btlang.passes.scope import Scope
 from btlang.tree.node import Node
 from btlang.vocabulary.references import Reference, pieces
 
-_OPERATORS = {"below": "<", "above": ">", "at_least": ">=", "at_most": "<=", "equal": "=="}
+OPERATORS = {"below": "<", "above": ">", "at_least": ">=", "at_most": "<=", "equal": "=="}
+"""What a script writes for each comparison."""
 Ports = tuple[tuple[str, str], ...]
 
 
@@ -83,7 +84,7 @@ def comparison(key: str, arguments: Iterable[tuple[str, str]], kind: str, scope:
     if scope.is_number(kind) and any(not _is_number(value) for _, value in values):
         number = scope.new_key()  # two numbers that are held as texts would be compared as texts
         before, key = f"{as_number(number, key)}; ", number
-    return scripts, before + " && ".join(f"{key} {_OPERATORS[way]} {value}" for way, value in values)
+    return scripts, before + " && ".join(f"{key} {OPERATORS[way]} {value}" for way, value in values)
 
 
 def _plain_or_key(text: str) -> str:

@@ -12,7 +12,7 @@ from btlang.vocabulary.entry import COMPARISONS, About, Entry, Meaning, SlotSpec
 from btlang.vocabulary.language_tables import EXPLAINED
 from btlang.vocabulary.pattern import Form, PatternError, Slot, forms
 from btlang.vocabulary.trie import TrieNode, add, collisions
-from btlang.vocabulary.values import Values, ValueType
+from btlang.vocabulary.values import Known, Values, ValueType
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -99,6 +99,12 @@ class Vocabulary:
     def with_references(self) -> Vocabulary:
         """The same words, where any name in braces is read as a value."""
         return self._with(self.values.with_references())
+
+    def with_known(self, known: Mapping[str, Known]) -> Vocabulary:
+        """The same words, where these values are known by their keys."""
+        values = self.values.for_reading()
+        values.set_known(known)
+        return self._with(values)
 
     def _with(self, values: Values) -> Vocabulary:
         made = Vocabulary.__new__(Vocabulary)  # what `copy` does, which takes long to import

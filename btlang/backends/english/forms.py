@@ -6,7 +6,7 @@ import re
 from collections.abc import Callable, Iterator
 from decimal import Decimal
 
-from btlang.backends.english.raised import NOWHERE, Checked, Raised
+from btlang.backends.english.raised import NOWHERE, REFERENCE, Checked, Raised
 from btlang.tree import ast
 from btlang.tree.node import Node
 
@@ -115,10 +115,11 @@ def _repeat(node: Node, children: tuple[Raised, ...], checked: Checked) -> Itera
         body, timer = children[0].children
         every = _round(body, checked)
         if every is not None and timer.node.id == "Sleep":
-            yield from (ast.Every(seconds, every, NOWHERE) for seconds in _seconds(timer.node.port("msec")))
+            yield from (ast.Every(seconds, every, NOWHERE) for seconds in _seconds(timer.node.port("msec"), checked))
     part = _round(children[0], checked)
-    if part is not None and _ROUNDS.fullmatch(rounds):
-        yield ast.Repeat(rounds, part, NOWHERE)
+    number = _rounds(rounds, checked)
+    if part is not None and number is not None:
+        yield ast.Repeat(number, part, NOWHERE)
 
 
 def _retry(node: Node, children: tuple[Raised, ...], checked: Checked) -> Iterator[ast.Ast]:
@@ -129,8 +130,9 @@ def _retry(node: Node, children: tuple[Raised, ...], checked: Checked) -> Iterat
     if attempts == _ENDLESS and condition is not None:
         yield ast.WaitUntil(condition, NOWHERE)
     part = _round(children[0], checked)
-    if part is not None and _ROUNDS.fullmatch(attempts):
-        yield ast.Retry(attempts, part, NOWHERE)
+    number = _rounds(attempts, checked)
+    if part is not None and number is not None:
+        yield ast.Retry(number, part, NOWHERE)
 
 
 def _ignoring_failure(_node: Node, children: tuple[Raised, ...], _checked: Checked) -> Iterator[ast.Ast]:
@@ -144,30 +146,39 @@ def _parallel(node: Node, children: tuple[Raised, ...], checked: Checked) -> Ite
         body = _round(again[0], checked) if len(again) == 1 else None
         if body is not None:
             timer = children[0].node.port("msec")
-            yield from (ast.For(seconds, body, NOWHERE) for seconds in _seconds(timer))
+            yield from (ast.For(seconds, body, NOWHERE) for seconds in _seconds(timer, checked))
     yield from _chain("parallel")(node, children, checked)
 
 
 def _within(node: Node, children: tuple[Raised, ...], checked: Checked) -> Iterator[ast.Ast]:
     part = _round(children[0], checked) if len(children) == 1 and not children[0].in_lines else None
     if part is not None:
-        yield from (ast.Within(seconds, part, NOWHERE) for seconds in _seconds(node.port("msec")))
+        yield from (ast.Within(seconds, part, NOWHERE) for seconds in _seconds(node.port("msec"), checked))
 
 
-def _delay(node: Node, children: tuple[Raised, ...], _checked: Checked) -> Iterator[ast.Ast]:
+def _delay(node: Node, children: tuple[Raised, ...], checked: Checked) -> Iterator[ast.Ast]:
     if len(children) == 1:
-        times = _seconds(node.port("delay_msec"))
+        times = _seconds(node.port("delay_msec"), checked)
         yield from (ast.Delay(seconds, children[0].part, NOWHERE) for seconds in times)
 
 
-def _wait(node: Node, _children: tuple[Raised, ...], _checked: Checked) -> Iterator[ast.Ast]:
-    yield from (ast.Wait(seconds, NOWHERE) for seconds in _seconds(node.port("msec")))
+def _wait(node: Node, _children: tuple[Raised, ...], checked: Checked) -> Iterator[ast.Ast]:
+    yield from (ast.Wait(seconds, NOWHERE) for seconds in _seconds(node.port("msec"), checked))
 
 
-def _seconds(msec: str) -> Iterator[str]:
-    """Milliseconds of a port as seconds, as precise."""
+def _seconds(msec: str, checked: Checked) -> Iterator[str]:
+    """Milliseconds of a port as seconds, as precise; those that a script computes as the value that they come from."""
     if _WHOLE.fullmatch(msec):
         yield f"{(Decimal(msec) / 1000).normalize():f}"
+    elif msec[:1] == "{":
+        text = checked.text(msec)
+        if text is not None and REFERENCE.fullmatch(text):
+            yield text
+
+
+def _rounds(port: str, checked: Checked) -> str | None:
+    """A number of rounds that can be said."""
+    return checked.text(port) if port[:1] == "{" or _ROUNDS.fullmatch(port) else None
 
 
 def _nothing(_node: Node, _children: tuple[Raised, ...], _checked: Checked) -> Iterator[ast.Ast]:

@@ -5,14 +5,20 @@ So the forms in forms.py are only proposals, and `btlang/passes/lower.py` alone 
 
 from __future__ import annotations
 
+import re
+from collections.abc import Mapping
+
+from btlang.backends.english.kinds import Around
 from btlang.passes.lower import Lowered, lower_one
 from btlang.passes.scope import Scope
 from btlang.record import Record
 from btlang.text.source import Source, Span
 from btlang.tree import ast
 from btlang.tree.node import Node
+from btlang.vocabulary.references import keys_in, plain
 
 NOWHERE = Span(Source(""), 0, 0)
+REFERENCE = re.compile(r"\{[^{}]+\}")
 
 
 class Raised(Record):
@@ -38,10 +44,16 @@ class Raised(Record):
 
 
 class Checked:
-    """What each piece of syntax is lowered to, for the nodes that were raised so far."""
+    """What each piece of syntax is lowered to, for the nodes that were raised so far.
 
-    def __init__(self, scope: Scope) -> None:
+    `around` is what is known where the node stands that is being raised, `texts` what is computed for it. The scope
+    makes the keys that reading makes, as nodes are raised in the order in which they are read.
+    """
+
+    def __init__(self, scope: Scope, around: Around) -> None:
         self.scope = scope
+        self.around = around
+        self.texts: Mapping[str, str] = {}
         self._lowered: dict[int, tuple[ast.Ast, Lowered]] = {}  # with its syntax, whose id is then that of no other
 
     def lowered(self, item: ast.Ast) -> Lowered:
@@ -52,11 +64,20 @@ class Checked:
 
     def says(self, item: ast.Ast, node: Node) -> bool:
         """Whether a piece of syntax means just this node, which is then noted."""
+        made = self.scope.made
         lowered = self.lowered(item)
         if not _same(lowered.node, node):
+            self.scope.made = made
             return False
         self._lowered[id(item)] = item, Lowered(node, lowered.can_skip)
         return True
+
+    def text(self, port: str) -> str | None:
+        """What the text of a port is said as, with values of the mission in braces; None where one has no name."""
+        text = self.texts.get(port[1:-1]) if port[:1] == "{" else None
+        if text is None:
+            text = port if REFERENCE.fullmatch(port) else plain(port)
+        return text if all(key in self.around.kinds for key in keys_in(text)) else None
 
     def can_skip(self, item: ast.Ast) -> bool:
         """Whether it can end SKIPPED, as lowering sees it."""

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterator, Mapping
 
+from btlang.backends.english.code import Computed, computed
 from btlang.backends.english.forms import FORMS
+from btlang.backends.english.kinds import Around
+from btlang.backends.english.known import Known
+from btlang.backends.english.loops import Loop
 from btlang.backends.english.raised import NOWHERE, Checked, Raised
+from btlang.backends.english.values import assigned, can_say, compared, remembered, texts_of
 from btlang.english.phrase import leaf_words
 from btlang.english.speaker import Speaker
 from btlang.passes.scope import Scope
+from btlang.record import Record
 from btlang.tree import ast
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import fold
@@ -18,46 +24,74 @@ from btlang.vocabulary.vocabulary import Vocabulary
 _CONDITIONS = frozenset(("ScriptCondition", "WasEntryUpdated"))
 
 
-class Raiser:
-    """Raises the nodes of one tree, with `names` for those of its subtrees that are said as phrases.
+class _Place(Record):
+    """A node, and what is known where it stands."""
 
-    With `natural` False every node is said by its id.
+    node: Node
+    around: Around
+
+
+class Raiser:
+    """Raises the nodes of one tree, of which `known` tells what can be said.
+
+    With `natural` False every node is said by its id. `refused` are the bodies of loops that turned out to be none.
     """
 
-    def __init__(self, tree: Tree, vocabulary: Vocabulary, names: Iterable[str], *, natural: bool) -> None:
+    def __init__(self, tree: Tree, vocabulary: Vocabulary, known: Known, *, natural: bool) -> None:
         self._vocabulary = vocabulary
         self._natural = natural
-        self.names = frozenset(names)
-        self.speaker = Speaker(vocabulary, sorted(self.names))
-        self._kinds = {model.id: model.kind for model in tree.models}
+        self._known = known
+        self.refused: set[str] = set()
+        heads = [ast.Definition(name, known.parameters(name), ast.Nothing(NOWHERE), NOWHERE, NOWHERE)
+                 for name in sorted(known.names)]  # fmt: skip
+        self.speaker = Speaker(vocabulary, heads)
+        self._node_kinds = {model.id: model.kind for model in tree.models}
         self._conditions: set[str] = set()  # the names that stand for conditions
-        self._checked = Checked(Scope((name for name, _ in tree.subtrees), vocabulary.types))
+        bodies = {loop.name for loop in known.loops.values()}
+        names = [name for name, _ in tree.subtrees if name not in bodies]
+        self._checked = Checked(Scope(names, vocabulary.types), known.around(""))
 
     def definition(self, name: str, root: Node) -> ast.Definition:
         """A named subtree; those that it uses have been raised before."""
-        raised = self.raised(root)
-        is_natural = name in self.names
+        raised = self.raised(root, name)
+        is_natural = name in self._known.names
         body = raised.body
         if is_natural and raised.is_condition and raised.condition is not None:
             body = raised.condition
             self._conditions.add(name)
-        made = ast.Definition(name, (), body, NOWHERE, NOWHERE, not is_natural)
+        made = ast.Definition(name, self._known.parameters(name), body, NOWHERE, NOWHERE, not is_natural)
         if is_natural:
             self._checked.scope.define(made, self._checked.can_skip(body))
         return made
 
-    def raised(self, root: Node) -> Raised:
-        """What a tree is said as."""
-        return fold(root, lambda node: node.children, self._raise)
+    def raised(self, root: Node, name: str = "") -> Raised:
+        """What a tree is said as; `name` is that of a subtree."""
+        return fold(_Place(root, self._known.around(name)), self._parts, self._raise)
 
-    def _raise(self, node: Node, children: list[Raised]) -> Raised:
-        parts = tuple(children)
+    def _parts(self, place: _Place) -> list[_Place]:
+        """The body of a loop stands where the loop does."""
+        loop = self._known.loops.get(id(place.node))
+        if loop is not None:
+            return [_Place(loop.body, self._known.inside(place.around, loop))]
+        return [_Place(child, place.around) for child in place.node.children]
+
+    def _raise(self, place: _Place, children: list[Raised]) -> Raised:
+        node, parts = place.node, tuple(children)
+        self._checked.around = place.around
+        loop = self._known.loops.get(id(node))
+        if loop is not None:
+            return self._loop(node, loop, parts[0])
+        ways = [(Computed(node, {}), parts)]
+        made = computed(node) if self._natural and not node.name else None
+        if made is not None:
+            ways.insert(0, (made, parts[-1].children))
         exact = self._exact(node, parts)
-        condition = self._condition(node, parts)
-        is_condition = condition is not None and self._is_condition(node, parts)
-        natural = self._natural_form(node, parts, condition if is_condition else None)
+        condition = self._condition(node, ways)
+        is_condition = condition is not None and self._is_condition(made.node if made is not None else node, parts)
+        natural, inner = self._natural_form(node, ways, condition if is_condition else None)
+        is_condition = is_condition and not isinstance(natural, ast.Remember)
         is_rule = natural is not None and node.id == "Whenever"
-        in_lines = any(part.in_lines for part in parts) or is_rule or (natural is None and bool(parts))
+        in_lines = any(part.in_lines for part in inner) or is_rule or (natural is None and bool(parts))
         if natural is None:
             return Raised(node, exact, exact, condition, is_condition, in_lines, parts)
         is_chain = isinstance(natural, ast.Chain) and natural.operator == "sequence"
@@ -70,44 +104,82 @@ class Raiser:
         assert self._checked.says(made, node)
         return made
 
-    def _natural_form(self, node: Node, children: tuple[Raised, ...], condition: ast.Ast | None) -> ast.Ast | None:
-        """None where no form means just this node."""
-        if not self._natural or node.name:
-            return None
-        if children or node.id in FORMS:
-            forms = FORMS.get(node.id)
-            for made in forms(node, children, self._checked) if forms is not None else ():
-                if self._checked.says(made, node):
-                    return made
-        said: ast.Ast | None
-        if isinstance(condition, ast.Not) or (condition is not None and not children):
-            said = ast.Check(condition, NOWHERE) if not isinstance(condition, ast.Exact) else None
-        elif node.id == "SubTree":
-            said = self._name(node)
-        else:
-            said = self._phrase(node, "action")
-        return said if said is not None and self._checked.says(said, node) else None
+    def _loop(self, node: Node, loop: Loop, body: Raised) -> Raised:
+        """One that does not mean the node is refused, and then all is said anew."""
+        kind = self._known.kind(loop.name, loop.key)
+        values: list[str] = []
+        for one in loop.rounds:
+            self._checked.texts = one.texts
+            text = self._checked.text(one.node.port(loop.key))
+            if text is not None and kind is not None and can_say(text, kind, self._checked):
+                values.append(text)
+        made: ast.Ast = ast.ForEach(loop.key, kind or "", tuple(values), body.part, NOWHERE)
+        if len(values) < len(loop.rounds) or not self._checked.says(made, node):
+            self.refused.add(loop.name)
+            made = ast.Nothing(NOWHERE)
+            return Raised(node, made, made)
+        return Raised(node, made, made, in_lines=body.in_lines)
 
-    def _condition(self, node: Node, children: tuple[Raised, ...]) -> ast.Ast | None:
-        made: ast.Ast | None = None
+    def _natural_form(
+        self, node: Node, ways: list[tuple[Computed, tuple[Raised, ...]]], condition: ast.Ast | None
+    ) -> tuple[ast.Ast | None, tuple[Raised, ...]]:
+        """None where no form means just this node; and the parts that are said in it."""
+        children = ways[-1][1]
+        if not self._natural or node.name:
+            return None, children
+        for way, inner in ways:
+            self._checked.texts = way.texts
+            for made in self._forms(way.node, inner, condition):
+                if self._checked.says(made, node):
+                    return made, inner
+        return None, children
+
+    def _forms(self, node: Node, children: tuple[Raised, ...], condition: ast.Ast | None) -> Iterator[ast.Ast]:
+        """The commands that may say a node, the most natural first."""
+        form = FORMS.get(node.id)
+        if form is not None:
+            yield from form(node, children, self._checked)
+        if children and not isinstance(condition, ast.Not):
+            return
+        if node.id == "Script":
+            yield from assigned(node, self._checked)
+        yield from remembered(node, self._vocabulary.entries.get(node.id, ()), self._checked)
+        if condition is not None:
+            if not isinstance(condition, ast.Exact):
+                yield ast.Check(condition, NOWHERE)
+        elif node.id == "SubTree":
+            yield from self._name(node)
+        elif not children:
+            yield from self._phrase(node, "action")
+
+    def _condition(self, node: Node, ways: list[tuple[Computed, tuple[Raised, ...]]]) -> ast.Ast | None:
         if self._natural and not node.name:
-            inner = [child.condition for child in children if child.condition is not None]
-            if len(inner) == len(children):
-                if node.id == "Inverter" and len(inner) == 1:
-                    made = ast.Not(inner[0], NOWHERE)
-                elif node.id in ("Sequence", "Fallback") and len(inner) > 1:
-                    operator = "all" if node.id == "Sequence" else "any"
-                    made = ast.Chain(operator, tuple(inner), True, NOWHERE)
-            if made is None and not children:
-                made = self._name(node) if node.port("ID") in self._conditions else self._phrase(node, "condition")
-        if made is None or not self._checked.says(made, node):
-            made = self._exact_condition(node) if not children else None
-        return made
+            for way, inner in ways:
+                self._checked.texts = way.texts
+                for made in self._condition_forms(way.node, inner):
+                    if self._checked.says(made, node):
+                        return made
+        return self._exact_condition(node) if not node.children else None
+
+    def _condition_forms(self, node: Node, children: tuple[Raised, ...]) -> Iterator[ast.Ast]:
+        inner = [child.condition for child in children if child.condition is not None]
+        if len(inner) < len(children):
+            return
+        if node.id == "Inverter" and len(inner) == 1:
+            yield ast.Not(inner[0], NOWHERE)
+        elif node.id in ("Sequence", "Fallback") and len(inner) > 1:
+            yield ast.Chain("all" if node.id == "Sequence" else "any", tuple(inner), True, NOWHERE)
+        elif node.id == "ScriptCondition":
+            yield from compared(node, self._checked)
+        elif node.port("ID") in self._conditions:
+            yield from self._name(node)
+        elif not children:
+            yield from self._phrase(node, "condition")
 
     def _exact_condition(self, node: Node) -> ast.Ast | None:
         """None for what is no condition: an action would be asked, and a subtree done."""
         entry = self._vocabulary.entry(node.id)
-        known = self._kinds.get(node.id) or (entry.sort.title() if entry is not None else "")
+        known = self._node_kinds.get(node.id) or (entry.sort.title() if entry is not None else "")
         if known not in ("", "Condition") or node.id == "SubTree" or node.id in FORMS:
             return None
         if not known and node.id in self._vocabulary.nodes and node.id not in _CONDITIONS:
@@ -117,28 +189,33 @@ class Raiser:
         return made
 
     def _is_condition(self, node: Node, children: tuple[Raised, ...]) -> bool:
-        if children:
+        if node.children:
             return all(child.is_condition for child in children)
         if node.id == "SubTree":
             return True
         entry = self._vocabulary.entry(node.id)
-        is_known = self._kinds.get(node.id) == "Condition" or (entry is not None and entry.sort == "condition")
+        is_known = self._node_kinds.get(node.id) == "Condition" or (entry is not None and entry.sort == "condition")
         return is_known or node.id in _CONDITIONS
 
-    def _name(self, node: Node) -> ast.Ast | None:
-        return ast.Name(node.port("ID"), (), NOWHERE) if node.port("ID") in self.names else None
+    def _name(self, node: Node) -> Iterator[ast.Ast]:
+        """A defined name; what else its ports hold are values that it needs."""
+        name = node.port("ID")
+        kinds = dict(self._known.parameters(name))
+        ports = dict(node.ports)
+        if name in self._known.names and kinds.keys() <= ports.keys():
+            said = texts_of([(key, ports[key]) for key in kinds], self._checked)
+            if said is not None and all(can_say(text, kinds[key], self._checked) for key, text in said):
+                yield ast.Name(name, said, NOWHERE)
 
-    def _phrase(self, node: Node, sort: str) -> ast.Ast | None:
-        """None where no phrase is read back as this leaf. A text in braces is left to the exact form."""
-        if any("{" in text or "}" in text for _, text in node.ports):
-            return None
+    def _phrase(self, node: Node, sort: str) -> Iterator[ast.Ast]:
+        """The phrases that are read back as this leaf."""
         for entry in self._vocabulary.entries.get(node.id, ()):
-            if entry.sort == sort and self._words(node, entry):
-                return ast.Phrase(entry, node.ports, NOWHERE)
-        return None
+            said = texts_of(node.ports, self._checked) if entry.sort == sort else None
+            if said is not None and self._words(node.id, dict(said), entry):
+                yield ast.Phrase(entry, said, NOWHERE)
 
-    def _words(self, node: Node, entry: Entry) -> str:
+    def _words(self, node_id: str, texts: Mapping[str, str], entry: Entry) -> str:
         slots = {slot.name for slot in entry.slots}
-        if not all(name in slots for name, _ in node.ports):
+        if not texts.keys() <= slots:
             return ""
-        return leaf_words(node.id, dict(node.ports), self._vocabulary, self.speaker.names, exactly=True)
+        return leaf_words(node_id, texts, self._checked.around.vocabulary, self.speaker.names, exactly=True)

@@ -4,20 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from btlang.backends.english.known import Known, Refused
 from btlang.backends.english.raised import NOWHERE
 from btlang.backends.english.raising import Raiser
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.english.sentence import mission_lines
-from btlang.frontends.definitions import find_definitions
+from btlang.english.speaker import Speaker
 from btlang.frontends.mission import read_mission
 from btlang.passes import lower_mission
 from btlang.text.source import Source
-from btlang.text.words import split
 from btlang.tree.ast import Mission
 from btlang.tree.dump import plain
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.vocabulary import Vocabulary
 
+_LEVELS = ("values", "words", "ids")
+"""How natural a mission is, most first: with values and parameters, without them, all nodes by their ids."""
+_MOST_TRIES = 20
 WIDTH = 100
 """Columns; what would be a longer line becomes a block where it can."""
 
@@ -28,8 +31,9 @@ def to_english(tree: Tree, vocabulary: Vocabulary) -> str:
     Raises MissionError (BT142) for a tree that no text can say, such as one with a line end in the name of a subtree.
     """
     wanted, reason = plain(tree), ""
-    for natural in (True, False):
-        text = "".join(f"{line}\n" for line in _lines(tree, vocabulary, natural))
+    for level in _LEVELS:
+        mission, speaker = _mission(tree, vocabulary, level)
+        text = "".join(f"{line}\n" for line in mission_lines(mission, speaker, WIDTH))
         try:
             mission = read_mission(Source(text), vocabulary, suggest=False).mission
             if plain(lower_mission(mission, vocabulary)) == wanted:
@@ -39,21 +43,20 @@ def to_english(tree: Tree, vocabulary: Vocabulary) -> str:
     raise MissionError([diagnostic("BT142", tree.root.span or NOWHERE, reason=reason or "it reads as another tree")])
 
 
-def _lines(tree: Tree, vocabulary: Vocabulary, natural: bool) -> Iterator[str]:
-    names = [name for name, _ in tree.subtrees if natural and _is_phrase(name, vocabulary)]
-    raiser = Raiser(tree, vocabulary, names, natural=natural)
-    definitions = tuple(raiser.definition(name, root) for name, root in _used_first(tree))
-    mission = Mission(raiser.raised(tree.root).body, definitions, NOWHERE, name=tree.name)
-    yield from mission_lines(mission, raiser.speaker, WIDTH)
-
-
-def _is_phrase(name: str, vocabulary: Vocabulary) -> bool:
-    """Whether words define just this name."""
-    if not all(word.isalnum() for word in name.split(" ")) or name != name.lower():
-        return False
-    text = split(Source(f"{name} {vocabulary.word('define_strong')} {vocabulary.word('nothing')}"), vocabulary.articles)
-    found = find_definitions(text, vocabulary)
-    return not found.problems and [header.name for header in found.headers.values()] == [name]
+def _mission(tree: Tree, vocabulary: Vocabulary, level: str) -> tuple[Mission, Speaker]:
+    """With whatever turns out not to be read back said in another way."""
+    refused = Refused()
+    for _ in range(_MOST_TRIES if level == "values" else 1):
+        known = Known(tree, vocabulary, refused, values=level == "values")
+        raiser = Raiser(tree, vocabulary, known, natural=level != "ids")
+        bodies = {loop.name for loop in known.loops.values()}
+        named = [(name, root) for name, root in _used_first(tree) if name not in bodies]
+        definitions = tuple(raiser.definition(name, root) for name, root in named)
+        mission = Mission(raiser.raised(tree.root).body, definitions, NOWHERE, name=tree.name)
+        before, refused = refused, known.refused_by(mission, refused, raiser.refused)
+        if refused == before:
+            break
+    return mission, raiser.speaker
 
 
 def _used_first(tree: Tree) -> Iterator[tuple[str, Node]]:
