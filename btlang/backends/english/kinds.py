@@ -5,7 +5,7 @@ A value is a key and its owner: "" for the whole mission, else the subtree whose
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterable, Mapping
+from collections.abc import Container, Mapping
 
 from btlang.backends.english.code import Computed, compared_by, computed, given_by
 from btlang.backends.english.loops import Loop
@@ -58,7 +58,9 @@ class Kinds:
         self, vocabulary: Vocabulary, names: Container[str], loops: Mapping[int, Loop], refused: Container[str]
     ) -> None:
         self._vocabulary, self._names, self._loops, self._refused = vocabulary, names, loops, refused
-        self._same: dict[Value, Value] = {}
+        self._groups: dict[Value, list[Value]] = {}  # those of one type, by each of them that was joined to no other
+        self._joined: dict[Value, Value] = {}
+        self._given: list[tuple[Value, Value]] = []  # what is given another value
         self._needs: dict[Value, set[str]] = {}
         self._sorts: dict[Value, set[bool]] = {}  # whether scripts work with it as a number
         self._texts: dict[Value, list[str]] = {}
@@ -69,7 +71,7 @@ class Kinds:
         """What is known where these keys have owners; after all trees were read."""
         place = tuple(owners.items())
         if place not in self._around:
-            values = {key: ("", key) for owner, key in self._values() if not owner and key not in self._refused}
+            values = {key: ("", key) for owner, key in self._groups if not owner and key not in self._refused}
             values |= {key: (owner, key) for key, owner in owners.items()}
             kinds = {key: kind for key, value in values.items() if (kind := self.kind(value)) is not None}
             known = {key: Known(key, tuple(key.split("_")), (kind,)) for key, kind in kinds.items()}
@@ -79,12 +81,10 @@ class Kinds:
     def kind(self, value: Value) -> str | None:
         """None where it can have none, or its name cannot be said."""
         if not self._kinds:
-            groups: dict[Value, list[Value]] = {}
-            for one in self._values():
-                groups.setdefault(self._first(one), []).append(one)
-            for group in groups.values():
-                self._kinds |= dict.fromkeys(group, self._common(group))
-            self._kinds |= {one: None for one in self._kinds if not self._is_name(one[1])}
+            for one, other in self._given:
+                self._join(self._first(one), self._first(other))
+            for one, first in [(one, self._first(one)) for one in self._groups]:
+                self._kinds[one] = self._common(self._groups[first]) if self._is_name(one[1]) else None
         return self._kinds.get(value, "text")
 
     # -- reading
@@ -143,18 +143,18 @@ class Kinds:
 
     def _value(self, key: str, own: Mapping[str, str]) -> Value:
         value = own.get(key, ""), key
-        self._same.setdefault(value, value)
+        self._groups.setdefault(value, [value])
         return value
 
     def _give(
         self, value: Value, text: str, own: Mapping[str, str], texts: Mapping[str, str], is_number: bool = False
     ) -> None:
-        self._same.setdefault(value, value)
+        self._groups.setdefault(value, [value])
         key = text[1:-1] if text[:1] == "{" else ""
         text = texts.get(key, text)
         other = _reference(text)
         if other and other[0] != "_" and key not in texts:
-            self._same[self._first(value)] = self._first(self._value(other, own))
+            self._given.append((value, self._value(other, own)))
         elif not is_number:
             self._mention(text, own)
             self._texts.setdefault(value, []).append(text)
@@ -171,20 +171,26 @@ class Kinds:
 
     def _named(self, value: Value) -> None:
         """A local value that has the name of a type is of that type."""
-        self._same.setdefault(value, value)
+        self._groups.setdefault(value, [value])
         if value[1] in self._vocabulary.types:
             self._needs.setdefault(value, set()).add(value[1])
 
-    def _first(self, value: Value) -> Value:
-        """The one that stands for all that are of one type with it."""
-        while self._same[value] != value:
-            value = self._same[value]
-        return value
-
     # -- deciding
 
-    def _values(self) -> Iterable[Value]:
-        return list(self._same)
+    def _first(self, value: Value) -> Value:
+        """The one that stands for all of its group."""
+        while value in self._joined:
+            value = self._joined[value]
+        return value
+
+    def _join(self, one: Value, other: Value) -> None:
+        """Where they can be of one type, which a text that is made of a number is not."""
+        both = [*self._groups[one], *self._groups[other]]
+        kind = self._common(both) if one != other else None
+        texts = [text for value in both for text in self._texts.get(value, ())]
+        if kind is not None and all(readable(text, kind, self._vocabulary) for text in texts):
+            self._groups[other] = both
+            self._joined[one] = other
 
     def _common(self, group: list[Value]) -> str | None:
         types = self._vocabulary.types

@@ -69,8 +69,12 @@ class Checked:
         if not _same(lowered.node, node):
             self.scope.made = made
             return False
-        self._lowered[id(item)] = item, Lowered(node, lowered.can_skip)
+        self.assume(item, Lowered(node, lowered.can_skip))
         return True
+
+    def assume(self, item: ast.Ast, lowered: Lowered) -> None:
+        """Takes a piece of syntax for what it may not mean."""
+        self._lowered[id(item)] = item, lowered
 
     def text(self, port: str) -> str | None:
         """What the text of a port is said as, with values of the mission in braces; None where one has no name."""

@@ -13,6 +13,7 @@ from btlang.backends.english.raised import NOWHERE, Checked, Raised
 from btlang.backends.english.values import assigned, can_say, compared, remembered, texts_of
 from btlang.english.phrase import leaf_words
 from btlang.english.speaker import Speaker
+from btlang.passes.lower import Lowered
 from btlang.passes.scope import Scope
 from btlang.record import Record
 from btlang.tree import ast
@@ -117,6 +118,7 @@ class Raiser:
         if len(values) < len(loop.rounds) or not self._checked.says(made, node):
             self.refused.add(loop.name)
             made = ast.Nothing(NOWHERE)
+            self._checked.assume(made, Lowered(node))
             return Raised(node, made, made)
         return Raised(node, made, made, in_lines=body.in_lines)
 
