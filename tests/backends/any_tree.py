@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Sequence
 
 from hypothesis import strategies as st
@@ -34,6 +35,36 @@ _CONDITIONS = (
     ("ScriptCondition", (("code", "x == 'a' && y > 1"),)),
     ("IsPathValid", (("path", "{path}"),)),
 )
+_CODES = (
+    "count := 3", "count := 3.0", "count := 'a'", "count += 2", "count -= 0.5", "count := 0; count = level",
+    "_1 := 0; _1 = level; count += _1", "_2 := 'a' .. count", "_1 := count", "mood := 'it is'", "mood := ''",
+    "mood := count", "mood := 'lab'", "goal := 'lab'", "goal := mood", "limit := 2", "the_mood := 1", "Mood := 1",
+)  # fmt: skip
+_COMPARED = ("count > 1 && count < 3", "count >= 1 && count <= 3", "mood == 'it'", "_1 := 0; _1 = count; _1 == level")
+_VALUES = (
+    *(("Script", (("code", code),)) for code in _CODES),
+    *(("ScriptCondition", (("code", code),)) for code in _COMPARED),
+    ("Battery", (("value", "{level}"),)),
+    ("Battery", (("below", "{level}"),)),
+    ("Battery", (("below", "20"), ("value", "{level}"))),
+    ("DistanceToPlace", (("place", "{goal}"), ("value", "{gap}"))),
+    ("Say", (("text", "{mood}"),)),
+    ("Say", (("text", "{_1}"),)),
+    ("Say", (("text", "a {b"),)),
+    ("Say", (("text", "{{count}}"),)),
+    ("MoveForward", (("distance", "{limit}"),)),
+    ("GoTo", (("place", "{goal}"),)),
+    ("GoToPerson", (("person", "{who}"),)),
+    ("Sleep", (("msec", "{count}"),)),
+)
+_COMPUTED = (
+    (("_1 := 'a ' .. count",), "Say", "text"),
+    (("_2 := mood .. who .. stop",), "Say", "text"),
+    (("_1 := 'x'", "_2 := _1 .. ''"), "Say", "text"),
+    (("_1 := 0; _1 = count; _1 *= 1000",), "Sleep", "msec"),
+    (("_3 := 0; _3 = count; _3 *= 1000",), "Sleep", "msec"),
+    (("_1 := 'to ' .. goal",), "GoTo", "place"),
+)
 MODELS = (NodeModel("Condition", "IsPathValid"), NodeModel("Action", "FollowPath"))
 _OWN_LEAVES = ("FollowPath", "open_gripper", "2fast", "Do It", "IsOk", "Then", "tür", "A")
 texts = st.one_of(
@@ -42,6 +73,11 @@ texts = st.one_of(
     ),
     st.text(st.characters(codec="utf-8", exclude_categories=["Cs"]), max_size=8),
 )
+_SUBTREES = (
+    "patrol", "big dance", "GraspObject", "then", "wave", "it's {x}", "greet {who}", "visit {stop} {n}", "each_stop",
+    "each_stop", "each_n_2",
+)  # fmt: skip
+_GIVEN = ("Alice", "lab", "3", "two words", "{goal}", "{count}", "{who}", "{_1}", "a}")
 _keys = st.one_of(
     st.sampled_from(
         ["num_cycles", "msec", "_skipIf", "_onSuccess", "value", "a", "newline", "width", "goal_pose", "X1"]
@@ -58,16 +94,36 @@ def leaves(subtrees: Sequence[str]) -> st.SearchStrategy[Node]:
     known = st.sampled_from([*_PHRASES, *_PHRASES, *_CONDITIONS, *_CONDITIONS])
     plain = known.map(lambda leaf: Node(leaf[0], (), leaf[1]))
     own = st.builds(Node, st.sampled_from(_OWN_LEAVES), st.just(()), _ports, _names)
+    valued = st.sampled_from(_VALUES).map(lambda leaf: Node(leaf[0], (), leaf[1]))
+    prepared = st.sampled_from(_COMPUTED).map(_computed)
     built_in = [node_id for node_id, (_, most) in SHAPES.items() if not most]
     odd = st.builds(Node, st.sampled_from(built_in), st.just(()), _ports, _names)
     if not subtrees:
-        return st.one_of(plain, plain, own, odd)
+        return st.one_of(plain, plain, valued, valued, prepared, own, odd)
     uses = st.builds(
         lambda name, ports: Node("SubTree", (), (("ID", name), *(p for p in ports if p[0] != "ID"))),
         st.sampled_from(list(subtrees)),
         _some_ports,
     )
-    return st.one_of(plain, plain, own, odd, uses)
+    given = st.dictionaries(st.sampled_from(["who", "stop", "n", "count"]), st.sampled_from(_GIVEN), max_size=2)
+    filled = st.builds(_use, st.sampled_from(list(subtrees)), given)
+    loop = st.lists(filled, min_size=2, max_size=3).map(lambda rounds: Node("Sequence", tuple(rounds)))
+    return st.one_of(plain, plain, valued, valued, prepared, own, odd, uses, filled, filled, loop)
+
+
+def _computed(made: tuple[tuple[str, ...], str, str]) -> Node:
+    codes, node_id, port = made
+    key = codes[-1].split()[0]
+    scripts = [Node("Script", (), (("code", code),)) for code in codes]
+    return Node("Sequence", (*scripts, Node(node_id, (), ((port, f"{{{key}}}"),))))
+
+
+def _use(name: str, ports: dict[str, str]) -> Node:
+    """With all parameters, as a mission would, and other ports."""
+    own = dict.fromkeys(re.findall(r"{(\w+)}", name), "Alice") | ports
+    if name.startswith("each_"):
+        own.setdefault(name[5:9].strip("_"), "lab")
+    return Node("SubTree", (), (("ID", name), *own.items()))
 
 
 def nodes(subtrees: Sequence[str] = (), most: int = 10) -> st.SearchStrategy[Node]:
@@ -118,11 +174,7 @@ def nodes(subtrees: Sequence[str] = (), most: int = 10) -> st.SearchStrategy[Nod
 @st.composite
 def trees(draw: st.DrawFn) -> Tree:
     """With named subtrees, each of which may use those before it."""
-    names = draw(
-        st.lists(
-            st.sampled_from(["patrol", "big dance", "GraspObject", "then", "wave", "it's {x}"]), max_size=2, unique=True
-        )
-    )
+    names = draw(st.lists(st.sampled_from(_SUBTREES), max_size=3, unique=True))
     subtrees = tuple((name, draw(nodes(names[:at], 5))) for at, name in enumerate(names))
     name = draw(st.sampled_from(["", "", "Main Tree"]))
     return Tree(draw(nodes(names)), subtrees, name, MODELS)

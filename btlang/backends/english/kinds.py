@@ -215,6 +215,14 @@ class Kinds:
                 return kind
         return "text"
 
+    def is_doubtful(self, value: Value) -> bool:
+        """Whether only its first use tells the type, and another use could tell another one."""
+        group = self._groups.get(self._first(value), [])
+        texts = [text for one in group for text in self._texts.get(one, ())]
+        others = [kind for kind, one in self._vocabulary.types.items() if one.kind in ("number", "names")]
+        is_open = self.kind(value) == "text"
+        return is_open and any(readable(text, kind, self._vocabulary) for text in texts for kind in others)
+
     def _is_name(self, key: str) -> bool:
         """Whether the words of a key are read back as this key."""
         if key[:1] == "_" or key != key.lower():

@@ -25,10 +25,13 @@ class Refused(Record):
 class Known:
     """`names` are the subtrees that are said as phrases, `loops` those that are bodies of `for each`.
 
-    With `values` False there are no loops and no parameters, and no value has a name.
+    With `values` False there are no loops and no parameters, and no value has a name. With `sure` no name has a
+    parameter whose type hangs on where it is used first.
     """
 
-    def __init__(self, tree: Tree, vocabulary: Vocabulary, refused: Refused, *, values: bool) -> None:
+    def __init__(
+        self, tree: Tree, vocabulary: Vocabulary, refused: Refused, *, values: bool, sure: bool = False
+    ) -> None:
         self._values = values
         named = [name for name, _ in tree.subtrees if name not in refused.names and is_phrase(name, vocabulary)]
         self.names = frozenset(name for name in named if values or not parameters(name))
@@ -41,13 +44,16 @@ class Known:
                     self._kinds.read(root, self._owners(name))
         else:
             self._nothing = Around({}, {}, vocabulary)
-        self.unsayable = frozenset(
-            name for name in self.names if any(self._kinds.kind((name, key)) is None for key in parameters(name))
-        )
-        """Names with a parameter that has no type."""
+        self._unsayable = {
+            name for name in self.names if any(not self._has_type(name, key, sure) for key in parameters(name))
+        }
 
     def _owners(self, name: str) -> dict[str, str]:
         return dict.fromkeys(parameters(name), name) if name in self.names else {}
+
+    def _has_type(self, owner: str, key: str, sure: bool) -> bool:
+        kind = self._kinds.kind((owner, key))
+        return kind is not None and not (sure and self._kinds.is_doubtful((owner, key)))
 
     def kind(self, owner: str, key: str) -> str | None:
         """The type of a parameter."""
@@ -82,7 +88,7 @@ class Known:
                 bound |= dict(item.parameters).keys()
             stack += [(part, bound) for part in ast.parts(item)]
         wrong = (used - given) | (given & local)
-        return Refused(before.names | loops | self.unsayable, before.keys | wrong)
+        return Refused(before.names | loops | self._unsayable, before.keys | wrong)
 
 
 def is_phrase(name: str, vocabulary: Vocabulary) -> bool:

@@ -18,8 +18,9 @@ from btlang.tree.dump import plain
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.vocabulary import Vocabulary
 
-_LEVELS = ("values", "words", "ids")
-"""How natural a mission is, most first: with values and parameters, without them, all nodes by their ids."""
+_LEVELS = ("values", "sure values", "words", "ids")
+"""How natural a mission is, most first: with values and parameters, with those alone that are read in one way only,
+without any, all nodes by their ids."""
 _MOST_TRIES = 20
 WIDTH = 100
 """Columns; what would be a longer line becomes a block where it can."""
@@ -31,23 +32,34 @@ def to_english(tree: Tree, vocabulary: Vocabulary) -> str:
     Raises MissionError (BT142) for a tree that no text can say, such as one with a line end in the name of a subtree.
     """
     wanted, reason = plain(tree), ""
+    refused = Refused()
     for level in _LEVELS:
-        mission, speaker = _mission(tree, vocabulary, level)
+        mission, speaker = _mission(tree, vocabulary, level, refused)
         text = "".join(f"{line}\n" for line in mission_lines(mission, speaker, WIDTH))
         try:
-            mission = read_mission(Source(text), vocabulary, suggest=False).mission
-            if plain(lower_mission(mission, vocabulary)) == wanted:
-                return text
+            again = lower_mission(read_mission(Source(text), vocabulary, suggest=False).mission, vocabulary)
         except MissionError as error:
             reason = error.diagnostics[0].message
+            continue
+        if plain(again) == wanted:
+            return text
+        refused = Refused(frozenset(_differing(tree, again)))
     raise MissionError([diagnostic("BT142", tree.root.span or NOWHERE, reason=reason or "it reads as another tree")])
 
 
-def _mission(tree: Tree, vocabulary: Vocabulary, level: str) -> tuple[Mission, Speaker]:
-    """With whatever turns out not to be read back said in another way."""
-    refused = Refused()
-    for _ in range(_MOST_TRIES if level == "values" else 1):
-        known = Known(tree, vocabulary, refused, values=level == "values")
+def _differing(tree: Tree, again: Tree) -> Iterator[str]:
+    """The subtrees that were read as others."""
+    bodies = dict(again.subtrees)
+    for name, root in tree.subtrees:
+        if name in bodies and plain(Tree(root)) != plain(Tree(bodies[name])):
+            yield name
+
+
+def _mission(tree: Tree, vocabulary: Vocabulary, level: str, refused: Refused) -> tuple[Mission, Speaker]:
+    """With what is refused, and whatever else turns out not to be read back, said in another way."""
+    values = level in ("values", "sure values")
+    for _ in range(_MOST_TRIES if values else 1):
+        known = Known(tree, vocabulary, refused, values=values, sure=level == "sure values")
         raiser = Raiser(tree, vocabulary, known, natural=level != "ids")
         bodies = {loop.name for loop in known.loops.values()}
         named = [(name, root) for name, root in _used_first(tree) if name not in bodies]
