@@ -95,7 +95,8 @@ def is_phrase(name: str, vocabulary: Vocabulary) -> bool:
     """Whether words define just this name."""
     words = [word for word in name.split(" ") if not (word[:1] == "{" and word[-1:] == "}")]
     keys = parameters(name)
-    if not all(word.isalnum() for word in (*words, *keys)) or name != name.lower() or len(keys) > len(set(keys)):
+    own = (key.replace("_", "x") for key in keys)
+    if not all(word.isalnum() for word in (*words, *own)) or name != name.lower() or len(keys) > len(set(keys)):
         return False
     text = split(Source(f"{name} {vocabulary.word('define_strong')} {vocabulary.word('nothing')}"), vocabulary.articles)
     found = find_definitions(text, vocabulary)

@@ -48,10 +48,10 @@ def to_english(tree: Tree, vocabulary: Vocabulary) -> str:
 
 
 def _differing(tree: Tree, again: Tree) -> Iterator[str]:
-    """The subtrees that were read as others."""
+    """The subtrees that were read as others, or not at all."""
     bodies = dict(again.subtrees)
     for name, root in tree.subtrees:
-        if name in bodies and plain(Tree(root)) != plain(Tree(bodies[name])):
+        if name not in bodies or plain(Tree(root)) != plain(Tree(bodies[name])):
             yield name
 
 
