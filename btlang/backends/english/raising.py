@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
+from btlang.backends.english.comments import comments_of
 from btlang.backends.english.forms import FORMS
 from btlang.backends.english.raised import NOWHERE, Checked, Raised
 from btlang.english.phrase import leaf_words
@@ -30,6 +31,7 @@ class Raiser:
         self.names = frozenset(names)
         self.speaker = Speaker(vocabulary, sorted(self.names))
         self._kinds = {model.id: model.kind for model in tree.models}
+        self._comments = comments_of(tree)
         self._conditions: set[str] = set()  # the names that stand for conditions
         self._checked = Checked(Scope((name for name, _ in tree.subtrees), vocabulary.types))
 
@@ -42,9 +44,16 @@ class Raiser:
             body = raised.condition
             self._conditions.add(name)
         made = ast.Definition(name, (), body, NOWHERE, NOWHERE, not is_natural)
+        self.speaker.note(made, self._comments.trees.get(name, ()))
         if is_natural:
             self._checked.scope.define(made, self._checked.can_skip(body))
         return made
+
+    def main(self, root: Node) -> ast.Ast:
+        """The commands of the mission; the subtrees have been raised before."""
+        body = self.raised(root).body
+        self.speaker.note(_first_line(body), self._comments.trees.get("", ()))
+        return body
 
     def raised(self, root: Node) -> Raised:
         """What a tree is said as."""
@@ -58,11 +67,22 @@ class Raiser:
         natural = self._natural_form(node, parts, condition if is_condition else None)
         is_rule = natural is not None and node.id == "Whenever"
         in_lines = any(part.in_lines for part in parts) or is_rule or (natural is None and bool(parts))
+        self._note(node, natural or exact, condition)
         if natural is None:
             return Raised(node, exact, exact, condition, is_condition, in_lines, parts)
         is_chain = isinstance(natural, ast.Chain) and natural.operator == "sequence"
         command = exact if in_lines and is_chain else natural  # no line can hold lines that are a sequence
         return Raised(node, command, natural, condition, is_condition, in_lines, parts)
+
+    def _note(self, node: Node, said: ast.Ast, condition: ast.Ast | None) -> None:
+        """The comments of a node; those of a sequence stand before its first line."""
+        lines = self._comments.nodes.get(id(node), ())
+        if not lines:
+            return
+        if condition is not None:
+            self.speaker.note(condition, lines)
+        if not isinstance(said, ast.Check):
+            self.speaker.note(_first_line(said), lines)
 
     def _exact(self, node: Node, children: tuple[Raised, ...]) -> ast.Ast:
         items = tuple(child.command for child in children)
@@ -142,3 +162,9 @@ class Raiser:
         if not all(name in slots for name, _ in node.ports):
             return ""
         return leaf_words(node.id, dict(node.ports), self._vocabulary, self.speaker.names, exactly=True)
+
+
+def _first_line(said: ast.Ast) -> ast.Ast:
+    """The statement that stands first where all of it are lines."""
+    is_chain = isinstance(said, ast.Chain) and said.operator == "sequence"
+    return ast.parts(said)[0] if is_chain else said

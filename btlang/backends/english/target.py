@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
+from btlang.backends.english.comments import comments_of
 from btlang.backends.english.raised import NOWHERE
 from btlang.backends.english.raising import Raiser
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
@@ -43,8 +44,11 @@ def _lines(tree: Tree, vocabulary: Vocabulary, natural: bool) -> Iterator[str]:
     names = [name for name, _ in tree.subtrees if natural and _is_phrase(name, vocabulary)]
     raiser = Raiser(tree, vocabulary, names, natural=natural)
     definitions = tuple(raiser.definition(name, root) for name, root in _used_first(tree))
-    mission = Mission(raiser.raised(tree.root).body, definitions, NOWHERE, name=tree.name)
+    mission = Mission(raiser.main(tree.root), definitions, NOWHERE, name=tree.name)
+    comments = comments_of(tree)
+    yield from (f"# {line}" for line in comments.head)
     yield from mission_lines(mission, raiser.speaker, WIDTH)
+    yield from (f"# {line}" for line in comments.foot)
 
 
 def _is_phrase(name: str, vocabulary: Vocabulary) -> bool:
