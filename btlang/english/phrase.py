@@ -46,10 +46,18 @@ def seconds(msec: str) -> str:
     return f"{int(msec) / 1000:g} s" if msec.isdigit() else msec
 
 
-def leaf_words(node_id: str, ports: Mapping[str, str], vocabulary: Vocabulary, names: TrieNode | None = None) -> str:
+def leaf_words(
+    node_id: str,
+    ports: Mapping[str, str],
+    vocabulary: Vocabulary,
+    names: TrieNode | None = None,
+    *,
+    exactly: bool = False,
+) -> str:
     """The phrase of a leaf with these ports, "" where no phrase of it has just these slots.
 
-    Preferred is one that is read back as the leaf where `names` are defined; a port may hold its default.
+    Preferred is one that is read back as the leaf where `names` are defined; with `exactly` no other will do. A port
+    may hold its default.
     """
     first = ""
     for entry in vocabulary.entries.get(node_id, ()):
@@ -59,7 +67,7 @@ def leaf_words(node_id: str, ports: Mapping[str, str], vocabulary: Vocabulary, n
             if _reads_back(words, entry, spoken, vocabulary, names):
                 return words
             first = first or words
-    return first
+    return first if not exactly else ""
 
 
 def _default(entry: Entry, slot: str) -> str | None:

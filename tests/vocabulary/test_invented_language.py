@@ -61,6 +61,8 @@ def _language(tables: dict[str, Any]) -> dict[str, Any]:
             made[key] = list(map(invented, value))
         elif key in ("roles", "comparisons"):
             made[key] = {name: list(map(_pattern, patterns)) for name, patterns in value.items()}
+        elif key == "nodes":
+            made[key] = {node_id: _pattern(words) for node_id, words in value.items()}
         elif key == "negations":
             made[key] = {invented(word): list(map(invented, words)) for word, words in value.items()}
         elif key in ("counts", "numbers", "multipliers", "fractions", "pronouns", "meanings"):
