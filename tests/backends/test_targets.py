@@ -95,7 +95,9 @@ def assert_graph(text: str, tree: Tree) -> None:
     """It is read by the grammar of pydot, and has a box for each node and an arrow for each child and use."""
     graph = graph_of(text)
     parts = [graph, *graph.get_subgraphs()]
-    assert sum(len([n for n in part.get_nodes() if n.get_name() not in ("node", "graph", '"\\n"')]) for part in parts) == len(list(tree.walk()))
+    assert sum(
+        len([n for n in part.get_nodes() if n.get_name() not in ("node", "graph", '"\\n"')]) for part in parts
+    ) == len(list(tree.walk()))
     uses = sum(node.id == "SubTree" for node in tree.walk())
     assert sum(len(part.get_edges()) for part in parts) == sum(len(n.children) for n in tree.walk()) + uses
 
