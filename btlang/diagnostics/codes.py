@@ -108,7 +108,7 @@ _ALL = (
     Code("BT106", "The ros table of '{phrase}' does not fit {type}: {reason}."),
     Code("BT110", "The ROS 2 interfaces of btlang are not compiled: {reason}.", "Compile them, once: python -m btlang.ros.interfaces --own"),
     Code("BT120", "This is no XML that can be read: {reason}."),
-    Code("BT121", "{what} are not read.", "{advice}"),
+    Code("BT121", "XML with {what} is refused.", "{advice}"),
     Code("BT122", "{what} {problem}.", "{advice}"),
     Code("BT123", "<{tag}> needs the attribute {attribute}.", "{advice}"),
     Code("BT124", "The tree '{name}' contains itself: {circle}.", "To do it again, put it below a node Repeat."),
