@@ -9,7 +9,7 @@ from functools import cache, partial
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.frontends.mission import DEFAULT_PARSER, read_mission
 from btlang.garbage import no_collection
-from btlang.passes import checked, compile_mission
+from btlang.passes import checked, compile_mission, lower_mission
 from btlang.passes.lint import lint
 from btlang.text.source import Source, Span
 from btlang.tree.ast import Fact, Mission, all_facts
@@ -179,13 +179,16 @@ class RunnableTree:
     def explain(self, width: int = 100) -> str:
         """Each statement as written, in English whose brackets show how it was read, and as a tree.
 
-        Lines are at most `width` columns long. Raises ValueError where the tree was not compiled from a mission.
+        Of a tree that was no mission, its statements are those of its English. Lines are at most `width` columns long.
+        Raises MissionError (BT142) where English cannot say it.
         """
         from btlang.backends.explain import explain_mission
 
-        if self.mission is None:
-            raise ValueError("this tree was not compiled from a mission")
-        return explain_mission(self.mission, self.tree, self.vocabulary, self._described, width)
+        mission, tree = self.mission, self.tree
+        if mission is None:
+            mission = read_mission(Source(str(self.to("english"))), self.vocabulary).mission
+            tree = lower_mission(mission, self.vocabulary)
+        return explain_mission(mission, tree, self.vocabulary, self._described, width)
 
     def check(self) -> None:
         """Raises MissionError with all that would keep it from running, as far as that is known without the robot.

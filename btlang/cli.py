@@ -166,7 +166,7 @@ def _explain_mission(options: argparse.Namespace) -> int:
 
     width = get_terminal_size((100, 24)).columns
     tree = _tree(options)
-    print(tree if tree.mission is None else tree.explain(min(width, WIDEST)))
+    print(tree.explain(min(width, WIDEST)))
     return SUCCESS
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from btlang.backends.english.comments import comments_of
 from btlang.backends.english.raised import NOWHERE
@@ -14,7 +14,7 @@ from btlang.frontends.mission import read_mission
 from btlang.passes import lower_mission
 from btlang.text.source import Source
 from btlang.text.words import split
-from btlang.tree.ast import Mission
+from btlang.tree.ast import Fact, Mission
 from btlang.tree.dump import plain
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.vocabulary import Vocabulary
@@ -23,14 +23,14 @@ WIDTH = 100
 """Columns; what would be a longer line becomes a block where it can."""
 
 
-def to_english(tree: Tree, vocabulary: Vocabulary) -> str:
+def to_english(tree: Tree, vocabulary: Vocabulary, *, facts: Sequence[Fact] = ()) -> str:
     """A mission that compiles to an equal tree: natural words where the language has them, else nodes by their ids.
 
-    Raises MissionError (BT142) for a tree that no text can say, such as one with a line end in the name of a subtree.
+    It begins with the `facts`, whose places it may name. Raises MissionError (BT142) for a tree that no text can say, such as one with a line end in the name of a subtree.
     """
     wanted, reason = plain(tree), ""
     for natural in (True, False):
-        text = "".join(f"{line}\n" for line in _lines(tree, vocabulary, natural))
+        text = "".join(f"{line}\n" for line in _lines(tree, vocabulary, natural, tuple(facts)))
         try:
             mission = read_mission(Source(text), vocabulary, suggest=False).mission
             if plain(lower_mission(mission, vocabulary)) == wanted:
@@ -40,11 +40,13 @@ def to_english(tree: Tree, vocabulary: Vocabulary) -> str:
     raise MissionError([diagnostic("BT142", tree.root.span or NOWHERE, reason=reason or "it reads as another tree")])
 
 
-def _lines(tree: Tree, vocabulary: Vocabulary, natural: bool) -> Iterator[str]:
+def _lines(tree: Tree, vocabulary: Vocabulary, natural: bool, facts: tuple[Fact, ...]) -> Iterator[str]:
+    if facts:
+        vocabulary = vocabulary.with_places(tuple(fact.name for fact in facts))
     names = [name for name, _ in tree.subtrees if natural and _is_phrase(name, vocabulary)]
     raiser = Raiser(tree, vocabulary, names, natural=natural)
     definitions = tuple(raiser.definition(name, root) for name, root in _used_first(tree))
-    mission = Mission(raiser.main(tree.root), definitions, NOWHERE, name=tree.name)
+    mission = Mission(raiser.main(tree.root), definitions, NOWHERE, facts, name=tree.name)
     comments = comments_of(tree)
     yield from (f"# {line}" for line in comments.head)
     yield from mission_lines(mission, raiser.speaker, WIDTH)
