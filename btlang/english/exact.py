@@ -59,6 +59,11 @@ def quoted(text: str, vocabulary: Vocabulary) -> str:
     return " ".join(_pieces(text, vocabulary)) or '""'
 
 
+def is_one_piece(text: str) -> bool:
+    """Whether one pair of quotes can hold a text, as those around names of subtrees and of ports must."""
+    return len(list(_PIECE.finditer(text))) == 1 and _PIECE.match(text).lastgroup != "odd"  # type: ignore[union-attr]
+
+
 def _pieces(text: str, vocabulary: Vocabulary) -> Iterator[str]:
     for piece in _PIECE.finditer(text):
         if piece.lastgroup == "plain":
