@@ -37,14 +37,14 @@ def node_head(node: ast.Exact, vocabulary: Vocabulary) -> str:
     """The node with its name and its ports, without its children."""
     ports = list(node.ports)
     parts = [vocabulary.word("test" if node.is_condition else "do")]
-    words = vocabulary.nodes.get(node.id)
-    if words is None:
+    words, subtree = vocabulary.nodes.get(node.id), dict(ports).get("ID")
+    if words is None or (node.id == "SubTree" and subtree is None):
         parts.append(quoted(node.id, vocabulary))
     else:
         parts.append(words)
-        if node.id == "SubTree" and "ID" in dict(ports):
-            parts.append(quoted(dict(ports)["ID"], vocabulary))
-            ports = [port for port in ports if port[0] != "ID"]
+        if node.id == "SubTree" and subtree is not None:
+            parts.append(quoted(subtree, vocabulary))
+            ports.remove(("ID", subtree))
     if node.name:
         parts += [vocabulary.word("called"), quoted(node.name, vocabulary)]
     for name, text in ports:

@@ -27,7 +27,8 @@ WIDTH = 100
 def to_english(tree: Tree, vocabulary: Vocabulary, *, facts: Sequence[Fact] = ()) -> str:
     """A mission that compiles to an equal tree: natural words where the language has them, else nodes by their ids.
 
-    It begins with the `facts`, whose places it may name. Raises MissionError (BT142) for a tree that no text can say, such as one with a line end in the name of a subtree.
+    It begins with the `facts`, whose places it may name. Raises MissionError (BT142) for a tree that no text can say,
+    such as one with a line end in the name of a subtree.
     """
     names = [name for name, _ in tree.subtrees] + [name for node in tree.walk() for name, _ in node.ports]
     odd = next((name for name in names if not is_one_piece(name)), None)
