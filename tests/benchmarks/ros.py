@@ -1,4 +1,4 @@
-"""What a mission costs on a ROS 2 robot, beside rclpy alone: `python -m tests.benchmarks.ros [--seconds 8] [--rounds 3]`.
+"""What a mission costs on a ROS 2 robot, beside rclpy alone: `python -m tests.benchmarks.ros [--rounds 3]`.
 
 A robot in a process of its own publishes five topics, serves two actions and hears /cmd_vel over real DDS. First
 missions at 100 ticks a second and a bare loop of rclpy take turns: is the rate held, what does each thread cost, and
