@@ -11,7 +11,7 @@ from functools import partial
 
 import btlang
 from btlang.api import RATES, RunnableTree, format_mission, parse_tree, read_world, world_vocabulary
-from btlang.arguments import between, duration, namespace, picture, real_speed, speed
+from btlang.arguments import between, duration, picture, real_speed, speed
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.reading import read_source, reason_of
 from btlang.diagnostics.report import FORMATS, Report
@@ -67,7 +67,7 @@ def _run(options: argparse.Namespace) -> int:
     robot = chosen_robot(options)
     tree = _tree(options)
     if options.preflight:
-        ready = print_preflight(tree.tree, tree.vocabulary, read_world(options.world), sim_time=options.sim_time)
+        ready = print_preflight(tree.tree, tree.vocabulary, read_world(options.world), options)
         return SUCCESS if ready else FAILED
     with pictures_of(tree, options.picture, options.tree_picture) as sinks:
         return run_mission(
@@ -345,15 +345,14 @@ def _format_options(parser: argparse.ArgumentParser) -> None:
 
 
 def _sim_ros_options(parser: argparse.ArgumentParser) -> None:
+    from btlang.ros.simulator.command import add_sim_options
+
     _world_option(parser)
     parser.add_argument("--speed", type=real_speed, default="real", help="real, or a factor of real time")
     parser.add_argument(
         "--rate", type=between(*RATES), default=20.0, metavar="HZ", help="steps a simulated second (default: 20)"
     )
-    parser.add_argument(
-        "--clock", action=argparse.BooleanOptionalAction, default=True, help="give the simulated time on /clock"
-    )
-    parser.add_argument("--namespace", type=namespace, default="", metavar="NS", help="of all topics (default: none)")
+    add_sim_options(parser)
 
 
 def _ros_node_options(parser: argparse.ArgumentParser) -> None:

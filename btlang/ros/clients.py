@@ -1,13 +1,11 @@
 """What leaves share of a ROS 2 node: one publisher, subscription or client for each name and type.
 
-rclpy's clients lose an answer that comes while another thread still sends the request. So all requests are made in the
-thread that spins the node: leaves hand them over with `post`, and look at what came back.
+All requests are made in the thread that spins the node: leaves hand them over with `post`, and look at what came back.
 """
 
 from __future__ import annotations
 
 import time
-from collections import deque
 from collections.abc import Callable
 
 from rclpy._rclpy_pybind11 import RCLError
@@ -16,8 +14,8 @@ from rclpy.clock import Clock, ClockType
 from rclpy.duration import Duration
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
-from btlang.engine.leaf import described
 from btlang.record import Record
+from btlang.ros.errands import Errands
 from btlang.ros.graph import is_ready, no_listener, no_publisher, no_server
 from btlang.ros.latest import Latest, NodeClock
 from btlang.ros.word import type_name
@@ -65,21 +63,22 @@ class Clients:
         self.clock = NodeClock(node)
         self.steady = Clock(clock_type=ClockType.STEADY_TIME)
         """For timers that go on while simulated time stands still."""
-        self.problems: list[str] = []
-        """What went wrong in requests, which nobody could be told of at once."""
+        self.errands = Errands(node)
         self.endings: list[Ending] = []
         """What was halted and may not have ended yet."""
         self._publishers: list[Any] = []
         self._types: dict[tuple[str, str], Any] = {}
         self._made: dict[Key, tuple[Any, Missing]] = {}  # each with what tells why it is of no use yet
         self._used: dict[Key, None] = {}  # since the mission began
-        self._posted: deque[Callable[[], object]] = deque()
-        self._guard = node.create_guard_condition(self._work)
+
+    @property
+    def problems(self) -> list[str]:
+        """What went wrong in requests, which nobody could be told of at once."""
+        return self.errands.problems
 
     def post(self, work: Callable[[], object]) -> None:
         """Lets the thread that spins do it; from any thread, in the order of calls."""
-        self._posted.append(work)
-        self._guard.trigger()
+        self.errands.post(work)
 
     def publisher(self, cls: Any, name: str, latched: bool = False) -> Any:
         """Of messages that get to all who listen; those of a latched topic also to who listens later."""
@@ -152,7 +151,7 @@ class Clients:
         Says what has not ended.
         """
         until = time.monotonic() + limit
-        while (left := [reason for ending in self.endings if (reason := ending.waits_for())]) or self._posted:
+        while (left := [reason for ending in self.endings if (reason := ending.waits_for())]) or self.errands.left:
             if time.monotonic() >= until:
                 break
             time.sleep(_LOOK)
@@ -183,15 +182,6 @@ class Clients:
                 raise Unusable(f"ROS 2 refuses it: {str(error).partition(', at ')[0]}") from None
         self._used[key] = None
         return self._made[key][0]
-
-    def _work(self) -> None:
-        while self._posted:
-            work = self._posted[0]
-            try:
-                work()
-            except Exception as problem:  # it would end the thread that spins
-                self.problems.append(described(problem))
-            self._posted.popleft()  # only now, so that `close` waits for it
 
 
 def _qos(latched: bool) -> QoSProfile:

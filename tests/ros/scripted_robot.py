@@ -16,7 +16,7 @@ from threading import Event
 from typing import Any
 
 import rclpy
-from geometry_msgs.msg import Twist
+from geometry_msgs.msg import Twist, TwistStamped
 from nav_msgs.msg import Odometry
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.callback_groups import ReentrantCallbackGroup
@@ -29,14 +29,23 @@ PERIOD = 0.02
 
 
 class Base:
-    """Moves at once as it is told. "frozen" it never moves, "mute" it tells nothing once it has moved for 0.3 m."""
+    """Moves at once as it is told. "frozen" it never moves, "mute" it tells nothing once it has moved for 0.3 m;
+    "stamped" it listens to TwistStamped.
+    """
 
     def __init__(self, node: Node, manner: str) -> None:
         self._node, self._manner = node, manner
         self._x = self._y = self._heading = self._linear = self._angular = 0.0
         self._odometry = node.create_publisher(Odometry, "/odom", 10)
-        node.create_subscription(Twist, "/cmd_vel", self._drive, 10)
+        if manner == "stamped":
+            node.create_subscription(TwistStamped, "/cmd_vel", self._drive_stamped, 10)
+        else:
+            node.create_subscription(Twist, "/cmd_vel", self._drive, 10)
         node.create_timer(PERIOD, self._move)
+
+    def _drive_stamped(self, message: TwistStamped) -> None:
+        if message.header.stamp.sec and message.header.frame_id == "base_link":
+            self._drive(message.twist)
 
     def _drive(self, twist: Twist) -> None:
         if (twist.linear.x, twist.angular.z) != (self._linear, self._angular):

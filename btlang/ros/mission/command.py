@@ -9,6 +9,7 @@ from typing import Any
 
 from btlang.robots.stages import ROBOTS
 from btlang.ros.available import require_interfaces, require_ros
+from btlang.ros.command import add_namespace
 
 PACKAGES = ("diagnostic_msgs", "lifecycle_msgs", "std_msgs", "std_srvs")
 """The packages of messages that it needs beside rclpy and btlang_interfaces."""
@@ -20,6 +21,7 @@ def add_node_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--mission", default="", metavar="FILE", help="run this one when the node is activated")
     parser.add_argument("--robot", choices=list(ROBOTS), default="simulated", help="(default: %(default)s)")
     parser.add_argument("--sim-time", action="store_true", help="with --robot ros: time is that of the topic /clock")
+    add_namespace(parser, "of the node, and of the robot with --robot ros (default: none)")
     parser.add_argument("--name", default="btlang", type=_name, help="of the node (default: %(default)s)")
     parser.add_argument(
         "--autostart",
@@ -51,13 +53,18 @@ def serve(options: argparse.Namespace) -> int:
     from btlang.run.emergency import emergency_signal
 
     setup = Setup(
-        options.name, options.robot, options.sim_time, options.speed,
+        options.name, options.robot, options.sim_time, options.namespace, options.speed,
         options.mission, options.keywords, options.world, options.parser,
     )  # fmt: skip
     controls = Controls()
     with ending_signals() as came:
         came.on_arrival = controls.wake
-        spun = SpunNode(options.name, use_sim_time=options.sim_time, make=partial(MissionNode, setup, _print))
+        spun = SpunNode(
+            options.name,
+            namespace=options.namespace,
+            use_sim_time=options.sim_time,
+            make=partial(MissionNode, setup, _print),
+        )
         node: Any = spun.node
         try:
             if options.autostart:

@@ -22,6 +22,7 @@ class Setup(Record):
     name: str = "btlang"
     robot: str = "simulated"
     sim_time: bool = False
+    namespace: str = ""
     speed: float | str = "real"
     file: str = ""
     keywords: Sequence[str] = ()
@@ -32,7 +33,7 @@ class Setup(Record):
         """The robot in its world. Raises MissionError."""
         make = stage_maker(self.robot)
         if self.robot == "ros":
-            make = partial(ros_stage, sim_time=self.sim_time, name=f"{self.name}_robot")
+            make = partial(ros_stage, sim_time=self.sim_time, namespace=self.namespace, name=f"{self.name}_robot")
         return make(read_world(self.world))
 
     def compiled(self, source: Source, keywords: Sequence[str] = ()) -> RunnableTree:

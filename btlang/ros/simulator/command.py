@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import argparse
 import os
 import sys
 from time import monotonic
 
+from btlang.ros.command import add_namespace
 from btlang.ros.ending import ending_signals
 from btlang.run.emergency import emergency_signal
 
@@ -18,6 +20,14 @@ PACKAGES = (
     "sensor_msgs", "std_msgs", "std_srvs", "trajectory_msgs",
 )  # fmt: skip
 """The packages of messages that it needs beside rclpy."""
+
+
+def add_sim_options(parser: argparse.ArgumentParser) -> None:
+    """The options of `btc sim-ros` that are about ROS 2."""
+    parser.add_argument(
+        "--clock", action=argparse.BooleanOptionalAction, default=True, help="give the simulated time on /clock"
+    )
+    add_namespace(parser, "of all topics (default: none)")
 
 
 def serve(world: World, *, speed: float, rate: float, gives_clock: bool, namespace: str) -> int:
