@@ -16,7 +16,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
 from btlang.record import Record
 from btlang.ros.errands import Errands
-from btlang.ros.graph import is_ready, no_listener, no_publisher, no_server
+from btlang.ros.graph import full_name, is_ready, no_listener, no_publisher, no_server
 from btlang.ros.latest import Latest, NodeClock
 from btlang.ros.word import type_name
 
@@ -82,6 +82,7 @@ class Clients:
 
     def publisher(self, cls: Any, name: str, latched: bool = False) -> Any:
         """Of messages that get to all who listen; those of a latched topic also to who listens later."""
+        name = self._claim("listener", cls, name)
 
         def make() -> tuple[Any, Missing]:
             made = self.node.create_publisher(cls, name, _qos(latched))
@@ -89,11 +90,11 @@ class Clients:
             heard = made.get_subscription_count
             return made, lambda: "" if latched or heard() else no_listener(self.node, cls, name)
 
-        self._claim("topic", cls, name)
         return self._once(("listener", name, type_name(cls), latched), make)
 
     def latest(self, cls: Any, name: str, latched: bool = False) -> Latest:
         """The latest message of a topic. One that is not latched is heard from reliable and other publishers."""
+        name = self._claim("publisher", cls, name)
 
         def make() -> tuple[Latest, Missing]:
             made = Latest(name, self.clock.now, lambda: no_publisher(self.node, cls, name))
@@ -101,7 +102,6 @@ class Clients:
             self.node.create_subscription(cls, name, made.store, qos)
             return made, made.why_not
 
-        self._claim("topic", cls, name)
         return self._once(("publisher", name, type_name(cls), latched), make)  # type: ignore[no-any-return]
 
     def action(self, cls: Any, name: str) -> Any:
@@ -161,27 +161,39 @@ class Clients:
         return left
 
     def _client(self, kind: str, cls: Any, name: str, create: Callable[[], Any]) -> Any:
+        name = self._claim(kind, cls, name)
+
         def make() -> tuple[Any, Missing]:
             client = create()
             return client, lambda: "" if is_ready(client) else no_server(self.node, cls, name)
 
-        self._claim(kind, cls, name)
         return self._once((kind, name, type_name(cls), False), make)
 
-    def _claim(self, kind: str, cls: Any, name: str) -> None:
-        """One node can use a name with one type. Raises Unusable for a second one."""
-        first = self._types.setdefault((kind, name), cls)
+    def _claim(self, kind: str, cls: Any, name: str) -> str:
+        """The name with the namespace. Raises Unusable for a second type: one node can use a name with one."""
+        sort = "topic" if kind in ("listener", "publisher") else kind
+        try:
+            name = full_name(self.node, kind, name)
+        except (RCLError, ValueError) as error:
+            raise _refused(error) from None
+        first = self._types.setdefault((sort, name), cls)
         if first is not cls:
-            raise Unusable(f"another word uses the {kind} {name} with the type {type_name(first)}")
+            raise Unusable(f"another word uses the {sort} {name} with the type {type_name(first)}")
+        return name
 
     def _once(self, key: Key, make: Callable[[], tuple[Any, Missing]]) -> Any:
         if key not in self._made:
             try:
                 self._made[key] = make()
-            except (RCLError, ValueError) as error:  # ValueError: what rclpy raises for a name
-                raise Unusable(f"ROS 2 refuses it: {str(error).partition(', at ')[0]}") from None
+            except (RCLError, ValueError) as error:
+                raise _refused(error) from None
         self._used[key] = None
         return self._made[key][0]
+
+
+def _refused(error: Exception) -> Unusable:
+    """Of what rclpy raises: a ValueError for a name."""
+    return Unusable(f"ROS 2 refuses it: {str(error).partition(', at ')[0]}")
 
 
 def _qos(latched: bool) -> QoSProfile:
