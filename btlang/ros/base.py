@@ -64,11 +64,6 @@ class RosBase:
                 self._publisher = self._node.create_publisher(_TYPES[self._type], VELOCITY, 10)
             return self._type
 
-    @property
-    def is_heard(self) -> bool:
-        """Whether somebody gets what it tells."""
-        return self._publisher is not None and self._publisher.get_subscription_count() > 0
-
     def drive(self, linear: float, angular: float) -> None:
         """Metres and degrees a second."""
         with self._lock:

@@ -151,11 +151,6 @@ class RosRobot:
         """The type of message in which those who listen to the velocity are told it."""
         return self._base.adapt()
 
-    @property
-    def is_heard(self) -> bool:
-        """Whether somebody gets the velocity that it is told."""
-        return self._base.is_heard
-
     def drive(self, linear: float, angular: float) -> None:
         """Sets the wanted metres and degrees a second; ends a journey under way."""
         if self._stopping:

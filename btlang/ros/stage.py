@@ -14,6 +14,7 @@ from btlang.robots.world import World
 from btlang.ros.available import require_ros
 from btlang.ros.binding import bind_ros
 from btlang.ros.clients import Clients
+from btlang.ros.connected import is_connected
 from btlang.ros.graph import absent, full_name
 from btlang.ros.node import SpunNode
 from btlang.ros.pace import RosPace
@@ -93,12 +94,11 @@ class RosStage:
 
     def _lacks(self, wanted: Interface) -> str:
         """What is wrong with an interface that shipped leaves need, "" for nothing."""
-        reason = absent(self._spun.node, wanted.kind, wanted.name, wanted.type)
+        node, name = self._spun.node, self._named(wanted).name
+        reason = absent(node, wanted.kind, name, wanted.type)
         if not reason and wanted.flows and not self.robot.inbox.has(wanted.name):
-            return f"nothing has come on {self._named(wanted).name} yet"
-        if not reason and wanted.name == VELOCITY and not self.robot.is_heard:
-            return f"nobody listens to {self._named(wanted).name} yet"
-        return reason
+            return f"nothing has come on {name} yet"
+        return reason if reason or is_connected(node, name) else f"{name} is not connected yet"
 
     def _named(self, interface: Interface) -> Interface:
         named: Interface = interface.replace(name=full_name(self._spun.node, interface.kind, interface.name))
