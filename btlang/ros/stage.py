@@ -39,7 +39,7 @@ class RosStage:
     """See `btlang.run.stage.Stage`. Names and poses are those of the world file, whose map is the robot's.
 
     With `sim_time` the mission's clock follows the topic /clock, else the system's. Missions run in real time.
-    `name` is that of the node.
+    `name` is that of the node, `node`.
     """
 
     def __init__(self, world: World, *, sim_time: bool = False, name: str = "btlang") -> None:
@@ -48,6 +48,7 @@ class RosStage:
         self.events = EventStream()
         self._sim_time = sim_time
         self._spun = SpunNode(name, use_sim_time=sim_time)
+        self.node = self._spun.node
         self._now = self._ros_time if sim_time else time.monotonic
         try:
             self.robot = RosRobot(self._spun.node, world, on_event=self._publish, now=self._now)

@@ -19,7 +19,7 @@ from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.node import Node
 from std_msgs.msg import String
-from std_srvs.srv import SetBool
+from std_srvs.srv import SetBool, Trigger
 
 from tests.ros.peers.peer import a_moment, pause, serve, tell
 
@@ -27,7 +27,10 @@ PERIOD = 0.02
 
 
 class Base:
-    """Moves at once as it is told, by the time that has passed, also where its steps come late. "frozen" it never moves, "mute" it tells nothing once it has moved for 0.3 m."""
+    """Moves at once as it is told, by the time that has passed, also where its steps come late.
+
+    "frozen" it never moves, "mute" it tells nothing once it has moved for 0.3 m.
+    """
 
     def __init__(self, node: Node, manner: str) -> None:
         self._node, self._manner = node, manner
@@ -75,7 +78,7 @@ class Navigation:
         self._manner, self._result = manner, NavigateToPose.Result
         self._feedback = NavigateToPose.Feedback
         self._stopped = False
-        node.create_subscription(Twist, "/cmd_vel", self._drive, 10)
+        node.create_service(Trigger, "/stop", self._stop)
         ActionServer(
             node,
             NavigateToPose,
@@ -86,8 +89,9 @@ class Navigation:
             callback_group=ReentrantCallbackGroup(),
         )
 
-    def _drive(self, twist: Twist) -> None:
-        self._stopped = twist == Twist()
+    def _stop(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
+        self._stopped = response.success = True
+        return response
 
     async def _asked(self, goal: Any) -> GoalResponse:
         tell(f"goal {goal.pose.pose.position.x:.2f} {goal.pose.pose.position.y:.2f}")
