@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterable
 
 from rclpy.node import Node
 
+from btlang.ros.connected import is_connected
 from btlang.ros.inbox import Inbox
 from btlang.ros.wire import Interface
 
@@ -33,7 +34,8 @@ def _tells(node: Node, inbox: Inbox, wanted: Interface) -> str:
 
 
 def _listens(node: Node, _: Inbox, wanted: Interface) -> str:
-    return _topic(wanted, node.get_subscriptions_info_by_topic(wanted.name), "nothing subscribes to it")
+    reason = _topic(wanted, node.get_subscriptions_info_by_topic(wanted.name), "nothing subscribes to it")
+    return reason or _unconnected(node, wanted)
 
 
 def _topic(wanted: Interface, ends: Iterable[object], nobody: str) -> str:
@@ -42,7 +44,11 @@ def _topic(wanted: Interface, ends: Iterable[object], nobody: str) -> str:
 
 
 def _serves(node: Node, _: Inbox, wanted: Interface) -> str:
-    return _service(node, wanted.name, wanted, "nothing serves it")
+    return _service(node, wanted.name, wanted, "nothing serves it") or _unconnected(node, wanted)
+
+
+def _unconnected(node: Node, wanted: Interface) -> str:
+    return "" if is_connected(node, wanted.name) else "it is not connected yet"
 
 
 def _acts(node: Node, _: Inbox, wanted: Interface) -> str:
