@@ -28,6 +28,7 @@ _FRESH = 0.5  # seconds for which odometry can say that the robot does not move
 _REMEMBERED = 200  # odometry that a late localization is matched with
 _REST, _TURN_REST = 0.01, 1.0  # metres and degrees a second that odometry reports of a robot that stands
 _STUCK_AFTER, _STUCK_SHARE = 1.0, 0.05
+_STEP = 0.25  # seconds that a step counts at most: robots brake by themselves before one that comes late
 _ACKNOWLEDGED = Duration(seconds=0.5)
 
 
@@ -86,7 +87,7 @@ class RosBase:
         """Tells the wanted velocity again; `dt` seconds have passed."""
         with self._lock:
             if self._wanted != (0.0, 0.0):
-                self._idle = self._idle + dt if self._pushes() else 0.0
+                self._idle = self._idle + min(dt, _STEP) if self._pushes() else 0.0
                 self._tell()
 
     @property

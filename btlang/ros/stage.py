@@ -42,7 +42,7 @@ class RosStage:
     """See `btlang.run.stage.Stage`. Names and poses are those of the world file, whose map is the robot's.
 
     With `sim_time` the mission's clock follows the topic /clock, else the system's. Missions run in real time.
-    `namespace` is that of the robot and of the node, `name` the node's.
+    `namespace` is that of the robot and of the node, `node`, whose name is `name`.
     """
 
     def __init__(self, world: World, *, sim_time: bool = False, namespace: str = "", name: str = "btlang") -> None:
@@ -51,6 +51,7 @@ class RosStage:
         self.events = EventStream()
         self._sim_time = sim_time
         self._spun = SpunNode(name, namespace=namespace, use_sim_time=sim_time)
+        self.node = self._spun.node
         self._now = self._ros_time if sim_time else time.monotonic
         try:
             self.robot = RosRobot(self._spun.node, world, on_event=self._publish, now=self._now)

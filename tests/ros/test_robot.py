@@ -26,6 +26,7 @@ class Script:
             self.process = subprocess.Popen(
                 [sys.executable, "-m", "tests.ros.scripted_robot", *parts],
                 env=environment,
+                stdin=subprocess.PIPE,  # it ends when this is closed
                 stdout=out,
                 start_new_session=True,
             )
@@ -50,7 +51,7 @@ class Script:
 
     def kill(self) -> None:
         self.process.kill()
-        self.process.wait()
+        self.process.communicate()
 
 
 @pytest.fixture
@@ -172,12 +173,12 @@ def test_a_base_that_is_killed(robot: Callable[..., Script], btc: Callable[..., 
     assert "MoveForward: no odometry for 2 s: /odom is silent" in command.err
 
 
-@pytest.mark.parametrize("when", ["goal", "accepted"])
+@pytest.mark.parametrize(("manner", "when"), [("slow", "goal"), ("hang", "accepted")])
 def test_a_goal_is_cancelled_when_the_mission_is(
-    when: str, robot: Callable[..., Script], btc: Callable[..., Command], nav2: object
+    manner: str, when: str, robot: Callable[..., Script], btc: Callable[..., Command], nav2: object
 ) -> None:
     """Also one that is not accepted yet."""
-    script = robot("base", "navigation=slow")
+    script = robot("base", f"navigation={manner}")
     command = btc("go to the kitchen")
     script.wait_for(when)
     command.process.send_signal(signal.SIGINT)
