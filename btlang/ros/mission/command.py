@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import time
 from functools import partial
 from typing import Any
 
@@ -71,7 +70,7 @@ def serve(options: argparse.Namespace) -> int:
                 while not came.numbers:
                     controls.wait(None)
                 node.halt()
-                _wait_for_answers(node)
+                spun.settle(_ANSWERS)
         finally:
             try:
                 node.halt()
@@ -79,14 +78,6 @@ def serve(options: argparse.Namespace) -> int:
             finally:
                 node.release()
     return 128 + came.numbers[0]
-
-
-def _wait_for_answers(node: Any) -> None:
-    """Until the executor has done what was asked of it before now."""
-    task = node.executor.create_task(lambda: None)
-    end = time.monotonic() + _ANSWERS
-    while not task.done() and time.monotonic() < end:
-        time.sleep(0.01)
 
 
 def _name(text: str) -> str:
