@@ -6,6 +6,7 @@ import argparse
 from functools import partial
 from typing import Any
 
+from btlang.arguments import node_name
 from btlang.robots.stages import ROBOTS
 from btlang.ros.available import require_interfaces, require_ros
 
@@ -18,8 +19,10 @@ def add_node_options(parser: argparse.ArgumentParser) -> None:
     """The options of `btc ros-node` that are about the node."""
     parser.add_argument("--mission", default="", metavar="FILE", help="run this one when the node is activated")
     parser.add_argument("--robot", choices=list(ROBOTS), default="simulated", help="(default: %(default)s)")
-    parser.add_argument("--sim-time", action="store_true", help="with --robot ros: time is that of the topic /clock")
-    parser.add_argument("--name", default="btlang", type=_name, help="of the node (default: %(default)s)")
+    parser.add_argument(
+        "--sim-time", action="store_true", help="with --robot ros or actions: time is that of the topic /clock"
+    )
+    parser.add_argument("--name", default="btlang", type=node_name, help="of the node (default: %(default)s)")
     parser.add_argument(
         "--autostart",
         action=argparse.BooleanOptionalAction,
@@ -35,10 +38,10 @@ def serve(options: argparse.Namespace) -> int:
 
     Raises MissionError where ROS 2 is not there (BT100, BT110), or where the node cannot be configured at its start.
     """
-    if options.sim_time and options.robot != "ros":
-        options.refuse("--sim-time is for --robot ros")
-    if options.speed != "real" and options.robot == "ros":
-        options.refuse("--robot ros runs in real time, so it takes no --speed")
+    if options.sim_time and options.robot == "simulated":
+        options.refuse("--sim-time is for --robot ros and --robot actions")
+    if options.speed != "real" and options.robot != "simulated":
+        options.refuse(f"--robot {options.robot} runs in real time, so it takes no --speed")
     require_ros()
     require_interfaces()
     require_ros(*PACKAGES)
@@ -78,12 +81,6 @@ def serve(options: argparse.Namespace) -> int:
             finally:
                 node.release()
     return 128 + came.numbers[0]
-
-
-def _name(text: str) -> str:
-    if not (text.isidentifier() and text.isascii()):
-        raise argparse.ArgumentTypeError(f"a name of letters, digits and _ is needed, not '{text}'")
-    return text
 
 
 def _print(line: str) -> None:
