@@ -51,7 +51,7 @@ def _port_text(name: str, written: str, kind: ValueType, vocabulary: Vocabulary)
     if found is None and kind.kind != "names":
         found = _number(written, kind)
     if found is None:
-        raise ActionFailed(f"{name} is '{written}', which is no {kind.name}{_instead(written, kind)}")
+        raise ActionFailed(f"{name} is '{written}', which is no {kind.name}{_instead(written, kind, vocabulary)}")
     return found
 
 
@@ -66,14 +66,14 @@ def _number(written: str, kind: ValueType) -> str | None:
     return format_number(number)
 
 
-def _instead(written: str, kind: ValueType) -> str:
+def _instead(written: str, kind: ValueType, vocabulary: Vocabulary) -> str:
     if kind.kind != "names":
         return f", such as {kind.example}"
-    near = nearest(written.lower(), kind.names, 1)
+    known = vocabulary.values.names(kind.name)
+    near = nearest(written.lower(), known, 1)
     if near:
         return f"; the nearest is '{near[0]}'"
-    more = ", ..." if len(kind.names) > _FEW else ""
-    return f"; there are {', '.join(kind.names[:_FEW])}{more}" if kind.names else ""
+    return f"; there are {', '.join(known[:_FEW])}{', ...' * (len(known) > _FEW)}" if known else ""
 
 
 def _count(number: int, noun: str) -> str:
