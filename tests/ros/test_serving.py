@@ -152,9 +152,9 @@ def test_a_signal_and_an_emergency_stop(serve, client: Client):
     assert end_of(goal) == (GoalStatus.STATUS_ABORTED, False, "emergency stop")
     goal = Goal(client, "/actions/move_forward", **FAR)  # it goes on
     goal.feedback.wait()
-    result = client.node.executor.create_task(goal.handle.get_result_async)
+    result = answer(client.node.executor.create_task(goal.handle.get_result_async))
     assert server.end(signal.SIGTERM) == 143
-    assert answer(answer(result)).result.reason == "the server was stopped"
+    assert answer(result).result.reason == "the server was stopped"
 
 
 def test_two_servers_do_a_mission_that_ships(start_sim, serve, tmp_path: Path, domain: int, nav2: object, capsys):
@@ -212,6 +212,12 @@ def test_without_its_interfaces(monkeypatch: pytest.MonkeyPatch, capsys: pytest.
     assert "python -m btlang.ros.interfaces --own" in capsys.readouterr().err
     assert main(["run", "-c", "wave", "--robot", "actions"]) == 2
     assert "python -m btlang.ros.interfaces --own" in capsys.readouterr().err
+
+
+def test_an_action_that_cannot_run(run_mission: object, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
+    (tmp_path / "words.toml").write_text(WORDS.replace("serving_words", "no_such_words"), encoding="utf-8")
+    assert main(["serve-actions", "--keywords", str(tmp_path / "words.toml")]) == 2
+    assert "error BT080: The command 'CountTo' cannot run: no_such_words:Count cannot be" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(
