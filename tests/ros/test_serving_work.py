@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from pathlib import Path
 
 import pytest
 
@@ -10,7 +11,7 @@ from btlang.api import load_simulation, world_vocabulary
 from btlang.backends.engine import bind_leaf
 from btlang.engine.leaf import ActionFailed
 from btlang.ros.serving.asked import asked_leaf
-from btlang.ros.serving.command import chosen, servable
+from btlang.ros.serving.choosing import chosen, servable
 from btlang.ros.serving.names import action_name
 from btlang.ros.serving.work import BUSY, REST, Work
 
@@ -30,6 +31,17 @@ resources = ["network"]
 phrase = "stumble"
 id = "Stumble"
 call = "counting:stumble"
+"""
+TABLES = """
+[[action]]
+phrase = "speak {text}"
+id = "Say"
+ros = { phrase = "say {text}", name = "/actions/say" }
+
+[[action]]
+phrase = "announce by ros {text}"
+id = "Announce"
+ros = { publish = "std_msgs/msg/String", name = "/speech", message = { data = "{text}" } }
 """
 PYTHON = """
 import asyncio
@@ -96,7 +108,7 @@ class Server:
 
 
 @pytest.fixture
-def keywords(tmp_path, monkeypatch: pytest.MonkeyPatch) -> str:
+def keywords(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> str:
     (tmp_path / "counting.py").write_text(PYTHON, encoding="utf-8")
     (tmp_path / "counting.toml").write_text(WORDS, encoding="utf-8")
     monkeypatch.syspath_prepend(tmp_path)
@@ -254,6 +266,17 @@ def test_all_that_ships_has_a_name_and_can_be_bound():
     assert len({action_name(node_id) for node_id in ids}) == len(ids) > 50
     assert action_name("MoveForward") == "move_forward"
     assert all(bind_leaf(node_id, vocabulary) is not None for node_id in ids)
+
+
+def test_what_another_server_does_is_not_served(tmp_path: Path):
+    """Else its goal could be for itself."""
+    words = tmp_path / "words.toml"
+    words.write_text(TABLES, encoding="utf-8")
+    vocabulary = world_vocabulary([str(words)])
+    assert "Say" in servable(vocabulary, ros=False)
+    assert "Announce" not in servable(vocabulary, ros=False)
+    assert "Say" not in servable(vocabulary, ros=True)
+    assert "Announce" in servable(vocabulary, ros=True)
 
 
 def test_some_of_them():

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import sys
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
 from btlang.api import RATES, world_vocabulary
 from btlang.arguments import between, namespace, node_name, real_speed
@@ -13,9 +13,9 @@ from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.engine.build import EngineError
 from btlang.ros.available import require_interfaces, require_ros
 from btlang.ros.mission.setup import Setup
-from btlang.ros.serving.names import FOLDER, action_name
+from btlang.ros.serving.choosing import chosen, servable
+from btlang.ros.serving.names import FOLDER
 from btlang.text.source import Source, Span
-from btlang.text.spelling import nearest
 from btlang.tree.node import Node, Tree
 
 TYPE_CHECKING = False
@@ -65,39 +65,6 @@ def serve(options: argparse.Namespace) -> int:
         return _spin(stage, ids, vocabulary, options)
     finally:
         stage.close()
-
-
-def servable(vocabulary: Vocabulary, *, ros: bool) -> list[str]:
-    """The ids of actions that something does: Python, or with `ros` an interface of ROS 2."""
-    return [
-        node_id
-        for node_id, entries in vocabulary.entries.items()
-        if entries[0].sort == "action" and (entries[0].call or (ros and any(entry.ros for entry in entries)))
-    ]
-
-
-def chosen(only: Sequence[str], ids: Iterable[str], vocabulary: Vocabulary) -> list[str]:
-    """The ids that have one of these names, or are listed under such a topic; all where none is given.
-
-    Raises ValueError, in words, for a name that nothing has, and where two actions cannot be told apart.
-    """
-    named: dict[str, list[str]] = {}
-    for node_id in ids:
-        for name in {node_id.lower(), action_name(node_id), vocabulary.entries[node_id][0].topic.lower()} - {""}:
-            named.setdefault(name, []).append(node_id)
-    for name in only:
-        if name.lower() not in named:
-            near = nearest(name.lower(), named, 1)
-            raise ValueError(f"--only: there is no action '{name}'" + (f"; the nearest is {near[0]}" if near else ""))
-    found = dict.fromkeys(i for name in (map(str.lower, only) if only else named) for i in named[name])
-    served: dict[str, str] = {}
-    for node_id in found:
-        name = action_name(node_id)
-        if not name or name in served:
-            known = f"{served[name]} has the same" if name else "it takes a-z, digits and single _"
-            raise ValueError(f"{node_id} has no name that ROS 2 can tell it by: {known}; use --only")
-        served[name] = node_id
-    return list(found)
 
 
 def _check(stage: Stage, ids: Sequence[str], vocabulary: Vocabulary) -> None:
