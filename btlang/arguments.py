@@ -19,6 +19,20 @@ def real_speed(text: str) -> float | str:
     return text if text == "real" else between(SLOWEST, 1e6)(text)
 
 
+def namespace(text: str) -> str:
+    """Of ROS 2: "" or names with slashes between, and perhaps before them."""
+    if text and not all(part.isidentifier() and part.isascii() for part in text.removeprefix("/").split("/")):
+        raise argparse.ArgumentTypeError(f"names of letters, digits and _ with / between are needed, not '{text}'")
+    return text
+
+
+def node_name(text: str) -> str:
+    """Of a node of ROS 2."""
+    if not (text.isidentifier() and text.isascii()):
+        raise argparse.ArgumentTypeError(f"a name of letters, digits and _ is needed, not '{text}'")
+    return text
+
+
 def between(least: float, most: float) -> Callable[[str], float]:
     """A number from `least` to `most`."""
 

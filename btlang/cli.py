@@ -8,10 +8,11 @@ import os
 import sys
 from collections.abc import Callable, Sequence
 from functools import partial
+from importlib import import_module
 
 import btlang
 from btlang.api import RATES, RunnableTree, format_mission, parse_tree, read_world, world_vocabulary
-from btlang.arguments import between, duration, picture, real_speed, speed
+from btlang.arguments import between, duration, picture, speed
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.reading import read_source, reason_of
 from btlang.diagnostics.report import FORMATS, Report
@@ -67,7 +68,7 @@ def _run(options: argparse.Namespace) -> int:
     robot = chosen_robot(options)
     tree = _tree(options)
     if options.preflight:
-        ready = print_preflight(tree.tree, tree.vocabulary, read_world(options.world), options)
+        ready = print_preflight(tree.tree, tree.vocabulary, read_world(options.world), robot)
         return SUCCESS if ready else FAILED
     with pictures_of(tree, options.picture, options.tree_picture) as sinks:
         return run_mission(
@@ -189,22 +190,9 @@ def _format_one(source: Source, options: argparse.Namespace) -> bool:
     return False
 
 
-def _sim_ros(options: argparse.Namespace) -> int:
-    from btlang.ros.simulator.command import serve
-
-    return serve(
-        read_world(options.world),
-        speed=1.0 if options.speed == "real" else options.speed,
-        rate=options.rate,
-        gives_clock=options.clock,
-        namespace=options.namespace,
-    )
-
-
-def _ros_node(options: argparse.Namespace) -> int:
-    from btlang.ros.mission.command import serve
-
-    return serve(options)
+def _node(options: argparse.Namespace) -> int:
+    code: int = import_module(_NODES[options.verb]).serve(options)
+    return code
 
 
 def _repl(options: argparse.Namespace) -> int:
@@ -213,7 +201,14 @@ def _repl(options: argparse.Namespace) -> int:
     return run_repl(keywords=options.keywords, world=options.world, parser=options.parser, speed=options.speed)
 
 
-_VERBS = {
+_NODES = {
+    "sim-ros": "btlang.ros.simulator.command",
+    "ros-node": "btlang.ros.mission.command",
+    "serve-actions": "btlang.ros.serving.command",
+}
+"""The verbs that are nodes of ROS 2, each with the module whose `serve` it is."""
+
+_VERBS: dict[str, Callable[[argparse.Namespace], int]] = {
     "repl": _repl,
     "run": _run,
     "check": _check,
@@ -222,8 +217,7 @@ _VERBS = {
     "examples": _examples,
     "explain": _explain,
     "format": _format,
-    "sim-ros": _sim_ros,
-    "ros-node": _ros_node,
+    **dict.fromkeys(_NODES, _node),
 }
 
 
@@ -345,14 +339,10 @@ def _format_options(parser: argparse.ArgumentParser) -> None:
 
 
 def _sim_ros_options(parser: argparse.ArgumentParser) -> None:
-    from btlang.ros.simulator.command import add_sim_options
+    from btlang.ros.simulator.command import add_simulator_options
 
     _world_option(parser)
-    parser.add_argument("--speed", type=real_speed, default="real", help="real, or a factor of real time")
-    parser.add_argument(
-        "--rate", type=between(*RATES), default=20.0, metavar="HZ", help="steps a simulated second (default: 20)"
-    )
-    add_sim_options(parser)
+    add_simulator_options(parser)
 
 
 def _ros_node_options(parser: argparse.ArgumentParser) -> None:
@@ -361,6 +351,13 @@ def _ros_node_options(parser: argparse.ArgumentParser) -> None:
     _reading_options(parser)
     _speed_option(parser)
     add_node_options(parser)
+
+
+def _serving_options(parser: argparse.ArgumentParser) -> None:
+    from btlang.ros.serving.command import add_serving_options
+
+    _words_options(parser)
+    add_serving_options(parser)
 
 
 _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
@@ -374,6 +371,7 @@ _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "format": ("lay out missions: indentation, spaces, empty lines", _format_options),
     "sim-ros": ("offer the simulated robot over ROS 2", _sim_ros_options),
     "ros-node": ("run missions as a ROS 2 node, for other programs", _ros_node_options),
+    "serve-actions": ("serve what the robot can do as ROS 2 actions", _serving_options),
 }
 
 

@@ -102,7 +102,7 @@ _ALL = (
          "Put it back: pip install --force-reinstall --no-deps 'lark>=1.2,<2'\nOr read with the other parser, which needs no package."),
     Code("BT090", "There is no code '{name}'.", "All of them: btc explain"),
     Code("BT100", "ROS 2 cannot be used: {reason}.", "{advice}"),
-    Code("BT101", "'{words}' needs the {sort} {name}, but {reason}.", "All that a mission needs of a robot: btc run --robot ros --preflight FILE"),
+    Code("BT101", "'{words}' needs the {sort} {name}, but {reason}.", "All that the mission needs of the robot: the same command with --preflight"),
     Code("BT102", "The ros table of '{phrase}' cannot be used: {reason}.", "All its keys are in docs/ros.md."),
     Code("BT103", "The ros table of '{phrase}' uses a slot {{{slot}}}, and the phrase has none of that name."),
     Code("BT104", "'{phrase}' needs the ROS 2 interface {type}, which is not installed here.", "{advice}"),

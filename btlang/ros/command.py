@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
-from argparse import ArgumentParser, ArgumentTypeError, Namespace
+from argparse import ArgumentParser, Namespace
 from collections.abc import Callable
 from contextlib import closing
 from functools import partial
 
-from btlang.robots.stages import ROBOTS
-from btlang.ros.available import require_ros
+from btlang.arguments import namespace
+from btlang.robots.stages import ROBOTS, stage_maker
+from btlang.ros.available import require_interfaces, require_ros
+from btlang.ros.serving.names import FOLDER
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from typing import Any
+
     from btlang.robots.world import World
     from btlang.ros.stage import RosStage
     from btlang.run.stage import Stage
@@ -29,45 +33,67 @@ def ros_stage(world: World, *, sim_time: bool = False, namespace: str = "", name
     return RosStage(world, sim_time=sim_time, namespace=namespace, name=name)
 
 
+def actions_stage(
+    world: World, *, sim_time: bool = False, namespace: str = "", name: str = "btlang", servers: str = ""
+) -> RosStage:
+    """As ros_stage, where each action is done by its server, by default one of the same namespace.
+
+    Raises MissionError (BT100, BT110).
+    """
+    require_ros(*_PACKAGES)
+    require_interfaces()
+    from btlang.ros.stage import RosStage
+
+    servers = servers or f"/{namespace.strip('/')}/{FOLDER}".replace("//", "/")
+    return RosStage(world, sim_time=sim_time, namespace=namespace, name=name, servers=servers)
+
+
 def add_robot_options(parser: ArgumentParser) -> None:
     """The options of `btc run` that choose a robot."""
     parser.add_argument(
         "--robot", choices=list(ROBOTS), default="simulated", help="what runs the mission (default: %(default)s)"
     )
-    parser.add_argument("--sim-time", action="store_true", help="with --robot ros: time is that of the topic /clock")
-    add_namespace(parser, "with --robot ros: that of the robot (default: none)")
     parser.add_argument(
-        "--preflight", action="store_true", help="with --robot ros: only list what the mission needs of the robot"
+        "--sim-time", action="store_true", help="with --robot ros or actions: time is that of the topic /clock"
+    )
+    add_namespace(parser, "with --robot ros or actions: that of the robot (default: none)")
+    parser.add_argument(
+        "--servers",
+        metavar="NS",
+        help=f"with --robot actions: where the servers are (default: /{FOLDER} in the namespace)",
+    )
+    parser.add_argument(
+        "--preflight", action="store_true", help="with --robot ros or actions: only list what the mission needs"
     )
     parser.set_defaults(refuse=parser.error)
 
 
 def add_namespace(parser: ArgumentParser, what: str) -> None:
     """The option --namespace."""
-    parser.add_argument("--namespace", type=_namespace, default="", metavar="NS", help=what)
-
-
-def _namespace(text: str) -> str:
-    """Of ROS 2: "" or names with slashes between, and perhaps before them."""
-    if text and not all(part.isidentifier() and part.isascii() for part in text.removeprefix("/").split("/")):
-        raise ArgumentTypeError(f"names of letters, digits and _ with / between are needed, not '{text}'")
-    return text
+    parser.add_argument("--namespace", type=namespace, default="", metavar="NS", help=what)
 
 
 def chosen_robot(options: Namespace) -> str | Callable[[World], Stage]:
     """As `RunnableTree.run` takes it. Ends with a usage error where options do not go together."""
-    if options.robot != "ros":
+    if options.servers is not None and options.robot != "actions":
+        options.refuse("--servers is for --robot actions")
+    if options.robot == "simulated":
         if options.sim_time or options.preflight or options.namespace:
-            options.refuse("--sim-time, --namespace and --preflight are for --robot ros")
+            options.refuse("--sim-time, --namespace and --preflight are for --robot ros and --robot actions")
         return str(options.robot)
     if options.speed != "real":
-        options.refuse("--robot ros runs in real time, so it takes no --speed")
-    return partial(ros_stage, sim_time=options.sim_time, namespace=options.namespace)
+        options.refuse(f"--robot {options.robot} runs in real time, so it takes no --speed")
+    stage: Any = stage_maker(options.robot)
+    make = partial(stage, sim_time=options.sim_time, namespace=options.namespace)
+    return make if options.servers is None else partial(make, servers=f"/{options.servers.strip('/')}")
 
 
-def print_preflight(tree: Tree, vocabulary: Vocabulary, world: World, options: Namespace) -> bool:
-    """Prints what a tree needs of the robot, a line each; returns whether all of it is there. Raises MissionError."""
-    with closing(ros_stage(world, sim_time=options.sim_time, namespace=options.namespace)) as stage:
+def print_preflight(tree: Tree, vocabulary: Vocabulary, world: World, robot: Any) -> bool:
+    """Prints what a tree needs of the robot, a line each; returns whether all of it is there. Raises MissionError.
+
+    `robot` is what `chosen_robot` gives for a ROS 2 robot.
+    """
+    with closing(robot(world)) as stage:
         found = stage.survey(tree, vocabulary)
     for interface, (_, reason) in found.items():
         state = f"missing: {reason}" if reason else "found"

@@ -19,6 +19,7 @@ from btlang.ros.graph import absent, full_name
 from btlang.ros.node import SpunNode
 from btlang.ros.pace import RosPace
 from btlang.ros.robot import RosRobot
+from btlang.ros.serving.names import served
 from btlang.ros.wire import CLOCK, VELOCITY, Interface, needs
 from btlang.run.controls import Controls
 from btlang.run.events import EventStream, RobotEvent
@@ -42,14 +43,18 @@ class RosStage:
     """See `btlang.run.stage.Stage`. Names and poses are those of the world file, whose map is the robot's.
 
     With `sim_time` the mission's clock follows the topic /clock, else the system's. Missions run in real time.
-    `namespace` is that of the robot and of the node, `node`, whose name is `name`.
+    `namespace` is that of the robot and of the node, `node`, whose name is `name`. With `servers` actions are done by
+    the servers of `btc serve-actions` in that folder of names; what the robot senses comes from itself all the same.
     """
 
-    def __init__(self, world: World, *, sim_time: bool = False, namespace: str = "", name: str = "btlang") -> None:
+    def __init__(
+        self, world: World, *, sim_time: bool = False, namespace: str = "", name: str = "btlang", servers: str = ""
+    ) -> None:
         self.world = world
         self.clock = Clock()
         self.events = EventStream()
         self._sim_time = sim_time
+        self._servers = servers
         self._spun = SpunNode(name, namespace=namespace, use_sim_time=sim_time)
         self.node = self._spun.node
         self._now = self._ros_time if sim_time else time.monotonic
@@ -64,7 +69,12 @@ class RosStage:
             raise
 
     def bind(self, entry: Entry, vocabulary: Vocabulary) -> LeafBinding | None:
-        """As a client of what its `ros` table names; None without one. Raises MissionError (BT104 to BT106)."""
+        """As a client of what its `ros` table names, or of its server; None where neither is there.
+
+        Raises MissionError (BT104 to BT106).
+        """
+        if self._servers:
+            entry = served(entry, vocabulary, self._servers)
         return bind_ros(entry, vocabulary, self._clients, self.robot.located)
 
     def survey(self, tree: Tree, vocabulary: Vocabulary) -> dict[Interface, tuple[Node | None, str]]:
