@@ -4,15 +4,9 @@ from __future__ import annotations
 
 from types import SimpleNamespace
 from typing import Any
+from unittest.mock import MagicMock
 
 from btlang.ros.base import RosBase
-
-
-class Node:
-    """Publishes to nobody."""
-
-    def create_publisher(self, *arguments: object) -> Any:
-        return SimpleNamespace(publish=lambda message: None)
 
 
 class Standing:
@@ -27,7 +21,7 @@ class Standing:
 
 
 def test_a_base_that_stands_for_a_second_is_stuck() -> None:
-    base = RosBase(Node(), Standing(), 0.2)  # type: ignore[arg-type]
+    base = RosBase(MagicMock(), Standing(), 0.2)  # type: ignore[arg-type]
     base.drive(0.5, 0.0)
     for _ in range(19):
         base.step(0.05)
@@ -37,7 +31,7 @@ def test_a_base_that_stands_for_a_second_is_stuck() -> None:
 
 
 def test_one_that_braked_since_a_step_came_late_is_not() -> None:
-    base = RosBase(Node(), Standing(), 0.2)  # type: ignore[arg-type]
+    base = RosBase(MagicMock(), Standing(), 0.2)  # type: ignore[arg-type]
     base.drive(0.5, 0.0)
     base.step(3.0)
     assert not base.stuck
