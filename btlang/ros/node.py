@@ -54,6 +54,7 @@ class SpunNode:
             raise unusable(str(error)) from None
         self._executor = SingleThreadedExecutor(context=self.context)
         self._executor.add_node(self.node)
+        self._closing = False
         self._thread = Thread(target=self._spin, name=f"ros {name}", daemon=True)
 
     def start(self) -> None:
@@ -69,6 +70,7 @@ class SpunNode:
 
     def close(self) -> None:
         """Ends the thread, then the node, then its context. May be called twice."""
+        self._closing = True
         self._executor.shutdown()
         if self._thread.ident is not None:
             self._thread.join()
@@ -101,4 +103,6 @@ class SpunNode:
             except ExternalShutdownException:
                 return
             except Exception as error:
+                if self._closing:  # rclpy takes away what this thread may be waiting with
+                    return
                 self.node.get_logger().error(f"{type(error).__name__}: {error}")
