@@ -11,9 +11,10 @@ __version__ = "0.1.0"
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.api import RunnableTree, action, condition, parse_tree
+    from btlang.api import RunnableTree, parse_tree
     from btlang.diagnostics.diagnostic import Diagnostic, MissionError
     from btlang.engine.leaf import ActionFailed
+    from btlang.own_words import action, condition
 
 __all__ = ["ActionFailed", "Diagnostic", "MissionError", "RunnableTree", "action", "condition", "parse_tree"]
 
@@ -21,6 +22,8 @@ _HOMES = {
     "ActionFailed": "btlang.engine.leaf",
     "Diagnostic": "btlang.diagnostics.diagnostic",
     "MissionError": "btlang.diagnostics.diagnostic",
+    "action": "btlang.own_words",
+    "condition": "btlang.own_words",
 }
 
 

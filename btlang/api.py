@@ -9,33 +9,31 @@ from functools import cache, partial
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.frontends.mission import DEFAULT_PARSER, read_mission
 from btlang.garbage import no_collection
-from btlang.passes import compile_mission
+from btlang.passes import checked, compile_mission, lower_mission
 from btlang.passes.lint import lint
 from btlang.text.source import Source, Span
-from btlang.tree.ast import Mission, all_facts
+from btlang.tree.ast import Fact, Mission, all_facts
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.cache import kept
-from btlang.vocabulary.entry import Entry, SlotSpec
+from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.load import load_vocabulary
 from btlang.vocabulary.shipped import DEFAULT_WORLD
 from btlang.vocabulary.vocabulary import Vocabulary
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any, TypeVar
+    from typing import Any
 
     from btlang.engine.blackboard import Blackboard
+    from btlang.engine.engine import EngineError
     from btlang.robots.simulation import Simulation
     from btlang.robots.stages import MakeStage
     from btlang.robots.world import World
-    from btlang.robots.world_file import WorldError
     from btlang.run.controls import Controls
     from btlang.run.events import Sink
     from btlang.run.runner import Outcome, Runner
     from btlang.run.stage import Stage
     from btlang.run.story import Story
-
-    Call = TypeVar("Call", bound=Callable[..., Any])
 
 SLOWEST = 0.001  # seconds of the mission per second; slower than that is a mistake
 RATES = (1.0, 1000.0)  # ticks a second; below, a robot drives blind for too long between two
@@ -47,20 +45,36 @@ def parse_tree(
     parser: str = DEFAULT_PARSER,
     keywords: Sequence[str | Entry | Callable[..., Any]] = (),
     world: str | None = None,
+    main: str = "",
 ) -> RunnableTree:
-    """Compiles a mission in English.
+    """Compiles a mission in English, or a tree: a text that begins with `<` is XML of BehaviorTree.CPP, with `{` JSON.
 
     `parser` is "shunting-yard" or "lark" (both read the same); `keywords` are paths of keyword files, names of
     installed packs, or functions made words by `action` or `condition`; `world` is the path of a world file, by
-    default the world that ships. Raises MissionError, which holds every diagnostic.
+    default the world that ships; `main` is the ID of the tree to run, where XML has several. Raises MissionError, which
+    holds every diagnostic.
     """
     source = Source(text) if isinstance(text, str) else text
     with no_collection:
         vocabulary = world_vocabulary(keywords, world)
+        start = source.text.lstrip("\ufeff \t\r\n")[:1]
+        if start in ("<", "{"):  # as no mission begins
+            tree = _read_data(source, start, main)
+            return RunnableTree(checked(tree, vocabulary), vocabulary, world)
         reading = read_mission(source, vocabulary, parser)
         tree = compile_mission(reading.mission, vocabulary)
         warnings = lint(reading.mission, tree, vocabulary, reading.warnings)
     return RunnableTree(tree, vocabulary, world, warnings, mission=reading.mission)
+
+
+def _read_data(source: Source, start: str, main: str) -> Tree:
+    if start == "<":
+        from btlang.frontends.btcpp.reader import read_xml
+
+        return read_xml(source, main)
+    from btlang.backends.json_tree import read_json
+
+    return read_json(source)
 
 
 def format_mission(
@@ -95,7 +109,9 @@ def _names_by_type(world: str | None) -> dict[str, tuple[str, ...]]:
     try:
         names = world_names(world)
     except WorldError as error:
-        raise _world_problem(error) from None
+        from btlang.robots.world_problem import world_problem
+
+        raise world_problem(error) from None
     return {"place": names.places, "person": names.people, "object": names.objects}
 
 
@@ -109,53 +125,12 @@ def load_simulation(world: str | None = None) -> Simulation:
 def read_world(world: str | None = None) -> World:
     """The world in a file, by default the world that ships. Raises MissionError (BT070)."""
     from btlang.robots.world_file import WorldError, load_world
+    from btlang.robots.world_problem import world_problem
 
     try:
         return load_world(world)
     except WorldError as error:
-        raise _world_problem(error) from None
-
-
-def action(
-    phrase: str | Sequence[str],
-    *,
-    id: str = "",
-    slots: dict[str, str] | None = None,
-    resources: Sequence[str] = (),
-    thread: bool = False,
-) -> Callable[[Call], Call]:
-    """Makes a function, generator function, `async def` function or class a command: `parse_tree(keywords=[...])`.
-
-    `phrase` is one pattern or several, `slots` gives types to slots whose name is not a type, `id` is the node's name,
-    by default that of the function in CamelCase. With `thread` a plain function works in a thread of its own. See
-    btlang/engine/leaf.py for what a leaf may be.
-    """
-    return _word("action", phrase, id, slots or {}, resources, thread)
-
-
-def condition(
-    phrase: str | Sequence[str], *, id: str = "", slots: dict[str, str] | None = None
-) -> Callable[[Call], Call]:
-    """Makes a function that returns a bool a condition; as `action`."""
-    return _word("condition", phrase, id, slots or {}, (), False)
-
-
-def _word(
-    sort: str, phrase: str | Sequence[str], node_id: str, slots: dict[str, str], resources: Sequence[str], thread: bool
-) -> Callable[[Call], Call]:
-    from btlang.vocabulary.pattern import Slot, forms
-
-    phrases = (phrase,) if isinstance(phrase, str) else tuple(phrase)
-
-    def decorate(call: Call) -> Call:
-        names = dict.fromkeys(p.name for text in phrases for form in forms(text) for p in form if isinstance(p, Slot))
-        specs = tuple(SlotSpec(name, slots.get(name, name)) for name in names)
-        made = node_id or "".join(part.title() for part in call.__name__.split("_"))
-        entry = Entry(sort, made, phrases, call, specs, tuple(resources), help=call.__doc__ or "", thread=thread)
-        call.btlang_entry = entry  # type: ignore[attr-defined]
-        return call
-
-    return decorate
+        raise world_problem(error) from None
 
 
 class RunnableTree:
@@ -183,6 +158,8 @@ class RunnableTree:
         self.warnings = tuple(warnings)
         self.stage = stage
         self._blackboard = blackboard
+        self.facts: Sequence[Fact] = all_facts(mission) if mission is not None else ()
+        """Places of this mission, beside those of the world."""
         self.sink_errors: list[Exception] = []
         """What sinks of the latest run raised; such a sink gets no more events, and the mission goes on."""
         self._controls: Controls | None = None
@@ -202,13 +179,38 @@ class RunnableTree:
     def explain(self, width: int = 100) -> str:
         """Each statement as written, in English whose brackets show how it was read, and as a tree.
 
-        Lines are at most `width` columns long. Raises ValueError where the tree was not compiled from a mission.
+        Of a tree that was no mission, its statements are those of its English. Lines are at most `width` columns long.
+        Raises MissionError (BT142) where English cannot say it.
         """
         from btlang.backends.explain import explain_mission
 
-        if self.mission is None:
-            raise ValueError("this tree was not compiled from a mission")
-        return explain_mission(self.mission, self.tree, self.vocabulary, self._described, width)
+        mission, tree = self.mission, self.tree
+        if mission is None:
+            mission = read_mission(Source(str(self.to("english"))), self.vocabulary).mission
+            tree = lower_mission(mission, self.vocabulary)
+        return explain_mission(mission, tree, self.vocabulary, self._described, width)
+
+    def check(self) -> None:
+        """Raises MissionError with all that would keep it from running, as far as that is known without the robot.
+
+        A tree that was compiled from a mission has nothing of the kind.
+        """
+        if self.mission is not None:
+            return
+        from btlang.backends.checking import tree_problems
+
+        problems = tree_problems(self.tree, self.vocabulary)
+        if problems:
+            raise MissionError(problems)
+
+    def to(self, target: str, **options: Any) -> str | bytes:
+        """The tree as "xml", "english", "json" or another target of btlang.backends.targets.
+
+        Raises ValueError for a target or an option that is not known, MissionError where the tree cannot be told so.
+        """
+        from btlang.backends.targets import compiled
+
+        return compiled(self.tree, self.vocabulary, target, given={"world": self.world, "facts": self.facts}, **options)
 
     def label(self, node: Node) -> str:
         """The English of a leaf, `Id port=value` of any other node."""
@@ -342,7 +344,7 @@ class RunnableTree:
         from btlang.run.runner import Runner, traced_engine
         from btlang.run.story import Story
 
-        for fact in all_facts(self.mission) if self.mission is not None else ():
+        for fact in self.facts:
             stage.robot.add_place(Place(fact.name, fact.x, fact.y, fact.facing))
         stage.check(self.tree, self.vocabulary)
         stage.begin(sinks)
@@ -357,8 +359,7 @@ class RunnableTree:
                 stopwatch=Stopwatch() if speed < math.inf else None,
             )
         except EngineError as error:
-            span = error.node.span or Span(Source(""), 0, 0)
-            raise MissionError([diagnostic("BT080", span, id=error.node.id, reason=error.message)]) from None
+            raise MissionError(self._refused(error, stage)) from None
         self._story = Story(engine)
         stage.events.add(self._story)
         self.sink_errors = stage.events.errors
@@ -376,21 +377,21 @@ class RunnableTree:
         )
         return self._runner
 
+    def _refused(self, error: EngineError, stage: Stage) -> list[Diagnostic]:
+        """What to say of a tree that no engine runs: of one that was no mission, all that is wrong with it."""
+        span = error.node.span or Span(Source(""), 0, 0)
+        told = diagnostic("BT080", span, id=error.node.id, reason=error.message)
+        if self.mission is not None:
+            return [told]
+        from btlang.backends.checking import tree_problems
+        from btlang.backends.engine import bind_leaf
+
+        bind = cache(lambda id: bind_leaf(id, self.vocabulary, stage.bind))
+        return tree_problems(self.tree, self.vocabulary, bind, {"robot": stage.robot}) or [told]
+
     def _described(self, node: Node) -> str:
         from btlang.tree.dump import described
 
         if node.children or node.id not in self.vocabulary.entries:
             return described(node)
         return f"{node.id}: {self.label(node)}"
-
-
-def _world_problem(error: WorldError) -> MissionError:
-    from btlang.diagnostics.reading import read_source
-
-    try:
-        source = read_source(error.path)
-    except MissionError:
-        source = Source("", error.path)
-    start = source.offset(error.line or 1)
-    end = start + len(source.line(error.line).rstrip()) if error.line and source.text else start
-    return MissionError([diagnostic("BT070", Span(source, start, end), reason=error.message)])

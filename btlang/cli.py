@@ -10,21 +10,14 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from importlib import import_module
 
-import btlang
-from btlang.api import RATES, RunnableTree, format_mission, parse_tree, read_world, world_vocabulary
-from btlang.arguments import between, duration, picture, speed
+from btlang.api import RunnableTree, format_mission, parse_tree, read_world, world_vocabulary
+from btlang.cli_options import WIDEST, parsed
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.reading import read_source, reason_of
-from btlang.diagnostics.report import FORMATS, Report
-from btlang.frontends.mission import DEFAULT_PARSER, PARSERS
+from btlang.diagnostics.report import Report
 from btlang.text.source import Source
 
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    from typing import Any
-
 SUCCESS, FAILED, UNFORMATTED, BAD_INPUT, INTERRUPTED = 0, 1, 1, 2, 130
-_WIDEST = 120  # columns; longer lines are hard to read
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -36,7 +29,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         if hasattr(stream, "reconfigure"):
             stream.reconfigure(errors="replace")  # a terminal that cannot show a character still gets the rest
     try:
-        options = _parsed(arguments)
+        options = parsed(arguments)
         options.report = Report(options.format, on_output=options.verb == "check")
         try:
             code = _VERBS[options.verb](options)
@@ -85,7 +78,7 @@ def _run(options: argparse.Namespace) -> int:
 
 
 def _check(options: argparse.Namespace) -> int:
-    _tree(options)
+    _tree(options).check()
     if not options.report.is_json:
         print("The mission is fine.")
     return SUCCESS
@@ -109,6 +102,27 @@ def _draw_tree(tree: RunnableTree, path: str, apart: bool) -> None:
     check_picture(path)
     draw_tree(tree.tree, tree.label, tree.is_action, path, apart=apart)
     print(f"The tree is drawn in {path}.")
+
+
+def _compile(options: argparse.Namespace) -> int:
+    from btlang.backends.mission_file import write_file
+    from btlang.backends.targets import TARGETS, target_of
+
+    name = options.to or (target_of(options.out) if options.out is not None else "")
+    if not name:
+        options.usage_error(f"--to says what to compile to: {', '.join(TARGETS)}")
+    if options.out is None and TARGETS[name].binary and sys.stdout.isatty():
+        options.usage_error(f"{name} is no text for a terminal: -o FILE writes it to a file")
+    if options.dialect is not None and "dialect" not in TARGETS[name].options:
+        options.usage_error(f"--dialect is for xml, not for {name}")
+    made = _tree(options).to(name, dialect=options.dialect)
+    if options.out is not None:
+        write_file(options.out, made)
+    elif isinstance(made, bytes):
+        sys.stdout.buffer.write(made)
+    else:
+        sys.stdout.write(made)
+    return SUCCESS
 
 
 def _words(options: argparse.Namespace) -> int:
@@ -152,7 +166,8 @@ def _explain_mission(options: argparse.Namespace) -> int:
     from shutil import get_terminal_size
 
     width = get_terminal_size((100, 24)).columns
-    print(_tree(options).explain(min(width, _WIDEST)))
+    tree = _tree(options)
+    print(tree.explain(min(width, WIDEST)))
     return SUCCESS
 
 
@@ -213,6 +228,7 @@ _VERBS: dict[str, Callable[[argparse.Namespace], int]] = {
     "run": _run,
     "check": _check,
     "tree": _show_tree,
+    "compile": _compile,
     "words": _words,
     "examples": _examples,
     "explain": _explain,
@@ -224,173 +240,10 @@ _VERBS: dict[str, Callable[[argparse.Namespace], int]] = {
 def _tree(options: argparse.Namespace) -> RunnableTree:
     """Compiles what the options name; warnings go to the report."""
     source = Source(options.text, "<command line>") if options.text is not None else read_source(options.file)
-    tree = parse_tree(source, parser=options.parser, keywords=options.keywords, world=options.world)
+    tree = parse_tree(source, parser=options.parser, keywords=options.keywords, world=options.world, main=options.main)
     for warning in tree.warnings:
         options.report.add([warning])
     return tree
-
-
-def _parsed(arguments: Sequence[str] | None) -> argparse.Namespace:
-    """The options of the command line. Only those of its verb are made: making all takes a tenth of `btc check`."""
-    words = sys.argv[1:] if arguments is None else list(arguments)
-    if words and words[0] in _OPTIONS:
-        parser = _Parser(f"btc {words[0]}")
-        parser.set_defaults(**_DEFAULTS, verb=words[0])
-        _OPTIONS[words[0]][1](parser)
-        return parser.parse_args(words[1:])
-    parser = _Parser("btc", description="Compiles and runs robot missions in plain English.")
-    parser.add_argument("--version", action="version", version=f"btc {btlang.__version__}")
-    verbs = parser.add_subparsers(dest="verb", metavar="VERB", prog="btc", parser_class=_Parser)
-    parser.set_defaults(**_DEFAULTS, verb="repl")  # behind the verbs, which have none as default
-    for verb, (about, add) in _OPTIONS.items():
-        add(verbs.add_parser(verb, help=about))
-    return parser.parse_args(words)
-
-
-_DEFAULTS: dict[str, Any] = {
-    "keywords": [], "world": None, "parser": DEFAULT_PARSER, "speed": "real", "format": "text"
-}  # fmt: skip
-
-
-def _words_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument(
-        "--keywords", action="append", default=[], metavar="FILE", help="further keyword file, or name of a pack"
-    )
-    _world_option(parser)
-
-
-def _world_option(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--world", metavar="FILE", help="world file (default: the world that ships)")
-
-
-def _reading_options(parser: argparse.ArgumentParser) -> None:
-    _words_options(parser)
-    parser.add_argument("--parser", choices=list(PARSERS), default=DEFAULT_PARSER, help="(default: %(default)s)")
-
-
-def _mission_options(parser: argparse.ArgumentParser) -> None:
-    _reading_options(parser)
-    parser.add_argument(
-        "--format", choices=FORMATS, default="text", help="of messages: text, or json for programs (default: text)"
-    )
-    text = parser.add_mutually_exclusive_group(required=True)
-    text.add_argument("file", nargs="?", metavar="FILE", help="mission, or - for standard input")
-    text.add_argument("-c", dest="text", metavar="TEXT", help="mission as text")
-
-
-def _speed_option(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--speed", type=speed, default="real", help="real, max, or a factor of real time")
-
-
-def _repl_options(parser: argparse.ArgumentParser) -> None:
-    _reading_options(parser)
-    _speed_option(parser)
-
-
-def _run_options(parser: argparse.ArgumentParser) -> None:
-    from btlang.ros.command import add_robot_options
-
-    _mission_options(parser)
-    _speed_option(parser)
-    parser.add_argument("--rate", type=between(*RATES), default=20.0, metavar="HZ", help="ticks a second (default: 20)")
-    parser.add_argument("--for", type=duration, dest="time_limit", metavar="DURATION", help="stop after e.g. 60s, 2min")
-    parser.add_argument("--log", metavar="FILE", help="write every event as a line of JSON")
-    parser.add_argument(
-        "--picture", type=picture(".svg", ".png", ".gif"), metavar="FILE", help="draw the run: .svg, .png or .gif"
-    )
-    parser.add_argument(
-        "--tree-picture", type=picture(".svg", ".png"), metavar="FILE", help="draw the tree and how its nodes ended"
-    )
-    parser.add_argument("--lines", action="store_true", help="plain lines also where the output is a terminal")
-    parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
-    add_robot_options(parser)
-
-
-def _tree_options(parser: argparse.ArgumentParser) -> None:
-    _mission_options(parser)
-    parser.add_argument("--plain", action="store_true", help="one line a node: Id port=value")
-    parser.add_argument("--picture", type=picture(".svg", ".png"), metavar="FILE", help="draw the tree: .svg or .png")
-    parser.add_argument("--apart", action="store_true", help="draw each named subtree once, below the tree")
-
-
-def _listing_options(parser: argparse.ArgumentParser) -> None:
-    _words_options(parser)
-    parser.add_argument("search", nargs="*", metavar="SEARCH", help="only this topic, or what has these words")
-
-
-def _examples_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--copy", metavar="FOLDER", help="copy them to a folder, with the worlds that they need")
-    parser.add_argument("name", nargs="*", metavar="NAME", help="only these")
-
-
-def _explain_options(parser: argparse.ArgumentParser) -> None:
-    _reading_options(parser)
-    subject = parser.add_mutually_exclusive_group()
-    subject.add_argument("file", nargs="?", metavar="FILE|CODE", help="mission, - for standard input, or e.g. BT013")
-    subject.add_argument("-c", dest="text", metavar="TEXT", help="mission as text")
-
-
-def _format_options(parser: argparse.ArgumentParser) -> None:
-    _reading_options(parser)
-    parser.add_argument("--check", action="store_true", help="change nothing; exit with 1 where a file would change")
-    several = parser.add_mutually_exclusive_group(required=True)
-    several.add_argument("file", nargs="*", default=[], metavar="FILE", help="mission, or - for standard input")
-    several.add_argument("-c", dest="text", metavar="TEXT", help="mission as text")
-
-
-def _sim_ros_options(parser: argparse.ArgumentParser) -> None:
-    from btlang.ros.simulator.command import add_simulator_options
-
-    _world_option(parser)
-    add_simulator_options(parser)
-
-
-def _ros_node_options(parser: argparse.ArgumentParser) -> None:
-    from btlang.ros.mission.command import add_node_options
-
-    _reading_options(parser)
-    _speed_option(parser)
-    add_node_options(parser)
-
-
-def _serving_options(parser: argparse.ArgumentParser) -> None:
-    from btlang.ros.serving.command import add_serving_options
-
-    _words_options(parser)
-    add_serving_options(parser)
-
-
-_OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
-    "repl": ("type a mission line by line; what `btc` alone does", _repl_options),
-    "run": ("run a mission on the simulated robot, or a ROS 2 robot", _run_options),
-    "check": ("say what is wrong with a mission", _mission_options),
-    "tree": ("print the behavior tree of a mission", _tree_options),
-    "words": ("list what can be said", _listing_options),
-    "examples": ("list the missions that ship, print them or copy them", _examples_options),
-    "explain": ("show how a mission is read, or tell of a message", _explain_options),
-    "format": ("lay out missions: indentation, spaces, empty lines", _format_options),
-    "sim-ros": ("offer the simulated robot over ROS 2", _sim_ros_options),
-    "ros-node": ("run missions as a ROS 2 node, for other programs", _ros_node_options),
-    "serve-actions": ("serve what the robot can do as ROS 2 actions", _serving_options),
-}
-
-
-class _Help(argparse.HelpFormatter):
-    """Asks for the width of the terminal only to print: argparse makes one for each option that it is told of."""
-
-    def __init__(self, prog: str) -> None:
-        super().__init__(prog, width=_WIDEST)
-
-    def format_help(self) -> str:
-        from shutil import get_terminal_size
-
-        self._width = get_terminal_size().columns - 2
-        return super().format_help()
-
-
-class _Parser(argparse.ArgumentParser):
-    def __init__(self, prog: str | None = None, **options: Any) -> None:
-        super().__init__(prog, formatter_class=_Help, **options)
 
 
 if __name__ == "__main__":

@@ -1,25 +1,42 @@
-"""Mission files that are written anew."""
+"""Files that are written as a whole: missions anew, and what trees are compiled to."""
 
 from __future__ import annotations
 
 import os
 import shutil
+from contextlib import nullcontext
 
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.reading import unwritable
 
 
 def replace_text(path: str, text: str) -> None:
-    """Gives a file another text. Raises MissionError (BT009) where that fails; the file is then as it was."""
+    """Gives a file that is there another text, as `write_file`."""
+    try:
+        with open(path, "r+b"):
+            pass
+    except OSError as error:
+        raise MissionError([unwritable(path, error)]) from None
+    write_file(path, text)
+
+
+def write_file(path: str, content: str | bytes) -> None:
+    """Writes a file, new or not, at once. Raises MissionError (BT009) where that fails; the file is then as it was."""
+    data = content.encode() if isinstance(content, str) else content
     target = os.path.realpath(path)
     new = f"{target}.{os.getpid()}.new"
     try:
-        with open(target, "r+b"):  # a file that is protected stays as it is
+        with open(target, "ab") if os.path.exists(target) else nullcontext():  # a protected file stays as it is
             pass
+        if os.path.exists(target) and not os.path.isfile(target):  # a device such as /dev/stdout cannot be replaced
+            with open(target, "wb") as device:
+                device.write(data)
+            return
         try:
             with open(new, "xb") as file:
-                file.write(text.encode())
-            shutil.copymode(target, new)
+                file.write(data)
+            if os.path.exists(target):
+                shutil.copymode(target, new)
             os.replace(new, target)
         finally:
             if os.path.exists(new):

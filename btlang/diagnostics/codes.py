@@ -3,7 +3,7 @@
 BT00x reading, BT01x words, BT02x and BT03x how a sentence is put together, BT04x what it means,
 BT05x what is allowed but probably not meant, BT06x keyword files,
 BT07x worlds, BT08x the Python behind the words and what else has to be installed, BT09x the codes themselves,
-BT10x ROS 2, BT11x missions as ROS 2 nodes.
+BT10x ROS 2, BT11x missions as ROS 2 nodes, BT12x trees in XML, BT13x trees that were not written as missions.
 
 BT05x and others that are warnings have a `name`, by which a mission silences them: `# allow: two readings`.
 Each code has a page in `pages/`, which `btc explain` prints.
@@ -109,6 +109,25 @@ _ALL = (
     Code("BT105", "{type} has no field '{field}', which the ros table of '{phrase}' names.", "{advice}"),
     Code("BT106", "The ros table of '{phrase}' does not fit {type}: {reason}."),
     Code("BT110", "The ROS 2 interfaces of btlang are not compiled: {reason}.", "Compile them, once: python -m btlang.ros.interfaces --own"),
+    Code("BT120", "This is no XML that can be read: {reason}."),
+    Code("BT121", "XML with {what} is refused.", "{advice}"),
+    Code("BT122", "{what} {problem}.", "{advice}"),
+    Code("BT123", "<{tag}> needs the attribute {attribute}.", "{advice}"),
+    Code("BT124", "The tree '{name}' contains itself: {circle}.", "To do it again, put it below a node Repeat."),
+    Code("BT125", "There are several trees, and I cannot tell which is the main one: {names}.",
+         "Write into <root>: main_tree_to_execute=\"{first}\"\nOr choose one: btc run --main \"{first}\" FILE"),
+    Code("BT126", "There is no tree '{name}'."),
+    Code("BT127", "There are two trees '{name}'.", "Give each of them an ID of its own."),
+    Code("BT128", "'{path}' cannot be included: {reason}."),
+    Code("BT129", "'{words}' cannot stand in XML: {reason}."),
+    Code("BT130", "No keyword entry has the id '{id}'."),
+    Code("BT131", "There is no node '{id}' that has children."),
+    Code("BT132", "The node '{id}' cannot be used so: {reason}."),
+    Code("BT133", "This is no tree in JSON: {reason}.", "Its form is in docs/targets.md."),
+    Code("BT134", "The node '{id}' cannot be told to {target}: {reason}."),
+    Code("BT140", "There is no subtree '{name}'.", "Define it, at the left margin: \"{name}\" means: ..."),
+    Code("BT141", "I cannot read '{words}' any further: {wanted} is needed.", "Write for example: do \"OpenGripper\" with width 0.05"),
+    Code("BT142", "This tree cannot be said in English: {reason}."),
 )  # fmt: skip
 
 CODES = {entry.code: entry for entry in _ALL}

@@ -166,7 +166,7 @@ def compile_sites(sites: Sequence[Site], trace: Trace | None) -> Compiled:
             watch = Watch(site.index, above is not None and repeats(above.node), lower, trace)
             watches[len(watches) - count :] = [watch]
         site.shared.watch = watch
-        compiled = _compile(site, children)
+        compiled = compile_node(site, children)
         lasts = compiled[1] is not halt_nothing
         region = around[site.index]
         if region is not None and region.used and region.top == site.index:
@@ -192,7 +192,8 @@ def _waits(site: Site) -> bool:
     return True
 
 
-def _compile(site: Site, children: Sequence[Compiled]) -> Compiled:
+def compile_node(site: Site, children: Sequence[Compiled]) -> Compiled:
+    """One node whose children are compiled. Raises EngineError."""
     node = site.node
     kind = _SUBTREE if node.id == "SubTree" else NODE_TYPES.get(node.id)
     if kind is None:

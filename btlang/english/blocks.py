@@ -10,7 +10,8 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Iterable, Iterator
 
-from btlang.english.naming import each_head
+from btlang.english.exact import exact_block
+from btlang.english.naming import definition_head, each_head
 from btlang.english.pieces import COLON, Pieces, is_longer, mark
 from btlang.english.sentence import is_flat_fallback, statements
 from btlang.english.speaker import THEN, Speaker
@@ -42,7 +43,7 @@ def lines_of(
         said, room = speaker.say(item), width - len(INDENT) * depth
         line = "" if is_longer(said.pieces, room) else speaker.line(item, said, among)
         too_long = not line or len(line) > room
-        sections = _SECTIONS.get(type(item), _none) if said.in_lines or (too_long and room >= least) else _none
+        sections = _sections(item, among) if said.in_lines or (too_long and room >= least) else _none
         below: list[tuple[int, ast.Ast | str, str]] = []
         for head, body in sections(item, speaker):
             if isinstance(body, ast.Ast):
@@ -50,8 +51,21 @@ def lines_of(
                 continue
             below.append((depth, speaker.text((head, mark(COLON))), ""))
             below += [(depth + 1, part, joint) for part, joint in body]
+        found += (f"{INDENT * depth}# {text}" for text in speaker.comments(item, whole=not below))
         stack.extend(reversed(below or [(depth, line or speaker.line(item, said, among), "")]))
     return found
+
+
+def _sections(node: ast.Ast, among: str) -> Callable[[Any, Speaker], Iterator[Section]]:
+    """How a statement is a block, which is one of a chain or of `children`."""
+    if among == "children" and isinstance(node, ast.Chain) and node.operator == "sequence":
+        return _sequence_node
+    return _SECTIONS.get(type(node), _none)
+
+
+def _sequence_node(node: ast.Chain, speaker: Speaker) -> Iterator[Section]:
+    """A child of a node that is said by its id may be said so itself: what holds it adds nothing to it."""
+    yield from exact_block(ast.Exact("Sequence", (), "", node.items, False, node.span), speaker)
 
 
 def _branching(positive: str, negative: str) -> Callable[[Any, Speaker], Iterator[Section]]:
@@ -128,8 +142,10 @@ def _definition(node: ast.Definition, speaker: Speaker) -> Iterator[Section]:
     body = node.body
     if isinstance(body, ast.Chain) and body.operator in ("all", "any"):
         return
+    if isinstance(body, ast.Exact) and body.is_condition:
+        return
     if not isinstance(body, ast.Phrase | ast.Name | ast.Compared | ast.Not):
-        yield (mark(node.name), mark(speaker.word("define_strong").text)), statements(body)
+        yield definition_head(node, speaker), statements(body)
 
 
 def _none(_node: ast.Ast, _speaker: Speaker) -> Iterator[Section]:
@@ -149,5 +165,6 @@ _SECTIONS: dict[type[ast.Ast], Callable[[Any, Speaker], Iterator[Section]]] = {
     ast.Delay: _timed("delay"),
     ast.ForEach: _for_each,
     ast.Definition: _definition,
+    ast.Exact: exact_block,
 }
 """The forms that have blocks; any other statement stays in one line."""

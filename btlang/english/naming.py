@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
+from btlang.english.exact import quoted
 from btlang.english.phrase import value_of
 from btlang.english.pieces import CLOSE, COLON, COMMA, OPEN, Piece, mark
 from btlang.english.speaker import THEN, WHOLE, Said, Speaker
@@ -69,7 +70,13 @@ def spelt(key: str, vocabulary: Vocabulary) -> str:
 
 def definition(node: ast.Definition, parts: list[Said], speaker: Speaker) -> Said:
     """In the strong word, which no other word of the line can overrule."""
-    return Said((mark(node.name), mark(speaker.word("define_strong").text), parts[0].pieces), THEN)
+    return Said((*definition_head(node, speaker), parts[0].pieces), THEN)
+
+
+def definition_head(node: ast.Definition, speaker: Speaker) -> tuple[Piece, Piece]:
+    """The name and the word that defines."""
+    name = quoted(node.name, speaker.vocabulary) if node.is_quoted else node.name
+    return mark(name), mark(speaker.word("define_strong").text)
 
 
 def fact(node: ast.Fact, _parts: list[Said], speaker: Speaker) -> Said:

@@ -14,6 +14,8 @@ from btlang.vocabulary.trie import TrieNode, longest
 from btlang.vocabulary.values import ValueType, with_unit
 from btlang.vocabulary.vocabulary import DEFINING, Vocabulary
 
+_MARKUP = ("<", '"')  # what XML and JSON begin with, and no sentence
+
 
 def phrase_of(node: Node, vocabulary: Vocabulary) -> str:
     """The English of a node: `move forward 2 m`, `wait 5 s`, the name of a subtree; else `Id port=value`.
@@ -23,7 +25,7 @@ def phrase_of(node: Node, vocabulary: Vocabulary) -> str:
     if node.id == "SubTree":
         return _filled_name(node)
     computed = node.id in ("Script", "ScriptCondition") or any(text.startswith("{_") for _, text in node.ports)
-    if node.span is not None and (computed or node.port(MEASURED)):
+    if node.span is not None and (computed or node.port(MEASURED)) and node.span.text[:1] not in _MARKUP:
         return node.span.text
     if node.id == "Sleep":
         return f"{vocabulary.word('wait')} {seconds(node.port('msec'))}"
@@ -44,10 +46,18 @@ def seconds(msec: str) -> str:
     return f"{int(msec) / 1000:g} s" if msec.isdigit() else msec
 
 
-def leaf_words(node_id: str, ports: Mapping[str, str], vocabulary: Vocabulary, names: TrieNode | None = None) -> str:
+def leaf_words(
+    node_id: str,
+    ports: Mapping[str, str],
+    vocabulary: Vocabulary,
+    names: TrieNode | None = None,
+    *,
+    exactly: bool = False,
+) -> str:
     """The phrase of a leaf with these ports, "" where no phrase of it has just these slots.
 
-    Preferred is one that is read back as the leaf where `names` are defined; a port may hold its default.
+    Preferred is one that is read back as the leaf where `names` are defined; with `exactly` no other will do. A port
+    may hold its default.
     """
     first = ""
     for entry in vocabulary.entries.get(node_id, ()):
@@ -57,7 +67,7 @@ def leaf_words(node_id: str, ports: Mapping[str, str], vocabulary: Vocabulary, n
             if _reads_back(words, entry, spoken, vocabulary, names):
                 return words
             first = first or words
-    return first
+    return first if not exactly else ""
 
 
 def _default(entry: Entry, slot: str) -> str | None:

@@ -8,9 +8,11 @@ with a value behind it; brackets do the rest.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Iterable, Iterator, Sequence
 
 from btlang.english import naming
+from btlang.english.exact import exact, quoted
 from btlang.english.pieces import COMMA, LEAF, Piece, Pieces, mark
 from btlang.english.speaker import AND, FORM, OR, THEN, WHOLE, Said, Speaker, bracketed
 from btlang.tree import ast
@@ -36,8 +38,18 @@ def english(node: ast.Ast, vocabulary: Vocabulary, *, brackets: str = "needed", 
     if not isinstance(node, ast.Mission):
         return "\n".join(lines_of(node, Speaker(vocabulary, names, brackets)))
     speaker = speaker_of(node, vocabulary, brackets)
-    parts = [*((part, "") for part in (*node.includes, *node.facts, *node.definitions)), *statements(node.body)]
-    return "\n".join(line for part, joined in parts for line in lines_of(part, speaker, joined=joined))
+    return "\n".join(mission_lines(node, speaker))
+
+
+def mission_lines(mission: ast.Mission, speaker: Speaker, width: float = math.inf) -> Iterator[str]:
+    """The lines of a mission; see `lines_of`."""
+    from btlang.english.blocks import lines_of
+
+    if mission.name:
+        yield f"{speaker.word('main_name').text} {quoted(mission.name, speaker.vocabulary)}"
+    named = (*mission.includes, *mission.facts, *mission.definitions)
+    for part, joined in [*((part, "") for part in named), *statements(mission.body)]:
+        yield from lines_of(part, speaker, width, joined)
 
 
 def speaker_of(mission: ast.Mission, vocabulary: Vocabulary, brackets: str = "needed") -> Speaker:
@@ -188,6 +200,7 @@ SAYS: dict[type[ast.Ast], Callable[[Any, list[Said], Speaker], Said]] = {
     ast.Check: _test("check"),
     ast.Nothing: _single("nothing"),
     ast.Fail: _single("fail"),
+    ast.Exact: exact,
     ast.Definition: naming.definition,
     ast.Fact: naming.fact,
     ast.Include: naming.include,

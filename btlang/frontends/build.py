@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from btlang.frontends.token import Assigned, Listed, Remembered, Token
+from btlang.frontends.token import Assigned, Listed, NodeCall, Remembered, Token
 from btlang.text.source import Source, Span
 from btlang.tree.ast import (
     Assign,
@@ -14,6 +14,7 @@ from btlang.tree.ast import (
     Compared,
     Delay,
     Every,
+    Exact,
     Fail,
     For,
     ForEach,
@@ -36,7 +37,7 @@ from btlang.tree.ast import (
 from btlang.vocabulary.entry import Entry
 
 CHAINS = {
-    "SEMI": "sequence", "BLOCK_AND": "parallel", "BLOCK_OR": "fallback",
+    "SEMI": "sequence", "BLOCK_AND": "parallel", "BLOCK_OR": "fallback", "BLOCK_CHILD": "children",
     "OR_ELSE": "fallback", "WIDE_AND": "parallel", "THEN": "sequence", "AFTER": "sequence",
     "OR": "fallback", "AND": "parallel",
     "COND_OR_ELSE": "any", "COND_WIDE_AND": "all", "COND_OR": "any", "COND_AND": "all",
@@ -65,11 +66,13 @@ class Builder:
             return Wait(amount, span)
         return Nothing(span) if kind == "nothing" else Fail(span)
 
-    def _stated(self, value: Listed | Assigned | Remembered, is_condition: bool, span: Span) -> Ast:
+    def _stated(self, value: Listed | Assigned | Remembered | NodeCall, is_condition: bool, span: Span) -> Ast:
         if isinstance(value, Assigned):
             return Assign(value.key, value.operation, value.kind, value.text, span)
         if isinstance(value, Remembered):
             return Remember(value.key, value.entry, value.arguments, span)
+        if isinstance(value, NodeCall):
+            return Exact(value.id, value.ports, value.name, (), is_condition, span)
         operators = ("any", "all") if is_condition else ("fallback", "sequence")
         items = tuple(_called(value.entry, arguments, span) for arguments in value.arguments)
         return Chain(operators[value.joiner != "or"], items, True, span)
@@ -106,6 +109,9 @@ class Builder:
         span = Span(self.source, opener.start, end)
         if kind == "each":
             return ForEach(amount.key, amount.kind, amount.values, body, span)
+        if kind == "node":
+            children = body.items if isinstance(body, Chain) and body.operator == "children" else (body,)
+            return Exact(amount.id, amount.ports, amount.name, children, False, span)
         if kind == "try":
             return Try(body, otherwise, span)
         if otherwise is None:

@@ -8,7 +8,7 @@ from btlang.frontends.token import Token
 
 STARTS_OPERAND = frozenset((
     "command", "condition", "unknown", "wait", "nothing", "fail", "not", "open", "repeat", "try", "retry", "check",
-    "wait_until", "whenever", "in_parallel", "in_order", "each",
+    "wait_until", "whenever", "in_parallel", "in_order", "each", "node",
 ))  # fmt: skip
 """What can only be the start of a command or condition."""
 

@@ -13,9 +13,9 @@ from btlang.text.words import END_OF_STATEMENT, Words
 from btlang.tree.ast import Definition
 from btlang.vocabulary.entry import Entry, Meaning, SlotSpec
 from btlang.vocabulary.pattern import Part, Slot, name_form
-from btlang.vocabulary.trie import SLOTS, TrieNode, add, longest
+from btlang.vocabulary.trie import SLOTS, Match, TrieNode, add, longest
 from btlang.vocabulary.values import END, key_of
-from btlang.vocabulary.vocabulary import DEFINING, Vocabulary
+from btlang.vocabulary.vocabulary import DEFINING, NODE_ROLES, Vocabulary
 
 # A line that starts with one of these compares; it defines nothing.
 _STARTS_NO_NAME = frozenset((
@@ -28,6 +28,7 @@ class Header(Record):
     """The head of a definition: its name, the words of it, and the words `body` to `last` (exclusive) of its body.
 
     The name is a pattern: `greet {someone}`. `parameters` are its slots, each with the words as they were written.
+    One that `is_quoted` is no phrase, and only known as a subtree.
     """
 
     name: str
@@ -35,6 +36,7 @@ class Header(Record):
     body: int
     last: int
     parameters: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    is_quoted: bool = False
 
 
 class Definitions:
@@ -65,7 +67,8 @@ def find_definitions(
     """
     found = Definitions()
     for definition in included:
-        _add(found.trie, definition.name, dict(definition.parameters))
+        if not definition.is_quoted:
+            _add(found.trie, definition.name, dict(definition.parameters))
     defining = {word for role in DEFINING for word in vocabulary.roles[role]}
     if defining.isdisjoint(text.words):
         return found
@@ -79,7 +82,9 @@ def find_definitions(
         if indent > margin:
             found.problems.append(diagnostic("BT033", header.span))
         found.headers[first] = header
-        if header.name and not header.parameters:
+        if header.is_quoted:
+            found.types[header.body] = ()
+        elif header.name and not header.parameters:
             add_name(header, found, vocabulary, {})
     return found
 
@@ -159,6 +164,8 @@ def _header(
         if polite is None or polite.meaning.role != "politeness" or polite.last > at:
             break
         start = polite.last
+    if start + 1 == at and text.words[start][0] == '"':
+        return Header(text.words[start][1:], text.span(start, at), at + 1, reach(text, at), is_quoted=True)
     if start == at:
         problems.append(diagnostic("BT016", text.span(at, at + 1), word=text.words[at]))
         return Header("", text.span(at, at + 1), at + 1, at + 1)
@@ -224,9 +231,23 @@ def _defining_word(text: Words, first: int, last: int, vocabulary: Vocabulary) -
                 continue
             if match.meaning.role in _STARTS_NO_NAME and at == first:
                 return None
+            if match.meaning.role in NODE_ROLES:
+                at = _behind_node(text, match, last, vocabulary)
+                continue
             # a command phrase inside a name is no reason against it: `go home is ...`
             at = match.last if match.meaning.role != "command" else max(at + 1, _stop(text, at, match.last, choices))
     return None
+
+
+def _behind_node(text: Words, head: Match, last: int, vocabulary: Vocabulary) -> int:
+    """Where a node ends that is said by its id: what defines is a word in it like any other."""
+    from btlang.frontends.nodes import Unreadable, read_node  # most missions have none
+
+    try:
+        read = read_node(text, head.last, head.meaning, vocabulary)
+    except Unreadable as problem:
+        return min(problem.at + 1, last)
+    return read[1] if read is not None else head.last
 
 
 def _is_compared(text: Words, first: int, at: int, vocabulary: Vocabulary) -> bool:

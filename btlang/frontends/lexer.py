@@ -18,7 +18,7 @@ from btlang.vocabulary.entry import Entry, Meaning
 from btlang.vocabulary.references import keys_in, renamed
 from btlang.vocabulary.trie import SLOTS, Match, SlotValue, longest
 from btlang.vocabulary.values import Known, key_of
-from btlang.vocabulary.vocabulary import Vocabulary
+from btlang.vocabulary.vocabulary import NODE_ROLES, Vocabulary
 
 _MARKS = {",": "comma", ";": "semi", ":": "colon", "(": "open", ")": "close"}
 
@@ -119,6 +119,12 @@ class Lexer:
                 at += 1
                 continue
             match = longest(trie, text, at, values, names)
+            if match is not None and match.meaning.role in NODE_ROLES:
+                end = self._node(match, at)
+                if end:
+                    at = end
+                    continue
+                match = None
             if names and (word in names or SLOTS in names):
                 named = longest(names, text, at, values, trie)
                 if named is not None and (match is None or named.last >= match.last):
@@ -231,6 +237,25 @@ class Lexer:
         self.tokens.append(read[0])
         return read[1]
 
+    def _node(self, head: Match, at: int) -> int:
+        """A node that is said by its id. Returns where to go on, 0 where the words are no such node."""
+        from btlang.frontends.nodes import Unreadable, read_node, unreadable  # most missions have none
+
+        text = self.text
+        try:
+            read = read_node(text, head.last, head.meaning, self.vocabulary)
+        except Unreadable as problem:
+            self.problems.append(unreadable(text, at, problem))
+            end = self._unknown_end(at, bisect_right(text.starts, span_of(text, at).end - 1))
+            self.tokens.append(Token("unknown", None, text.starts[at], text.ends[end - 1]))
+            return end
+        if read is None:
+            return 0
+        call, end = read
+        kind = "condition" if head.meaning.role == "test" else "node" if text.words[end] == ":" else "command"
+        self.tokens.append(Token(kind, call, text.starts[at], text.ends[end - 1]))
+        return end
+
     def _unknown_end(self, at: int, last: int) -> int:
         """Unknown words reach to the next mark or connective, or to a phrase that is more than one word."""
         text = self.text
@@ -239,6 +264,8 @@ class Lexer:
             if at >= last or text.words[at] in _MARKS:
                 return at
             match = longest(self.vocabulary.trie, text, at, self.vocabulary.values)
+            if match is not None and match.meaning.role in NODE_ROLES:
+                continue
             if match is not None and (match.meaning.entry is None or match.last > at + 1):
                 return at
 

@@ -22,6 +22,9 @@ from btlang.text.source import Source
 CONDITION_FORMS = frozenset(("if", "unless", "while", "until", "provided"))
 
 
+_JOINTS = {"in_parallel": "BLOCK_AND", "in_order": "BLOCK_OR", "node": "BLOCK_CHILD"}
+
+
 class Unit(Record):
     """The grouped tokens of the mission's commands (`header` is None) or of one definition."""
 
@@ -154,10 +157,13 @@ class Matcher(ConditionScan):
         self._separator()
 
     def _joined_block(self, token: Token) -> None:
-        """`in parallel:`, `the first that works:` and the lines below."""
+        """`in parallel:`, `the first that works:` or a node that is said by its id, and the lines below."""
         if self._refuse_in_condition(token):
             return
         self._begin_statement(token)
+        if token.kind == "node":
+            opener = self._emit("LOOP", token, ("node", token.value))
+            self._frames.append(Frame("body", opener, self._frames[-1]))
         colon = self._raw[self._at + 1]
         body = self._raw[self._at + 2] if colon.kind == "colon" else colon
         on_this_line = "\n" not in self.source.text[colon.end : body.start]
@@ -167,7 +173,7 @@ class Matcher(ConditionScan):
         self._next(token, True)
         self._next(colon, True)
         if self._raw[self._at].kind == "indent":
-            self._open_block("BLOCK_AND" if token.kind == "in_parallel" else "BLOCK_OR")
+            self._open_block(_JOINTS[token.kind])
         else:
             self._skip_statement()  # the lexer has told that the block is missing
 
@@ -368,7 +374,7 @@ _OPERAND: dict[str, Callable[[Matcher, Token], None]] = {
     **dict.fromkeys(("command", "condition", "unknown", "wait", "nothing", "fail"), Matcher._operand),
     **dict.fromkeys(("if", "unless", "while", "until"), Matcher._form),
     **dict.fromkeys(("check", "wait_until"), Matcher._test),
-    **dict.fromkeys(("in_parallel", "in_order"), Matcher._joined_block),
+    **dict.fromkeys(_JOINTS, Matcher._joined_block),
     **dict.fromkeys(("repeat", "try", "retry", "every", "delay", "each"), Matcher._loop),
     "whenever": Matcher._whenever,
     "not": Matcher._not,

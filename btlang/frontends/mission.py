@@ -113,7 +113,7 @@ class _Reader:
         lexer = Lexer(source, self._vocabulary, load=self.loader(source, within), known=self._known)
         matcher = Matcher(source, lexer.tokens, lexer.conditions, self._vocabulary.word)
         problems = lexer.problems + matcher.problems
-        if not lexer.tokens and not lexer.names.facts and not lexer.names.is_including and not problems:
+        if not lexer.tokens and not lexer.names.ends and not problems:
             problems = [diagnostic("BT005", Span(source, 0, 0), example="move forward 1 m")]
         is_broken = any(problem.is_error for problem in problems)
         if is_broken and self._suggest:
@@ -138,10 +138,13 @@ class _Reader:
             span = Span(source, unit.header.span.start, inner.span.end)
             definitions.pop(unit.header.name, None)  # a later definition replaces an earlier one
             name, types = unit.header.name, lexer.names.definitions.types[unit.header.body]
-            definitions[name] = Definition(name, types, inner, unit.header.span, span)
+            definitions[name] = Definition(name, types, inner, unit.header.span, span, unit.header.is_quoted)
         facts = {fact.name: fact for fact in lexer.names.facts}  # a later fact replaces an earlier one
         whole = Span(source, 0, len(source.text))
-        return Mission(body, tuple(definitions.values()), whole, tuple(facts.values()), tuple(lexer.names.includes))
+        names = lexer.names
+        return Mission(
+            body, tuple(definitions.values()), whole, tuple(facts.values()), tuple(names.includes), names.main_name
+        )
 
 
 def _names_only(source: Source, lexer: Lexer) -> Mission:
@@ -149,7 +152,7 @@ def _names_only(source: Source, lexer: Lexer) -> Mission:
     whole = Span(source, 0, len(source.text))
     types, headers = lexer.names.definitions.types, lexer.names.definitions.headers.values()
     definitions = {
-        header.name: Definition(header.name, types[header.body], Nothing(whole), header.span, whole)
+        header.name: Definition(header.name, types[header.body], Nothing(whole), header.span, whole, header.is_quoted)
         for header in headers
         if header.body in types
     }

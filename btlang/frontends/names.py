@@ -9,6 +9,7 @@ from btlang.frontends.definitions import find_definitions
 from btlang.frontends.facts import find_facts
 from btlang.frontends.heads import find_heads
 from btlang.frontends.includes import Included, find_includes
+from btlang.frontends.nodes import find_main_names
 from btlang.text.source import Span
 from btlang.text.words import Words
 from btlang.tree.ast import Include, all_definitions, all_facts
@@ -37,7 +38,6 @@ class Names:
     ) -> None:
         includes = find_includes(text, vocabulary)
         loaded = [(path, span, load(path, span)) for path, span in includes.found] if load is not None else []
-        self.is_including = bool(includes.found)
         self.includes = [Include(path, part.mission, span) for path, span, part in loaded if part is not None]
         self.included = {path: part for path, _, part in loaded if part is not None}
         """What was included, by its path as it is written."""
@@ -45,6 +45,10 @@ class Names:
         facts = find_facts(text, vocabulary)
         self.facts = facts.found
         self.ends = includes.ends | facts.ends
+        self.main_name = ""
+        for name, first, last in find_main_names(text, vocabulary):
+            self.main_name = name
+            self.ends[first] = last
         places = [*(fact for part in parts for fact in all_facts(part.mission)), *self.facts]
         if places:
             vocabulary = vocabulary.with_places(tuple(dict.fromkeys(fact.name for fact in places)))

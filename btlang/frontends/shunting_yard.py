@@ -13,7 +13,7 @@ from btlang.frontends.token import Token
 from btlang.tree.ast import Ast, Chain
 
 PRECEDENCE = {
-    "SEMI": 1, "BLOCK_AND": 1, "BLOCK_OR": 1,
+    "SEMI": 1, "BLOCK_AND": 1, "BLOCK_OR": 1, "BLOCK_CHILD": 1,
     "WIDE_FORM": 2, "OR_ELSE": 3, "WIDE_AND": 4, "THEN": 5, "AFTER": 6, "OR": 7, "AND": 8,
     "COND_OR_ELSE": 3, "COND_WIDE_AND": 4, "COND_OR": 7, "COND_AND": 8, "NOT": 9,
 }  # fmt: skip

@@ -6,13 +6,15 @@ grouped tokens, which need no look-ahead any more:
     COMMAND CONDITION                      operands
     SEMI OR_ELSE WIDE_AND THEN AFTER OR AND    between commands, loosest first
     BLOCK_AND BLOCK_OR                     in place of SEMI between the lines of `in parallel:`, `the first that works:`
+    BLOCK_CHILD                            the same between the children of a node that is said by its id
     COND_OR_ELSE COND_WIDE_AND COND_OR COND_AND NOT    between and before conditions
     OPEN CLOSE COND_OPEN COND_CLOSE        brackets; a block is a bracket too
     POSTFIX                                after one command: `twice`, `within 10 s`, ...
     FORM cond DO body [ELSE body] END      if, unless, while, until before a command
     AFTER_FORM cond [ELSE body] END        the same after one command, and `provided that`
     WIDE_FORM cond END                     the same after a comma at the end: takes the whole statement
-    LOOP body [STOP cond] END              repeat, every, after 5 s, for each, and try: LOOP body [ELSE body] END
+    LOOP body [STOP cond] END              repeat, every, after 5 s, for each, and try: LOOP body [ELSE body] END;
+                                           also a node that is said by its id with its children
     TEST cond END                          check, wait until
 """
 
@@ -57,6 +59,14 @@ class Each(Record):
     key: str
     kind: str
     values: tuple[str, ...]
+
+
+class NodeCall(Record):
+    """A node by its id, its ports and its name, as they are."""
+
+    id: str
+    ports: tuple[tuple[str, str], ...]
+    name: str
 
 
 class Token:

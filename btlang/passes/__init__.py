@@ -23,8 +23,13 @@ def compile_mission(mission: Mission, vocabulary: Vocabulary, *, needs_command: 
     """The tree of a mission. Its subtrees come in an order in which used ones precede their users.
 
     A text that only defines names is refused; where it needs no command, its tree does nothing.
-    Raises MissionError with everything that the passes find (BT005, BT014, BT040 to BT042).
+    Raises MissionError with everything that the passes find (BT005, BT014, BT040 to BT042, BT140).
     """
+    return checked(lower_mission(mission, vocabulary, needs_command=needs_command), vocabulary)
+
+
+def lower_mission(mission: Mission, vocabulary: Vocabulary, *, needs_command: bool = True) -> Tree:
+    """As `compile_mission`, without the checks of the tree."""
     ordered, problems = order_of_use(mission)
     if problems:
         raise MissionError(problems)
@@ -33,14 +38,16 @@ def compile_mission(mission: Mission, vocabulary: Vocabulary, *, needs_command: 
     for definition in ordered:
         lowered = lower(definition.body, scope)
         subtrees.append((definition.name, lowered.node))
-        scope.free[definition.name] = scope.needs(definition.body, dict(definition.parameters))
-        if lowered.can_skip:
-            scope.skipping.add(definition.name)
+        scope.define(definition, lowered.can_skip)
     if mission.body is None and needs_command:
         example = mission.definitions[-1].name if mission.definitions else "move forward 1 m"
         raise MissionError([diagnostic("BT005", mission.span, example=example)])
     root = Node("AlwaysSuccess") if mission.body is None else lower(mission.body, scope).node
-    tree = Tree(root, tuple(subtrees))
+    return Tree(root, tuple(subtrees), mission.name)
+
+
+def checked(tree: Tree, vocabulary: Vocabulary) -> Tree:
+    """The tree itself. Raises MissionError with everything that the passes find."""
     problems = [problem for check in PASSES for problem in check(tree, vocabulary)]
     if problems:
         raise MissionError(problems)

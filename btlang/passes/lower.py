@@ -31,7 +31,12 @@ class Lowered(Record):
 def lower(root: ast.Ast, scope: Scope) -> Lowered:
     """The tree of a command or condition."""
 
-    return fold(root, ast.parts, lambda item, done: _LOWER[type(item)](item, done, scope))
+    return fold(root, ast.parts, lambda item, done: lower_one(item, done, scope))
+
+
+def lower_one(item: ast.Ast, done: list[Lowered], scope: Scope) -> Lowered:
+    """What one piece of syntax makes of its lowered parts."""
+    return _LOWER[type(item)](item, done, scope)
 
 
 def _node(node_id: str, children: Sequence[Node], span: Span, **ports: str) -> Node:
@@ -226,6 +231,11 @@ def _check(_item: ast.Check, done: list[Lowered], _scope: Scope) -> Lowered:
     return done[0]
 
 
+def _exact(item: ast.Exact, done: list[Lowered], _scope: Scope) -> Lowered:
+    """Nothing is added to it, not even where it can be skipped."""
+    return Lowered(Node(item.id, tuple(part.node for part in done), item.ports, item.name, item.span))
+
+
 def _nothing(item: ast.Nothing, _done: list[Lowered], _scope: Scope) -> Lowered:
     return Lowered(_node("AlwaysSuccess", (), item.span))
 
@@ -259,4 +269,5 @@ _LOWER: dict[type[ast.Ast], Callable[[Any, list[Lowered], Scope], Lowered]] = {
     ast.Check: _check,
     ast.Nothing: _nothing,
     ast.Fail: _fail,
+    ast.Exact: _exact,
 }

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Container, Iterator
+
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.tree.ast import Ast, Definition, Mission, Name, all_definitions, parts
+from btlang.tree.ast import Ast, Definition, Exact, Mission, Name, all_definitions, parts
 
 
 def order_of_use(mission: Mission) -> tuple[list[Definition], list[Diagnostic]]:
-    """The definitions, used ones before their users; a name that reaches itself is a problem (BT040)."""
+    """The definitions, used ones before their users.
+
+    A name that reaches itself is a problem (BT040), and so is a subtree that is not there (BT140).
+    """
     definitions = {definition.name: definition for definition in all_definitions(mission)}
     uses = {name: names_in(definition.body) for name, definition in definitions.items()}
     ordered: list[Definition] = []
-    problems: list[Diagnostic] = []
+    problems = [_missing(use) for use in _uses_of_nothing(mission, definitions)]
     done: set[str] = set()
     for start in definitions:
         path: list[str] = []  # the names being followed, each used by the one before
@@ -27,8 +32,25 @@ def order_of_use(mission: Mission) -> tuple[list[Definition], list[Diagnostic]]:
                 done.add(name)
                 path.append(name)
                 stack.append((name, True))
-                stack += [(used, False) for used in reversed(uses[name])]
+                stack += [(used, False) for used in reversed(uses[name]) if used in definitions]
     return ordered, problems
+
+
+def _uses_of_nothing(mission: Mission, definitions: Container[str]) -> Iterator[Exact]:
+    stack = [*(definition.body for definition in all_definitions(mission)), *filter(None, [mission.body])]
+    while stack:
+        item = stack.pop()
+        stack += reversed(parts(item)) if item.parts else ()
+        if isinstance(item, Exact) and item.id == "SubTree" and _subtree(item) not in definitions:
+            yield item
+
+
+def _subtree(item: Exact) -> str:
+    return dict(item.ports).get("ID", "")
+
+
+def _missing(item: Exact) -> Diagnostic:
+    return diagnostic("BT140", item.span, name=_subtree(item))
 
 
 def names_in(node: Ast) -> list[str]:
@@ -39,8 +61,10 @@ def names_in(node: Ast) -> list[str]:
         item = stack.pop()
         if item.parts:
             stack += reversed(parts(item))
-        elif isinstance(item, Name):
+        if isinstance(item, Name):
             found[item.name] = None
+        elif isinstance(item, Exact) and item.id == "SubTree":
+            found[_subtree(item)] = None
     return list(found)
 
 

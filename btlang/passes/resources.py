@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.passes.order import used_first
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import children_first
 from btlang.vocabulary.vocabulary import Vocabulary
@@ -20,7 +21,7 @@ def check_resources(tree: Tree, vocabulary: Vocabulary) -> list[Diagnostic]:
     problems: list[Diagnostic] = []
     own = {node_id: entries[0].resources for node_id, entries in vocabulary.entries.items() if entries[0].resources}
     held_by_name: dict[str, Holders] = {}
-    for name, root in (*tree.subtrees, ("", tree.root)):  # used ones come before their users
+    for name, root in used_first(tree):
         results: list[Holders] = []
         for node in children_first(root):
             count = len(node.children)
@@ -69,6 +70,5 @@ def _conflict(resource: str, first: Node, second: Node) -> Diagnostic:
     assert second.span is not None
     one, other = first.span.text, second.span.text
     notes = ((first.span, f"this needs the {resource} too"),)
-    return diagnostic(
-        "BT041", second.span, notes, resource=resource, first=one, second=other, fixed=f"{one} then {other}"
-    )
+    fixed = f"<Sequence> {one} {other} </Sequence>" if one[:1] == "<" else f"{one} then {other}"
+    return diagnostic("BT041", second.span, notes, resource=resource, first=one, second=other, fixed=fixed)

@@ -41,6 +41,12 @@ class Scope:
         self._names.add(name)
         return name
 
+    def define(self, definition: ast.Definition, can_skip: bool) -> None:
+        """Its name may be used from now on."""
+        self.free[definition.name] = self.needs(definition.body, dict(definition.parameters))
+        if can_skip:
+            self.skipping.add(definition.name)
+
     def needs(self, root: ast.Ast, own: Iterable[str] = ()) -> tuple[str, ...]:
         """The keys of values that a part needs from outside, each once, without its own."""
         hidden = frozenset(own)

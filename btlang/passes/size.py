@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.passes.order import used_first
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.vocabulary import Vocabulary
 
@@ -12,9 +13,9 @@ MOST_NODES = 1_000_000
 def check_size(tree: Tree, _vocabulary: Vocabulary) -> list[Diagnostic]:
     """BT042 where the tree has more than a million nodes once its names are filled in."""
     sizes: dict[str, int] = {}
-    for name, root in tree.subtrees:  # used ones come before their users
+    for name, root in used_first(tree):
         sizes[name] = _size(root, sizes)
-    if _size(tree.root, sizes) <= MOST_NODES:
+    if sizes[""] <= MOST_NODES:
         return []
     assert tree.root.span is not None
     return [diagnostic("BT042", tree.root.span, limit=f"{MOST_NODES:,}")]
@@ -25,6 +26,6 @@ def _size(root: Node, sizes: dict[str, int]) -> int:
     stack = [root]
     while stack:
         node = stack.pop()
-        total += 1 + (sizes[node.port("ID")] if node.id == "SubTree" else 0)
+        total += 1 + (sizes.get(node.port("ID"), 0) if node.id == "SubTree" else 0)
         stack.extend(node.children)
     return total

@@ -42,10 +42,16 @@ def _out_of_range(node: Node) -> str:
     text = node.port(_LIMITED[node.id])
     if "{" in text:
         return ""  # only known when it runs
-    if node.id in _TIMES and int(text) > _LONGEST:
+    try:
+        number = int(text)
+    except ValueError:
+        return f"{_LIMITED[node.id]} is a whole number, not {text!r}"
+    if node.id in _TIMES and number > _LONGEST:
         return "a time is at most 49 days"
-    if node.id == "Timeout" and int(text) == 0:
+    if node.id in _TIMES and number < 0:
+        return "a time is not negative"
+    if node.id == "Timeout" and number == 0:
         return "a time limit is at least 0.001 s"  # 0 would mean no limit
-    if node.id in _COUNTS and int(text) > _MOST:
+    if node.id in _COUNTS and number > _MOST:
         return f"a number of rounds is at most {_MOST:,}"
     return ""

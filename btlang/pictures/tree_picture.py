@@ -52,10 +52,24 @@ def draw_tree(
     Raises ValueError for another ending, MissionError (BT009, BT081).
     """
     kind = ending(path, STILL)
+    write_picture(path, picture_of(tree, label, is_action, kind, path, apart=apart, statuses=statuses))
+
+
+def picture_of(
+    tree: Tree,
+    label: Callable[[Node], str],
+    is_action: Callable[[Node], bool],
+    kind: str,
+    path: str = "",
+    *,
+    apart: bool = False,
+    statuses: Mapping[str, int] | None = None,
+) -> bytes:
+    """As draw_tree, the content of a file of the `kind` ".svg" or ".png"; errors name its `path`."""
     with drawing(path):
         picture = _TreePicture(Maker(tree, label, is_action, statuses).sheets(apart), statuses)
-        data = picture.canvas.encoded(kind)
-    write_picture(path, data)
+        data: bytes = picture.canvas.encoded(kind)
+    return data
 
 
 class _TreePicture:

@@ -1,8 +1,8 @@
 """The syntax tree of a mission, as both parsers give it: what was said, with the exact characters of each part.
 
 Commands: Phrase, Name, Chain, If, While, Provided, Repeat, Retry, Try, Within, For, Every, Delay, Wait, WaitUntil,
-Check, Nothing, Fail, Assign, Remember, ForEach; Whenever in a sequence. Conditions: Phrase, Name, Compared,
-Chain ("all", "any"), Not. `parts` names the fields that hold subtrees.
+Check, Nothing, Fail, Assign, Remember, ForEach, Exact; Whenever in a sequence. Conditions: Phrase, Name, Compared,
+Chain ("all", "any"), Not, Exact. `parts` names the fields that hold subtrees.
 Amounts and values are port texts in base units (seconds); they may refer to values of the mission: `{level}`, in a
 text also `it is {level} percent` (see btlang/vocabulary/references.py).
 """
@@ -89,6 +89,8 @@ class ForEach(Ast):
 
 class Chain(Ast):
     """Operands joined by one connective: a "sequence", "fallback" or "parallel" of commands, "all" or "any" conditions.
+
+    The lines below a node that is said by its id are "children", as long as it is not made (see Exact).
 
     Never directly inside an equal chain unless one of them is `bracketed`.
     """
@@ -216,14 +218,30 @@ class Fail(Ast):
     span: Span
 
 
+class Exact(Ast):
+    """A node said by its id: it, its ports and its instance name are as they stand; `items` are its children."""
+
+    id: str
+    ports: tuple[tuple[str, str], ...]
+    name: str
+    items: tuple[Ast, ...]
+    is_condition: bool
+    span: Span
+    parts = ("items",)
+
+
 class Definition(Ast):
-    """`name_span` covers the words of the name where it is defined; `parameters` are (name, type)."""
+    """`name_span` covers the words of the name where it is defined; `parameters` are (name, type).
+
+    One that `is_quoted` is the name of a subtree as it stands, and no phrase.
+    """
 
     name: str
     parameters: tuple[tuple[str, str], ...]
     body: Ast
     name_span: Span
     span: Span
+    is_quoted: bool = False
     parts = ("body",)
 
 
@@ -253,7 +271,8 @@ class Include(Ast):
 class Mission(Ast):
     """A whole text: the sequence of its commands (None where there are none), its definitions and facts in order.
 
-    `all_definitions` and `all_facts` also give those of what it includes.
+    `name` is that of its tree, "" where it has none. `all_definitions` and `all_facts` also give those of what it
+    includes.
     """
 
     body: Ast | None
@@ -261,6 +280,7 @@ class Mission(Ast):
     span: Span
     facts: tuple[Fact, ...] = ()
     includes: tuple[Include, ...] = ()
+    name: str = ""
     parts = ("body", "definitions")
 
 

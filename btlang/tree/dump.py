@@ -6,13 +6,16 @@ from collections.abc import Callable, Iterator
 
 from btlang.tree.node import Node, Tree
 
+_ESCAPES = str.maketrans({"\\": "\\\\", '"': '\\"', "\n": "\\n", "\r": "\\r", "\t": "\\t"})
+
 
 def plain(tree: Tree) -> str:
     """One line a node, `Id port=value`, indented by two spaces a level; named subtrees follow, sorted by name.
 
     Nothing in it depends on how the mission was spelled or laid out.
     """
-    lines = [f"{'  ' * depth}{described(node)}" for depth, node in _nodes(tree.root)]
+    lines = [f"BehaviorTree ID={_value(tree.name)} main=true"] if tree.name else []
+    lines += [f"{'  ' * depth}{described(node)}" for depth, node in _nodes(tree.root)]
     for name, root in sorted(tree.subtrees):
         lines.append(f"BehaviorTree ID={_value(name)}")
         lines += [f"{'  ' * (depth + 1)}{described(node)}" for depth, node in _nodes(root)]
@@ -58,4 +61,4 @@ def _branches(root: Node, label: Callable[[Node], str]) -> Iterator[str]:
 def _value(text: str) -> str:
     if text and not any(c.isspace() or c in '"=\\' or not c.isprintable() for c in text):
         return text
-    return '"' + text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n").replace("\t", "\\t") + '"'
+    return '"' + text.translate(_ESCAPES) + '"'

@@ -6,6 +6,7 @@ from collections.abc import Iterator
 
 from btlang.record import Record
 from btlang.text.source import Span
+from btlang.tree.model import NodeModel
 
 
 class Node(Record, uncompared=("span",)):
@@ -30,11 +31,19 @@ class Node(Record, uncompared=("span",)):
         return default
 
 
-class Tree(Record):
-    """A main tree and the named subtrees that its SubTree nodes (port `ID`) refer to, in the order defined."""
+class Tree(Record, uncompared=("models", "origin")):
+    """A main tree and the named subtrees that its SubTree nodes (port `ID`) refer to, in the order defined.
+
+    `name` is that of the main tree, "" for the usual one (`MainTree` in XML). `models` tell of kinds of nodes what a
+    front end has read of them. `origin` is what a front end knows beside the tree, for its own back end: such as the
+    comments of an XML file, and how its tags were written.
+    """
 
     root: Node
     subtrees: tuple[tuple[str, Node], ...] = ()
+    name: str = ""
+    models: tuple[NodeModel, ...] = ()
+    origin: object = None
 
     def walk(self) -> Iterator[Node]:
         """Every node of the main tree, then of each subtree, parents before children; SubTree nodes are not entered."""

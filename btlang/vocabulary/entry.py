@@ -83,10 +83,11 @@ class Meaning(Record):
     The role of an entry is "command" or "condition", or "negated" where the phrase says that a condition is not so.
 
     `value` is the number of rounds of words such as `twice`; `between` is the role that a connective has between
-    commands, where that is another one.
+    commands, where that is another one; `node` is the id of a node that is said by its own words.
     """
 
     role: str
     entry: Entry | None = None
     value: int = 0
     between: str = ""
+    node: str = ""

@@ -16,6 +16,7 @@ _NO_SLOT = (
     "repeat", "try", "retry", "if_possible", "wait_until", "check", "nothing", "fail", "in_parallel", "in_order",
     "define_strong", "define", "fact", "facing",
     "set", "set_to", "increase", "decrease", "by", "remember", "remember_as", "each", "each_in", "include",
+    "do", "test", "called", "with", "newline", "character", "main_name",
 )  # fmt: skip
 ROLES = {
     **dict.fromkeys(_NO_SLOT, ""),
@@ -67,6 +68,7 @@ TABLES: dict[str, tuple[Callable[[object], bool], str]] = {
     "negations": (_words, "a list of words"),
     "pronouns": (_words, "a list of types"),
     "meanings": (_between, "one of " + ", ".join(BETWEEN)),
+    "nodes": (_is_text, "the words of a node"),
     "counts": (_rounds, "a whole number from 1 on, or -1 for without end"),
     "numbers": (_number, "a number"),
     "multipliers": (_number, "a number"),

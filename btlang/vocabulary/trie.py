@@ -163,9 +163,9 @@ def reaches_beyond(root: TrieNode, text: Words, at: int, last: int, values: Valu
     return match is not None and match.last > last
 
 
-def collisions(root: TrieNode, values: Values) -> Iterator[tuple[Meaning, Meaning]]:
-    """Pairs of different entries that some words match equally; a slot counts as one value."""
-    pending = [(root, root)]
+def collisions(root: TrieNode, values: Values, other: TrieNode | None = None) -> Iterator[tuple[Meaning, Meaning]]:
+    """Pairs of different entries that some words match equally, of one trie or two; a slot counts as one value."""
+    pending = [(root, root if other is None else other)]
     seen: set[tuple[int, int]] = set()
     while pending:
         left, right = pending.pop()
@@ -176,10 +176,10 @@ def collisions(root: TrieNode, values: Values) -> Iterator[tuple[Meaning, Meanin
             yield left[END], right[END]
         words = [w for w in left if w not in (END, SLOTS)]
         pending += [(left[w], right[w]) for w in words if w in right]
-        for one, other in ((left, right), (right, left)):
+        for one, another in ((left, right), (right, left)):
             for _, kind, child in one.get(SLOTS, ()):
                 pending += [
-                    (child, n) for w, n in other.items() if w not in (END, SLOTS) and values.takes_word(kind, w)
+                    (child, n) for w, n in another.items() if w not in (END, SLOTS) and values.takes_word(kind, w)
                 ]
         for _, kind, child in left.get(SLOTS, ()):
             for _, other_kind, other_child in right.get(SLOTS, ()):

@@ -25,8 +25,12 @@ DEFINING = ("define_strong", "define")
 
 NO_PHRASES = frozenset((
     *DEFINING, "fact", "facing", "set_to", "by", "remember_as", "each_in",
+    "called", "with", "newline", "character", "main_name",
 ))  # fmt: skip
-"""Roles whose words are looked for where definitions and facts are, and nowhere else."""
+"""Roles whose words are looked for where definitions, facts and nodes are, and nowhere else."""
+
+NODE_ROLES = ("do", "test")
+"""Roles whose words begin a node that is said by its id, a command or a condition."""
 
 
 class Vocabulary:
@@ -51,6 +55,8 @@ class Vocabulary:
                     self._add_name(kind, words, name)
         self.roles: dict[str, list[str]] = {**language["roles"], "politeness": language["politeness"]}
         self.counts: dict[str, int] = language["counts"]
+        self.nodes: dict[str, str] = language["nodes"]
+        """The words of nodes that have some, by their ids."""
         self.meanings: dict[str, str] = language["meanings"]
         """Connectives that have another role between commands: `and` may mean `then`."""
         self.about = _about(files)
@@ -132,6 +138,10 @@ class Vocabulary:
                 self._add_phrase(phrase, Meaning(role, between=self.meanings.get(phrase, "")), {})
         for words, rounds in self.counts.items():
             self._add_phrase(words, Meaning("count", value=rounds), {})
+        for node_id, words in self.nodes.items():
+            for role in NODE_ROLES:
+                for head in self.roles[role]:
+                    self._add_phrase(f"{head} {words}", Meaning(role, node=node_id), {})
 
     def _add_entry(self, entry: Entry) -> None:
         if entry.measures:
@@ -249,7 +259,7 @@ def _compared(name: str, patterns: Iterable[str]) -> list[str]:
 
 _LANGUAGE: dict[str, Any] = {
     "articles": [], "politeness": [], "unit_joiner": [], "roles": {}, "about": {}, "comparisons": {}, "counts": {},
-    "negations": {}, "pronouns": {}, "meanings": {}, "numbers": {}, "multipliers": {}, "fractions": {},
+    "negations": {}, "pronouns": {}, "nodes": {}, "meanings": {}, "numbers": {}, "multipliers": {}, "fractions": {},
 }  # fmt: skip
 
 

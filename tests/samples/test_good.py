@@ -31,6 +31,8 @@ SAMPLES = sorted(GOOD.glob("*.txt"))
 PAGES = sorted((Path(__file__).parents[2] / "docs" / "language").glob("*.md"))
 
 ROWS = {
+    # nodes.md
+    "A node by its id": "nodes", "Nodes with children": "nodes", "Subtrees": "nodes",
     # missions.md
     "Statements": "layout", "What does not matter": "layout", "Blocks": "if", "Joined blocks": "joined_blocks",
     "Brackets": "brackets", "Silencing a warning": "silenced",

@@ -29,7 +29,8 @@ from btlang.vocabulary.values import Unit, ValueType
 from btlang.vocabulary.vocabulary import Vocabulary
 
 GOOD = Path(__file__).parents[1] / "samples" / "good"
-SAMPLES = sorted(path for path in GOOD.glob("*.txt") if path.stem != "includes")  # what it includes is in English
+# What a mission includes is in English, and ids and ports of nodes are the same in every language.
+SAMPLES = sorted(path for path in GOOD.glob("*.txt") if path.stem not in ("includes", "nodes"))
 _TYPES = re.compile(r"(?<![a-z])(cynpr|crefba|bowrpg|grkg|pbhag)(?![a-z])")
 
 
@@ -61,6 +62,8 @@ def _language(tables: dict[str, Any]) -> dict[str, Any]:
             made[key] = list(map(invented, value))
         elif key in ("roles", "comparisons"):
             made[key] = {name: list(map(_pattern, patterns)) for name, patterns in value.items()}
+        elif key == "nodes":
+            made[key] = {node_id: _pattern(words) for node_id, words in value.items()}
         elif key == "negations":
             made[key] = {invented(word): list(map(invented, words)) for word, words in value.items()}
         elif key in ("counts", "numbers", "multipliers", "fractions", "pronouns", "meanings"):

@@ -81,7 +81,7 @@ def test_topics_come_in_order() -> None:
     assert heads[:7] == ["motion", "navigation", "manipulation", "gestures", "speech", "sensing", "power"]
     assert heads[7:] == [
         *("joining", "conditions", "repeating", "timing", "trying", "names", "politeness"),
-        *("values", "the world"),
+        *("nodes", "values", "the world"),
     ]
 
 

@@ -1,0 +1,5 @@
+"""Trees to XML of BehaviorTree.CPP."""
+
+from btlang.backends.btcpp.writer import to_xml
+
+__all__ = ["to_xml"]

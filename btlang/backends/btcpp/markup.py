@@ -1,0 +1,93 @@
+"""XML as text: tags, attributes and parts of files.
+
+Strings are put together by hand: the writer of ElementTree is slower, and drops the comments around the outermost tag.
+"""
+
+from __future__ import annotations
+
+import re
+
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
+from btlang.frontends.btcpp.models import why_no_port
+from btlang.frontends.btcpp.origin import Element, Markup
+from btlang.frontends.btcpp.spelling import is_xml_name
+from btlang.text.source import Source, Span
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.frontends.btcpp.spelling import Pairs
+
+INDENT = "  "
+_DEEPEST = 60  # levels; what is deeper is not indented further, or a deep tree would be a text of spaces
+_IN_VALUES = str.maketrans({
+    "&": "&amp;", "<": "&lt;", ">": "&gt;", '"': "&quot;", "\n": "&#10;", "\t": "&#9;", "\r": "&#13;"
+})  # fmt: skip
+_IN_TEXTS = str.maketrans({"&": "&amp;", "<": "&lt;", ">": "&gt;"})
+_NO_XML = re.compile("[\x00-\x08\x0b\x0c\x0e-\x1f\ud800-\udfff\ufffe\uffff]")
+
+
+def margin(depth: int) -> str:
+    """The spaces before a line."""
+    return INDENT * min(depth, _DEEPEST)
+
+
+class Markers:
+    """Writes attributes. `problems` are names and texts that no XML file can hold, each told once."""
+
+    def __init__(self) -> None:
+        self.problems: list[Diagnostic] = []
+        self._sound: set[str] = set()
+
+    def attributes(self, pairs: Pairs, span: Span | None = None) -> str:
+        """As they stand in a tag, each after a space; `span` is where to complain."""
+        written = ""
+        for key, text in pairs:
+            if key not in self._sound:
+                self._check_name(key, span)
+            if not text.isalnum():
+                if _NO_XML.search(text) is not None:
+                    self.wrong(text, "XML has no way to write one of its characters", span)
+                text = text.translate(_IN_VALUES)
+            written += f' {key}="{text}"'
+        return written
+
+    def _check_name(self, name: str, span: Span | None) -> None:
+        self._sound.add(name)
+        if not is_xml_name(name.replace(":", "")):
+            self.wrong(name, why_no_port(name), span)
+
+    def wrong(self, words: str, reason: str, span: Span | None) -> None:
+        """BT129."""
+        self.problems.append(diagnostic("BT129", span or Span(Source(""), 0, 0), words=words, reason=reason))
+
+    def finish(self) -> None:
+        """Raises MissionError where something was wrong."""
+        if self.problems:
+            raise MissionError(self.problems)
+
+    def part(self, root: Element, depth: int) -> list[str]:
+        """The lines of a part of a file that is no tree."""
+        lines: list[str] = []
+        stack: list[tuple[Element | Markup | str, int]] = [(root, depth)]
+        while stack:
+            item, level = stack.pop()
+            if isinstance(item, str):
+                lines.append(margin(level) + item)  # an end tag
+            elif isinstance(item, Markup):
+                lines.append(margin(level) + item.text)
+            else:
+                head = f"{margin(level)}<{item.tag}{self.attributes(item.attributes)}"
+                if not item.items:
+                    lines.append(f"{head}/>")
+                elif all(isinstance(inner, str) for inner in item.items):
+                    text = "".join(inner for inner in item.items if isinstance(inner, str))
+                    lines.append(f"{head}>{text.translate(_IN_TEXTS)}</{item.tag}>")
+                else:
+                    lines.append(f"{head}>")
+                    stack.append((f"</{item.tag}>", level))
+                    stack += [(_escaped(inner), level + 1) for inner in reversed(item.items)]
+        return lines
+
+
+def _escaped(item: Element | Markup | str) -> Element | Markup | str:
+    return item.strip().translate(_IN_TEXTS) if isinstance(item, str) else item

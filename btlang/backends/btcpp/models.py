@@ -1,0 +1,133 @@
+"""TreeNodesModel: what editors such as Groot2 need to know of nodes that BehaviorTree.CPP does not have itself."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from btlang.engine.compile import NODE_TYPES
+from btlang.frontends.btcpp.models import nav2_models
+from btlang.frontends.btcpp.origin import Element
+from btlang.frontends.btcpp.spelling import IN_3, KINDS, MODEL
+from btlang.tree.model import NodeModel, PortModel
+from btlang.tree.node import Node, Tree
+from btlang.vocabulary.entry import COMPARISONS, MEASURED, Entry
+from btlang.vocabulary.vocabulary import Vocabulary
+
+_OTHERS = frozenset(("Whenever", "PipelineSequence", "RecoveryNode", "RoundRobin", "RateController"))
+"""Nodes that the engine has beside those of BehaviorTree.CPP."""
+_CONDITIONS = frozenset(("ScriptCondition", "WasEntryUpdated"))
+_WHENEVER = NodeModel(
+    "Control", "Whenever", (),
+    "Condition, reaction, work. Each time the condition becomes true, the work is suspended, the reaction runs once, "
+    "and the work goes on.",
+)  # fmt: skip
+_BUILT_IN = frozenset(NODE_TYPES) - _OTHERS | {"SubTree"}
+
+
+class Uses:
+    """The nodes of a tree that need a model, with their kinds and models."""
+
+    def __init__(self, tree: Tree, vocabulary: Vocabulary, dialect: int) -> None:
+        self._vocabulary = vocabulary
+        self._known = {model.id: model for model in tree.models}
+        self._own = IN_3 | {"SubTree"} if dialect == 3 else _BUILT_IN
+        self._ports: dict[str, dict[str, None]] = {}  # those in use, by the id of a node
+        self._most: dict[str, int] = {}  # children
+        self.misnamed: list[Node] = []
+        """Nodes with a port whose name XML has another use for."""
+        for node in tree.walk():
+            if node.id not in self._own:
+                self._add(node)
+            if any(key == "name" for key, _ in node.ports):
+                self.misnamed.append(node)
+        strange = [node_id for node_id in self._ports if node_id not in self._known and not vocabulary.entry(node_id)]
+        if strange:
+            self._known |= nav2_models(strange)
+        self._trees = {name for name, _ in tree.subtrees} | {tree.name}
+        self._kinds: dict[str, str] = {}
+
+    @property
+    def ids(self) -> list[str]:
+        """The ids of those nodes."""
+        return list(self._ports)
+
+    def _add(self, node: Node) -> None:
+        ports = self._ports.setdefault(node.id, {})
+        for key, _ in node.ports:
+            if key[:1] != "_" and key != "ID":
+                ports[key] = None
+        self._most[node.id] = max(self._most.get(node.id, 0), len(node.children))
+
+    def kind(self, node_id: str) -> str:
+        """Action, Condition, Control or Decorator: as told, else as it is used."""
+        found = self._kinds.get(node_id)
+        if found is None:
+            found = self._kinds[node_id] = self._kind(node_id)
+        return found
+
+    def _kind(self, node_id: str) -> str:
+        model = self._known.get(node_id)
+        if model is not None and model.kind in KINDS:
+            return model.kind
+        built_in = NODE_TYPES.get(node_id)
+        if built_in is not None:
+            if built_in.most == 0:
+                return "Condition" if node_id in _CONDITIONS else "Action"
+            return "Decorator" if built_in.most == 1 else "Control"
+        entry = self._vocabulary.entry(node_id)
+        if entry is not None:
+            return entry.sort.capitalize()
+        return ("Action", "Decorator")[self._most.get(node_id, 0)] if self._most.get(node_id, 0) < 2 else "Control"
+
+    def models(self) -> list[NodeModel]:
+        """One for each, in an order that does not change with the tree: by kind, then by id."""
+        found = [self._model(node_id) for node_id in self._ports]
+        subtrees = [m for m in self._known.values() if m.kind == "SubTree" and m.id in self._trees]
+        return sorted(found, key=lambda m: (KINDS.index(m.kind), m.id)) + sorted(subtrees, key=lambda m: m.id)
+
+    def _model(self, node_id: str) -> NodeModel:
+        model = self._known.get(node_id)
+        if model is None or model.kind not in KINDS:
+            entries = self._vocabulary.entries.get(node_id, [])
+            ports = [port for entry in entries for port in self._entry_ports(entry)]
+            text = entries[0].help if entries else _WHENEVER.text if node_id == _WHENEVER.id else ""
+            model = NodeModel(self.kind(node_id), node_id, tuple({port.name: port for port in ports}.values()), text)
+        named = {port.name for port in model.ports}
+        used = tuple(PortModel(name) for name in self._ports[node_id] if name not in named)
+        return model.replace(ports=model.ports + used) if used else model
+
+    def _entry_ports(self, entry: Entry) -> Iterator[PortModel]:
+        for slot in entry.slots:
+            yield PortModel(slot.name, "input", self._type(slot.type), slot.default)
+        if entry.measures:
+            kind = self._type(entry.measures)
+            yield from (PortModel(name, "input", kind) for name in COMPARISONS)
+            yield PortModel(MEASURED, "output", kind)
+
+    def _type(self, name: str) -> str:
+        """In C++; what is no number is a text."""
+        kind = self._vocabulary.types.get(name)
+        if kind is None or kind.kind not in ("quantity", "number"):
+            return "std::string"
+        return "int" if kind.whole else "double"
+
+
+def model_part(models: list[NodeModel], ids: dict[str, str]) -> Element | None:
+    """TreeNodesModel, None where there is nothing to tell."""
+    if not models:
+        return None
+    return Element(MODEL, (), tuple(_element(model, ids) for model in models))
+
+
+def _element(model: NodeModel, ids: dict[str, str]) -> Element:
+    inner = [_port(port) for port in model.ports]
+    if model.text:
+        inner.append(Element("MetadataFields", (), (Element("Metadata", (("description", model.text),)),)))
+    node_id = ids.get(model.id, model.id) if model.kind == "SubTree" else model.id
+    return Element(model.kind, (("ID", node_id),), tuple(inner))
+
+
+def _port(port: PortModel) -> Element:
+    told = (("name", port.name), ("type", port.type or None), ("default", port.default))
+    attributes = tuple((key, text) for key, text in told if text is not None)
+    return Element(f"{port.direction}_port", attributes, (port.text,) if port.text else ())

@@ -1,0 +1,108 @@
+"""What is wrong with a tree that no compiler of ours has made, such as one from XML: all of it, as diagnostics."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from functools import cache, partial
+
+from btlang.backends.engine import bind_leaf, leaf_binding
+from btlang.backends.keywords import Draft, drafts
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic, in_order
+from btlang.engine.build import EngineError
+from btlang.engine.compile import NODE_TYPES
+from btlang.engine.faults import UnknownNode, UnknownSubTree, faults
+from btlang.engine.leaf import LeafBinding
+from btlang.text.source import Source, Span
+from btlang.text.spelling import nearest
+from btlang.tree.node import Node, Tree
+from btlang.vocabulary.vocabulary import Vocabulary
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+
+def tree_problems(
+    tree: Tree,
+    vocabulary: Vocabulary,
+    bind: Callable[[str], LeafBinding | None] | None = None,
+    services: Mapping[str, Any] = {},
+) -> list[Diagnostic]:
+    """Unknown leaves (BT130) and nodes (BT131), subtrees (BT126), and whatever the engine would refuse (BT132).
+
+    `bind` and `services` are those of a run, by default what a keyword entry says, without the robot: a `call` that
+    cannot be loaded here is no problem then, as it may be there on the robot.
+    """
+    found = faults(tree, bind or cache(partial(_bound, vocabulary)), services or {"robot": None})
+    entries = drafts(tree, vocabulary) if any(isinstance(error, UnknownNode) for error in found) else {}
+    problems = []
+    for error in found:
+        problems.append(_told(error, tree, vocabulary, entries))
+        entries.pop(error.node.id, None)  # once is enough
+    return in_order(problems)
+
+
+def _told(error: EngineError, tree: Tree, vocabulary: Vocabulary, entries: dict[str, Draft | None]) -> Diagnostic:
+    node = error.node
+    span = node.span or Span(Source(""), 0, 0)
+    if isinstance(error, UnknownSubTree):
+        near = nearest(node.port("ID").lower(), [name for name, _ in tree.subtrees])
+        return diagnostic("BT126", span, name=node.port("ID"), help=_near(near))
+    if not isinstance(error, UnknownNode):
+        return diagnostic("BT132", span, id=node.id, reason=error.message)
+    if node.children:
+        near = nearest(node.id.lower(), [id for id, kind in NODE_TYPES.items() if kind.most])
+        return diagnostic("BT131", span, id=node.id, help=_near(near))
+    near = nearest(node.id.lower(), [*vocabulary.entries, *(id for id, kind in NODE_TYPES.items() if not kind.least)])
+    told = diagnostic("BT130", span, id=node.id)
+    lines = [line for line in (_near(near), _entry(node, entries)) if line]
+    made: Diagnostic = told.replace(arguments=(*told.arguments, ("help", "\n".join(lines))))
+    return made
+
+
+def _near(names: list[str]) -> str:
+    return f"The nearest: {', '.join(names)}" if names else ""
+
+
+def _entry(node: Node, entries: dict[str, Draft | None]) -> str:
+    if node.id not in entries:
+        return ""
+    draft = entries[node.id]
+    if draft is None:
+        return "No keyword entry can have such an id: it is one word of letters and digits."
+    return f"This entry of a keyword file would define it:\n{draft.text}"
+
+
+def _bound(vocabulary: Vocabulary, node_id: str) -> LeafBinding | None:
+    """A leaf that takes the ports of its `call`, and does nothing."""
+    entries = vocabulary.entries.get(node_id, ())
+    if not entries:
+        return None
+    try:
+        binding = bind_leaf(node_id, vocabulary)
+        assert binding is not None
+    except EngineError:
+        slots = {slot.name: slot for entry in entries for slot in entry.slots}
+        return leaf_binding(entries[0].replace(measures=""), vocabulary, _anything, tuple(slots.values()))
+    made: LeafBinding = binding.replace(call=_standing_in(binding.call), thread=False)
+    return made
+
+
+def _anything(**ports: object) -> None:
+    """Takes every port."""
+
+
+def _standing_in(call: Callable[..., Any]) -> Callable[..., Any]:
+    """A function with the parameters of a leaf."""
+    from inspect import isclass, signature
+
+    def leaf(**ports: object) -> None:
+        pass
+
+    try:
+        found = signature(call.start if isclass(call) else call)  # type: ignore[attr-defined]
+    except (AttributeError, TypeError, ValueError):
+        return _anything
+    parameters = list(found.parameters.values())
+    leaf.__signature__ = found.replace(parameters=parameters[1:] if isclass(call) else parameters)  # type: ignore[attr-defined]
+    return leaf

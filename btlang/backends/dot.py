@@ -1,0 +1,90 @@
+"""Trees as text for Graphviz."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from btlang.engine.compile import NODE_TYPES
+from btlang.english.phrase import phrase_of
+from btlang.tree.dump import described
+from btlang.tree.node import Node, Tree
+from btlang.vocabulary.vocabulary import Vocabulary
+
+_LOOKS = {
+    "control": 'shape=box, style=filled, fillcolor="#dfe8f3"',
+    "decorator": 'shape=hexagon, style=filled, fillcolor="#e8e1f2"',
+    "subtree": 'shape=box, peripheries=2, style=filled, fillcolor="#edf2ee"',
+    "action": 'shape=box, style="rounded,filled", fillcolor=white',
+    "condition": 'shape=ellipse, style=filled, fillcolor="#f4f1e4"',
+}
+_ASKS = ("ScriptCondition", "WasEntryUpdated")
+_LONGEST = 60  # characters of a line in a box
+
+
+def to_dot(tree: Tree, vocabulary: Vocabulary) -> str:
+    """A digraph. Each named subtree is a cluster, to which a dashed edge leads from each SubTree node that uses it.
+
+    Nodes are `n0`, `n1` and so on, in the order of Tree.walk.
+    """
+    trees = ((tree.name, tree.root), *tree.subtrees)
+    kinds = {model.id: model.kind.lower() for model in tree.models}
+    lines = ["digraph tree {", "  graph [ordering=out, compound=true];", "  node [fontname=Helvetica, fontsize=11];"]
+    roots: dict[str, int] = {}
+    uses: list[tuple[int, str]] = []
+    number = 0
+    for at, (name, root) in enumerate(trees):
+        roots.setdefault(name, number)
+        indent = "  " if at == 0 else "    "
+        if at:
+            lines += [f"  subgraph cluster_{at} {{", f"    label={_quoted(name)};"]
+        for index, node, above in _numbered(root, number):
+            kind = _kind(node, vocabulary, kinds)
+            lines.append(f"{indent}n{index} [label={_label(node, vocabulary)}, {_LOOKS[kind]}];")
+            if above >= 0:
+                lines.append(f"{indent}n{above} -> n{index};")
+            if node.id == "SubTree":
+                uses.append((index, node.port("ID")))
+            number = index + 1
+        if at:
+            lines.append("  }")
+    names = [name for name, _ in trees]
+    for index, name in uses:
+        if name in names[1:]:
+            lines.append(f"  n{index} -> n{roots[name]} [style=dashed, lhead=cluster_{names.index(name, 1)}];")
+    return "\n".join([*lines, "}"]) + "\n"
+
+
+def _numbered(root: Node, first: int) -> Iterator[tuple[int, Node, int]]:
+    """Number, node and the number of its parent (-1 for the root), in preorder."""
+    stack = [(root, -1)]
+    number = first
+    while stack:
+        node, above = stack.pop()
+        yield number, node, above
+        stack += [(child, number) for child in reversed(node.children)]
+        number += 1
+
+
+def _kind(node: Node, vocabulary: Vocabulary, kinds: dict[str, str]) -> str:
+    if node.id == "SubTree":
+        return "subtree"
+    known = NODE_TYPES.get(node.id)
+    if node.children:
+        told = kinds.get(node.id, "")
+        decorates = told == "decorator" if known is None and told else len(node.children) == 1
+        return "decorator" if (known.most == 1 if known is not None else decorates) else "control"
+    entry = vocabulary.entry(node.id)
+    asks = entry.sort == "condition" if entry is not None else kinds.get(node.id) == "condition"
+    return "condition" if asks or node.id in _ASKS else "action"
+
+
+def _label(node: Node, vocabulary: Vocabulary) -> str:
+    plain = not node.children and not any(port.startswith("_") for port, _ in node.ports)
+    words = phrase_of(node, vocabulary) if plain else described(node)
+    return _quoted(words if len(words) <= _LONGEST else words[: _LONGEST - 1] + "\N{HORIZONTAL ELLIPSIS}")
+
+
+def _quoted(text: str) -> str:
+    """A string of the language: only the quote is escaped there, and a backslash begins an escape of labels."""
+    shown = "".join(c if c.isprintable() else " " for c in text)
+    return '"' + shown.replace("\\", "\\\\").replace('"', '\\"') + '"'

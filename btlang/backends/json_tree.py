@@ -1,0 +1,183 @@
+"""Trees as JSON and back. The form is told by `tree.schema.json` beside this module; docs/targets.md tells it to users.
+
+The nodes of a tree are a list, in which a node names its children by their numbers: programs that read JSON do not
+have to nest as deep as a tree does.
+"""
+
+from __future__ import annotations
+
+import os
+import re
+
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.english.phrase import phrase_of
+from btlang.text.source import Source, Span
+from btlang.tree.model import NodeModel, PortModel
+from btlang.tree.node import Node, Tree
+from btlang.vocabulary.vocabulary import Vocabulary
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+SCHEMA = os.path.join(os.path.dirname(os.path.abspath(__file__)), "tree.schema.json")
+"""The file of the JSON Schema."""
+
+FORMAT = 1
+_LONGEST = 200  # characters of a sentence: that of the root is the whole mission
+_PORT_KEYS = {"name": str, "direction": str, "type": str, "default": str, "text": str}
+
+
+def to_json(tree: Tree, vocabulary: Vocabulary) -> str:
+    """One document, one line a node. `read_json` gives an equal tree; spans are told, and not read back."""
+    import json
+
+    def line(value: object) -> str:
+        return json.dumps(value, ensure_ascii=False)
+
+    trees = []
+    for name, root in ((tree.name, tree.root), *tree.subtrees):
+        nodes = ",\n".join(f"      {line(item)}" for item in _items(root, vocabulary))
+        trees.append(f'    {{"name": {line(name)}, "nodes": [\n{nodes}\n    ]}}')
+    models = ",\n".join(f"    {line(_model(model))}" for model in tree.models)
+    listed = f"[\n{models}\n  ]" if models else "[]"
+    all_trees = ",\n".join(trees)
+    return f'{{\n  "format": {FORMAT},\n  "trees": [\n{all_trees}\n  ],\n  "models": {listed}\n}}\n'
+
+
+def _items(root: Node, vocabulary: Vocabulary) -> list[dict[str, Any]]:
+    """The nodes in preorder; what is empty is left out, but for the id."""
+    items: list[dict[str, Any]] = []
+    stack: list[tuple[Node, int]] = [(root, -1)]
+    while stack:
+        node, above = stack.pop()
+        if above >= 0:
+            items[above]["children"].append(len(items))
+        item: dict[str, Any] = {"id": node.id}
+        if node.name:
+            item["name"] = node.name
+        if node.ports:
+            item["ports"] = dict(node.ports)
+        if not node.children and node.id in vocabulary.entries:
+            item["phrase"] = phrase_of(node, vocabulary)
+        if node.span is not None:
+            start, end = node.span.start, node.span.end
+            item["sentence"] = node.span.source.text[start : min(end, start + _LONGEST)]
+            line, column = node.span.source.position(node.span.start)
+            item["place"] = {"file": node.span.source.name, "line": line, "column": column}
+        if node.children:
+            item["children"] = []
+            stack += [(child, len(items)) for child in reversed(node.children)]
+        items.append(item)
+    return items
+
+
+def _model(model: NodeModel) -> dict[str, Any]:
+    ports = []
+    for port in model.ports:
+        told = {key: getattr(port, key) for key in _PORT_KEYS}
+        ports.append({key: value for key, value in told.items() if value not in (None, "")})
+        if port.default == "":
+            ports[-1]["default"] = ""
+    return {"kind": model.kind, "id": model.id, "ports": ports, **({"text": model.text} if model.text else {})}
+
+
+def read_json(text: str | Source) -> Tree:
+    """The tree of a document, with spans of the ids there. Raises MissionError (BT133) where it is no such document."""
+    import json
+
+    source = Source(text) if isinstance(text, str) else text
+    try:
+        return _tree(json.loads(source.text), _Places(source))
+    except json.JSONDecodeError as error:
+        at, reason = error.pos, f"it is not JSON: {error.msg}"
+    except RecursionError:
+        at, reason = 0, "it is nested too deep"
+    except _Wrong as error:
+        at, reason = 0, str(error)
+    raise MissionError([diagnostic("BT133", Span(source, at, at), reason=reason)])
+
+
+class _Wrong(Exception):
+    """The document does not hold a tree; the message says where and why."""
+
+
+class _Places:
+    """Finds where the ids of nodes stand, one after the other: readers of JSON give no places."""
+
+    def __init__(self, source: Source) -> None:
+        self._source = source
+        self._at = 0
+
+    def next(self, id: str) -> Span | None:
+        """None where it is spelled with escapes, or the keys stand in an order in which it is not found."""
+        found = re.compile(rf'"id"\s*:\s*"{re.escape(id)}"').search(self._source.text, self._at)
+        if found is None:
+            self._at = len(self._source.text)  # else each node after it would search the rest again
+            return None
+        self._at = found.end()
+        return Span(self._source, found.start(), found.end())
+
+
+def _tree(document: Any, places: _Places) -> Tree:
+    if _of(document, dict, "the document").get("format") != FORMAT:
+        raise _Wrong(f'"format" is not {FORMAT}')
+    trees = _of(document.get("trees"), list, '"trees"')
+    if not trees:
+        raise _Wrong('"trees" holds no tree')
+    read = [_root(item, f"tree {at}", places) for at, item in enumerate(trees)]
+    models = [
+        _read_model(item, f"model {at}") for at, item in enumerate(_of(document.get("models", []), list, "models"))
+    ]
+    return Tree(read[0][1], tuple(read[1:]), read[0][0], tuple(models))
+
+
+def _root(item: Any, where: str, places: _Places) -> tuple[str, Node]:
+    """The name and the root of a tree. Children come after their parents, so that the last node is made first."""
+    name = _of(_of(item, dict, where).get("name", ""), str, f"the name of {where}")
+    nodes = _of(item.get("nodes"), list, f'"nodes" of {where}')
+    ids = [
+        _of(_of(node, dict, f"node {at} of {where}").get("id"), str, f"the id of node {at} of {where}")
+        for at, node in enumerate(nodes)
+    ]
+    spans = [places.next(id) for id in ids]
+    made: dict[int, Node] = {}
+    for at in range(len(nodes) - 1, -1, -1):
+        place = f"node {at} of {where}"
+        node = nodes[at]
+        children = _of(node.get("children", []), list, f"children of {place}")
+        for child in children:
+            if type(child) is not int or not at < child < len(nodes):
+                raise _Wrong(f"{place} has the child {child!r}, and children are nodes after it in the list")
+            if child not in made:
+                raise _Wrong(f"node {child} of {where} is the child of two nodes")
+        ports = _of(node.get("ports", {}), dict, f"ports of {place}")
+        made[at] = Node(
+            ids[at],
+            tuple([made.pop(child) for child in children]),
+            tuple((port, _of(text, str, f"the port {port} of {place}")) for port, text in ports.items()),
+            _of(node.get("name", ""), str, f"the name of {place}"),
+            spans[at],
+        )
+    if len(made) != 1:
+        raise _Wrong(f"{where} has {len(made)} roots instead of one")
+    return name, made[0]
+
+
+def _read_model(item: Any, where: str) -> NodeModel:
+    _of(item, dict, where)
+    kind, id, text = (_of(item.get(key, ""), str, f"{key} of {where}") for key in ("kind", "id", "text"))
+    ports = []
+    for port in _of(item.get("ports", []), list, f"ports of {where}"):
+        known = {key: _of(value, str, key) for key, value in _of(port, dict, where).items() if key in _PORT_KEYS}
+        ports.append(PortModel(**{"name": "", **known}))
+    return NodeModel(kind, id, tuple(ports), text)
+
+
+def _of(value: Any, kind: type, what: str) -> Any:
+    if not isinstance(value, kind):
+        raise _Wrong(f"{what} is no {_KINDS[kind]}")
+    return value
+
+
+_KINDS: dict[type, str] = {dict: "object", list: "array", str: "text"}

@@ -1,0 +1,205 @@
+"""Nodes of one child, and those that wait, which py_trees has not or that do something else there; see node.py."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Sequence
+from typing import ClassVar
+
+from btlang.backends.py_trees.node import FAILURE, RUNNING, SKIPPED, SUCCESS, Asking, Behaviour, Node, halt
+
+
+class Around(Node):
+    """Its child, with another status."""
+
+    becomes: ClassVar[dict[object, object]] = {}
+
+    def run(self) -> Asking:
+        status = yield from self.ask(self.children[0])
+        return self.becomes.get(status, status)  # type: ignore[return-value]
+
+
+class SubTree(Around):
+    """The tree of a subtree, under its name."""
+
+
+class Inverter(Around):
+    """SUCCESS for FAILURE and the other way round."""
+
+    becomes: ClassVar = {SUCCESS: FAILURE, FAILURE: SUCCESS}
+
+
+class ForceSuccess(Around):
+    """SUCCESS for FAILURE."""
+
+    becomes: ClassVar = {FAILURE: SUCCESS}
+
+
+class ForceFailure(Around):
+    """FAILURE for SUCCESS."""
+
+    becomes: ClassVar = {SUCCESS: FAILURE}
+
+
+class KeepRunningUntilFailure(Around):
+    """RUNNING until its child fails."""
+
+    becomes: ClassVar = {SUCCESS: RUNNING, SKIPPED: RUNNING}
+
+
+class Repeat(Node):
+    """Runs its child `most` times (-1: for ever) or until it fails; after a round of one tick it is RUNNING."""
+
+    again = SUCCESS
+    count = 0
+    waiting = False
+
+    def __init__(self, name: str, children: Sequence[Behaviour], most: int) -> None:
+        self.most = most
+        super().__init__(name, children)
+
+    def halt(self, keep: bool) -> None:
+        super().halt(keep)
+        if not keep:
+            self.count, self.waiting = 0, False
+
+    def run(self) -> Asking:
+        resumed, self.waiting = self.waiting, False
+        while self.count < self.most or self.most == -1:
+            status = yield from self.ask(self.children[0])
+            if status == RUNNING:
+                self.waiting = True
+                return RUNNING
+            if status == SKIPPED:
+                halt(self.children[0])
+                return SKIPPED
+            if status != self.again:
+                self.count = 0
+                return status
+            self.count += 1
+            if not resumed and (self.count < self.most or self.most == -1):
+                return RUNNING
+            resumed = False
+        self.count = 0
+        return self.again
+
+
+class Retry(Repeat):
+    """Runs its child until it succeeds, at most so many times (-1: for ever)."""
+
+    again = FAILURE
+
+
+class RunOnce(Node):
+    """Runs its child until it completes, once; from then on it is skipped, or has the status of that run."""
+
+    result = RUNNING
+
+    def __init__(self, name: str, children: Sequence[Behaviour], then_skip: bool = True) -> None:
+        self.then_skip = then_skip
+        super().__init__(name, children)
+
+    def run(self) -> Asking:
+        if self.result == RUNNING:
+            status = yield from self.ask(self.children[0])
+            if status in (SUCCESS, FAILURE):
+                self.result = status
+            return status
+        return SKIPPED if self.then_skip else self.result
+
+
+class Timed(Node):
+    """Measures time from its first tick; `now` gives the time in seconds."""
+
+    def __init__(
+        self,
+        name: str,
+        children: Sequence[Behaviour] = (),
+        seconds: float = 0.0,
+        now: Callable[[], float] = time.monotonic,
+    ) -> None:
+        self.seconds, self.now = seconds, now
+        self.kept = 0.0
+        self.since: float | None = None
+        super().__init__(name, children)
+
+    def reached(self) -> bool:
+        """Whether the time is over."""
+        if self.since is None:
+            self.since = self.now()
+        return self.kept + self.now() - self.since >= self.seconds - 1e-9
+
+    def pause(self, keep: bool) -> None:
+        """Stops the watch; resets it where nothing is kept."""
+        if not keep:
+            self.kept = 0.0
+        elif self.since is not None:
+            self.kept += self.now() - self.since
+        self.since = None
+
+    def halt(self, keep: bool) -> None:
+        super().halt(keep)
+        self.pause(keep)
+
+
+class Sleep(Timed):
+    """A leaf: RUNNING until the time is over."""
+
+    def run(self) -> Asking:
+        if not self.reached():
+            return RUNNING
+        self.pause(False)
+        return SUCCESS
+        yield self
+
+
+class Delay(Timed):
+    """RUNNING until the time is over, then its child."""
+
+    def run(self) -> Asking:
+        if not self.reached():
+            return RUNNING
+        status = yield from self.ask(self.children[0])
+        if status not in (RUNNING, SKIPPED):
+            self.pause(False)
+        return status
+
+
+class Timeout(Timed):
+    """Its child, which is halted and fails where it is RUNNING when the time is over. 0 is no limit."""
+
+    def run(self) -> Asking:
+        if self.seconds and self.reached():
+            self.halt(False)
+            return FAILURE
+        status = yield from self.ask(self.children[0])
+        if status != RUNNING:
+            self.pause(False)
+        return status
+
+
+class RateController(Timed):
+    """Ticks its child at the start, while it is RUNNING, and when the time is over since its last success."""
+
+    fresh, runs = True, False
+
+    def halt(self, keep: bool) -> None:
+        super().halt(keep)
+        if not keep:
+            self.fresh, self.runs = True, False
+
+    def run(self) -> Asking:
+        due = self.reached()
+        if not (self.fresh or self.runs or due):
+            return RUNNING
+        self.fresh = False
+        status = yield from self.ask(self.children[0])
+        self.runs = status == RUNNING
+        if status == SUCCESS:
+            self.pause(False)
+            self.reached()
+        if type(self.parent).__name__ != "PipelineSequence":  # which lets it wait
+            if status in (SUCCESS, FAILURE):
+                self.fresh, self.runs = True, False
+                self.pause(False)
+        return status

@@ -1,0 +1,163 @@
+"""Trees as a Python module that builds them with py_trees, and needs nothing else where that is possible."""
+
+from __future__ import annotations
+
+import ast
+import pkgutil
+import re
+from collections.abc import Iterable
+
+from btlang.backends.py_trees.plan import Name, Part, Plan, plan_of
+from btlang.backends.python_source import Source, Statements, called, literal
+from btlang.tree.node import Tree
+from btlang.tree.visit import fold
+from btlang.vocabulary.vocabulary import Vocabulary
+
+_MODULES = ("node", "in_order", "choosing", "decorating")  # whose text is copied
+_HEAD = '''"""A behavior tree for py_trees 2.6; needs {needs}.
+
+`create_root` makes the tree. Its leaves are made by a function that you give: leaf(name, id, ports) returns a
+behaviour; without one they print what they would do, and succeed. python FILE [TICKS] shows the tree and ticks it.
+A node that is skipped has the status INVALID.
+"""
+
+from __future__ import annotations
+
+import sys
+import time
+{imports}
+'''
+_IMPORTS = {
+    "collections.abc": ("Callable", "Generator", "Iterator", "Sequence"),
+    "typing": ("Any", "ClassVar"),
+    "py_trees": ("behaviour", "behaviours", "common", "composites", "decorators", "display"),
+}
+_VALUES = """
+from btlang.backends.py_trees.values import engine_leaf, values_of
+from btlang.engine.blackboard import Blackboard
+"""
+_LEAF = '''
+
+class PrintingLeaf(behaviour.Behaviour):
+    """Stands for a leaf: prints what it would do, and succeeds."""
+
+    def __init__(self, name: str, id: str, ports: dict[str, str]) -> None:
+        super().__init__(name)
+
+    def update(self) -> common.Status:
+        print(self.name)
+        return common.Status.SUCCESS
+
+
+def create_root(
+    leaf: Callable[[str, str, dict[str, str]], behaviour.Behaviour] = PrintingLeaf,
+    now: Callable[[], float] = time.monotonic,
+) -> behaviour.Behaviour:
+    """The root of the tree; `now` is the time in seconds."""
+'''
+_FOOT = """
+
+if __name__ == "__main__":
+    root = create_root()
+    print(display.unicode_tree(root))
+    for _ in range(int(sys.argv[1]) if len(sys.argv) > 1 else 10):
+        root.tick_once()
+        print(root.status.value)
+        if root.status != common.Status.RUNNING:
+            break
+        time.sleep(0.1)
+"""
+_INDENT = "    "
+
+
+def to_module(tree: Tree, vocabulary: Vocabulary) -> str:
+    """The text of the module; errors as for `plan_of`. It has the statuses that to_py_trees has (build.py)."""
+    plan = plan_of(tree, vocabulary)
+    with_values = "engine_leaf" in plan.uses
+    body = "\n".join([_INDENT + line for line in _body(plan, with_values)])
+    rest = (_VALUES if with_values else "") + _definitions(plan.uses) + _LEAF + body + "\n" + _FOOT
+    needs = "btlang, for what works with the values of the mission, and py_trees" if with_values else "only py_trees"
+    imports = []
+    for module, names in _IMPORTS.items():
+        used = [name for name in names if re.search(rf"\b{name}\b", rest)]
+        if used:
+            space = "\n" if module == "py_trees" else ""
+            imports.append(f"{space}from {module} import {', '.join(used)}")
+    return _HEAD.format(needs=needs, imports="\n".join(imports)) + rest
+
+
+def _body(plan: Plan, with_values: bool) -> list[str]:
+    """The lines of `create_root`."""
+    lines = []
+    if any(argument == Name("interrupts") for part in _parts(plan.root) for _, argument in part.arguments) or (
+        "interrupting" in plan.uses
+    ):
+        lines.append("interrupts: list[Callable[[], None]] = []")
+    if with_values:
+        lines.append("values = Blackboard()")
+        lines += [f"{s.name} = values_of({_literal(dict(s.ports))}, {s.around})" for s in plan.scopes]
+    statements = Statements()
+
+    def combine(part: Part, children: list[Source]) -> Source:
+        return statements.named_if_deep(_call(part, children))
+
+    root = fold(plan.root, lambda part: part.children, combine)
+    return [*lines, *statements.lines, f"return {root.lines[0]}", *root.lines[1:]]
+
+
+def _call(part: Part, children: list[Source]) -> Source:
+    if part.make == "leaf":
+        values = dict(part.arguments)
+        made = called("leaf", [literal(part.name), literal(values["id"]), _literal(values["ports"])])
+    else:
+        arguments: list[str | Source] = [literal(part.name)]
+        if part.make.startswith("decorators."):
+            arguments += children
+        elif children:
+            listed = called("", children, "[]")
+            arguments.append(Source((f"children={listed.lines[0]}", *listed.lines[1:]), listed.depth))
+        made = called(part.make, [*arguments, *(f"{key}={_literal(value)}" for key, value in part.arguments)])
+    return called("interrupting", [made, "interrupts"]) if part.starts else made
+
+
+def _literal(value: object) -> str:
+    if isinstance(value, Name):
+        return value.text
+    if isinstance(value, dict):
+        return "{" + ", ".join(f"{literal(key)}: {literal(text)}" for key, text in value.items()) + "}"
+    return literal(value)
+
+
+def _parts(root: Part) -> Iterable[Part]:
+    waiting = [root]
+    while waiting:
+        part = waiting.pop()
+        yield part
+        waiting += part.children
+
+
+def _definitions(used: Iterable[str]) -> str:
+    """The text of our classes and functions of these names, and of what they use; "" where none is ours."""
+    texts: dict[str, str] = {}
+    needs: dict[str, set[str]] = {}
+    constants: list[str] = []
+    for module in _MODULES:
+        text = (pkgutil.get_data(__package__, f"{module}.py") or b"").decode()
+        for item in ast.parse(text).body:
+            source = ast.get_source_segment(text, item) or ""
+            if isinstance(item, ast.ClassDef | ast.FunctionDef):
+                texts[item.name] = source
+                needs[item.name] = {name.id for name in ast.walk(item) if isinstance(name, ast.Name)}
+            elif isinstance(item, ast.Assign):
+                constants.append(source)
+    wanted: set[str] = set()
+    waiting = [name for name in used if name in texts]
+    while waiting:
+        name = waiting.pop()
+        if name not in wanted:
+            wanted.add(name)
+            waiting += [needed for needed in needs[name] if needed in texts]
+    if not wanted:
+        return ""
+    copied = [text for name, text in texts.items() if name in wanted]
+    return "\n" + "\n".join(constants) + "\n\n\n" + "\n\n\n".join(copied) + "\n"

@@ -1,0 +1,281 @@
+"""How each node of a tree is told to py_trees: as its own node where that means the same, else as one of ours."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from btlang.backends.checking import tree_problems
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
+from btlang.engine.blackboard import Blackboard
+from btlang.engine.build import Shared, Site
+from btlang.engine.clock import Clock
+from btlang.engine.compile import NODE_TYPES, expand
+from btlang.engine.leaf import LeafBinding
+from btlang.english.phrase import phrase_of
+from btlang.record import Record
+from btlang.text.source import Source, Span
+from btlang.tree.node import Node, Tree
+from btlang.vocabulary.vocabulary import Vocabulary
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+DEEPEST = 250
+"""Levels of a tree; py_trees calls itself at each one."""
+
+
+class Name(Record):
+    """An argument that is a variable."""
+
+    text: str
+
+
+class Part(Record):
+    """A call of `make` with a name, the parts below it, and further arguments.
+
+    `make` is a class of node.py and the modules beside it, "composites.Sequence" or another of py_trees, "leaf", or
+    "engine_leaf". `starts` marks an action that stops others before it starts (see `interrupting` in node.py).
+    """
+
+    make: str
+    name: str
+    children: tuple[Part, ...] = ()
+    arguments: tuple[tuple[str, Any], ...] = ()
+    starts: bool = False
+
+
+class Scope(Record):
+    """The values of a subtree: the variable that holds them, its ports, and the variable of those around it."""
+
+    name: str
+    ports: tuple[tuple[str, str], ...]
+    around: str
+
+
+class Plan(Record):
+    """`scopes` come before those within them."""
+
+    root: Part
+    scopes: tuple[Scope, ...]
+    uses: frozenset[str]  # what is called
+
+
+class _Untold(Exception):
+    """Why a node cannot be told to py_trees."""
+
+
+def plan_of(tree: Tree, vocabulary: Vocabulary, is_action: Callable[[Node], bool] | None = None) -> Plan:
+    """The plan of a tree, each use of a subtree for itself. `is_action` says which leaves take more than one tick.
+
+    Raises MissionError with all that is wrong with the tree (BT126, BT131, BT132), or all that cannot be told (BT134).
+    """
+    problems = tree_problems(tree, vocabulary, lambda id: LeafBinding(_anything))
+    if problems:
+        raise MissionError(problems)
+    sites = expand(tree, Blackboard(), Shared(lambda id: None, Clock(), {}, {}, None))
+    planner = _Planner(sites, tree, vocabulary, is_action)
+    return planner.plan()
+
+
+def _anything(**ports: object) -> None:
+    """Takes every port."""
+
+
+class _Planner:
+    def __init__(
+        self, sites: list[Site], tree: Tree, vocabulary: Vocabulary, is_action: Callable[[Node], bool] | None
+    ) -> None:
+        self._sites = sites
+        self._vocabulary = vocabulary
+        self._conditions = {model.id for model in tree.models if model.kind == "Condition"}
+        self._is_action = is_action or self._takes_time
+        self._suspended = [False] * len(sites)  # below a Whenever: all must be able to stop and go on
+        self._asked = [False] * len(sites)  # again while others run
+        self._skips = [False] * len(sites)
+        self._acts = [False] * len(sites)  # holds an action
+        self._scopes = [""] * len(sites)  # of the children
+        self._depths = [0] * len(sites)
+        self._problems: list[Diagnostic] = []
+        self._uses: set[str] = set()
+
+    def plan(self) -> Plan:
+        scopes = [scope for site in self._sites if (scope := self._look_down(site)) is not None]
+        waiting: list[tuple[int, Part]] = []  # parts whose parents come later, so that the last ones are the next one's
+        for site in reversed(self._sites):
+            count = 1 if site.node.id == "SubTree" else len(site.node.children)
+            below = waiting[: -count - 1 : -1] if count else []
+            del waiting[len(waiting) - count :]
+            part = self._part(site, [index for index, _ in below], tuple(part for _, part in below))
+            waiting.append((site.index, part))
+        if self._problems:
+            raise MissionError(self._problems)
+        return Plan(waiting[0][1], tuple(scopes), frozenset(self._uses))
+
+    def _look_down(self, site: Site) -> Scope | None:
+        """What holds for a node because of those around it."""
+        index, above = site.index, site.above
+        around = "values"
+        if above is not None:
+            around = self._scopes[above.index]
+            self._depths[index] = self._depths[above.index] + 1
+            self._suspended[index] = self._suspended[above.index] or (above.node.id == "Whenever" and site.position > 0)
+            last = len(above.node.children) - 1
+            before = {"ReactiveSequence": last, "ReactiveFallback": last, "WhileDoElse": 1, "Whenever": 1}
+            self._asked[index] = self._asked[above.index] or site.position < before.get(above.node.id, 0)
+        self._scopes[index] = around
+        if site.node.id != "SubTree":
+            return None
+        self._scopes[index] = f"values_{index}"
+        return Scope(self._scopes[index], site.node.ports, around)
+
+    def _part(self, site: Site, below: list[int], children: tuple[Part, ...]) -> Part:
+        node, index = site.node, site.index
+        self._acts[index] = any(self._acts[i] for i in below) or (not node.children and self._is_action(node))
+        part = Part("Skipped", self._name(node))
+        try:
+            if self._depths[index] > DEEPEST:
+                raise _Untold(f"it is more than {DEEPEST} levels deep, and py_trees calls itself at each")
+            if self._always_skipped(node):
+                self._skips[index] = True
+            else:
+                part = self._told(site, below, children)
+        except _Untold as problem:
+            span = node.span or Span(Source(""), 0, 0)
+            self._problems.append(diagnostic("BT134", span, id=node.id, target="py_trees", reason=str(problem)))
+        self._uses.add(part.make)
+        if part.starts:
+            self._uses.add("interrupting")
+        return part
+
+    def _told(self, site: Site, below: list[int], children: tuple[Part, ...]) -> Part:
+        node, index = site.node, site.index
+        if not children:
+            return self._leaf(site)
+        skips = [self._skips[i] for i in below]
+        self._skips[index] = _SKIPS.get(node.id, any)(skips)
+        if node.id == "RunOnce":
+            self._skips[index] = skips[0] or _truth(node, "then_skip", "true")
+        native = not self._suspended[index] and not any(skips) and (node.id != "RunOnce" or not self._skips[index])
+        if node.id in ("ReactiveSequence", "ReactiveFallback"):
+            native = native and not any(self._acts[i] for i in below[:-1])
+        make, arguments = _THEIRS[node.id] if native and node.id in _THEIRS else _ours(node)
+        return Part(make, self._name(node), children, arguments)
+
+    def _leaf(self, site: Site) -> Part:
+        node, index = site.node, site.index
+        ports = tuple((port, text) for port, text in node.ports if port != "_skipIf")
+        scope = Name(self._scopes[index])
+        if node.id == "Sleep" and "{" not in node.port("msec"):
+            seconds = int(node.port("msec")) / 1000
+            return Part("Sleep", self._name(node), (), (("seconds", seconds), ("now", Name("now"))))
+        if node.id in ("AlwaysSuccess", "AlwaysFailure"):
+            return Part(f"behaviours.{node.id.removeprefix('Always')}", self._name(node))
+        starts = self._asked[index] and self._acts[index]
+        if node.id in NODE_TYPES:
+            given = (("id", node.id), ("ports", dict(ports)), ("values", scope), ("now", Name("now")))
+            return Part("engine_leaf", self._name(node), (), given, starts)
+        return Part("leaf", self._name(node), (), (("id", node.id), ("ports", dict(ports)), ("values", scope)), starts)
+
+    def _takes_time(self, node: Node) -> bool:
+        if node.id in NODE_TYPES or node.id == "SubTree" or node.id in self._conditions:
+            return False
+        entry = self._vocabulary.entry(node.id)
+        return entry is None or entry.sort == "action"
+
+    def _always_skipped(self, node: Node) -> bool:
+        for port, text in node.ports:
+            if port[:1] == "_" and port != "_autoremap" and (port != "_skipIf" or text not in ("true", "false")):
+                raise _Untold(f"py_trees has no {port}")
+        return node.port("_skipIf") == "true"
+
+    def _name(self, node: Node) -> str:
+        if node.name or node.id == "SubTree":
+            return node.name or node.port("ID")
+        return node.id if node.children else phrase_of(node.replace(ports=_without_conditions(node)), self._vocabulary)
+
+
+_SKIPS: dict[str, Callable[[list[bool]], bool]] = {
+    **dict.fromkeys(
+        ("Sequence", "Fallback", "SequenceWithMemory", "ReactiveSequence", "ReactiveFallback", "Parallel"), all
+    ),
+    **dict.fromkeys(("ParallelAll", "PipelineSequence", "RoundRobin"), all),
+    **dict.fromkeys(("IfThenElse", "WhileDoElse"), lambda skips: any(skips[1:])),
+    "Whenever": lambda skips: skips[2],
+    "TryCatch": lambda skips: all(skips[:-1]),
+    "RecoveryNode": lambda skips: skips[0],
+    "KeepRunningUntilFailure": lambda skips: False,
+}
+"""Whether a node can be skipped, by whether its children can be; of all others, where any can."""
+
+_INTERRUPTS = (("interrupts", Name("interrupts")),)
+_OURS = {
+    "Sequence": "SkippableSequence",
+    "Fallback": "SkippableFallback",
+    **{id: id for id in ("SequenceWithMemory", "IfThenElse", "PipelineSequence", "RoundRobin", "SubTree")},
+    **{id: id for id in ("Inverter", "ForceSuccess", "ForceFailure", "KeepRunningUntilFailure")},
+}
+_REACTIVE = ("ReactiveSequence", "ReactiveFallback", "WhileDoElse", "Whenever")
+_THEIRS: dict[str, tuple[str, tuple[tuple[str, Any], ...]]] = {
+    "Sequence": ("composites.Sequence", (("memory", True),)),
+    "Fallback": ("composites.Selector", (("memory", True),)),
+    "ReactiveSequence": ("composites.Sequence", (("memory", False),)),
+    "ReactiveFallback": ("composites.Selector", (("memory", False),)),
+    "Inverter": ("decorators.Inverter", ()),
+    "ForceSuccess": ("decorators.FailureIsSuccess", ()),
+    "ForceFailure": ("decorators.SuccessIsFailure", ()),
+    "KeepRunningUntilFailure": ("decorators.SuccessIsRunning", ()),
+    "RunOnce": ("decorators.OneShot", (("policy", Name("common.OneShotPolicy.ON_COMPLETION")),)),
+    "SubTree": ("decorators.PassThrough", ()),
+}
+"""The nodes of py_trees that mean the same where no child can be skipped, and nothing has to be suspended."""
+
+
+def _ours(node: Node) -> tuple[str, tuple[tuple[str, Any], ...]]:
+    """Our class for a node, and its arguments."""
+    if node.id in _OURS:
+        return _OURS[node.id], ()
+    if node.id in _REACTIVE:
+        return node.id, _INTERRUPTS
+    if node.id == "RunOnce":
+        return node.id, (("then_skip", _truth(node, "then_skip", "true")),)
+    if node.id == "TryCatch" and not _truth(node, "catch_on_halt", "false"):
+        return node.id, ()
+    if node.id not in _NUMBERS:
+        what = "with catch_on_halt " if node.id == "TryCatch" else ""
+        raise _Untold(f"py_trees has no such node {what}and btlang makes none for it")
+    make, ports = _NUMBERS[node.id]
+    arguments: list[tuple[str, Any]] = []
+    for argument, port, usual, factor in ports:
+        text = node.port(port) or usual
+        if "{" in text:
+            raise _Untold(f"its {port} is a value of the mission, and there it must be a number")
+        if argument == "seconds":
+            arguments += [("seconds", float(text) * factor if factor else 1 / float(text)), ("now", Name("now"))]
+        else:
+            arguments.append((argument, int(text)))
+    return make, tuple(arguments)
+
+
+_NUMBERS: dict[str, tuple[str, tuple[tuple[str, str, str, float], ...]]] = {
+    "Parallel": ("Parallel", (("successes", "success_count", "-1", 1), ("failures", "failure_count", "1", 1))),
+    "ParallelAll": ("ParallelAll", (("failures", "max_failures", "1", 1),)),
+    "Repeat": ("Repeat", (("most", "num_cycles", "", 1),)),
+    "RetryUntilSuccessful": ("Retry", (("most", "num_attempts", "", 1),)),
+    "RecoveryNode": ("RecoveryNode", (("retries", "number_of_retries", "1", 1),)),
+    "Timeout": ("Timeout", (("seconds", "msec", "", 0.001),)),
+    "Delay": ("Delay", (("seconds", "delay_msec", "", 0.001),)),
+    "RateController": ("RateController", (("seconds", "hz", "10", 0),)),
+}
+"""Our class, and of each argument its port, what an absent one stands for, and a factor; 0 is for a frequency."""
+
+
+def _truth(node: Node, port: str, usual: str) -> bool:
+    text = node.port(port) or usual
+    if "{" in text:
+        raise _Untold(f"its {port} is a value of the mission, and there it must be known before")
+    return text in ("true", "1")
+
+
+def _without_conditions(node: Node) -> tuple[tuple[str, str], ...]:
+    return tuple((port, text) for port, text in node.ports if port[:1] != "_")

@@ -1,0 +1,68 @@
+"""Leaves that work with the values of a mission, or do what a keyword entry says: each is an engine of one node."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from py_trees.common import Status
+
+from btlang.backends.py_trees.node import SKIPPED, Asking, Node
+from btlang.engine.blackboard import Blackboard
+from btlang.engine.engine import Engine
+from btlang.engine.leaf import LeafBinding
+from btlang.engine.status import FAILURE, RUNNING, SUCCESS
+from btlang.engine.subtree import child_scope
+from btlang.tree import node as btlang_node
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+_STATUSES = {RUNNING: Status.RUNNING, SUCCESS: Status.SUCCESS, FAILURE: Status.FAILURE}
+
+
+class _Clock:
+    """Time as the engine asks for it."""
+
+    def __init__(self, now: Callable[[], float]) -> None:
+        self._now = now
+
+    @property
+    def now(self) -> float:
+        return self._now()
+
+
+class EngineLeaf(Node):
+    """A leaf of btlang's engine. Why it failed is in `feedback_message`."""
+
+    def __init__(self, name: str, engine: Engine) -> None:
+        super().__init__(name)
+        self.engine = engine
+
+    def halt(self, keep: bool) -> None:
+        self.engine.suspend() if keep else self.engine.halt()
+
+    def run(self) -> Asking:
+        status = self.engine.tick()
+        self.feedback_message = self.engine.failure.reason if self.engine.failure is not None else ""
+        return _STATUSES.get(status, SKIPPED)
+        yield self
+
+
+def engine_leaf(
+    name: str,
+    id: str,
+    ports: Mapping[str, str],
+    values: Blackboard,
+    now: Callable[[], float],
+    bind: Callable[[str], LeafBinding | None] = lambda id: None,
+    services: Mapping[str, Any] = {},
+) -> EngineLeaf:
+    """A leaf with the values of its subtree. Raises EngineError where it cannot be bound so."""
+    tree = btlang_node.Tree(btlang_node.Node(id, ports=tuple(ports.items())))
+    return EngineLeaf(name, Engine(tree, bind, clock=_Clock(now), services=services, blackboard=values))  # type: ignore[arg-type]
+
+
+def values_of(ports: Mapping[str, str], values: Blackboard) -> Blackboard:
+    """The values that a subtree with these ports sees."""
+    return child_scope(btlang_node.Node("SubTree", ports=tuple(ports.items())), values)

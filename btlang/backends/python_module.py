@@ -1,0 +1,86 @@
+"""Trees as a Python module that runs them with btlang, as `btc run` would."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+
+from btlang.backends.python_source import Source, Statements, called, literal
+from btlang.tree.ast import Fact
+from btlang.tree.node import Node, Tree
+from btlang.vocabulary.shipped import keyword_files
+from btlang.vocabulary.vocabulary import Vocabulary
+
+_HEAD = '''"""A behavior tree that runs on the simulated robot: python FILE [--speed max]. Needs btlang.
+
+The leaves do what the `call` of their keyword entry names. `tree` can be ticked, run and watched from other programs;
+see btlang.api.RunnableTree.
+"""
+
+from btlang.api import RunnableTree, world_vocabulary
+from btlang.tree.node import Node, Tree
+'''
+_FOOT = """
+if __name__ == "__main__":
+    import sys
+
+    from btlang.run.module import run_module
+
+    sys.exit(run_module(tree))
+"""
+
+
+def to_python(tree: Tree, vocabulary: Vocabulary, *, world: str | None = None, facts: Sequence[Fact] = ()) -> str:
+    """The text of a module with a name `tree`, a RunnableTree with the keyword files of its leaves.
+
+    Words that are Python objects (`btlang.action`) cannot be told; the leaf is then unknown there. Nor can the places
+    in the text of the mission: failures name the leaf, but not its line.
+    """
+    lines = [_HEAD]
+    if facts:
+        lines = [_HEAD.replace("\nfrom btlang.tree", "\nfrom btlang.robots.world import Place\nfrom btlang.tree")]
+    used: list[str] = []
+    for name, root in tree.subtrees:
+        lines += _assigned(f"subtree_{len(used) + 1}", root)
+        used.append(f"({literal(name)}, subtree_{len(used) + 1})")
+    lines += _assigned("root", tree.root)
+    arguments: list[str | Source] = ["root"]
+    if used:
+        arguments.append(called("", used))
+    lines += called("TREE = Tree", [*arguments, *([f"name={literal(tree.name)}"] if tree.name else [])]).lines
+    lines.append(f"KEYWORDS = {literal(_files(tree, vocabulary))}")
+    lines.append(f"WORLD = {literal(world)}")
+    lines.append("tree = RunnableTree(TREE, world_vocabulary(KEYWORDS, WORLD), WORLD)")
+    if facts:
+        places = [
+            f"Place({literal(fact.name)}, {literal(fact.x)}, {literal(fact.y)}, {literal(fact.facing)})"
+            for fact in facts
+        ]
+        made = called("", places)
+        lines += [f"tree.facts = {made.lines[0]}", *made.lines[1:]]
+    return "\n".join([*lines, _FOOT])
+
+
+def _assigned(name: str, root: Node) -> list[str]:
+    """Statements that end with one that gives a tree the name."""
+    before = Statements(f"{name}_part_")
+    made = before.expression(root, _node)
+    return [*before.lines, f"{name} = {made.lines[0]}", *made.lines[1:]]
+
+
+def _node(node: Node, children: list[Source]) -> Source:
+    arguments: list[str | Source] = [literal(node.id)]
+    if children:
+        arguments.append(called("", children))
+    if node.ports:
+        arguments.append(f"ports={literal(node.ports)}")
+    if node.name:
+        arguments.append(f"name={literal(node.name)}")
+    return called("Node", arguments)
+
+
+def _files(tree: Tree, vocabulary: Vocabulary) -> list[str]:
+    """The keyword files of the leaves, without those that ship."""
+    shipped = {"keywords/" + os.path.basename(path) for path in keyword_files()}
+    found = {entry.file for node in tree.walk() for entry in vocabulary.entries.get(node.id, ())}
+    return sorted(file for file in found - shipped if file != "Python")

@@ -1,0 +1,89 @@
+"""What a tree can be written as. A target is a line in `TARGETS`, and a function that is imported when it is used."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Mapping
+from importlib import import_module
+
+from btlang.record import Record
+from btlang.tree.node import Tree
+from btlang.vocabulary.vocabulary import Vocabulary
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+
+class Target(Record):
+    """`make` names the function that makes it, "module:function" of (tree, vocabulary, **options) to str or bytes.
+
+    A file that ends in one of the `suffixes` is of this target where none is named. `options` are the options that the
+    function takes from whoever asks, `given` those that a btlang.api.RunnableTree fills in: "world" and "facts".
+    """
+
+    make: str
+    about: str
+    suffixes: tuple[str, ...] = ()
+    options: tuple[str, ...] = ()
+    given: tuple[str, ...] = ()
+    binary: bool = False
+
+
+TARGETS = {
+    "xml": Target(
+        "btlang.backends.btcpp.writer:to_xml",
+        "XML of BehaviorTree.CPP, for Groot2 and Nav2; --dialect 3 for version 3",
+        (".xml",),
+        options=("dialect",),
+    ),
+    "english": Target("btlang.backends.english:to_english", "a mission in English", (".txt",), given=("facts",)),
+    "json": Target("btlang.backends.json_tree:to_json", "the tree as JSON, for programs", (".json",)),
+    "python": Target(
+        "btlang.backends.python_module:to_python",
+        "a Python module that runs the tree with btlang",
+        (".py",),
+        given=("world", "facts"),
+    ),
+    "py_trees": Target("btlang.backends.py_trees.module:to_module", "a Python module that builds it with py_trees"),
+    "dot": Target("btlang.backends.dot:to_dot", "a graph for Graphviz", (".dot", ".gv")),
+    "svg": Target("btlang.pictures.target:to_svg", "a picture of the tree", (".svg",)),
+    "png": Target("btlang.pictures.target:to_png", "a picture of the tree", (".png",), binary=True),
+    "tree": Target("btlang.backends.targets:to_plain", "one line a node: Id port=value"),
+    "keywords": Target(
+        "btlang.backends.keywords:to_keywords", "keyword entries for the commands that btlang does not know", (".toml",)
+    ),
+}
+
+
+def target_of(path: str) -> str:
+    """The name of the target that a file of this name is of, "" where its ending is that of none."""
+    ending = os.path.splitext(path)[1].lower()
+    return next((name for name, target in TARGETS.items() if ending in target.suffixes), "")
+
+
+def compiled(
+    tree: Tree, vocabulary: Vocabulary, name: str, given: Mapping[str, Any] = {}, **options: Any
+) -> str | bytes:
+    """The tree as a target; of the options those count that are not None, of what is `given` what the target uses.
+
+    Raises ValueError for a name or an option that is not known, MissionError where the tree cannot be told so.
+    """
+    target = TARGETS.get(name)
+    if target is None:
+        raise ValueError(f"the targets are {', '.join(TARGETS)}; there is no {name!r}")
+    chosen = {option: value for option, value in options.items() if value is not None}
+    unknown = [option for option in chosen if option not in target.options]
+    if unknown:
+        raise ValueError(f"the target {name} takes no {unknown[0]}")
+    chosen |= {key: given[key] for key in target.given if key in given}
+    module, _, function = target.make.partition(":")
+    made: str | bytes = getattr(import_module(module), function)(tree, vocabulary, **chosen)
+    return made
+
+
+def to_plain(tree: Tree, vocabulary: Vocabulary) -> str:
+    """The tree as `btc tree --plain` prints it."""
+    from btlang.tree.dump import plain
+
+    return plain(tree) + "\n"

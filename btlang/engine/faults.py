@@ -1,0 +1,112 @@
+"""Everything that keeps a tree from being compiled, where compiling stops at the first fault."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterator, Mapping
+
+from btlang.engine.blackboard import Blackboard
+from btlang.engine.build import EngineError, Shared, Site, halt_nothing
+from btlang.engine.clock import Clock
+from btlang.engine.compile import NODE_TYPES, compile_node
+from btlang.engine.leaf import LeafBinding
+from btlang.engine.status import SUCCESS
+from btlang.engine.subtree import child_scope
+from btlang.tree.node import Node, Tree
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+    from btlang.engine.build import Compiled
+
+
+class UnknownNode(EngineError):
+    """Neither a node of the engine nor bound to anything."""
+
+
+class UnknownSubTree(EngineError):
+    """A SubTree node names a tree that is not there."""
+
+
+def faults(tree: Tree, bind: Callable[[str], LeafBinding | None], services: Mapping[str, Any]) -> list[EngineError]:
+    """One for each node that cannot be compiled, and for each SubTree that closes a circle, in the order of Tree.walk.
+
+    Trees that are not used are not looked at. `bind` and `services` are as for an Engine, which would refuse the tree
+    where there is a fault; it refuses one of too many nodes, too.
+    """
+    shared = Shared(bind, Clock(), {"wake": None, **services}, {}, None)
+    found: list[EngineError] = []
+    uses: dict[str, list[Node]] = {}
+    used = _used(tree)
+    for name, root in (("", tree.root), *used.items()):
+        for node in Tree(root).walk():
+            found += _wrong_with(node, used, shared)
+            if node.id == "SubTree" and node.port("ID") in used:
+                uses.setdefault(name, []).append(node)
+    return found + [EngineError(f"the subtree {node.port('ID')} contains itself", node) for node in _circles(uses)]
+
+
+def _used(tree: Tree) -> dict[str, Node]:
+    """The subtrees that the main tree uses, also by way of others, in the order defined."""
+    subtrees = dict(tree.subtrees)
+    names: set[str] = set()
+    waiting = [tree.root]
+    while waiting:
+        node = waiting.pop()
+        waiting += node.children
+        name = node.port("ID") if node.id == "SubTree" else ""
+        if name in subtrees and name not in names:
+            names.add(name)
+            waiting.append(subtrees[name])
+    return {name: root for name, root in tree.subtrees if name in names}
+
+
+def _wrong_with(node: Node, subtrees: dict[str, Node], shared: Shared) -> Iterator[EngineError]:
+    if node.id == "SubTree":
+        name = node.port("ID")
+        if node.children:
+            yield EngineError("it takes no children", node)
+        if not name:
+            yield EngineError("it needs a port ID", node)
+        elif name not in subtrees:
+            yield UnknownSubTree(f"there is no subtree {name}", node)
+    elif node.id not in NODE_TYPES:
+        try:
+            bound = shared.bind(node.id)
+        except EngineError as error:
+            yield EngineError(error.message, node)
+            return
+        if bound is None:
+            yield UnknownNode(f"nothing is bound to {node.id}", node)
+            return
+    standing_in: Compiled = (lambda: SUCCESS, halt_nothing)
+    count = 1 if node.id == "SubTree" else len(node.children)
+    try:
+        if node.id == "SubTree":
+            child_scope(node, Blackboard())
+        compile_node(Site(node, 0, None, 0, Blackboard(), shared), [standing_in] * count)
+    except EngineError as error:
+        yield EngineError(error.message, node)
+
+
+def _circles(uses: dict[str, list[Node]]) -> list[Node]:
+    """The SubTree nodes that lead back to a tree around them."""
+    closing: list[Node] = []
+    around: set[str] = set()
+    done: set[str] = set()
+    stack: list[tuple[str, Iterator[Node]]] = [("", iter(uses.get("", ())))]
+    while stack:
+        name, rest = stack[-1]
+        node = next(rest, None)
+        if node is None:
+            stack.pop()
+            around.discard(name)
+            done.add(name)
+            continue
+        inner = node.port("ID")
+        if inner in around:
+            closing.append(node)
+        elif inner not in done:
+            around.add(inner)
+            stack.append((inner, iter(uses.get(inner, ()))))
+    return closing

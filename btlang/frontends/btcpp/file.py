@@ -1,0 +1,173 @@
+"""One XML file: its parts below <root>, without regard to other files."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.frontends.btcpp.fragments import Notes, as_items, fragment
+from btlang.frontends.btcpp.models import ModelReader, among
+from btlang.frontends.btcpp.nodes import NodeReader
+from btlang.frontends.btcpp.origin import Element, Markup, TreeOrigin
+from btlang.frontends.btcpp.scan import Document, Note
+from btlang.frontends.btcpp.spelling import MODEL
+from btlang.record import Record
+from btlang.text.source import Span
+from btlang.tree.model import NodeModel
+from btlang.tree.node import Node
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.frontends.btcpp.fragments import Items
+
+_PARTS = ("BehaviorTree", MODEL, "include")
+SPOKEN_NAME = "_name"
+"""The attribute of a BehaviorTree with the name that its tree has in English, where that can be no ID."""
+
+
+class TreeHead(Record):
+    """A BehaviorTree before its nodes are read.
+
+    Its name, its ID in the file ("" where it has none), its element, the first element behind it.
+    """
+
+    name: str
+    written: str
+    index: int
+    end: int
+    span: Span
+
+
+class XmlFile:
+    """What a document holds. `problems` is what is wrong with it; then the rest may lack parts.
+
+    Nodes are read by `read_trees`, when the trees of all included files are known.
+    """
+
+    def __init__(self, document: Document) -> None:
+        self.document = document
+        self.notes = Notes(document)
+        self.problems: list[Diagnostic] = []
+        self.heads: list[TreeHead] = []
+        self.includes: list[tuple[dict[str, str], Span]] = []
+        self.models: dict[str, NodeModel] = {}
+        self.trees: list[tuple[str, Node]] = []
+        self.origins: dict[str, TreeOrigin] = {}
+        self.uses: dict[str, list[Node]] = {}
+        """The SubTree nodes of each tree."""
+        self._parts: list[int] = []
+        self.attributes = document.attributes(0)
+        self.dialect = 3 if self.attributes.get("BTCPP_format", "3").strip().startswith("3") else 4
+        self._survey()
+
+    @property
+    def root_span(self) -> Span:
+        """The start tag of <root>."""
+        return self.document.span(0)
+
+    def _survey(self) -> None:
+        document = self.document
+        tag = document.elements[0][0]
+        if tag != "root":
+            advice = "BehaviorTree.CPP has its trees in <root>."
+            self._wrong(
+                "BT122", document.span(0), what=f"<{tag}>", problem="cannot be the outermost tag", advice=advice
+            )
+            return
+        models = ModelReader(document, self.notes)
+        self._parts = document.parts()
+        for at, end in pairwise((*self._parts, len(document.elements))):
+            tag, attributes = document.elements[at][0], document.attributes(at)
+            if tag == "BehaviorTree":
+                self._add_tree(at, end, attributes)
+            elif tag == MODEL:
+                for model in models.read(at):
+                    self.models.setdefault(model.id, model)
+            elif tag == "include":
+                self.includes.append((attributes, document.span(at)))
+            else:
+                told = among(tag, _PARTS)
+                self._wrong("BT122", document.span(at), what=f"<{tag}>", problem="has no place in <root>", advice=told)
+        self.problems += models.problems
+        self._find_texts()
+
+    def _add_tree(self, index: int, end: int, attributes: dict[str, str]) -> None:
+        written = attributes.get("ID", "")
+        unnamed = sum(not head.written for head in self.heads)
+        name = attributes.get(SPOKEN_NAME, "") or written or f"BehaviorTree_{unnamed}"
+        span = self.document.span(index)
+        self.heads.append(TreeHead(name, written, index, end, span))
+        count = self.document.depths[index:end].count(2)
+        if count != 1:
+            problem = f"holds {count} nodes instead of one" if count else "holds no node"
+            advice = "Put them into one, such as <Sequence>." if count else "Put one into it, such as <Sequence>."
+            self._wrong("BT122", span, what=span.text, problem=problem, advice=advice)
+
+    def _find_texts(self) -> None:
+        """Texts stand in models alone."""
+        elements = self.document.elements
+        ends = [(at, self.document.end(at)) for at in self._parts if elements[at][0] == MODEL]
+        for note, inside in self.notes.texts():
+            if not any(first < inside < end for first, end in ends):
+                span = self._text_span(note)
+                tag = elements[inside][0]
+                self._wrong("BT122", span, what="This text", problem=f"has no place in <{tag}>", advice=_TEXT_ADVICE)
+
+    def _text_span(self, note: Note) -> Span:
+        """Its first line, looked for behind the tag before it."""
+        line = note.text.strip().splitlines()[0]
+        document = self.document
+        last = document.span(note.before - 1)
+        start = document.source.text.find(line, last.end)
+        return last if start < 0 else Span(document.source, start, start + len(line))
+
+    def read_trees(self, names: dict[str, str], kinds: dict[str, str]) -> None:
+        """Reads the nodes.
+
+        `names` are the trees of all files by the ID that they have there; `kinds` gets those that tags tell.
+        """
+        document = self.document
+        reader = NodeReader(document, self.dialect, names, kinds)
+        for head in self.heads:
+            first, end = head.index + 1, head.end
+            root, tags = reader.read(first, end)
+            self.trees.append((head.name, root))
+            self.uses[head.name] = reader.uses[::-1]
+            reader.uses.clear()
+            before: dict[int, tuple[str, ...]] = {}
+            inside: dict[int, tuple[str, ...]] = {}
+            for at in range(first, end) if self.notes else ():
+                if told := self.notes.before(at):
+                    before[at - first] = tuple(note.text for note in told)
+                if told := self.notes.inside(at):
+                    inside[at - first] = tuple(note.text for note in told)
+            after = tuple(note.text for note in self.notes.inside(head.index))
+            attributes = tuple(document.attributes(head.index).items())
+            self.origins[head.name] = TreeOrigin(attributes, tags, before, inside, after)
+        self.problems += reader.problems
+
+    def items(self) -> tuple[Element | Markup | str, ...]:
+        """The parts of <root> in their order, a str being the name of a tree."""
+        found: Items = []
+        heads = {head.index: head.name for head in self.heads}
+        for at in self._parts:
+            found += as_items(self.notes.before(at))
+            found.append(heads[at] if at in heads else fragment(self.document, self.notes, at))
+        found += as_items(self.notes.inside(0))
+        return tuple(found)
+
+    def head(self) -> tuple[str, ...]:
+        """What stands before <root>."""
+        document = self.document
+        told = (document.declaration, document.doctype)
+        return tuple(text for text in told if text) + tuple(note.text for note in self.notes.before(0))
+
+    def foot(self) -> tuple[str, ...]:
+        """What stands behind it."""
+        return tuple(note.text for note in self.notes.inside(-1))
+
+    def _wrong(self, code: str, span: Span, **arguments: str) -> None:
+        self.problems.append(diagnostic(code, span, (), None, **arguments))
+
+
+_TEXT_ADVICE = "To keep it as a note, write it as a comment: <!-- ... -->"

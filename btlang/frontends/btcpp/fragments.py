@@ -1,0 +1,84 @@
+"""Parts of a file that are no tree, as they were written: elements with their texts and comments."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from btlang.frontends.btcpp.origin import Element, Markup
+from btlang.frontends.btcpp.scan import Document, Note
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+    Items: TypeAlias = list[Element | Markup | str]
+
+
+class Notes:
+    """The notes of a document by where they stand."""
+
+    def __init__(self, document: Document) -> None:
+        self._document = document
+        self._before: dict[int, list[Note]] = {}
+        self._inside: dict[int, list[Note]] = {}
+        if document.notes:
+            self._place()
+
+    def __bool__(self) -> bool:
+        return bool(self._document.notes)
+
+    def texts(self) -> Iterator[tuple[Note, int]]:
+        """Texts, each with the element that it stands in."""
+        for before, notes in self._before.items():
+            depth = self._document.depths[before] - 1
+            around = next((at for at in range(before - 1, -1, -1) if self._document.depths[at] == depth), 0)
+            yield from ((note, around) for note in notes if note.is_text)
+        for inside, notes in self._inside.items():
+            yield from ((note, inside) for note in notes if note.is_text)
+
+    def before(self, index: int) -> list[Note]:
+        """Those right before an element, which may be one behind the last."""
+        return self._before.get(index, [])
+
+    def inside(self, index: int) -> list[Note]:
+        """Those behind the last element inside an element; -1 stands for the whole file."""
+        return self._inside.get(index, [])
+
+    def _place(self) -> None:
+        """In the order of the file; `opened` are the elements around the present place."""
+        elements = self._document.elements
+        opened: list[int] = []
+        started = 0
+        for note in self._document.notes:
+            while started < note.before:
+                del opened[self._document.depths[started] :]
+                opened.append(started)
+                started += 1
+            del opened[note.before - note.ended :]
+            if note.before < len(elements) and elements[note.before][3] == note.ended:
+                self._before.setdefault(note.before, []).append(note)
+            else:
+                self._inside.setdefault(opened[-1] if opened else -1, []).append(note)
+
+
+def as_items(notes: list[Note]) -> Items:
+    """Texts and comments."""
+    return [note.text if note.is_text else Markup(note.text) for note in notes]
+
+
+def fragment(document: Document, notes: Notes, index: int) -> Element:
+    """An element with all that is in it."""
+    levels: list[Items] = []
+    for at in range(document.end(index) - 1, index - 1, -1):
+        depth = document.depths[at] - document.depths[index]
+        while len(levels) < depth + 2:
+            levels.append([])
+        inner = levels[depth + 1][::-1] + as_items(notes.inside(at))
+        levels[depth + 1] = []
+        element = Element(document.elements[at][0], tuple(document.attributes(at).items()), tuple(inner))
+        levels[depth].append(element)
+        if at != index:
+            levels[depth] += as_items(notes.before(at))[::-1]
+    [made] = levels[0]
+    assert isinstance(made, Element)
+    return made

@@ -1,0 +1,125 @@
+"""TreeNodesModel: what a file tells of kinds of nodes, and what is known of those of Nav2."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator
+from functools import cache
+
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.frontends.btcpp.fragments import Notes
+from btlang.frontends.btcpp.scan import Document
+from btlang.frontends.btcpp.spelling import KINDS, is_xml_name
+from btlang.text.spelling import nearest
+from btlang.tree.model import NodeModel, PortModel
+
+_DIRECTIONS = {
+    "input_port": "input",
+    "output_port": "output",
+    "inout_port": "inout",
+    "bidirectional_port": "inout",
+    "Parameter": "input",
+}
+MODEL_KINDS = (*KINDS, "SubTree")
+_NAV2 = os.path.join(os.path.dirname(__file__), "nav2.toml")
+_MARKS = {"<": "output", "=": "inout"}
+
+
+class ModelReader:
+    """Reads the models of one file. `problems` is what is wrong with them."""
+
+    def __init__(self, document: Document, notes: Notes) -> None:
+        self.problems: list[Diagnostic] = []
+        self._document = document
+        self._notes = notes
+
+    def read(self, index: int) -> Iterator[NodeModel]:
+        """The models in element `index`, a TreeNodesModel."""
+        document = self._document
+        at = index + 1
+        while at < document.end(index):
+            tag = document.elements[at][0]
+            node_id = document.attributes(at).get("ID", "")
+            if tag not in MODEL_KINDS:
+                self._wrong("BT122", at, what=f"<{tag}>", problem="has no place in <TreeNodesModel>", advice=among(tag))
+            elif not node_id:
+                self._wrong("BT123", at, tag=tag, attribute="ID", advice="Name the node that it describes.")
+            else:
+                yield NodeModel(tag, node_id, tuple(self._ports(at)), self._description(at))
+            at = document.end(at)
+
+    def _ports(self, index: int) -> Iterator[PortModel]:
+        for at in self._inner(index):
+            direction = _DIRECTIONS.get(self._document.elements[at][0])
+            if direction is None:
+                continue
+            attributes = self._document.attributes(at)
+            name = attributes.get("name", attributes.get("label", ""))
+            reason = why_no_port(name)
+            if not name:
+                self._wrong("BT123", at, tag=self._document.elements[at][0], attribute="name", advice="")
+            elif reason:
+                self._wrong("BT129", at, words=name, reason=reason)
+            else:
+                text = self._text(at) or attributes.get("description", "")
+                yield PortModel(name, direction, attributes.get("type", ""), attributes.get("default"), text)
+
+    def _description(self, index: int) -> str:
+        for at in self._inner(index):
+            tag = self._document.elements[at][0]
+            if tag == "description":
+                return self._text(at)
+            for field in self._inner(at) if tag == "MetadataFields" else ():
+                text = self._document.attributes(field).get("description")
+                if text is not None:
+                    return text
+        return self._document.attributes(index).get("description", "")
+
+    def _inner(self, index: int) -> Iterator[int]:
+        at, end = index + 1, self._document.end(index)
+        while at < end:
+            yield at
+            at = self._document.end(at)
+
+    def _text(self, index: int) -> str:
+        return " ".join(" ".join(note.text.split()) for note in self._notes.inside(index) if note.is_text)
+
+    def _wrong(self, code: str, index: int, **arguments: str) -> None:
+        self.problems.append(diagnostic(code, self._document.span(index), (), None, **arguments))
+
+
+def among(tag: str, known: Iterable[str] = MODEL_KINDS) -> str:
+    """What could be meant by a tag that is not known."""
+    names = nearest(tag, known) or list(known)
+    return f"It may hold {', '.join(f'<{name}>' for name in names)}."
+
+
+def why_no_port(name: str) -> str:
+    """Why a port cannot have a name, "" where it can."""
+    if name in ("ID", "name"):
+        return "this attribute tells of the node itself"
+    return "" if is_xml_name(name) else "an attribute cannot have this name"
+
+
+def nav2_models(ids: Iterable[str]) -> dict[str, NodeModel]:
+    """The models of those ids that Nav2 has nodes for."""
+    found = _nav2()
+    return {node_id: NodeModel(found[node_id][0], node_id, tuple(map(_port, found[node_id][1])))
+            for node_id in ids if node_id in found}  # fmt: skip
+
+
+@cache
+def _nav2() -> dict[str, tuple[str, list[str]]]:
+    """Kinds and ports of Nav2's nodes by id."""
+    import tomllib
+
+    with open(_NAV2, "rb") as file:
+        kinds = tomllib.load(file)
+    return {node_id: (kind, ports) for kind, nodes in kinds.items() for node_id, ports in nodes.items()}
+
+
+def _port(text: str) -> PortModel:
+    direction = _MARKS.get(text[0], "input")
+    name, _, rest = text.lstrip("<=").partition(":")
+    kind, has_default, default = rest.partition("=")
+    return PortModel(name.strip(), direction, kind.strip(), default.strip() if has_default else None)

@@ -1,0 +1,237 @@
+"""An XML file of BehaviorTree.CPP, with the files that it includes, to a tree."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
+from btlang.diagnostics.reading import read_source
+from btlang.frontends.btcpp.file import TreeHead, XmlFile
+from btlang.frontends.btcpp.models import MODEL_KINDS, nav2_models
+from btlang.frontends.btcpp.origin import XmlOrigin
+from btlang.frontends.btcpp.scan import scanned
+from btlang.frontends.btcpp.spelling import MAIN_TREE, MODEL, TO_4
+from btlang.text.source import Source, Span
+from btlang.text.spelling import nearest
+from btlang.tree.model import NodeModel
+from btlang.tree.node import Node, Tree
+from btlang.vocabulary.keyword_file import NODE_IDS
+
+_NO_NODES = NODE_IDS | TO_4.keys() | {"root", "BehaviorTree", MODEL, *MODEL_KINDS}
+"""Tags that are no ids of nodes that somebody made."""
+_MOST_FILES = 50  # that include each other in a row
+_MAIN = "main_tree_to_execute"
+_ROS_FOLDERS = "AMENT_PREFIX_PATH"  # where ROS 2 has its packages
+
+
+def read_xml(source: Source, main: str = "") -> Tree:
+    """The tree of an XML text, which runs the tree `main`, by default the one that the file names.
+
+    Its nodes have their names of format 4 whatever the dialect, its `origin` is an XmlOrigin.
+    Raises MissionError with all that is wrong (BT040, BT120 to BT129).
+    """
+    return _Reader(main).read(source)
+
+
+class _Reader:
+    def __init__(self, main: str) -> None:
+        self._main = main
+        self._problems: list[Diagnostic] = []
+        self._files: list[XmlFile] = []
+        self._read: set[str] = set()
+
+    def read(self, source: Source) -> Tree:
+        self._add(source, (os.path.realpath(source.name),))
+        self._stop_where_wrong()
+        file = self._files[0]
+        heads = self._distinct()
+        names = {head.written or head.name: name for name, head in heads.items()}
+        models = {node_id: model for each in self._files for node_id, model in each.models.items()}
+        kinds = {node_id: model.kind for node_id, model in models.items() if model.kind != "SubTree"}
+        self._stop_where_wrong()
+        for each in self._files:
+            each.read_trees(names, kinds)
+            self._problems += each.problems
+        trees = dict(tree for each in self._files for tree in each.trees)
+        self._check_uses(trees, heads)
+        main = self._main_tree(trees, heads, names)
+        self._stop_where_wrong()
+        is_usual = main == MAIN_TREE or not heads[main].written
+        subtrees = tuple(tree for tree in trees.items() if tree[0] != main)
+        tree = Tree(trees[main], subtrees, "" if is_usual else main, tuple(_known(models, kinds, trees, self._files)))
+        asked = (heads[main].written or main) if self._main else ""
+        return tree.replace(origin=_origin(file, tree, asked))  # type: ignore[no-any-return]
+
+    def _stop_where_wrong(self) -> None:
+        if self._problems:
+            raise MissionError(self._problems)
+
+    def _add(self, source: Source, within: tuple[str, ...], include: Span | None = None) -> None:
+        """Reads a file and what it includes; `within` are the files around it, its own last."""
+        try:
+            file = XmlFile(scanned(source))
+        except MissionError as error:
+            self._problems += error.diagnostics
+            return
+        self._problems += file.problems
+        file.problems.clear()
+        self._files.append(file)
+        self._read.add(within[-1])
+        for attributes, span in file.includes:
+            if "path" not in attributes:
+                self._problems.append(diagnostic("BT123", span, tag="include", attribute="path", advice=""))
+                continue
+            self._include(attributes, span, within)
+
+    def _include(self, attributes: dict[str, str], span: Span, within: tuple[str, ...]) -> None:
+        path = os.path.join(span.source.folder, attributes["path"])
+        if "ros_pkg" in attributes:
+            found = _in_package(attributes["ros_pkg"], attributes["path"])
+            if found is None:
+                self._not_included(span, path=attributes["path"], reason=_no_package(attributes["ros_pkg"]))
+                return
+            path = found
+        real = os.path.realpath(path)
+        if real in within or len(within) >= _MOST_FILES:
+            circle = " -> ".join(map(os.path.basename, (*within[within.index(real) if real in within else 0 :], real)))
+            self._not_included(span, path=attributes["path"], reason=f"it includes itself: {circle}")
+        elif real not in self._read:
+            try:
+                included = read_source(path)
+            except MissionError as error:
+                [problem] = error.diagnostics
+                if problem.code != "BT001":
+                    self._problems.append(problem)
+                    return
+                self._not_included(span, path=attributes["path"], reason=dict(problem.arguments)["reason"])
+                return
+            self._add(included, (*within, real))
+
+    def _not_included(self, span: Span, *, path: str, reason: str) -> None:
+        self._problems.append(diagnostic("BT128", span, path=path, reason=reason))
+
+    def _distinct(self) -> dict[str, TreeHead]:
+        """The trees by name; a name that stands twice is wrong."""
+        heads: dict[str, TreeHead] = {}
+        for file in self._files:
+            for head in file.heads:
+                first = heads.setdefault(head.name, head)
+                if first is not head:
+                    note = ((first.span, "the first one"),)
+                    self._problems.append(diagnostic("BT127", head.span, note, name=head.name))
+        if not heads:
+            span = self._files[0].root_span
+            told = {"problem": "holds no BehaviorTree", "advice": 'Add one: <BehaviorTree ID="MainTree">'}
+            self._problems.append(diagnostic("BT122", span, (), None, what="<root>", **told))
+        return heads
+
+    def _main_tree(self, trees: dict[str, Node], heads: dict[str, TreeHead], names: dict[str, str]) -> str:
+        """The name of the main tree; anything where none can be told."""
+        file = self._files[0]
+        asked = self._main or file.attributes.get(_MAIN, "")
+        name = names.get(asked, asked)
+        if name in trees:
+            return name
+        if asked:
+            self._problems.append(_no_tree(file.root_span, asked, trees))
+            return ""
+        if len(trees) == 1 or MAIN_TREE in trees:
+            return MAIN_TREE if MAIN_TREE in trees else next(iter(trees))
+        used = {node.port("ID") for each in self._files for nodes in each.uses.values() for node in nodes}
+        tops = [name for name in trees if name not in used] or list(trees)
+        if len(tops) > 1:
+            listed = ", ".join(f"'{name}'" for name in tops)
+            places = tuple((heads[name].span, "this may be it") for name in tops[:5])
+            self._problems.append(diagnostic("BT125", file.root_span, places, names=listed, first=tops[0]))
+        return tops[0]
+
+    def _check_uses(self, trees: dict[str, Node], heads: dict[str, TreeHead]) -> None:
+        """Trees that are used must be there, and none may contain itself."""
+        uses: dict[str, list[str]] = {}
+        for name, nodes in (tree for each in self._files for tree in each.uses.items()):
+            uses[name] = []
+            for node in nodes:
+                used = node.port("ID")
+                if used in trees:
+                    uses[name].append(used)
+                elif used and node.span is not None:
+                    self._problems.append(_no_tree(node.span, used, trees))
+        for circle in _circles(uses):
+            told = " contains ".join(f"'{name}'" for name in (*circle, circle[0]))
+            self._problems.append(diagnostic("BT124", heads[circle[0]].span, name=circle[0], circle=told))
+
+
+def _circles(uses: dict[str, list[str]]) -> list[list[str]]:
+    """Trees that contain one another, each circle once, from its first tree on."""
+    found: list[list[str]] = []
+    done: set[str] = set()
+    for start in uses:
+        path: list[str] = []
+        stack = [(start, False)]
+        while stack:
+            name, left = stack.pop()
+            if left:
+                path.pop()
+            elif name in path:
+                found.append(path[path.index(name) :])
+            elif name not in done:
+                done.add(name)
+                path.append(name)
+                stack.append((name, True))
+                stack += [(used, False) for used in reversed(uses[name])]
+    return found
+
+
+def _no_tree(span: Span, name: str, trees: Sequence[str] | dict[str, Node]) -> Diagnostic:
+    near = nearest(name, trees)
+    told = f"The nearest: {', '.join(near)}" if near else f"There are: {', '.join(list(trees)[:8])}"
+    return diagnostic("BT126", span, name=name, help=told)
+
+
+def _in_package(package: str, path: str) -> str | None:
+    """A file of a ROS 2 package, None where it is not installed."""
+    for prefix in os.environ.get(_ROS_FOLDERS, "").split(os.pathsep):
+        found = os.path.join(prefix, "share", package, path)
+        if prefix and os.path.exists(found):
+            return found
+    return None
+
+
+def _no_package(package: str) -> str:
+    where = "in none of the folders of" if os.environ.get(_ROS_FOLDERS) else "as there is no"
+    return f"the ROS package {package} is not found, {where} {_ROS_FOLDERS}"
+
+
+def _known(
+    models: dict[str, NodeModel], kinds: dict[str, str], trees: dict[str, Node], files: Sequence[XmlFile]
+) -> list[NodeModel]:
+    """The models of the files, then kinds that tags tell, then what is known of Nav2's nodes that are used."""
+    told = dict(models)
+    for node_id, kind in kinds.items():
+        told.setdefault(node_id, NodeModel(kind, node_id))
+    tags = {element[0] for file in files for element in file.document.elements}
+    bare = {node_id for node_id, model in told.items() if not model.ports}
+    strange = sorted((tags - _NO_NODES - trees.keys() - told.keys()) | bare)
+    if strange:
+        for node_id, model in nav2_models(strange).items():
+            if node_id not in told or told[node_id].kind == model.kind:
+                told[node_id] = model
+    return list(told.values())
+
+
+def _origin(file: XmlFile, tree: Tree, asked: str) -> XmlOrigin:
+    """What the main file tells beside the tree; `asked` is the ID of the main tree where the caller chose it."""
+    attributes = dict(file.attributes)
+    if asked:
+        attributes[_MAIN] = asked
+    return XmlOrigin(
+        file.dialect,
+        tree.root,
+        tree.subtrees,
+        tuple(attributes.items()),
+        file.items(),
+        file.origins,
+        file.head(),
+        file.foot(),
+    )

@@ -1,0 +1,101 @@
+"""How a node is written: the one place that knows the canonical tags and attributes of both dialects."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Mapping, Sequence
+
+from btlang.tree.node import Node
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+    Pairs: TypeAlias = tuple[tuple[str, str], ...]
+    Spelling: TypeAlias = tuple[str, Pairs]
+    """A tag and its attributes."""
+
+KINDS = ("Action", "Condition", "Control", "Decorator")
+"""Tags that tell what sort of node their attribute ID names; in this order they stand in TreeNodesModel."""
+MAIN_TREE = "MainTree"
+"""The ID of the main tree where it has no name of its own."""
+MODEL = "TreeNodesModel"
+
+TO_4 = {
+    "SequenceStar": "SequenceWithMemory",
+    "FallbackStar": "Fallback",
+    "RetryUntilSuccesful": "RetryUntilSuccessful",
+    "SubTreePlus": "SubTree",
+}
+"""Names that nodes had before format 4."""
+TO_3 = {"SequenceWithMemory": "SequenceStar", "RetryUntilSuccessful": "RetryUntilSuccesful"}
+"""And back: the spelling with one `s` is the one that all of version 3 knows."""
+PORTS_TO_4 = {"Parallel": {"success_threshold": "success_count", "failure_threshold": "failure_count"}}
+_PORTS_TO_3 = {"Parallel": {"success_count": "success_threshold", "failure_count": "failure_threshold"}}
+IN_3 = frozenset((
+    "Sequence", "Fallback", "Parallel", "ReactiveSequence", "ReactiveFallback", "SequenceWithMemory", "IfThenElse",
+    "WhileDoElse", "Inverter", "ForceSuccess", "ForceFailure", "Repeat", "RetryUntilSuccessful", "Timeout", "Delay",
+    "KeepRunningUntilFailure", "AlwaysSuccess", "AlwaysFailure", "SetBlackboard", "Switch2", "Switch3", "Switch4",
+    "Switch5", "Switch6",
+))  # fmt: skip
+"""The nodes of version 3 that have a tag of their own, under their names of format 4."""
+SHARED = "__shared_blackboard"
+AUTOREMAP_3 = "__autoremap"
+AUTOREMAP = "_autoremap"
+TRUE = frozenset(("1", "true", "TRUE", "True"))
+
+_NAME = re.compile(r"[^\W\d][\w.\-]*")  # of the names that XML allows, those without a colon
+
+
+def is_xml_name(text: str) -> bool:
+    """Whether a text can be a tag or the name of an attribute."""
+    return _NAME.fullmatch(text) is not None
+
+
+def is_reference(text: str) -> bool:
+    """Whether the text of a port is one reference `{key}`."""
+    return len(text) > 2 and text[0] == "{" and text[-1] == "}" and "{" not in text[1:] and "}" not in text[:-1]
+
+
+def spelled_4(node: Node, kind: Callable[[str], str], written: Mapping[str, str]) -> Spelling:
+    """In format 4. `kind` is that of a node by its id, `written` has the IDs of trees whose names cannot be IDs."""
+    named = (("name", node.name),) if node.name else ()
+    if node.id == "SubTree":
+        return "SubTree", _subtree(node, named, node.ports, written)
+    if node.id in KINDS or not is_xml_name(node.id):
+        return kind(node.id), (("ID", node.id), *named, *node.ports)
+    return node.id, named + node.ports
+
+
+def spelled_3(node: Node, kind: Callable[[str], str], written: Mapping[str, str]) -> Spelling:
+    """In the dialect of version 3."""
+    named = (("name", node.name),) if node.name else ()
+    if node.id == "SubTree":
+        return _subtree_3(node, named, written)
+    if node.id in IN_3:
+        ports = node.ports
+        if node.id in _PORTS_TO_3:
+            older = _PORTS_TO_3[node.id]
+            ports = tuple((older.get(key, key), text) for key, text in ports)
+        return TO_3.get(node.id, node.id), named + ports
+    if is_xml_name(node.id) and node.id not in KINDS and any(key == "ID" for key, _ in node.ports):
+        return node.id, named + node.ports
+    return kind(node.id), (("ID", node.id), *named, *node.ports)
+
+
+def _subtree(node: Node, named: Pairs, ports: Sequence[tuple[str, str]], written: Mapping[str, str]) -> Pairs:
+    name = node.port("ID")
+    others = tuple(port for port in ports if port[0] != "ID")
+    return (("ID", written.get(name, name)), *named, *others)
+
+
+def _subtree_3(node: Node, named: Pairs, written: Mapping[str, str]) -> Spelling:
+    """SubTree where all ports are references, which it writes without braces; SubTreePlus for all else."""
+    others = [port for port in node.ports if port[0] != "ID"]
+    if all(is_reference(text) and key[:1] != "_" and text != "{=}" for key, text in others):
+        return "SubTree", _subtree(node, named, [(key, text[1:-1]) for key, text in others], written)
+    renamed = [(AUTOREMAP_3 if key == AUTOREMAP else key, text) for key, text in others]
+    return "SubTreePlus", _subtree(node, named, renamed, written)
+
+
+SPELL = {3: spelled_3, 4: spelled_4}

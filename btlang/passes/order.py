@@ -1,0 +1,30 @@
+"""The trees of a tree, those that are used before those that use them."""
+
+from __future__ import annotations
+
+from btlang.tree.node import Node, Tree
+
+
+def used_first(tree: Tree) -> list[tuple[str, Node]]:
+    """The subtrees by name, then the main tree under "", so that each comes behind those that it uses.
+
+    A mission has them in this order, an XML file in any. What uses itself, or is not there, is left to others.
+    """
+    roots = dict(tree.subtrees)
+    ordered: list[tuple[str, Node]] = []
+    done: set[str] = set()
+    for start in roots:
+        stack = [(start, False)]
+        while stack:
+            name, left = stack.pop()
+            if left:
+                ordered.append((name, roots[name]))
+            elif name not in done:
+                done.add(name)
+                stack.append((name, True))
+                stack += [(used, False) for used in _used(roots[name]) if used in roots and used not in done]
+    return [*ordered, ("", tree.root)]
+
+
+def _used(root: Node) -> list[str]:
+    return [node.port("ID") for node in Tree(root).walk() if node.id == "SubTree"]

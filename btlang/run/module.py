@@ -1,0 +1,29 @@
+"""What a Python module does that `btc compile --to python` has made."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.run.command import run_mission
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.run.command import Runnable
+
+
+def run_module(tree: Runnable, arguments: Sequence[str] | None = None) -> int:
+    """Runs the tree as `btc run` does, with its option --speed; returns its exit code."""
+    parser = argparse.ArgumentParser(description="Runs a behavior tree on the simulated robot.")
+    parser.add_argument("--speed", default="real", help="real, max, or a factor of real time")
+    speed = parser.parse_args(arguments).speed
+    try:
+        factor = speed if speed in ("real", "max") else float(speed)
+        return run_mission(tree, speed=factor, rate=20.0, time_limit=None, log=None, quiet=False)
+    except MissionError as error:
+        print(error, file=sys.stderr)
+        return 2
+    except ValueError as error:
+        parser.error(str(error))

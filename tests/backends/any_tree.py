@@ -1,0 +1,128 @@
+"""Random trees for hypothesis: every node type, known and unknown leaves, ports and names with any text."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from hypothesis import strategies as st
+
+from btlang.engine.compile import NODE_TYPES
+from btlang.tree.model import NodeModel
+from btlang.tree.node import Node, Tree
+
+SHAPES = {node_id: (kind.least, min(kind.most, kind.least + 2)) for node_id, kind in NODE_TYPES.items()}
+"""How many children a node of each type has at least, and at most here."""
+_INNER = [node_id for node_id, (_, most) in SHAPES.items() if most]
+_NATURAL = ["Sequence", "Fallback", "Parallel", "IfThenElse", "Whenever", "Repeat", "ReactiveSequence", "WhileDoElse"]
+_PHRASES = (
+    ("Wave", ()),
+    ("MoveForward", (("distance", "2"),)),
+    ("GoTo", (("place", "kitchen"),)),
+    ("GoTo", (("place", "no such place"),)),
+    ("Say", (("text", "hello there"),)),
+    ("TurnLeft", (("angle", "90"),)),
+    ("Sleep", (("msec", "1500"),)),
+    ("AlwaysSuccess", ()),
+    ("AlwaysSuccess", (("_skipIf", "true"),)),
+    ("AlwaysFailure", ()),
+)
+_CONDITIONS = (
+    ("BatteryLow", ()),
+    ("WallAhead", ()),
+    ("Battery", (("below", "20"),)),
+    ("Battery", (("below", "20.0"),)),
+    ("ScriptCondition", (("code", "x == 'a' && y > 1"),)),
+    ("IsPathValid", (("path", "{path}"),)),
+)
+MODELS = (NodeModel("Condition", "IsPathValid"), NodeModel("Action", "FollowPath"))
+_OWN_LEAVES = ("FollowPath", "open_gripper", "2fast", "Do It", "IsOk", "Then", "tür", "A")
+texts = st.one_of(
+    st.sampled_from(
+        ["", "1", "1.0", "-5", "{key}", "{a b}", "{=}", "true", "x := 1; y := 'a'", 'say "hi"', "“so”", "it's"]
+    ),
+    st.text(st.characters(codec="utf-8", exclude_categories=["Cs"]), max_size=8),
+)
+_keys = st.one_of(
+    st.sampled_from(
+        ["num_cycles", "msec", "_skipIf", "_onSuccess", "value", "a", "newline", "width", "goal_pose", "X1"]
+    ),
+    st.from_regex(r"[A-Za-z_][A-Za-z0-9_.-]{0,6}", fullmatch=True),
+)
+_ports = st.dictionaries(_keys, texts, max_size=2).map(lambda ports: tuple(ports.items()))
+_names = st.one_of(st.just(""), st.just(""), st.just(""), texts)
+_some_ports = st.one_of(st.just(()), st.just(()), _ports)
+
+
+def leaves(subtrees: Sequence[str]) -> st.SearchStrategy[Node]:
+    """Leaves of all kinds, and uses of subtrees."""
+    known = st.sampled_from([*_PHRASES, *_PHRASES, *_CONDITIONS, *_CONDITIONS])
+    plain = known.map(lambda leaf: Node(leaf[0], (), leaf[1]))
+    own = st.builds(Node, st.sampled_from(_OWN_LEAVES), st.just(()), _ports, _names)
+    built_in = [node_id for node_id, (_, most) in SHAPES.items() if not most]
+    odd = st.builds(Node, st.sampled_from(built_in), st.just(()), _ports, _names)
+    if not subtrees:
+        return st.one_of(plain, plain, own, odd)
+    uses = st.builds(
+        lambda name, ports: Node("SubTree", (), (("ID", name), *(p for p in ports if p[0] != "ID"))),
+        st.sampled_from(list(subtrees)),
+        _some_ports,
+    )
+    return st.one_of(plain, plain, own, odd, uses)
+
+
+def nodes(subtrees: Sequence[str] = (), most: int = 10) -> st.SearchStrategy[Node]:
+    """Trees of about so many leaves."""
+
+    def inner(below: st.SearchStrategy[Node]) -> st.SearchStrategy[Node]:
+        def of(node_id: str) -> st.SearchStrategy[Node]:
+            few, many = SHAPES[node_id]
+            children = st.lists(below, min_size=few, max_size=many).map(tuple)
+            return st.builds(Node, st.just(node_id), children, _some_ports, _names)
+
+        plain = st.builds(
+            lambda node_id, children: Node(node_id, tuple(children)),
+            st.sampled_from(_NATURAL[:3]),
+            st.lists(below, min_size=2, max_size=3),
+        )
+        numbered = st.builds(
+            lambda what, child: Node(what[0], (child,), (what[1:],)),
+            st.sampled_from(
+                [
+                    ("Repeat", "num_cycles", "3"),
+                    ("Repeat", "num_cycles", "-1"),
+                    ("Timeout", "msec", "2500"),
+                    ("RetryUntilSuccessful", "num_attempts", "2"),
+                    ("Delay", "delay_msec", "100"),
+                ]
+            ),
+            below,
+        )
+        shaped = st.sampled_from([*_NATURAL, *_INNER]).flatmap(of)
+        bare = st.sampled_from(_NATURAL).flatmap(
+            lambda node_id: st.lists(below, min_size=SHAPES[node_id][0], max_size=SHAPES[node_id][1]).map(
+                lambda children: Node(node_id, tuple(children))
+            )
+        )
+        own = st.builds(
+            Node,
+            st.sampled_from(["MyDecorator", "do twice"]),
+            st.lists(below, min_size=1, max_size=2).map(tuple),
+            _some_ports,
+            _names,
+        )
+        return st.one_of(plain, plain, numbered, bare, shaped, own)
+
+    return st.recursive(leaves(subtrees), inner, max_leaves=most)
+
+
+@st.composite
+def trees(draw: st.DrawFn) -> Tree:
+    """With named subtrees, each of which may use those before it."""
+    names = draw(
+        st.lists(
+            st.sampled_from(["patrol", "big dance", "GraspObject", "then", "wave", "it's {x}"]), max_size=2, unique=True
+        )
+    )
+    subtrees = tuple((name, draw(nodes(names[:at], 5))) for at, name in enumerate(names))
+    name = draw(st.sampled_from(["", "", "Main Tree"]))
+    return Tree(draw(nodes(names)), subtrees, name, MODELS)
