@@ -301,8 +301,8 @@ class RunnableTree:
         """Runs the mission from its start until it ends, `time_limit` seconds are over, or Ctrl-C.
 
         `speed` is "real", "max" or a factor of real time; `rate` is in ticks a second of the mission; `sinks` get every
-        event (see btlang.run.events). `robot` is "simulated", "ros", or a function that makes the stage of this run in
-        the world of the mission (see btlang.run.stage); a tree that was given a stage runs on that.
+        event (see btlang.run.events). `robot` is "simulated", "ros", "actions", or a function that makes the stage of
+        this run in the world of the mission (see btlang.run.stage); a tree that was given a stage runs on that.
 
         Raises MissionError where a command cannot run (BT080), or the robot lacks what it needs (BT100, BT101).
         """
