@@ -174,13 +174,13 @@ def test_two_servers_do_a_mission_that_ships(start_sim, serve, tmp_path: Path, d
     built_in, over_ros = tmp_path / "built_in.json", tmp_path / "over_ros.json"
     assert main(["run", path, "--speed", "max", "--quiet", "--log", str(built_in)]) == 0
     capsys.readouterr()
-    start_sim("--world", DEFAULT_WORLD, "--speed", "6")
+    start_sim("--world", DEFAULT_WORLD, "--speed", "4")
     options = ("--robot", "ros", "--sim-time", "--only")
     talker = serve("--name", "talker", *options, "speech", "gestures", ready=False)
     mover = serve("--name", "mover", *options, "navigation", "manipulation")
     talker.wait_for("ready")
     mission = Command(tmp_path, domain, "run", path, "--robot", "actions", "--sim-time", "--log", str(over_ros))
-    assert mission.process.wait(3 * LONG) == 0, mission.err
+    assert mission.process.wait(4 * LONG) == 0, mission.out + mission.err
     assert commands(over_ros) == commands(built_in)
     assert ("done   say" in talker.out, "done   say" in mover.out) == (True, False)
     assert ("done   go to Alice" in talker.out, "done   go to Alice" in mover.out) == (False, True)

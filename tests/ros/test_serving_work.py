@@ -91,7 +91,7 @@ class Server:
         self.vocabulary = world_vocabulary(keywords)
         self.stage = load_simulation()
         self.stage.begin([])
-        self.work = Work(self.stage, self.vocabulary)
+        self.work = Work(self.stage, self.vocabulary, lambda: self.stage.clock.now)
 
     def begin(self, node_id: str, **values: str) -> tuple[Caller, Callable[[], None]]:
         caller, entries = Caller(), self.vocabulary.entries[node_id]

@@ -38,11 +38,13 @@ class Job:
     `reason` is None as long as it is not over, then "" or why it failed.
     """
 
-    def __init__(self, node: Node, caller: Caller, stage: Stage, vocabulary: Vocabulary) -> None:
+    def __init__(self, node: Node, caller: Caller, stage: Stage, vocabulary: Vocabulary, patient_until: float) -> None:
         self.cancelled = False
         self.reason: str | None = None
         self.engine: Engine | None = None
-        self.began = self.ended = stage.clock.now
+        self.patient_until = patient_until
+        """The real time until which it waits for what another one uses."""
+        self.ended = stage.clock.now
         self.words = phrase_of(node, vocabulary)
         self.resources = frozenset(r for entry in vocabulary.entries[node.id] for r in entry.resources)
         self._node, self._caller, self._stage, self._vocabulary = node, caller, stage, vocabulary

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections import deque
 from collections.abc import Callable
 
@@ -17,21 +18,22 @@ if TYPE_CHECKING:
     from btlang.vocabulary.vocabulary import Vocabulary
 
 BUSY = 0.5
-"""Seconds that a goal waits for what another one uses: the word that cancels that one may come a moment later."""
+"""Real seconds that a goal waits for what another one uses: the word that cancels that one may come a moment later."""
 REST = 2.0
-"""Seconds that a robot gets to come to rest before the end of a cancelled goal is told."""
+"""Seconds of the mission that a robot gets to come to rest before the end of a cancelled goal is told."""
 
 
 class Work:
     """Each goal is one leaf. `begin` may be called from any thread, all else by the one that ticks.
 
     Goals that need the same resource of the robot do not run at the same time: the later one fails. See
-    `btlang.run.runner.Ticked`. Times are of the mission's clock.
+    `btlang.run.runner.Ticked`. `now` gives real seconds.
     """
 
     failure = None
 
-    def __init__(self, stage: Stage, vocabulary: Vocabulary) -> None:
+    def __init__(self, stage: Stage, vocabulary: Vocabulary, now: Callable[[], float] = time.monotonic) -> None:
+        self._now = now
         self.on_wake: Callable[[], object] | None = None
         self._stage, self._vocabulary = stage, vocabulary
         self._new: deque[Job] = deque()
@@ -40,7 +42,7 @@ class Work:
 
     def begin(self, node: Node, caller: Caller) -> Callable[[], None]:
         """Takes on a goal; returns what cancels it."""
-        job = Job(node, caller, self._stage, self._vocabulary)
+        job = Job(node, caller, self._stage, self._vocabulary, self._now() + BUSY)
         self._new.append(job)
         self._wake()
 
@@ -96,7 +98,7 @@ class Work:
         for other in self._jobs:
             shared = sorted(job.resources & other.resources) if other.running else ()
             if shared:
-                if self._stage.clock.now - job.began < BUSY:
+                if self._now() < job.patient_until:
                     job.tell(f"waits for the {shared[0]}")
                 else:
                     job.end(f"'{other.words}' is using the {shared[0]}")
