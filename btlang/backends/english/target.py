@@ -8,6 +8,7 @@ from btlang.backends.english.comments import comments_of
 from btlang.backends.english.raised import NOWHERE
 from btlang.backends.english.raising import Raiser
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.english.exact import is_one_piece
 from btlang.english.sentence import mission_lines
 from btlang.frontends.definitions import find_definitions
 from btlang.frontends.mission import read_mission
@@ -26,9 +27,14 @@ WIDTH = 100
 def to_english(tree: Tree, vocabulary: Vocabulary, *, facts: Sequence[Fact] = ()) -> str:
     """A mission that compiles to an equal tree: natural words where the language has them, else nodes by their ids.
 
-    It begins with the `facts`, whose places it may name. Raises MissionError (BT142) for a tree that no text can say, such as one with a line end in the name of a subtree.
+    It begins with the `facts`, whose places it may name. Raises MissionError (BT142) for a tree that no text can say,
+    such as one with a line end in the name of a subtree.
     """
-    wanted, reason = plain(tree), ""
+    names = [name for name, _ in tree.subtrees] + [name for node in tree.walk() for name, _ in node.ports]
+    odd = next((name for name in names if not is_one_piece(name)), None)
+    if odd is not None:
+        raise _unsayable(tree, f"no quotes can hold the name {odd!r}")
+    wanted, reason = plain(tree), "it would be read as another one"
     for natural in (True, False):
         text = "".join(f"{line}\n" for line in _lines(tree, vocabulary, natural, tuple(facts)))
         try:
@@ -36,8 +42,12 @@ def to_english(tree: Tree, vocabulary: Vocabulary, *, facts: Sequence[Fact] = ()
             if plain(lower_mission(mission, vocabulary)) == wanted:
                 return text
         except MissionError as error:
-            reason = error.diagnostics[0].message
-    raise MissionError([diagnostic("BT142", tree.root.span or NOWHERE, reason=reason or "it reads as another tree")])
+            reason = error.diagnostics[0].message.rstrip(".")
+    raise _unsayable(tree, reason)
+
+
+def _unsayable(tree: Tree, reason: str) -> MissionError:
+    return MissionError([diagnostic("BT142", tree.root.span or NOWHERE, reason=reason)])
 
 
 def _lines(tree: Tree, vocabulary: Vocabulary, natural: bool, facts: tuple[Fact, ...]) -> Iterator[str]:
