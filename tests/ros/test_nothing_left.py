@@ -9,7 +9,7 @@ from contextlib import closing
 from pathlib import Path
 
 from tests.ros.client import Client
-from tests.ros.processes import LONG, Command, wait_until
+from tests.ros.processes import LONG, Command
 
 RUNS = 20
 
@@ -26,11 +26,18 @@ def segments(process: int) -> set[str]:
     return set(re.findall(r"/dev/shm/fastrtps_[0-9a-f]{16}", maps))
 
 
+def wait_for_nodes(client: Client, *names: str) -> None:
+    """Until these nodes are in the graph, and no others."""
+    until = time.monotonic() + LONG
+    while sorted(client.node.get_node_names()) != sorted(names) and time.monotonic() < until:
+        time.sleep(0.01)
+    assert sorted(client.node.get_node_names()) == sorted(names)
+
+
 def test_twenty_missions_in_a_row(start_sim: Callable[..., Command], domain: int, tmp_path: Path) -> None:
     sim = start_sim("--speed", "1")
     with closing(Client(domain)) as client:
-        nodes = client.node.get_node_names
-        wait_until(lambda: sorted(nodes()) == ["btlang_sim", "client"], "the simulated robot in the graph")
+        wait_for_nodes(client, "btlang_sim", "client")
         used = segments(sim.process.pid)
         assert used
         for number in range(RUNS):
@@ -44,7 +51,7 @@ def test_twenty_missions_in_a_row(start_sim: Callable[..., Command], domain: int
             assert own - used, "no segment of its own was seen"
             used |= own
             assert (mission.end(), mission.err) == (0, "")  # and no process of its group is left
-        wait_until(lambda: sorted(nodes()) == ["btlang_sim", "client"], "the missions gone from the graph")
+        wait_for_nodes(client, "btlang_sim", "client")
         assert sim.end() == 130
-        wait_until(lambda: nodes() == ["client"], "the simulated robot gone from the graph")
+        wait_for_nodes(client, "client")
     assert [file for segment in used for file in (segment, f"{segment}_el") if Path(file).exists()] == []
