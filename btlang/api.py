@@ -9,10 +9,10 @@ from functools import cache, partial
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.frontends.mission import DEFAULT_PARSER, read_mission
 from btlang.garbage import no_collection
-from btlang.passes import checked, compile_mission
+from btlang.passes import checked, compile_mission, lower_mission
 from btlang.passes.lint import lint
 from btlang.text.source import Source, Span
-from btlang.tree.ast import Fact, Mission, all_facts
+from btlang.tree.ast import Fact, Mission, all_facts, exact_nodes
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.cache import kept
 from btlang.vocabulary.entry import Entry
@@ -57,9 +57,9 @@ def parse_tree(
     source = Source(text) if isinstance(text, str) else text
     with no_collection:
         vocabulary = world_vocabulary(keywords, world)
-        start = source.text.lstrip("\ufeff \t\r\n")[:1]
-        if start in ("<", "{"):  # as no mission begins
-            tree = _read_data(source, start, main)
+        begin = source.text.lstrip("\ufeff \t\r\n")
+        if begin[:1] == "<" or (begin[:1] == "{" and begin[1:].lstrip()[:1] in ('"', "}")):  # as no mission begins
+            tree = _read_data(source, begin[0], main)
             return RunnableTree(checked(tree, vocabulary), vocabulary, world)
         reading = read_mission(source, vocabulary, parser)
         tree = compile_mission(reading.mission, vocabulary)
@@ -179,20 +179,23 @@ class RunnableTree:
     def explain(self, width: int = 100) -> str:
         """Each statement as written, in English whose brackets show how it was read, and as a tree.
 
-        Lines are at most `width` columns long. Raises ValueError where the tree was not compiled from a mission.
+        Of a tree that was no mission, its statements are those of its English. Lines are at most `width` columns long.
+        Raises MissionError (BT142) where English cannot say it.
         """
         from btlang.backends.explain import explain_mission
 
-        if self.mission is None:
-            raise ValueError("this tree was not compiled from a mission")
-        return explain_mission(self.mission, self.tree, self.vocabulary, self._described, width)
+        mission, tree = self.mission, self.tree
+        if mission is None:
+            mission = read_mission(Source(str(self.to("english"))), self.vocabulary).mission
+            tree = lower_mission(mission, self.vocabulary)
+        return explain_mission(mission, tree, self.vocabulary, self._described, width)
 
     def check(self) -> None:
         """Raises MissionError with all that would keep it from running, as far as that is known without the robot.
 
-        A tree that was compiled from a mission has nothing of the kind.
+        A tree that was compiled from a mission has nothing of the kind, unless it says nodes by their ids.
         """
-        if self.mission is not None:
+        if self.mission is not None and not exact_nodes(self.mission):
             return
         from btlang.backends.checking import tree_problems
 
@@ -298,8 +301,8 @@ class RunnableTree:
         """Runs the mission from its start until it ends, `time_limit` seconds are over, or Ctrl-C.
 
         `speed` is "real", "max" or a factor of real time; `rate` is in ticks a second of the mission; `sinks` get every
-        event (see btlang.run.events). `robot` is "simulated", "ros", or a function that makes the stage of this run in
-        the world of the mission (see btlang.run.stage); a tree that was given a stage runs on that.
+        event (see btlang.run.events). `robot` is "simulated", "ros", "actions", or a function that makes the stage of
+        this run in the world of the mission (see btlang.run.stage); a tree that was given a stage runs on that.
 
         Raises MissionError where a command cannot run (BT080), or the robot lacks what it needs (BT100, BT101).
         """

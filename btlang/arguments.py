@@ -26,6 +26,13 @@ def namespace(text: str) -> str:
     return text
 
 
+def node_name(text: str) -> str:
+    """Of a node of ROS 2."""
+    if not (text.isidentifier() and text.isascii()):
+        raise argparse.ArgumentTypeError(f"a name of letters, digits and _ is needed, not '{text}'")
+    return text
+
+
 def between(least: float, most: float) -> Callable[[str], float]:
     """A number from `least` to `most`."""
 

@@ -6,8 +6,9 @@ import argparse
 import errno
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
+from importlib import import_module
 
 from btlang.api import RunnableTree, format_mission, parse_tree, read_world, world_vocabulary
 from btlang.cli_options import WIDEST, parsed
@@ -60,7 +61,7 @@ def _run(options: argparse.Namespace) -> int:
     robot = chosen_robot(options)
     tree = _tree(options)
     if options.preflight:
-        ready = print_preflight(tree.tree, tree.vocabulary, read_world(options.world), sim_time=options.sim_time)
+        ready = print_preflight(tree.tree, tree.vocabulary, read_world(options.world), robot)
         return SUCCESS if ready else FAILED
     with pictures_of(tree, options.picture, options.tree_picture) as sinks:
         return run_mission(
@@ -166,7 +167,7 @@ def _explain_mission(options: argparse.Namespace) -> int:
 
     width = get_terminal_size((100, 24)).columns
     tree = _tree(options)
-    print(tree if tree.mission is None else tree.explain(min(width, WIDEST)))
+    print(tree.explain(min(width, WIDEST)))
     return SUCCESS
 
 
@@ -204,22 +205,9 @@ def _format_one(source: Source, options: argparse.Namespace) -> bool:
     return False
 
 
-def _sim_ros(options: argparse.Namespace) -> int:
-    from btlang.ros.simulator.command import serve
-
-    return serve(
-        read_world(options.world),
-        speed=1.0 if options.speed == "real" else options.speed,
-        rate=options.rate,
-        gives_clock=options.clock,
-        namespace=options.namespace,
-    )
-
-
-def _ros_node(options: argparse.Namespace) -> int:
-    from btlang.ros.mission.command import serve
-
-    return serve(options)
+def _node(options: argparse.Namespace) -> int:
+    code: int = import_module(_NODES[options.verb]).serve(options)
+    return code
 
 
 def _repl(options: argparse.Namespace) -> int:
@@ -228,7 +216,14 @@ def _repl(options: argparse.Namespace) -> int:
     return run_repl(keywords=options.keywords, world=options.world, parser=options.parser, speed=options.speed)
 
 
-_VERBS = {
+_NODES = {
+    "sim-ros": "btlang.ros.simulator.command",
+    "ros-node": "btlang.ros.mission.command",
+    "serve-actions": "btlang.ros.serving.command",
+}
+"""The verbs that are nodes of ROS 2, each with the module whose `serve` it is."""
+
+_VERBS: dict[str, Callable[[argparse.Namespace], int]] = {
     "repl": _repl,
     "run": _run,
     "check": _check,
@@ -238,8 +233,7 @@ _VERBS = {
     "examples": _examples,
     "explain": _explain,
     "format": _format,
-    "sim-ros": _sim_ros,
-    "ros-node": _ros_node,
+    **dict.fromkeys(_NODES, _node),
 }
 
 

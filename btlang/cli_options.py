@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 
 import btlang
 from btlang.api import RATES
-from btlang.arguments import between, duration, namespace, picture, real_speed, speed
+from btlang.arguments import between, duration, picture, speed
 from btlang.diagnostics.report import FORMATS
 from btlang.frontends.mission import DEFAULT_PARSER, PARSERS
 
@@ -141,15 +141,10 @@ def _format_options(parser: argparse.ArgumentParser) -> None:
 
 
 def _sim_ros_options(parser: argparse.ArgumentParser) -> None:
+    from btlang.ros.simulator.command import add_simulator_options
+
     _world_option(parser)
-    parser.add_argument("--speed", type=real_speed, default="real", help="real, or a factor of real time")
-    parser.add_argument(
-        "--rate", type=between(*RATES), default=20.0, metavar="HZ", help="steps a simulated second (default: 20)"
-    )
-    parser.add_argument(
-        "--clock", action=argparse.BooleanOptionalAction, default=True, help="give the simulated time on /clock"
-    )
-    parser.add_argument("--namespace", type=namespace, default="", metavar="NS", help="of all topics (default: none)")
+    add_simulator_options(parser)
 
 
 def _ros_node_options(parser: argparse.ArgumentParser) -> None:
@@ -158,6 +153,13 @@ def _ros_node_options(parser: argparse.ArgumentParser) -> None:
     _reading_options(parser)
     _speed_option(parser)
     add_node_options(parser)
+
+
+def _serving_options(parser: argparse.ArgumentParser) -> None:
+    from btlang.ros.serving.command import add_serving_options
+
+    _words_options(parser)
+    add_serving_options(parser)
 
 
 _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
@@ -172,6 +174,7 @@ _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "format": ("lay out missions: indentation, spaces, empty lines", _format_options),
     "sim-ros": ("offer the simulated robot over ROS 2", _sim_ros_options),
     "ros-node": ("run missions as a ROS 2 node, for other programs", _ros_node_options),
+    "serve-actions": ("serve what the robot can do as ROS 2 actions", _serving_options),
 }
 
 

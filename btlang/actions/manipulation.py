@@ -4,40 +4,40 @@ from __future__ import annotations
 
 from btlang.actions.joints import CARRYING, FOLDED, HANGING, RAISED, REACHING, STRETCHED, arm, bring
 from btlang.actions.motion import Steps
-from btlang.actions.navigation import travel
+from btlang.actions.navigation import accomplish, travel
 from btlang.engine.leaf import ActionFailed
 from btlang.robots.robot import Hand, Robot
 from btlang.robots.world import said
 
 
-def open_right_hand(robot: Robot) -> None:
+def open_right_hand(robot: Robot) -> Steps:
     """Opens the hand; what it held is put down."""
-    robot.release("right")
+    yield from accomplish(robot.release("right"))
 
 
-def open_left_hand(robot: Robot) -> None:
+def open_left_hand(robot: Robot) -> Steps:
     """Opens the hand; what it held is put down."""
-    robot.release("left")
+    yield from accomplish(robot.release("left"))
 
 
-def close_right_hand(robot: Robot) -> None:
+def close_right_hand(robot: Robot) -> Steps:
     """Closes the hand on the nearest object. Fails where nothing is within reach or the hand is full."""
-    robot.grasp("right")
+    yield from accomplish(robot.grasp("right"))
 
 
-def close_left_hand(robot: Robot) -> None:
+def close_left_hand(robot: Robot) -> Steps:
     """Closes the hand on the nearest object. Fails where nothing is within reach or the hand is full."""
-    robot.grasp("left")
+    yield from accomplish(robot.grasp("left"))
 
 
-def grasp(robot: Robot, object: str | None = None) -> None:
+def grasp(robot: Robot, object: str | None = None) -> Steps:
     """Closes the right hand on the object, or on the nearest one. Fails as `close_right_hand` does."""
-    robot.grasp("right", object)
+    yield from accomplish(robot.grasp("right", object))
 
 
-def release(robot: Robot, object: str | None = None) -> None:
+def release(robot: Robot, object: str | None = None) -> Steps:
     """Opens the hand that holds the object, or any. Fails where none does."""
-    robot.release(_hand_with(robot, object))
+    yield from accomplish(robot.release(_hand_with(robot, object)))
 
 
 def pick_up(robot: Robot, object: str) -> Steps:
@@ -47,7 +47,7 @@ def pick_up(robot: Robot, object: str) -> Steps:
         raise ActionFailed(f"the right hand already holds {said(held)}")
     yield from travel(robot, object)
     yield from bring(robot, arm("right", REACHING))
-    robot.grasp("right", object)
+    yield from accomplish(robot.grasp("right", object))
     yield from bring(robot, arm("right", CARRYING))
 
 
@@ -55,7 +55,7 @@ def put_down(robot: Robot, object: str | None = None) -> Steps:
     """Lowers the arm that holds the object (or anything) and opens its hand. Fails where none does."""
     hand = _hand_with(robot, object)
     yield from bring(robot, arm(hand, REACHING))
-    robot.release(hand)
+    yield from accomplish(robot.release(hand))
     yield from bring(robot, arm(hand, HANGING))
 
 

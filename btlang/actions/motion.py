@@ -2,14 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Generator
+from collections.abc import Callable, Generator
 from math import copysign, sqrt
 
 from btlang.actions.watch import Watch
+from btlang.engine.leaf import unheard
 from btlang.robots.geometry import wrap
 from btlang.robots.robot import Robot
 
 Steps = Generator[None, None, None]
+Progress = Callable[[float], object]
 
 _DECELERATION = 0.6
 _TURN_DECELERATION = 180.0
@@ -18,24 +20,24 @@ _ANGLE_CLOSE_ENOUGH = 0.25
 _STRAIGHTENING = 2.0  # degrees a second for each degree off course
 
 
-def move_forward(robot: Robot, distance: float, speed: float | None = None) -> Steps:
+def move_forward(robot: Robot, distance: float, speed: float | None = None, progress: Progress = unheard) -> Steps:
     """Drives straight ahead by `distance` metres, to the centimetre, at `speed` m/s (or the robot's normal speed)."""
-    yield from drive_straight(robot, distance, speed)
+    yield from drive_straight(robot, distance, speed, progress)
 
 
-def move_backward(robot: Robot, distance: float, speed: float | None = None) -> Steps:
+def move_backward(robot: Robot, distance: float, speed: float | None = None, progress: Progress = unheard) -> Steps:
     """Drives straight back by `distance` metres, to the centimetre, at `speed` m/s (or the robot's normal speed)."""
-    yield from drive_straight(robot, -distance, speed)
+    yield from drive_straight(robot, -distance, speed, progress)
 
 
-def turn_left(robot: Robot, angle: float) -> Steps:
+def turn_left(robot: Robot, angle: float, progress: Progress = unheard) -> Steps:
     """Turns on the spot by `angle` degrees counter-clockwise, to the degree."""
-    yield from turn(robot, angle)
+    yield from turn(robot, angle, progress)
 
 
-def turn_right(robot: Robot, angle: float) -> Steps:
+def turn_right(robot: Robot, angle: float, progress: Progress = unheard) -> Steps:
     """Turns on the spot by `angle` degrees clockwise, to the degree."""
-    yield from turn(robot, -angle)
+    yield from turn(robot, -angle, progress)
 
 
 def turn_around(robot: Robot) -> Steps:
@@ -65,7 +67,7 @@ def face_object(robot: Robot, object: str) -> Steps:
     yield from turn(robot, robot.pose.bearing_to(robot.locate(object)))
 
 
-def drive_straight(robot: Robot, distance: float, speed: float | None = None) -> Steps:
+def drive_straight(robot: Robot, distance: float, speed: float | None = None, progress: Progress = unheard) -> Steps:
     """Drives `distance` metres along the heading (negative: backwards), keeps the course, and brakes."""
     start, watch = robot.pose, Watch(robot)
     limit = min(robot.normal_speed if speed is None else abs(speed), robot.max_speed)
@@ -76,6 +78,7 @@ def drive_straight(robot: Robot, distance: float, speed: float | None = None) ->
             left = distance - gone
             if abs(left) <= _CLOSE_ENOUGH:
                 return
+            progress(gone / distance)
             pace = min(limit, sqrt(2 * _DECELERATION * abs(left)), 3.0 * abs(left))
             course = wrap(start.heading - robot.pose.heading)
             robot.drive(copysign(pace, left), _STRAIGHTENING * course)
@@ -84,7 +87,7 @@ def drive_straight(robot: Robot, distance: float, speed: float | None = None) ->
         robot.drive(0.0, 0.0)
 
 
-def turn(robot: Robot, angle: float) -> Steps:
+def turn(robot: Robot, angle: float, progress: Progress = unheard) -> Steps:
     """Turns on the spot by `angle` degrees (left positive; more than a whole turn is fine) and brakes."""
     heading, turned, watch = robot.pose.heading, 0.0, Watch(robot)
     try:
@@ -95,6 +98,7 @@ def turn(robot: Robot, angle: float) -> Steps:
             left = angle - turned
             if abs(left) <= _ANGLE_CLOSE_ENOUGH:
                 return
+            progress(turned / angle)
             pace = min(robot.normal_turn, sqrt(2 * _TURN_DECELERATION * abs(left)), 4.0 * abs(left))
             robot.drive(0.0, copysign(pace, left))
             yield

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from btlang.actions.motion import Steps
 from btlang.engine.leaf import ActionFailed
-from btlang.robots.robot import Robot
+from btlang.robots.robot import Deed, Robot
 
 
 def go_to(robot: Robot, place: str) -> Steps:
@@ -24,11 +24,15 @@ def approach(robot: Robot, object: str) -> Steps:
 
 def travel(robot: Robot, name: str) -> Steps:
     """Drives to anything that has a name; halted, it brakes."""
-    journey = robot.navigate_to(name)
+    yield from accomplish(robot.navigate_to(name))
+
+
+def accomplish(deed: Deed) -> Steps:
+    """Waits until the robot has done it; halted, it gives up. Raises ActionFailed with the robot's reason."""
     try:
-        while not journey.done:
+        while not deed.done:
             yield
     finally:
-        journey.cancel()
-    if journey.failure is not None:
-        raise ActionFailed(journey.failure)
+        deed.cancel()
+    if deed.failure is not None:
+        raise ActionFailed(deed.failure)

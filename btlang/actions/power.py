@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from btlang.actions.motion import Steps, drive_straight
-from btlang.actions.navigation import travel
+from btlang.actions.navigation import accomplish, travel
 from btlang.actions.watch import Watch
 from btlang.engine.leaf import ActionFailed
 from btlang.robots.robot import Robot
@@ -15,13 +15,13 @@ def dock(robot: Robot) -> Steps:
     """Drives to the dock and connects; does nothing when docked."""
     if not robot.docked:
         yield from travel(robot, "dock")
-        robot.dock()
+        yield from accomplish(robot.dock())
 
 
 def undock(robot: Robot) -> Steps:
     """Disconnects and backs off by 0.4 m; does nothing when not docked."""
     if robot.docked:
-        robot.undock()
+        yield from accomplish(robot.undock())
         yield from drive_straight(robot, -_CLEAR_OF_DOCK)
 
 

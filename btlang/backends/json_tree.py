@@ -76,7 +76,7 @@ def _model(model: NodeModel) -> dict[str, Any]:
     ports = []
     for port in model.ports:
         told = {key: getattr(port, key) for key in _PORT_KEYS}
-        ports.append({key: value for key, value in told.items() if value not in (None, "")})
+        ports.append({key: value for key, value in told.items() if value or key == "name"})
         if port.default == "":
             ports[-1]["default"] = ""
     return {"kind": model.kind, "id": model.id, "ports": ports, **({"text": model.text} if model.text else {})}
@@ -146,15 +146,17 @@ def _root(item: Any, where: str, places: _Places) -> tuple[str, Node]:
         place = f"node {at} of {where}"
         node = nodes[at]
         children = _of(node.get("children", []), list, f"children of {place}")
+        below: list[Node] = []
         for child in children:
             if type(child) is not int or not at < child < len(nodes):
                 raise _Wrong(f"{place} has the child {child!r}, and children are nodes after it in the list")
             if child not in made:
                 raise _Wrong(f"node {child} of {where} is the child of two nodes")
+            below.append(made.pop(child))
         ports = _of(node.get("ports", {}), dict, f"ports of {place}")
         made[at] = Node(
             ids[at],
-            tuple([made.pop(child) for child in children]),
+            tuple(below),
             tuple((port, _of(text, str, f"the port {port} of {place}")) for port, text in ports.items()),
             _of(node.get("name", ""), str, f"the name of {place}"),
             spans[at],

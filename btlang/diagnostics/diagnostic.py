@@ -88,6 +88,6 @@ class MissionError(Exception):
 
 
 def in_order(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
-    """By file, place and code, each once."""
-    unique = dict.fromkeys(diagnostics)
-    return sorted(unique, key=lambda d: (d.span.source.name, d.span.start, d.code, d.span.end))
+    """By file, place, code and text, each once."""
+    unique = {(d.span.source.name, d): d for d in diagnostics}  # spans of two files may be equal
+    return sorted(unique.values(), key=lambda d: (d.span.source.name, d.span.start, d.code, d.span.end, d.arguments))

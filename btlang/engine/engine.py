@@ -10,7 +10,7 @@ from btlang.engine.blackboard import Blackboard
 from btlang.engine.build import EngineError, Fault, Shared, Site, blackboard_key
 from btlang.engine.clock import Clock
 from btlang.engine.compile import compile_sites, expand
-from btlang.engine.leaf import REFUSED, LeafBinding, told
+from btlang.engine.leaf import REFUSED, LeafBinding, told, unheard
 from btlang.engine.script_values import as_text
 from btlang.engine.status import FAILURE, IDLE
 from btlang.engine.watch import Trace
@@ -76,7 +76,7 @@ class Engine:
         self.stopwatch = stopwatch
         self.on_wake: Callable[[], object] | None = None
         """What the service `wake` calls, in the thread of whoever asks for it: "tick again now"."""
-        self._shared = Shared(bind, clock, {"wake": self._wake, **services}, enums, stopwatch)
+        self._shared = Shared(bind, clock, {"wake": self._wake, "progress": unheard, **services}, enums, stopwatch)
         with no_collection:
             self._sites = expand(tree, self.blackboard, self._shared)
             self._trace = None if listener is None else Trace(self._shared, listener)

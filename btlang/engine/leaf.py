@@ -11,12 +11,14 @@ A leaf is one of
   the task of an async function, and sets the event `halted` for a thread, which should look at it. Neither is waited
   for: one that goes on is not started again before it has ended, and is reported where it outlives the run.
 
-Parameters are filled by name: ports first, then services (`robot`, `clock`, `blackboard`, `wake`); a class gets the
-services in its constructor and the ports in `start`. `wake()` asks for a tick at once, from any thread; a thread has
-`halted` too, a threading.Event.
+Parameters are filled by name: ports first, then services (`robot`, `clock`, `blackboard`, `wake`, `progress`); a class
+gets the services in its constructor and the ports in `start`. `wake()` asks for a tick at once, from any thread; a
+thread has `halted` too, a threading.Event. `progress(share, state)` tells from any thread how much is done, from 0 to
+1, and in words what it does now; in most runs nobody listens.
 
-What a background leaf uses of these it uses beside the tick. Safe are `wake`, `halted`, reading `clock.now`, reading
-and setting single blackboard entries, and `robot.stop()`. All else of a robot is for the other leaves.
+What a background leaf uses of these it uses beside the tick. Safe are `wake`, `progress`, `halted`, reading
+`clock.now`, reading and setting single blackboard entries, and `robot.stop()`. All else of a robot is for the other
+leaves.
 
 A leaf that fails says why: it raises ActionFailed, or returns `Failed(reason)`, which is cheaper and may work out the
 reason later. For False the reason is the `refusal` of its binding.
@@ -39,6 +41,10 @@ Reason: TypeAlias = "str | Callable[[], str]"
 
 REFUSED = "it returned False"
 """Stands for the `refusal` of a leaf's binding, which is looked for when somebody asks."""
+
+
+def unheard(share: float, state: str = "") -> None:
+    """The service `progress` where nobody listens."""
 
 
 class ActionFailed(Exception):

@@ -43,7 +43,7 @@ def lines_of(
         said, room = speaker.say(item), width - len(INDENT) * depth
         line = "" if is_longer(said.pieces, room) else speaker.line(item, said, among)
         too_long = not line or len(line) > room
-        sections = _SECTIONS.get(type(item), _none) if said.in_lines or (too_long and room >= least) else _none
+        sections = _sections(item, among) if said.in_lines or (too_long and room >= least) else _none
         below: list[tuple[int, ast.Ast | str, str]] = []
         for head, body in sections(item, speaker):
             if isinstance(body, ast.Ast):
@@ -51,8 +51,21 @@ def lines_of(
                 continue
             below.append((depth, speaker.text((head, mark(COLON))), ""))
             below += [(depth + 1, part, joint) for part, joint in body]
+        found += (f"{INDENT * depth}# {text}" for text in speaker.comments(item, whole=not below))
         stack.extend(reversed(below or [(depth, line or speaker.line(item, said, among), "")]))
     return found
+
+
+def _sections(node: ast.Ast, among: str) -> Callable[[Any, Speaker], Iterator[Section]]:
+    """How a statement is a block, which is one of a chain or of `children`."""
+    if among == "children" and isinstance(node, ast.Chain) and node.operator == "sequence":
+        return _sequence_node
+    return _SECTIONS.get(type(node), _none)
+
+
+def _sequence_node(node: ast.Chain, speaker: Speaker) -> Iterator[Section]:
+    """A child of a node that is said by its id may be said so itself: what holds it adds nothing to it."""
+    yield from exact_block(ast.Exact("Sequence", (), "", node.items, False, node.span), speaker)
 
 
 def _branching(positive: str, negative: str) -> Callable[[Any, Speaker], Iterator[Section]]:

@@ -37,14 +37,14 @@ def node_head(node: ast.Exact, vocabulary: Vocabulary) -> str:
     """The node with its name and its ports, without its children."""
     ports = list(node.ports)
     parts = [vocabulary.word("test" if node.is_condition else "do")]
-    words = vocabulary.nodes.get(node.id)
-    if words is None:
+    words, subtree = vocabulary.nodes.get(node.id), dict(ports).get("ID")
+    if words is None or (node.id == "SubTree" and subtree is None):
         parts.append(quoted(node.id, vocabulary))
     else:
         parts.append(words)
-        if node.id == "SubTree" and "ID" in dict(ports):
-            parts.append(quoted(dict(ports)["ID"], vocabulary))
-            ports = [port for port in ports if port[0] != "ID"]
+        if node.id == "SubTree" and subtree is not None:
+            parts.append(quoted(subtree, vocabulary))
+            ports.remove(("ID", subtree))
     if node.name:
         parts += [vocabulary.word("called"), quoted(node.name, vocabulary)]
     for name, text in ports:
@@ -57,6 +57,11 @@ def node_head(node: ast.Exact, vocabulary: Vocabulary) -> str:
 def quoted(text: str, vocabulary: Vocabulary) -> str:
     """A text as pieces in quotes, `newline` and `character 9`."""
     return " ".join(_pieces(text, vocabulary)) or '""'
+
+
+def is_one_piece(text: str) -> bool:
+    """Whether one pair of quotes can hold a text, as those around names of subtrees and of ports must."""
+    return len(list(_PIECE.finditer(text))) == 1 and _PIECE.match(text).lastgroup != "odd"  # type: ignore[union-attr]
 
 
 def _pieces(text: str, vocabulary: Vocabulary) -> Iterator[str]:

@@ -55,6 +55,7 @@ class Speaker:
         self._leaves: dict[tuple[str, tuple[tuple[str, str], ...]], str] = {}
         self._reads_on: dict[tuple[Piece, Piece], bool] = {}
         self._parameters: dict[str, dict[str, str]] = {}
+        self._comments: dict[int, tuple[ast.Ast, tuple[str, ...]]] = {}  # with its node, too
         for defined in names:
             name, types = (
                 (defined.name, dict(defined.parameters)) if isinstance(defined, ast.Definition) else (defined, {})
@@ -99,6 +100,28 @@ class Speaker:
     def text(self, pieces: Pieces) -> str:
         """The pieces as text."""
         return text_of(pieces, self.vocabulary, self.names)
+
+    # -- comments
+
+    def note(self, node: ast.Ast, lines: tuple[str, ...]) -> None:
+        """Puts lines of comment before the statement in which a node is said."""
+        before = self._comments.get(id(node), (node, ()))[1]
+        self._comments[id(node)] = node, (*lines, *before)
+
+    def comments(self, node: ast.Ast, *, whole: bool) -> list[str]:
+        """The comments of a statement; of a block, which is not `whole`, without those of the lines below."""
+        if not self._comments:
+            return []
+        found: list[str] = []
+        stack = [node]
+        while stack:
+            item = stack.pop()
+            found += self._comments[id(item)][1] if id(item) in self._comments else ()
+            if whole or item is not node:
+                stack += reversed(ast.parts(item))
+            elif "condition" in item.parts:
+                stack.append(item.condition)  # type: ignore[attr-defined]
+        return found
 
     # -- words
 

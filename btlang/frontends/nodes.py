@@ -41,8 +41,11 @@ def read_node(text: Words, at: int, meaning: Meaning, vocabulary: Vocabulary) ->
         if found is None:
             return None
         node_id, at = found
-    elif node_id == SUBTREE and text.words[at][0] == '"':
-        name, at = reader.text(at)
+    elif node_id == SUBTREE:
+        found = reader.quoted(at)
+        if found is None:
+            raise Unreadable(at, "the name of the subtree in quotes")
+        name, at = found
         ports.append(("ID", name))
     name = ""
     called = reader.word("called", at)

@@ -19,7 +19,7 @@ from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.pattern import Slot, forms
 from btlang.vocabulary.trie import SLOTS, TrieNode, longest
 from btlang.vocabulary.values import Known, Values, ValueType, with_unit
-from btlang.vocabulary.vocabulary import Vocabulary
+from btlang.vocabulary.vocabulary import NODE_ROLES, Vocabulary
 
 _NOT_A_VALUE = frozenset((END_OF_TEXT, END_OF_STATEMENT, ",", ":", "(", ")"))
 
@@ -85,6 +85,10 @@ def unknown_value(span: Span, key: str, known: Iterable[str]) -> Diagnostic:
     if near and braces:
         fix = Span(span.source, span.start + braces.start(1), span.start + braces.end(1)), near[0]
     return diagnostic("BT043", span, fix=fix, name=name, help=advice)
+
+
+_NOT_OFFERED = frozenset((*NODE_ROLES, "called", "with", "newline", "character", "main_name"))
+"""Roles for texts that programs write: what is like their words was hardly meant so."""
 
 
 class _Misfit(Record):
@@ -217,6 +221,12 @@ def _unknown_phrase(
         advice = f"A text of more than one word needs quotes: {quoted}"
         whole = Span(text.source, start.start, span.end)
         return diagnostic("BT010", span, fix=(whole, quoted), words=span.text, help=advice)
+    meant = longest(vocabulary.trie, text, at + 1, vocabulary.values) if end > at + 1 else None
+    is_node = text.words[at] in (phrase for role in NODE_ROLES for phrase in vocabulary.roles[role])
+    if is_node and meant is not None and meant.meaning.entry is not None:  # `do wave`
+        rest = text.span(at + 1, meant.last).text
+        whole = text.span(at, meant.last)
+        return diagnostic("BT010", span, fix=(whole, rest), words=span.text, help=nearest_known([rest]))
     names = [header.name for header in definitions.headers.values()]
     written = f" {' '.join(text.words[at:end])} "
     inside = [(name, end - at) for name in names if f" {name} " in written]
@@ -238,7 +248,8 @@ def _phrases(vocabulary: Vocabulary) -> dict[str, tuple[str, list[str]]]:
     """What can be said, as people would write it: its id, and the words up to the first slot; each such start once."""
     entries = [(entry.id, entry.phrases) for entries in vocabulary.entries.values() for entry in entries]
     known: dict[tuple[str, ...], tuple[str, str]] = {}
-    for id, patterns in (*entries, *vocabulary.roles.items()):
+    roles = ((role, patterns) for role, patterns in vocabulary.roles.items() if role not in _NOT_OFFERED)
+    for id, patterns in (*entries, *roles):
         for form in (form for pattern in patterns for form in reversed(forms(pattern, vocabulary.articles))):
             start = tuple(str(part) for part in takewhile(lambda part: isinstance(part, str), form))
             written = (f"{{{part.name}}}" if isinstance(part, Slot) else part for part in form)

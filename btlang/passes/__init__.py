@@ -11,7 +11,8 @@ from btlang.passes.resources import check_resources
 from btlang.passes.scope import Scope
 from btlang.passes.size import check_size
 from btlang.passes.types import check_types
-from btlang.tree.ast import Mission
+from btlang.tree.ast import Mission, exact_nodes
+from btlang.tree.model import NodeModel
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.vocabulary import Vocabulary
 
@@ -43,7 +44,8 @@ def lower_mission(mission: Mission, vocabulary: Vocabulary, *, needs_command: bo
         example = mission.definitions[-1].name if mission.definitions else "move forward 1 m"
         raise MissionError([diagnostic("BT005", mission.span, example=example)])
     root = Node("AlwaysSuccess") if mission.body is None else lower(mission.body, scope).node
-    return Tree(root, tuple(subtrees), mission.name)
+    conditions = dict.fromkeys(node.id for node in exact_nodes(mission) if node.is_condition)
+    return Tree(root, tuple(subtrees), mission.name, tuple(NodeModel("Condition", id) for id in conditions))
 
 
 def checked(tree: Tree, vocabulary: Vocabulary) -> Tree:

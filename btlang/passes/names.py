@@ -2,10 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Container, Iterator
-
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.tree.ast import Ast, Definition, Exact, Mission, Name, all_definitions, parts
+from btlang.tree.ast import Ast, Definition, Exact, Mission, Name, all_definitions, exact_nodes, parts
 
 
 def order_of_use(mission: Mission) -> tuple[list[Definition], list[Diagnostic]]:
@@ -16,7 +14,8 @@ def order_of_use(mission: Mission) -> tuple[list[Definition], list[Diagnostic]]:
     definitions = {definition.name: definition for definition in all_definitions(mission)}
     uses = {name: names_in(definition.body) for name, definition in definitions.items()}
     ordered: list[Definition] = []
-    problems = [_missing(use) for use in _uses_of_nothing(mission, definitions)]
+    uses_of_trees = [node for node in exact_nodes(mission) if node.id == "SubTree"]
+    problems = [_missing(node) for node in uses_of_trees if _subtree(node) not in definitions]
     done: set[str] = set()
     for start in definitions:
         path: list[str] = []  # the names being followed, each used by the one before
@@ -34,15 +33,6 @@ def order_of_use(mission: Mission) -> tuple[list[Definition], list[Diagnostic]]:
                 stack.append((name, True))
                 stack += [(used, False) for used in reversed(uses[name]) if used in definitions]
     return ordered, problems
-
-
-def _uses_of_nothing(mission: Mission, definitions: Container[str]) -> Iterator[Exact]:
-    stack = [*(definition.body for definition in all_definitions(mission)), *filter(None, [mission.body])]
-    while stack:
-        item = stack.pop()
-        stack += reversed(parts(item)) if item.parts else ()
-        if isinstance(item, Exact) and item.id == "SubTree" and _subtree(item) not in definitions:
-            yield item
 
 
 def _subtree(item: Exact) -> str:

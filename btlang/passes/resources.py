@@ -70,6 +70,5 @@ def _conflict(resource: str, first: Node, second: Node) -> Diagnostic:
     assert second.span is not None
     one, other = first.span.text, second.span.text
     notes = ((first.span, f"this needs the {resource} too"),)
-    return diagnostic(
-        "BT041", second.span, notes, resource=resource, first=one, second=other, fixed=f"{one} then {other}"
-    )
+    fixed = f"<Sequence> {one} {other} </Sequence>" if one[:1] == "<" else f"{one} then {other}"
+    return diagnostic("BT041", second.span, notes, resource=resource, first=one, second=other, fixed=fixed)

@@ -25,7 +25,7 @@ _ROOM = ROBOT_RADIUS + 0.15
 
 
 class Journey:
-    """One way to one goal; see `btlang.robots.robot.Navigation`.
+    """One way to one goal; see `btlang.robots.robot.Deed`.
 
     `name` is that of what it goes to, or shows the spot; with a `pose` it ends there, facing as the pose does.
     """

@@ -19,19 +19,29 @@ class RobotError(ActionFailed):
     """Why the robot cannot do what it was told, in plain English: a leaf that lets it pass FAILS with it."""
 
 
-class Navigation(Protocol):
-    """A journey under way."""
+class Deed(Protocol):
+    """What the robot has set about and may take time: a journey, a hand that closes, docking."""
 
     @property
     def done(self) -> bool:
-        """True when it has ended: arrived, failed or cancelled."""
+        """True when it has ended: accomplished, failed or cancelled."""
 
     @property
     def failure(self) -> str | None:
-        """Why it did not arrive; None while under way and after arrival."""
+        """Why it was not accomplished; None while under way and where it was."""
 
     def cancel(self) -> None:
-        """Gives up and brakes. Does nothing when done."""
+        """Gives up: a journey brakes, and nobody waits for a hand any more. Does nothing when done."""
+
+
+class Done:
+    """A deed that took no time."""
+
+    done = True
+    failure = None
+
+    def cancel(self) -> None:
+        """Does nothing."""
 
 
 class Robot(Protocol):
@@ -108,10 +118,10 @@ class Robot(Protocol):
     def stuck(self) -> bool:
         """True when it has been told to move for a second and does not."""
 
-    def navigate_to(self, name: str) -> Navigation:
+    def navigate_to(self, name: str) -> Deed:
         """Sets out for a place, for an object (within arm's reach) or a person (within talking distance), and faces it.
 
-        Raises RobotError for an unknown name; all else that goes wrong is the journey's `failure`.
+        Raises RobotError for an unknown name; all else that goes wrong is the deed's `failure`.
         """
 
     # Senses
@@ -144,10 +154,10 @@ class Robot(Protocol):
     def charging(self) -> bool:
         """True while docked and not full."""
 
-    def dock(self) -> None:
-        """Connects to the charger. Raises RobotError where the robot does not stand at the dock."""
+    def dock(self) -> Deed:
+        """Connects to the charger. Raises RobotError, or fails, where the robot does not stand at the dock."""
 
-    def undock(self) -> None:
+    def undock(self) -> Deed:
         """Disconnects; moves nothing."""
 
     # Arms, hands, head
@@ -163,14 +173,14 @@ class Robot(Protocol):
     def freeze_joints(self, *names: str) -> None:
         """These joints stay where they are now."""
 
-    def grasp(self, hand: Hand, name: str | None = None) -> str:
-        """Closes a hand on the named object, else the nearest within reach, and returns its name.
+    def grasp(self, hand: Hand, name: str | None = None) -> Deed:
+        """Closes a hand on the named object, else on the nearest within reach.
 
-        Raises RobotError when nothing (or not that object) is within reach or the hand is full.
+        Raises RobotError, or fails, when nothing (or not that object) is within reach or the hand is full.
         """
 
-    def release(self, hand: Hand) -> str | None:
-        """Opens a hand and puts down what it held, whose name it returns."""
+    def release(self, hand: Hand) -> Deed:
+        """Opens a hand and puts down what it held."""
 
     def holding(self, hand: Hand) -> str | None:
         """The name of what the hand holds."""

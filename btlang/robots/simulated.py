@@ -16,7 +16,7 @@ from btlang.robots.joints import Joints
 from btlang.robots.navigation import Journey, Navigator
 from btlang.robots.obstacles import Array, Obstacles
 from btlang.robots.power import Power
-from btlang.robots.robot import Hand, OnEvent, RobotError
+from btlang.robots.robot import Done, Hand, OnEvent, RobotError
 from btlang.robots.scan import Scanner
 from btlang.robots.world import ROBOT_RADIUS, Place, World, said
 
@@ -218,16 +218,18 @@ class SimulatedRobot:
         """True while docked and not full."""
         return self._power.charging
 
-    def dock(self) -> None:
-        """Connects to the charger. Raises RobotError where the robot does not stand at the dock."""
+    def dock(self) -> Done:
+        """Connects to the charger at once. Raises RobotError where the robot does not stand at the dock."""
         self._power.connect(self.pose)
         self._emit("dock")
+        return Done()
 
-    def undock(self) -> None:
-        """Disconnects; moves nothing."""
+    def undock(self) -> Done:
+        """Disconnects at once; moves nothing."""
         if self._power.docked:
             self._power.docked = False
             self._emit("undock")
+        return Done()
 
     # Arms, hands, head
     def joint(self, name: str) -> float:
@@ -248,21 +250,19 @@ class SimulatedRobot:
         """These joints stay where they are now."""
         self._joints.freeze(names)
 
-    def grasp(self, hand: Hand, name: str | None = None) -> str:
-        """Closes a hand on the named or the nearest object and returns its name. Raises RobotError."""
+    def grasp(self, hand: Hand, name: str | None = None) -> Done:
+        """Closes a hand at once on the named or the nearest object. Raises RobotError."""
         if self._stopping:
             raise RobotError("the robot was told to stop")
         found = self._hands.grasp(hand, None if name is None else self._known(name), self.pose, self.time)
         self._emit("grasp", hand=hand, name=found)
-        return found
+        return Done()
 
-    def release(self, hand: Hand) -> str | None:
-        """Opens a hand and puts down what it held."""
-        if self._stopping:
-            return None
-        name = self._hands.release(hand, self.pose)
-        self._emit("release", hand=hand, name=name)
-        return name
+    def release(self, hand: Hand) -> Done:
+        """Opens a hand at once and puts down what it held."""
+        if not self._stopping:
+            self._emit("release", hand=hand, name=self._hands.release(hand, self.pose))
+        return Done()
 
     def holding(self, hand: Hand) -> str | None:
         """The name of what the hand holds."""

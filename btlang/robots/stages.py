@@ -14,7 +14,11 @@ if TYPE_CHECKING:
 
     MakeStage: TypeAlias = Callable[[World], Stage]
 
-ROBOTS = {"simulated": "btlang.robots.simulation:Simulation", "ros": "btlang.ros.command:ros_stage"}
+ROBOTS = {
+    "simulated": "btlang.robots.simulation:Simulation",
+    "ros": "btlang.ros.command:ros_stage",
+    "actions": "btlang.ros.command:actions_stage",
+}
 """Functions of a world, by the name of the robot; imported when it is asked for."""
 
 

@@ -7,7 +7,7 @@ from math import cos, degrees, radians, sin
 from threading import RLock
 from typing import Any
 
-from geometry_msgs.msg import PoseWithCovarianceStamped, Twist
+from geometry_msgs.msg import PoseWithCovarianceStamped, Twist, TwistStamped
 from nav_msgs.msg import Odometry
 from rclpy.duration import Duration
 from rclpy.node import Node
@@ -15,15 +15,20 @@ from rclpy.node import Node
 from btlang.robots.geometry import Pose, wrap
 from btlang.robots.robot import RobotError
 from btlang.ros.inbox import Inbox
-from btlang.ros.poses import pose_of
+from btlang.ros.poses import BASE, pose_of
 from btlang.ros.times import seconds_of
+from btlang.ros.wire import VELOCITY
+from btlang.ros.word import type_name
 
-ODOMETRY, LOCATED, VELOCITY = "/odom", "/amcl_pose", "/cmd_vel"
+ODOMETRY, LOCATED = "odom", "amcl_pose"
+TWIST, STAMPED = type_name(Twist), type_name(TwistStamped)
+_TYPES: dict[str, Any] = {TWIST: Twist, STAMPED: TwistStamped}
 _SILENT = 2.0  # seconds without odometry
 _FRESH = 0.5  # seconds for which odometry can say that the robot does not move
 _REMEMBERED = 200  # odometry that a late localization is matched with
 _REST, _TURN_REST = 0.01, 1.0  # metres and degrees a second that odometry reports of a robot that stands
 _STUCK_AFTER, _STUCK_SHARE = 1.0, 0.05
+_STEP = 0.25  # seconds that a step counts at most: robots brake by themselves before one that comes late
 _ACKNOWLEDGED = Duration(seconds=0.5)
 
 
@@ -31,11 +36,12 @@ class RosBase:
     """Wanted velocity is told at each step while it is not zero, since robots brake when they hear no more of it.
 
     The pose is the latest one of the localization, moved on by the odometry since; where nothing localizes the robot,
-    the odometry alone. `halt` may be called from any thread.
+    the odometry alone. `halt` may be called from any thread. Nothing is told before somebody listens, who decides
+    whether it is a Twist or a TwistStamped: a node can use a topic with one type.
     """
 
     def __init__(self, node: Node, inbox: Inbox, radius: float) -> None:
-        self._inbox = inbox
+        self._node, self._inbox = node, inbox
         self._radius = radius
         self._lock = RLock()  # a signal handler may halt while this thread drives
         self._wanted = (0.0, 0.0)
@@ -43,9 +49,21 @@ class RosBase:
         self._track: deque[tuple[float, Pose]] = deque(maxlen=_REMEMBERED)
         self._fix: tuple[Pose, Pose] | None = None
         self._early: Any = None  # a localization that is newer than the odometry
-        self._publisher = node.create_publisher(Twist, VELOCITY, 10)
+        self._publisher: Any = None
+        self._type = TWIST
         inbox.listen(ODOMETRY, Odometry, "odometry", also=self._moved)
         inbox.listen(LOCATED, PoseWithCovarianceStamped, "pose", qos="state", also=self._located)
+
+    def adapt(self) -> str:
+        """The type that those who listen take; from now on velocities are told in it."""
+        types = {end.topic_type for end in self._node.get_subscriptions_info_by_topic(VELOCITY)} & {TWIST, STAMPED}
+        with self._lock:
+            if types and (self._publisher is None or self._type not in types):
+                if self._publisher is not None:
+                    self._node.destroy_publisher(self._publisher)
+                self._type = TWIST if TWIST in types else STAMPED
+                self._publisher = self._node.create_publisher(_TYPES[self._type], VELOCITY, 10)
+            return self._type
 
     def drive(self, linear: float, angular: float) -> None:
         """Metres and degrees a second."""
@@ -62,13 +80,14 @@ class RosBase:
     def confirm_halt(self) -> None:
         """Zero velocity, and waits for half a second at most until all who listen have it."""
         self.halt()
-        self._publisher.wait_for_all_acked(_ACKNOWLEDGED)
+        if self._publisher is not None:
+            self._publisher.wait_for_all_acked(_ACKNOWLEDGED)
 
     def step(self, dt: float) -> None:
         """Tells the wanted velocity again; `dt` seconds have passed."""
         with self._lock:
             if self._wanted != (0.0, 0.0):
-                self._idle = self._idle + dt if self._pushes() else 0.0
+                self._idle = self._idle + min(dt, _STEP) if self._pushes() else 0.0
                 self._tell()
 
     @property
@@ -93,9 +112,23 @@ class RosBase:
         now = pose_of(self._inbox.get(ODOMETRY, _SILENT).pose.pose)
         return now if self._fix is None else _carried(*self._fix, now)
 
+    def where(self) -> Pose | None:
+        """The pose; None where the odometry is silent."""
+        try:
+            return self.pose
+        except RobotError:
+            return None
+
     def _tell(self) -> None:
-        message = Twist()
-        message.linear.x, message.angular.z = self._wanted[0], radians(self._wanted[1])
+        if self._publisher is None:
+            self.adapt()
+        if self._publisher is None:
+            return
+        message = twist = _TYPES[self._type]()
+        if self._type == STAMPED:
+            message.header.stamp, message.header.frame_id = self._node.get_clock().now().to_msg(), BASE
+            twist = message.twist
+        twist.linear.x, twist.angular.z = self._wanted[0], radians(self._wanted[1])
         self._publisher.publish(message)
 
     def _measured(self, limit: float) -> tuple[float, float]:

@@ -12,6 +12,7 @@ from btlang.ros.leaves.actions import action_leaf
 from btlang.ros.leaves.driving import drive_leaf
 from btlang.ros.leaves.joints import joints_leaf
 from btlang.ros.leaves.parameters import parameter_leaf
+from btlang.ros.leaves.phrases import phrase_leaf
 from btlang.ros.leaves.publishing import publish_leaf
 from btlang.ros.leaves.services import service_leaf
 from btlang.ros.leaves.topics import topic_leaf
@@ -27,6 +28,7 @@ if TYPE_CHECKING:
 
 _LEAVES: dict[str, Callable[[Word, Clients], Callable[..., Any]]] = {
     "action": action_leaf,
+    "phrase": phrase_leaf,
     "service": service_leaf,
     "publish": publish_leaf,
     "topic": topic_leaf,

@@ -1,13 +1,11 @@
 """What leaves share of a ROS 2 node: one publisher, subscription or client for each name and type.
 
-rclpy's clients lose an answer that comes while another thread still sends the request. So all requests are made in the
-thread that spins the node: leaves hand them over with `post`, and look at what came back.
+All requests are made in the thread that spins the node: leaves hand them over with `post`, and look at what came back.
 """
 
 from __future__ import annotations
 
 import time
-from collections import deque
 from collections.abc import Callable
 
 from rclpy._rclpy_pybind11 import RCLError
@@ -16,9 +14,9 @@ from rclpy.clock import Clock, ClockType
 from rclpy.duration import Duration
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
-from btlang.engine.leaf import described
 from btlang.record import Record
-from btlang.ros.graph import is_ready, no_listener, no_publisher, no_server
+from btlang.ros.errands import Errands
+from btlang.ros.graph import full_name, is_ready, no_listener, no_publisher, no_server
 from btlang.ros.latest import Latest, NodeClock
 from btlang.ros.word import type_name
 
@@ -65,24 +63,26 @@ class Clients:
         self.clock = NodeClock(node)
         self.steady = Clock(clock_type=ClockType.STEADY_TIME)
         """For timers that go on while simulated time stands still."""
-        self.problems: list[str] = []
-        """What went wrong in requests, which nobody could be told of at once."""
+        self.errands = Errands(node)
         self.endings: list[Ending] = []
         """What was halted and may not have ended yet."""
         self._publishers: list[Any] = []
         self._types: dict[tuple[str, str], Any] = {}
         self._made: dict[Key, tuple[Any, Missing]] = {}  # each with what tells why it is of no use yet
         self._used: dict[Key, None] = {}  # since the mission began
-        self._posted: deque[Callable[[], object]] = deque()
-        self._guard = node.create_guard_condition(self._work)
+
+    @property
+    def problems(self) -> list[str]:
+        """What went wrong in requests, which nobody could be told of at once."""
+        return self.errands.problems
 
     def post(self, work: Callable[[], object]) -> None:
         """Lets the thread that spins do it; from any thread, in the order of calls."""
-        self._posted.append(work)
-        self._guard.trigger()
+        self.errands.post(work)
 
     def publisher(self, cls: Any, name: str, latched: bool = False) -> Any:
         """Of messages that get to all who listen; those of a latched topic also to who listens later."""
+        name = self._claim("listener", cls, name)
 
         def make() -> tuple[Any, Missing]:
             made = self.node.create_publisher(cls, name, _qos(latched))
@@ -90,11 +90,11 @@ class Clients:
             heard = made.get_subscription_count
             return made, lambda: "" if latched or heard() else no_listener(self.node, cls, name)
 
-        self._claim("topic", cls, name)
         return self._once(("listener", name, type_name(cls), latched), make)
 
     def latest(self, cls: Any, name: str, latched: bool = False) -> Latest:
         """The latest message of a topic. One that is not latched is heard from reliable and other publishers."""
+        name = self._claim("publisher", cls, name)
 
         def make() -> tuple[Latest, Missing]:
             made = Latest(name, self.clock.now, lambda: no_publisher(self.node, cls, name))
@@ -102,7 +102,6 @@ class Clients:
             self.node.create_subscription(cls, name, made.store, qos)
             return made, made.why_not
 
-        self._claim("topic", cls, name)
         return self._once(("publisher", name, type_name(cls), latched), make)  # type: ignore[no-any-return]
 
     def action(self, cls: Any, name: str) -> Any:
@@ -152,7 +151,7 @@ class Clients:
         Says what has not ended.
         """
         until = time.monotonic() + limit
-        while (left := [reason for ending in self.endings if (reason := ending.waits_for())]) or self._posted:
+        while (left := [reason for ending in self.endings if (reason := ending.waits_for())]) or self.errands.left:
             if time.monotonic() >= until:
                 break
             time.sleep(_LOOK)
@@ -162,36 +161,39 @@ class Clients:
         return left
 
     def _client(self, kind: str, cls: Any, name: str, create: Callable[[], Any]) -> Any:
+        name = self._claim(kind, cls, name)
+
         def make() -> tuple[Any, Missing]:
             client = create()
             return client, lambda: "" if is_ready(client) else no_server(self.node, cls, name)
 
-        self._claim(kind, cls, name)
         return self._once((kind, name, type_name(cls), False), make)
 
-    def _claim(self, kind: str, cls: Any, name: str) -> None:
-        """One node can use a name with one type. Raises Unusable for a second one."""
-        first = self._types.setdefault((kind, name), cls)
+    def _claim(self, kind: str, cls: Any, name: str) -> str:
+        """The name with the namespace. Raises Unusable for a second type: one node can use a name with one."""
+        sort = "topic" if kind in ("listener", "publisher") else kind
+        try:
+            name = full_name(self.node, kind, name)
+        except (RCLError, ValueError) as error:
+            raise _refused(error) from None
+        first = self._types.setdefault((sort, name), cls)
         if first is not cls:
-            raise Unusable(f"another word uses the {kind} {name} with the type {type_name(first)}")
+            raise Unusable(f"another word uses the {sort} {name} with the type {type_name(first)}")
+        return name
 
     def _once(self, key: Key, make: Callable[[], tuple[Any, Missing]]) -> Any:
         if key not in self._made:
             try:
                 self._made[key] = make()
-            except (RCLError, ValueError) as error:  # ValueError: what rclpy raises for a name
-                raise Unusable(f"ROS 2 refuses it: {str(error).partition(', at ')[0]}") from None
+            except (RCLError, ValueError) as error:
+                raise _refused(error) from None
         self._used[key] = None
         return self._made[key][0]
 
-    def _work(self) -> None:
-        while self._posted:
-            work = self._posted[0]
-            try:
-                work()
-            except Exception as problem:  # it would end the thread that spins
-                self.problems.append(described(problem))
-            self._posted.popleft()  # only now, so that `close` waits for it
+
+def _refused(error: Exception) -> Unusable:
+    """Of what rclpy raises: a ValueError for a name."""
+    return Unusable(f"ROS 2 refuses it: {str(error).partition(', at ')[0]}")
 
 
 def _qos(latched: bool) -> QoSProfile:

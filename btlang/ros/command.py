@@ -7,11 +7,15 @@ from collections.abc import Callable
 from contextlib import closing
 from functools import partial
 
-from btlang.robots.stages import ROBOTS
-from btlang.ros.available import require_ros
+from btlang.arguments import namespace
+from btlang.robots.stages import ROBOTS, stage_maker
+from btlang.ros.available import require_interfaces, require_ros
+from btlang.ros.serving.names import FOLDER
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from typing import Any
+
     from btlang.robots.world import World
     from btlang.ros.stage import RosStage
     from btlang.run.stage import Stage
@@ -21,12 +25,27 @@ if TYPE_CHECKING:
 _PACKAGES = ("geometry_msgs", "nav_msgs", "rosgraph_msgs", "sensor_msgs", "std_msgs", "std_srvs", "trajectory_msgs")
 
 
-def ros_stage(world: World, *, sim_time: bool = False, name: str = "btlang") -> RosStage:
-    """The stage of a mission on the ROS 2 robot that is there. Raises MissionError (BT100) without ROS 2."""
+def ros_stage(world: World, *, sim_time: bool = False, namespace: str = "", name: str = "btlang") -> RosStage:
+    """The stage of a mission on the ROS 2 robot of a namespace. Raises MissionError (BT100) without ROS 2."""
     require_ros(*_PACKAGES)
     from btlang.ros.stage import RosStage
 
-    return RosStage(world, sim_time=sim_time, name=name)
+    return RosStage(world, sim_time=sim_time, namespace=namespace, name=name)
+
+
+def actions_stage(
+    world: World, *, sim_time: bool = False, namespace: str = "", name: str = "btlang", servers: str = ""
+) -> RosStage:
+    """As ros_stage, where each action is done by its server, by default one of the same namespace.
+
+    Raises MissionError (BT100, BT110).
+    """
+    require_ros(*_PACKAGES)
+    require_interfaces()
+    from btlang.ros.stage import RosStage
+
+    servers = servers or f"/{namespace.strip('/')}/{FOLDER}".replace("//", "/")
+    return RosStage(world, sim_time=sim_time, namespace=namespace, name=name, servers=servers)
 
 
 def add_robot_options(parser: ArgumentParser) -> None:
@@ -34,27 +53,47 @@ def add_robot_options(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--robot", choices=list(ROBOTS), default="simulated", help="what runs the mission (default: %(default)s)"
     )
-    parser.add_argument("--sim-time", action="store_true", help="with --robot ros: time is that of the topic /clock")
     parser.add_argument(
-        "--preflight", action="store_true", help="with --robot ros: only list what the mission needs of the robot"
+        "--sim-time", action="store_true", help="with --robot ros or actions: time is that of the topic /clock"
+    )
+    add_namespace(parser, "with --robot ros or actions: that of the robot (default: none)")
+    parser.add_argument(
+        "--servers",
+        metavar="NS",
+        help=f"with --robot actions: where the servers are (default: /{FOLDER} in the namespace)",
+    )
+    parser.add_argument(
+        "--preflight", action="store_true", help="with --robot ros or actions: only list what the mission needs"
     )
     parser.set_defaults(refuse=parser.error)
 
 
+def add_namespace(parser: ArgumentParser, what: str) -> None:
+    """The option --namespace."""
+    parser.add_argument("--namespace", type=namespace, default="", metavar="NS", help=what)
+
+
 def chosen_robot(options: Namespace) -> str | Callable[[World], Stage]:
     """As `RunnableTree.run` takes it. Ends with a usage error where options do not go together."""
-    if options.robot != "ros":
-        if options.sim_time or options.preflight:
-            options.refuse("--sim-time and --preflight are for --robot ros")
+    if options.servers is not None and options.robot != "actions":
+        options.refuse("--servers is for --robot actions")
+    if options.robot == "simulated":
+        if options.sim_time or options.preflight or options.namespace:
+            options.refuse("--sim-time, --namespace and --preflight are for --robot ros and --robot actions")
         return str(options.robot)
     if options.speed != "real":
-        options.refuse("--robot ros runs in real time, so it takes no --speed")
-    return partial(ros_stage, sim_time=options.sim_time)
+        options.refuse(f"--robot {options.robot} runs in real time, so it takes no --speed")
+    stage: Any = stage_maker(options.robot)
+    make = partial(stage, sim_time=options.sim_time, namespace=options.namespace)
+    return make if options.servers is None else partial(make, servers=f"/{options.servers.strip('/')}")
 
 
-def print_preflight(tree: Tree, vocabulary: Vocabulary, world: World, *, sim_time: bool) -> bool:
-    """Prints what a tree needs of the robot, a line each; returns whether all of it is there. Raises MissionError."""
-    with closing(ros_stage(world, sim_time=sim_time)) as stage:
+def print_preflight(tree: Tree, vocabulary: Vocabulary, world: World, robot: Any) -> bool:
+    """Prints what a tree needs of the robot, a line each; returns whether all of it is there. Raises MissionError.
+
+    `robot` is what `chosen_robot` gives for a ROS 2 robot.
+    """
+    with closing(robot(world)) as stage:
         found = stage.survey(tree, vocabulary)
     for interface, (_, reason) in found.items():
         state = f"missing: {reason}" if reason else "found"

@@ -1,8 +1,6 @@
-"""What the ROS 2 graph says of servers, publishers and listeners that a leaf needs, and why they are not there."""
+"""What the ROS 2 graph says of servers, publishers and listeners that a mission needs, and why they are not there."""
 
 from __future__ import annotations
-
-from collections.abc import Callable
 
 from rclpy.action import ActionClient, get_action_names_and_types
 
@@ -12,6 +10,38 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+_NOBODY = {
+    "publisher": "nobody publishes {name}",
+    "listener": "nobody listens to {name}",
+    "service": "there is no service server {name}",
+    "action": "there is no action server {name}",
+}
+
+
+def full_name(node: Any, kind: str, name: str) -> str:
+    """With the namespace of the node, where the name has none. `kind` is as in `btlang.ros.wire.Interface`."""
+    resolve = node.resolve_topic_name if kind in ("publisher", "listener") else node.resolve_service_name
+    return str(resolve(name))
+
+
+def absent(node: Any, kind: str, name: str, wanted: Any) -> str:
+    """Why there is no publisher, listener, service or action: nobody has it, or it is of another type; "" where it is.
+
+    `wanted` is the class of the type, or its name.
+    """
+    name, wanted = full_name(node, kind, name), type_name(wanted)
+    types = _types(node, kind, name)
+    others = sorted(types - {wanted})
+    if kind in ("publisher", "listener"):
+        if wanted in types:
+            return ""
+    elif not others and node.count_services(name if kind == "service" else f"{name}/_action/send_goal"):
+        return ""  # the types alone do not tell: those of clients are among them
+    if others:
+        sort = kind if kind in ("service", "action") else "topic"
+        return f"the {sort} {name} is of the type {others[0]}, not {wanted}"
+    return _NOBODY[kind].format(name=name)
+
 
 def is_ready(client: Any) -> bool:
     """Whether there is a server for a client of an action or a service."""
@@ -19,32 +49,25 @@ def is_ready(client: Any) -> bool:
 
 
 def no_server(node: Any, cls: Any, name: str) -> str:
-    """Why there is no server of a type: nobody offers the name, or as another type."""
-    if type_name(cls).split("/")[1] == "action":
-        kind, offered = "action", get_action_names_and_types(node)
-    else:
-        kind, offered = "service", node.get_service_names_and_types()
-    types = dict(offered).get(node.resolve_service_name(name), [])
-    others = [other for other in types if other != type_name(cls)]
-    if others:
-        return f"the {kind} {name} is of the type {others[0]}, not {type_name(cls)}"
-    return f"there is no {kind} server {name}"
+    """Why a client has no server."""
+    kind = type_name(cls).split("/")[1].replace("srv", "service")
+    return absent(node, kind, name, cls) or f"the {kind} server {name} is not connected yet"
 
 
 def no_listener(node: Any, cls: Any, name: str) -> str:
     """Why nobody hears what is published."""
-    return _other_type(cls, name, node.get_subscriptions_info_by_topic) or f"nobody listens to {name}"
+    return absent(node, "listener", name, cls) or f"nobody listens to {name} yet"
 
 
 def no_publisher(node: Any, cls: Any, name: str) -> str:
     """Why nothing comes on a topic, "" where it is only silent."""
-    if not node.count_publishers(name):
-        return f"nobody publishes {name}"
-    return _other_type(cls, name, node.get_publishers_info_by_topic)
+    return absent(node, "publisher", name, cls)
 
 
-def _other_type(cls: Any, name: str, endpoints: Callable[[str], Any]) -> str:
-    types = {end.topic_type for end in endpoints(name)}
-    if types and type_name(cls) not in types:
-        return f"the topic {name} is of the type {min(types)}, not {type_name(cls)}"
-    return ""
+def _types(node: Any, kind: str, name: str) -> set[str]:
+    if kind == "publisher":
+        return {end.topic_type for end in node.get_publishers_info_by_topic(name)}
+    if kind == "listener":
+        return {end.topic_type for end in node.get_subscriptions_info_by_topic(name)}
+    offered = get_action_names_and_types(node) if kind == "action" else node.get_service_names_and_types()
+    return set(dict(offered).get(name, ()))

@@ -30,13 +30,13 @@ class Inbox:
         self._latest: dict[str, tuple[Any, float, float]] = {}
         self._events: dict[str, deque[Any]] = {}
         self._read: dict[str, Any] = {}
-        self._called: dict[str, str] = {}
+        self._called: dict[str, tuple[str, str]] = {}
 
     def listen(
         self, topic: str, kind: type, what: str, qos: str = "sensor", also: Callable[[Any], object] | None = None
     ) -> None:
         """Subscribes; `what` names the messages for people. `also` is called with each, in the thread that spins."""
-        self._called[topic] = what
+        self._called[topic] = what, self._node.resolve_topic_name(topic)
         if qos != "sensor":
             self._events[topic] = deque(maxlen=_MOST)
 
@@ -62,12 +62,16 @@ class Inbox:
         """Whether a message has ever come, also since the latest `read`."""
         return topic in self._latest
 
+    def shown(self, topic: str) -> str:
+        """The name of a topic that is listened to, with the namespace."""
+        return self._called[topic][1]
+
     def get(self, topic: str, limit: float | None = None) -> Any:
         """The latest message. Raises RobotError where there is none, or none for `limit` seconds."""
-        what = self._called[topic]
+        what, shown = self._called[topic]
         if topic not in self._read:
-            raise RobotError(f"no {what}: nothing has come on {topic}")
+            raise RobotError(f"no {what}: nothing has come on {shown}")
         _, *arrived = self._latest[topic]  # after a tick that took long, newer ones are there but not read yet
         if limit is not None and max(time.monotonic() - arrived[0], self._now() - arrived[1]) > limit:
-            raise RobotError(f"no {what} for {limit:g} s: {topic} is silent")
+            raise RobotError(f"no {what} for {limit:g} s: {shown} is silent")
         return self._read[topic]

@@ -15,7 +15,7 @@ from btlang.robots.joints import LIMITS, RATE
 from btlang.robots.robot import RobotError
 from btlang.ros.inbox import Inbox
 
-STATES, TRAJECTORY = "/joint_states", "/joint_trajectory"
+STATES, TRAJECTORY = "joint_states", "joint_trajectory"
 _SILENT = 2.0  # seconds without joint states
 _CLOSE_ENOUGH = 1.0  # degrees
 _STALLED = 5.0  # seconds in which a joint on its way gets no nearer
@@ -44,7 +44,7 @@ class RosJoints:
         states = self._inbox.get(STATES, _SILENT)
         wire = _on_wire(name)
         if wire not in states.name:
-            raise RobotError(f'{STATES} tells nothing of the joint "{wire}"')
+            raise RobotError(f'{self._inbox.shown(STATES)} tells nothing of the joint "{wire}"')
         return degrees(states.position[list(states.name).index(wire)])
 
     def move(self, targets: Mapping[str, float]) -> None:

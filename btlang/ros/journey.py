@@ -15,9 +15,10 @@ from rclpy.node import Node
 
 from btlang.robots.geometry import Pose
 from btlang.robots.world import said
+from btlang.ros.errands import Errands
 from btlang.ros.poses import MAP, pose_message
 
-ACTION = "/navigate_to_pose"
+ACTION = "navigate_to_pose"
 _SERVER = 2.0  # seconds that a server gets to be there
 _ANSWER = 5.0  # seconds that it gets to accept or reject, and between two of its feedbacks
 _ENDINGS = {GoalStatus.STATUS_CANCELED: "somebody cancelled the way to {name}"}
@@ -31,13 +32,21 @@ class RosJourney:
     meet an answer before it has noted the question.
     """
 
-    def __init__(self, name: str, client: Any, goal: NavigateToPose.Goal, spin: Callable[[Callable[[], None]], object]):
+    def __init__(
+        self,
+        name: str,
+        client: Any,
+        server: str,
+        goal: NavigateToPose.Goal,
+        spin: Callable[[Callable[[], None]], object],
+    ) -> None:
         self.name = name
         self.done = False
         self.failure: str | None = None
         self.withdrawn = Event()
         """Set when there is nothing left that the server still has to give up."""
         self._client, self._goal, self._spin = client, goal, spin
+        self._server = f"navigation server on {server}"
         self._lock = RLock()
         self._since = time.monotonic()  # of what it waits for now
         self._sent = self._heard = False
@@ -68,13 +77,13 @@ class RosJourney:
             self._set_out()
         elif self._result is None:
             if self._waited(_ANSWER):
-                self.end(f"the navigation server on {ACTION} does not answer")
+                self.end(f"the {self._server} does not answer")
         elif self._result.done():
             self._finish(self._result.result())
         elif not self._client.server_is_ready():
-            self.end(f"the navigation server on {ACTION} is gone", withdraw=False)
+            self.end(f"the {self._server} is gone", withdraw=False)
         elif self._heard and self._waited(_ANSWER):
-            self.end(f"no word from the navigation server on {ACTION} for {_ANSWER:g} s")
+            self.end(f"no word from the {self._server} for {_ANSWER:g} s")
 
     def _waited(self, limit: float) -> bool:
         return time.monotonic() - self._since > limit
@@ -84,7 +93,7 @@ class RosJourney:
             self._sent, self._since = True, time.monotonic()
             self._spin(self._send)
         elif self._waited(_SERVER):
-            self.end(f"no navigation server on {ACTION}")
+            self.end(f"no {self._server}")
 
     def _finish(self, answer: Any) -> None:
         if answer.status == GoalStatus.STATUS_SUCCEEDED:
@@ -120,9 +129,10 @@ class RosJourney:
 class RosNavigation:
     """The client of the navigation server, and the journey under way. `stop` may be called from any thread."""
 
-    def __init__(self, node: Node) -> None:
-        self._node = node
+    def __init__(self, node: Node, errands: Errands) -> None:
+        self._node, self._errands = node, errands
         self._client = ActionClient(node, NavigateToPose, ACTION)
+        self._server = node.resolve_service_name(ACTION)
         self._journey: RosJourney | None = None
         self._given_up: list[RosJourney] = []
 
@@ -132,7 +142,7 @@ class RosNavigation:
         goal = NavigateToPose.Goal()
         goal.pose = _stamped(pose)
         goal.pose.header.stamp = self._node.get_clock().now().to_msg()
-        self._journey = RosJourney(name, self._client, goal, self._node.executor.create_task)
+        self._journey = RosJourney(name, self._client, self._server, goal, self._errands.post)
         self._journey.step()
         return self._journey
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from threading import Thread
 
@@ -20,6 +21,7 @@ if TYPE_CHECKING:
     from types import TracebackType
 
 _LAST_DOMAIN = 232
+_LOOK = 0.01  # seconds between two looks at what is waited for
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 """Who subscribes later gets the last message."""
@@ -52,14 +54,23 @@ class SpunNode:
             raise unusable(str(error)) from None
         self._executor = SingleThreadedExecutor(context=self.context)
         self._executor.add_node(self.node)
+        self._closing = False
         self._thread = Thread(target=self._spin, name=f"ros {name}", daemon=True)
 
     def start(self) -> None:
         """Begins to call callbacks; to be called once all publishers and subscriptions are there."""
         self._thread.start()
 
+    def settle(self, seconds: float) -> None:
+        """Waits until what was asked of the thread before now is done, for so many real seconds at most."""
+        task = self._executor.create_task(lambda: None)
+        until = time.monotonic() + seconds
+        while not task.done() and time.monotonic() < until:
+            time.sleep(_LOOK)
+
     def close(self) -> None:
         """Ends the thread, then the node, then its context. May be called twice."""
+        self._closing = True
         self._executor.shutdown()
         if self._thread.ident is not None:
             self._thread.join()
@@ -92,4 +103,6 @@ class SpunNode:
             except ExternalShutdownException:
                 return
             except Exception as error:
+                if self._closing:  # rclpy takes away what this thread may be waiting with
+                    return
                 self.node.get_logger().error(f"{type(error).__name__}: {error}")

@@ -4,46 +4,43 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
-from math import inf, radians
+from math import radians
 from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 from rclpy.node import Node
-from sensor_msgs.msg import BatteryState, LaserScan
-from std_msgs.msg import Bool, String
-from std_srvs.srv import SetBool, Trigger
+from std_srvs.srv import Trigger
 
 from btlang.robots.geometry import Point, Pose
-from btlang.robots.robot import Hand, Navigation, OnEvent, RobotError
-from btlang.robots.world import ROBOT_RADIUS, Place, World, said
+from btlang.robots.robot import Deed, Done, Hand, OnEvent, RobotError
+from btlang.robots.world import ROBOT_RADIUS, Place, World
 from btlang.ros.base import RosBase
+from btlang.ros.errands import Errands
+from btlang.ros.hands import RosHands
 from btlang.ros.inbox import Inbox
 from btlang.ros.joints import RosJoints
 from btlang.ros.places import Places
-from btlang.ros.services import Services, wait_all
+from btlang.ros.power import RosPower
+from btlang.ros.senses import RosSenses
+from btlang.ros.services import Services
 from btlang.ros.voice import RosVoice
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from threading import Event
-
     from btlang.ros.journey import RosNavigation
 
-_SCAN, _BATTERY, _BUMP, _DOCKED = "/scan", "/battery_state", "/bump", "/docked"
-_SCAN_SILENT, _BATTERY_SILENT = 2.0, 30.0  # seconds
-_FREE_AGAIN = 0.03  # metres from where it bumped
-_LAST_WORDS = 1.0  # seconds that servers get to answer at the end
-_CHARGING = 1  # sensor_msgs/BatteryState.POWER_SUPPLY_STATUS_CHARGING
-_HANDS: tuple[Hand, Hand] = ("left", "right")
+_STOP = "stop"
+_TOLD_TO_STOP = "the robot was told to stop"
+_LAST_WORDS = 2.0  # seconds that servers get to answer at the end
 
 
 class RosRobot:
     """Implements `btlang.robots.robot.Robot`; the pose is on the map of the world file.
 
-    A sensor that is silent is a RobotError for who asks for it, never a wait. The hands and the dock are services,
-    which the tick waits for, a few seconds at most. The node has to be spun in a thread of its own. Sensors get old
-    by the seconds of `now`, and by those of the system's clock.
+    A sensor that is silent is a RobotError for who asks for it, never a wait. The node has to be spun in a thread of
+    its own; its namespace is that of the robot. Sensors get old by the seconds of `now`, and by those of the system's
+    clock.
     """
 
     moves_by_itself = True
@@ -61,36 +58,27 @@ class RosRobot:
     ) -> None:
         self.on_event = on_event
         self.stops = 0
-        self.bumps = 0
         self.inbox = inbox = Inbox(node, now)
         self._node = node
+        self._errands = Errands(node)
         self._places = Places(world)
         self._base = RosBase(node, inbox, self.radius)
         self._joints = RosJoints(node, inbox)
         self._voice = RosVoice(node, inbox)
-        self._services = Services(node)
+        self._services = Services(node, self._errands)
+        self._services.add(_STOP, Trigger)
+        self._senses = RosSenses(inbox, self._base, self._emit)
+        self._power = RosPower(node, inbox, self._services, self._emit)
+        self._hands = RosHands(node, inbox, self._services, self._places, self._base.where, self._emit)
         self._navigation: RosNavigation | None = None
-        self._asked: list[Event] = []
-        self._stopping = self._closed = self._stuck_told = False
-        self._contact: Pose | None = None
-        self._holding: dict[Hand, str] = {}
-        self._docked: bool | None = None
-        inbox.listen(_SCAN, LaserScan, "laser scan")
-        inbox.listen(_BATTERY, BatteryState, "battery state")
-        inbox.listen(_BUMP, String, "bumps", qos="events")
-        inbox.listen(_DOCKED, Bool, "word of the dock", qos="state")
-        for hand in _HANDS:
-            inbox.listen(_held(hand), String, f"word of the {hand} hand", qos="state")
-            self._services.add(f"/{hand}_hand/close", SetBool)
-        for name in ("/dock", "/undock", "/stop"):
-            self._services.add(name, Trigger)
+        self._stopping = self._closed = False
 
     def prepare_navigation(self) -> None:
         """Makes the client of the navigation server, which finds it in a moment. Needs nav2_msgs."""
         if self._navigation is None:
             from btlang.ros.journey import RosNavigation
 
-            self._navigation = RosNavigation(self._node)
+            self._navigation = RosNavigation(self._node, self._errands)
 
     def step(self, dt: float) -> None:
         """`dt` seconds have passed: reads what has come, and tells the wanted velocity again."""
@@ -101,10 +89,10 @@ class RosRobot:
         self._base.step(dt)
         self._voice.step(dt)
         arrived = self._navigation.step() if self._navigation is not None else None
-        for message in self.inbox.events(_DOCKED):
-            self._docked = bool(message.data)
-        self._hear_hands()
-        self._tell_contacts()
+        self._power.step()
+        self._hands.step()
+        self._services.step()  # last: what was answered is newer than what topics told before
+        self._senses.step()
         if arrived is not None and arrived.failure is None:
             self._emit("arrive", name=arrived.name)
 
@@ -117,24 +105,26 @@ class RosRobot:
         self.stops += 1
         if not self._closed:
             self._rest()
-            self._asked.append(self._services.fire("/stop"))
+            self._services.fire(_STOP)
             self._emit("stop")
 
     def close(self) -> None:
-        """The end: at rest, and waits a second or two at most until all who have to know of it do."""
+        """The end: at rest, and waits two seconds or so at most until all who have to know of it do."""
         if self._closed:
             return
         self._rest()
         self._base.confirm_halt()
+        until = time.monotonic() + _LAST_WORDS
         if self._navigation is not None:
             self._navigation.confirm_stop(_LAST_WORDS)
-        wait_all(self._asked, _LAST_WORDS)
+        self._services.confirm(until - time.monotonic())
         self._closed = True
 
     def _rest(self) -> None:
         self._base.halt()
         if self._navigation is not None:
-            self._navigation.stop("the robot was told to stop")
+            self._navigation.stop(_TOLD_TO_STOP)
+        self._services.stop(_TOLD_TO_STOP)
         self._joints.freeze()
         self._voice.silence()
 
@@ -157,6 +147,10 @@ class RosRobot:
         """Metres and degrees a second, as the odometry measures. Raises RobotError where it is silent."""
         return self._base.velocity
 
+    def velocity_type(self) -> str:
+        """The type of message in which those who listen to the velocity are told it."""
+        return self._base.adapt()
+
     def drive(self, linear: float, angular: float) -> None:
         """Sets the wanted metres and degrees a second; ends a journey under way."""
         if self._stopping:
@@ -168,9 +162,14 @@ class RosRobot:
             self._base.halt()  # `stop` came in between from another thread
 
     @property
+    def bumps(self) -> int:
+        """How often it ran into something."""
+        return self._senses.bumps
+
+    @property
     def bumped(self) -> bool:
         """True from a contact until it has moved away."""
-        return self._contact is not None
+        return self._senses.bumped
 
     @property
     def stuck(self) -> bool:
@@ -186,7 +185,7 @@ class RosRobot:
         facing = next((place.facing for place in self._places.world.places if place.name == name), None)
         return *point, None if facing is None else radians(facing)
 
-    def navigate_to(self, name: str) -> Navigation:
+    def navigate_to(self, name: str) -> Deed:
         """Sends NavigateToPose. Raises RobotError for an unknown name, and where nobody knows where the robot is."""
         known = self._places.known(name)
         goal = self._places.goal(known, self.pose)
@@ -196,14 +195,14 @@ class RosRobot:
             self._base.halt()
         journey = self._navigation.start(known, goal)
         if self._stopping:
-            journey.end("the robot was told to stop")
+            journey.end(_TOLD_TO_STOP)
         self._emit("navigate", name=known)
         return journey
 
     # Senses
     def scan(self) -> npt.NDArray[np.float64]:
         """The nearest echo in each degree. Raises RobotError when the scanner is silent."""
-        return _degrees(self.inbox.get(_SCAN, _SCAN_SILENT))
+        return self._senses.scan()
 
     def locate(self, name: str) -> Point:
         """Where it is by the world file and the mission. Raises RobotError for an unknown name."""
@@ -221,10 +220,7 @@ class RosRobot:
     @property
     def battery(self) -> float:
         """Percent left. Raises RobotError where nothing tells of it."""
-        share = float(self.inbox.get(_BATTERY, _BATTERY_SILENT).percentage)
-        if not 0.0 <= share <= 1.0:
-            raise RobotError(f"{_BATTERY} tells no percentage")
-        return 100.0 * share
+        return self._power.battery
 
     @property
     def battery_empty(self) -> bool:
@@ -237,24 +233,22 @@ class RosRobot:
     @property
     def docked(self) -> bool:
         """True while connected to the dock. Raises RobotError where nothing tells of it."""
-        return self._docked if self._docked is not None else bool(self.inbox.get(_DOCKED).data)
+        return self._power.docked
 
     @property
     def charging(self) -> bool:
         """True while the battery is being charged. Raises RobotError where nothing tells of it."""
-        return bool(self.inbox.get(_BATTERY, _BATTERY_SILENT).power_supply_status == _CHARGING)
+        return self._power.charging
 
-    def dock(self) -> None:
-        """Connects to the charger. Raises RobotError with the robot's reason."""
-        self._services.call("/dock")
-        self._docked = True  # before the topic tells so
-        self._emit("dock")
+    def dock(self) -> Deed:
+        """Connects to the charger, or fails with the robot's reason. Raises RobotError where nothing serves it."""
+        self._check_stop()
+        return self._power.dock()
 
-    def undock(self) -> None:
-        """Disconnects. Raises RobotError with the robot's reason."""
-        self._services.call("/undock")
-        self._docked = False
-        self._emit("undock")
+    def undock(self) -> Deed:
+        """Disconnects, or fails with the robot's reason. Raises RobotError where nothing serves it."""
+        self._check_stop()
+        return self._power.undock()
 
     # Arms, hands, head
     def joint(self, name: str) -> float:
@@ -275,33 +269,21 @@ class RosRobot:
         """These joints stay where they are now."""
         self._joints.freeze(names)
 
-    def grasp(self, hand: Hand, name: str | None = None) -> str:
-        """Closes a hand; where it closes on another object than the named one, it opens again. Raises RobotError."""
-        if self._stopping:
-            raise RobotError("the robot was told to stop")
-        wanted = None if name is None else self._places.known(name)
-        found = self._services.call(f"/{hand}_hand/close", data=True)
-        if wanted is not None and found.lower() != wanted.lower():
-            self._services.call(f"/{hand}_hand/close", data=False)
-            raise RobotError(f"the {hand} hand closed on {said(found)} instead of {said(wanted)}")
-        self._holds(hand, found)
-        self._emit("grasp", hand=hand, name=found)
-        return found
+    def grasp(self, hand: Hand, name: str | None = None) -> Deed:
+        """Closes a hand; where it closes on another object than the named one, it opens again and fails.
 
-    def release(self, hand: Hand) -> str | None:
-        """Opens a hand; the name of what it put down. Raises RobotError with the robot's reason."""
-        if self._stopping:
-            return None
-        name = self._services.call(f"/{hand}_hand/close", data=False) or None
-        self._holds(hand, "")
-        self._emit("release", hand=hand, name=name)
-        return name
+        Raises RobotError for an unknown name, and where nothing serves it.
+        """
+        self._check_stop()
+        return self._hands.grasp(hand, name)
+
+    def release(self, hand: Hand) -> Deed:
+        """Opens a hand, or fails with the robot's reason. Raises RobotError where nothing serves it."""
+        return Done() if self._stopping else self._hands.release(hand)
 
     def holding(self, hand: Hand) -> str | None:
         """The name of what the hand holds. Raises RobotError where nothing tells of it."""
-        if hand not in self._holding:
-            self.inbox.get(_held(hand))
-        return self._holding.get(hand) or None
+        return self._hands.holding(hand)
 
     # Voice
     def say(self, text: str) -> None:
@@ -324,58 +306,10 @@ class RosRobot:
         self._voice.print(text)
         self._emit("print", text=text)
 
-    def _holds(self, hand: Hand, name: str) -> None:
-        before = self._holding.get(hand, "")
-        if name == before:
-            return
-        self._holding[hand] = name
-        objects = self._places.world.names.objects
-        here = self._where()
-        if before in objects and here is not None:
-            self._places.put_down(before, here)
-        if name in objects:
-            self._places.picked_up(name)
-
-    def _hear_hands(self) -> None:
-        for hand in _HANDS:
-            for message in self.inbox.events(_held(hand)):
-                before = self._holding.get(hand, "")
-                self._holds(hand, message.data)
-                if before and not message.data:
-                    self._emit("drop", hand=hand, name=before)
-
-    def _tell_contacts(self) -> None:
-        for message in self.inbox.events(_BUMP):
-            self.bumps += 1
-            self._contact = self._where()
-            self._emit("bump", into=message.data)
-        now = self._where()
-        if self._contact is not None and now is not None and self._contact.distance_to((now.x, now.y)) > _FREE_AGAIN:
-            self._contact = None
-        if self._base.stuck and not self._stuck_told:
-            self._emit("stuck")
-        self._stuck_told = self._base.stuck
-
-    def _where(self) -> Pose | None:
-        try:
-            return self.pose
-        except RobotError:
-            return None
+    def _check_stop(self) -> None:
+        if self._stopping:
+            raise RobotError(_TOLD_TO_STOP)
 
     def _emit(self, event: str, **data: Any) -> None:
         if self.on_event is not None:
             self.on_event(event, data)
-
-
-def _held(hand: Hand) -> str:
-    return f"/{hand}_hand/holding"
-
-
-def _degrees(scan: Any) -> npt.NDArray[np.float64]:
-    """360 distances, index = degrees left of the heading; inf where no beam came back."""
-    ranges = np.asarray(scan.ranges, dtype=np.float64)
-    angles = scan.angle_min + scan.angle_increment * np.arange(len(ranges))
-    seen = np.isfinite(ranges) & (ranges >= scan.range_min) & (ranges <= scan.range_max)
-    found = np.full(360, inf)
-    np.minimum.at(found, np.rint(angles[seen] / radians(1.0)).astype(int) % 360, ranges[seen])
-    return found

@@ -1,60 +1,123 @@
-"""Short services of a robot: called in the tick, which waits for the answer, but never long."""
+"""Short services of a robot: the thread that spins calls them, the tick looks at what was answered."""
 
 from __future__ import annotations
 
 import time
-from threading import Event
+from collections.abc import Callable
+from functools import partial
+from threading import Event, Lock
 from typing import Any
 
 from rclpy.node import Node
 
 from btlang.robots.robot import RobotError
+from btlang.ros.errands import Errands
 
 _ANSWER = 3.0  # seconds of real time
 
 
-class Services:
-    """Clients of services by their names. `fire` may be called from any thread."""
+class Call:
+    """A service that was called; see `btlang.robots.robot.Deed`. `end` may be called from any thread.
 
-    def __init__(self, node: Node) -> None:
-        self._node = node
+    A call cannot be taken back: when it is cancelled, nobody looks at the answer.
+    """
+
+    def __init__(self, name: str, accomplished: Callable[[str], object]) -> None:
+        self.done = False
+        self.failure: str | None = None
+        self._name, self._accomplished = name, accomplished
+        self._since = time.monotonic()
+        self._lock = Lock()
+        self._answer: Any = None
+
+    def cancel(self) -> None:
+        """Nobody waits for the answer any more."""
+        self.end(f"the answer of {self._name} was not waited for")
+
+    def end(self, failure: str | None) -> None:
+        """Accomplished, or the reason why not. Does nothing when done."""
+        with self._lock:
+            if not self.done:
+                self.failure, self.done = failure, True
+
+    def answered(self, answer: Any) -> None:
+        """In the thread that spins."""
+        self._answer = answer
+
+    def look(self) -> None:
+        """Goes on with what has come, in the thread that ticks."""
+        answer = self._answer
+        if self.done:
+            return
+        if answer is None:
+            if time.monotonic() - self._since > _ANSWER:
+                self.end(f"no answer from {self._name} for {_ANSWER:g} s")
+        elif not answer.success:
+            self.end(answer.message or f"{self._name} refused")
+        else:
+            try:
+                self._accomplished(str(answer.message))
+                self.end(None)
+            except RobotError as error:
+                self.end(str(error))
+
+
+class Services:
+    """Clients of services by their names. `fire` and `stop` may be called from any thread."""
+
+    def __init__(self, node: Node, errands: Errands) -> None:
+        self._node, self._errands = node, errands
         self._clients: dict[str, Any] = {}
         self._types: dict[str, Any] = {}
+        self._calls: list[Call] = []
+        self._fired: list[Event] = []
 
     def add(self, name: str, kind: Any) -> None:
         """Makes the client, so that it has found its server when it is needed."""
         self._clients[name] = self._node.create_client(kind, name)
         self._types[name] = kind
 
-    def call(self, name: str, **fields: Any) -> str:
-        """The message of the answer. Raises RobotError where the answer is no, or none, or nobody serves it."""
-        client = self._clients[name]
-        if not client.service_is_ready():
-            raise RobotError(f"nothing serves {name}")
-        answered = Event()
-        future = client.call_async(self._types[name].Request(**fields))
-        future.add_done_callback(lambda _: answered.set())
-        if not answered.wait(_ANSWER):
-            client.remove_pending_request(future)
-            raise RobotError(f"no answer from {name} for {_ANSWER:g} s")
-        answer = future.result()
-        if not answer.success:
-            raise RobotError(answer.message or f"{name} refused")
-        return str(answer.message)
+    def call(self, name: str, accomplished: Callable[[str], object], **fields: Any) -> Call:
+        """Calls it and waits for nothing. Raises RobotError where nobody serves it.
 
-    def fire(self, name: str) -> Event:
-        """Calls it, where somebody serves it, and does not wait; the event is set when it was answered."""
-        answered = Event()
-        client = self._clients[name]
-        if client.service_is_ready():
-            client.call_async(self._types[name].Request()).add_done_callback(lambda _: answered.set())
-        else:
-            answered.set()
-        return answered
+        When the answer is yes, a `step` calls `accomplished` with its message; a RobotError from there is a failure.
+        """
+        shown = self._clients[name].service_name
+        if not self._clients[name].service_is_ready():
+            raise RobotError(f"nothing serves {shown}")
+        call = Call(shown, accomplished)
+        self._send(name, fields, call.answered)
+        self._calls.append(call)
+        return call
+
+    def fire(self, name: str, **fields: Any) -> None:
+        """Calls it, where somebody serves it, whatever the answer is."""
+        if self._clients[name].service_is_ready():
+            answered = Event()
+            self._fired.append(answered)
+            self._send(name, fields, lambda answer: answered.set())
+
+    def step(self) -> None:
+        """Calls go on with what has been answered since the step before."""
+        for call in self._calls:
+            call.look()
+        self._calls = [call for call in self._calls if not call.done]
+
+    def stop(self, reason: str) -> None:
+        """Nobody waits for the calls under way any more."""
+        for call in tuple(self._calls):
+            call.end(reason)
+
+    def confirm(self, seconds: float) -> None:
+        """Waits until all that was fired is answered, but so long at most."""
+        until = time.monotonic() + seconds
+        for event in self._fired:
+            event.wait(max(0.0, until - time.monotonic()))
+
+    def _send(self, name: str, fields: dict[str, Any], answered: Callable[[Any], object]) -> None:
+        client, request = self._clients[name], self._types[name].Request(**fields)
+        self._errands.post(partial(_ask, client, request, answered))
 
 
-def wait_all(events: list[Event], seconds: float) -> None:
-    """Until all are set, but so long at most."""
-    until = time.monotonic() + seconds
-    for event in events:
-        event.wait(max(0.0, until - time.monotonic()))
+def _ask(client: Any, request: Any, answered: Callable[[Any], object]) -> None:
+    client.call_async(request).add_done_callback(lambda future: answered(future.result()))

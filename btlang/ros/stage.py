@@ -14,11 +14,13 @@ from btlang.robots.world import World
 from btlang.ros.available import require_ros
 from btlang.ros.binding import bind_ros
 from btlang.ros.clients import Clients
+from btlang.ros.connected import is_connected
+from btlang.ros.graph import absent, full_name
 from btlang.ros.node import SpunNode
 from btlang.ros.pace import RosPace
-from btlang.ros.preflight import DISCOVERY, preflight
 from btlang.ros.robot import RosRobot
-from btlang.ros.wire import CLOCK, Interface, needs
+from btlang.ros.serving.names import served
+from btlang.ros.wire import CLOCK, VELOCITY, Interface, needs
 from btlang.run.controls import Controls
 from btlang.run.events import EventStream, RobotEvent
 from btlang.run.pace import Pace
@@ -32,6 +34,8 @@ if TYPE_CHECKING:
     from btlang.vocabulary.entry import Entry
     from btlang.vocabulary.vocabulary import Vocabulary
 
+_DISCOVERY = 2.0  # seconds of real time in which all that is needed has to be found
+_LOOK = 0.01
 _LAST_ANSWERS = 2.0  # seconds that goals which were halted get to end
 
 
@@ -39,15 +43,20 @@ class RosStage:
     """See `btlang.run.stage.Stage`. Names and poses are those of the world file, whose map is the robot's.
 
     With `sim_time` the mission's clock follows the topic /clock, else the system's. Missions run in real time.
-    `name` is that of the node.
+    `namespace` is that of the robot and of the node, `node`, whose name is `name`. With `servers` actions are done by
+    the servers of `btc serve-actions` in that folder of names; what the robot senses comes from itself all the same.
     """
 
-    def __init__(self, world: World, *, sim_time: bool = False, name: str = "btlang") -> None:
+    def __init__(
+        self, world: World, *, sim_time: bool = False, namespace: str = "", name: str = "btlang", servers: str = ""
+    ) -> None:
         self.world = world
         self.clock = Clock()
         self.events = EventStream()
         self._sim_time = sim_time
-        self._spun = SpunNode(name, use_sim_time=sim_time)
+        self._servers = servers
+        self._spun = SpunNode(name, namespace=namespace, use_sim_time=sim_time)
+        self.node = self._spun.node
         self._now = self._ros_time if sim_time else time.monotonic
         try:
             self.robot = RosRobot(self._spun.node, world, on_event=self._publish, now=self._now)
@@ -60,7 +69,12 @@ class RosStage:
             raise
 
     def bind(self, entry: Entry, vocabulary: Vocabulary) -> LeafBinding | None:
-        """As a client of what its `ros` table names; None without one. Raises MissionError (BT104 to BT106)."""
+        """As a client of what its `ros` table names, or of its server; None where neither is there.
+
+        Raises MissionError (BT104 to BT106).
+        """
+        if self._servers:
+            entry = served(entry, vocabulary, self._servers)
         return bind_ros(entry, vocabulary, self._clients, self.robot.located)
 
     def survey(self, tree: Tree, vocabulary: Vocabulary) -> dict[Interface, tuple[Node | None, str]]:
@@ -72,16 +86,34 @@ class RosStage:
         wanted: dict[Interface, Node | None] = {CLOCK: None} if self._sim_time else {}
         declared, own = self._bound(tree, vocabulary)
         wanted.update(needs(tree, but=declared))
-        if any(interface.kind == "acts" for interface in wanted):
+        if any(interface.kind == "action" for interface in wanted):
             require_ros("nav2_msgs")
             self.robot.prepare_navigation()
-        found = preflight(self._spun.node, self.robot.inbox, wanted)
-        self._clients.wait(DISCOVERY)
-        lacking = {Interface(need.kind, need.name, need.type): need.missing for need in self._clients.needs()}
-        return {
-            **{interface: (wanted[interface], reason) for interface, reason in found.items()},
-            **{interface: (node, lacking[interface]) for interface, node in own.items()},
-        }
+        until = time.monotonic() + _DISCOVERY
+        while True:
+            found = {spoken: (node, self._lacks(spoken)) for spoken, node in self._spoken(wanted).items()}
+            lacking = {Interface(need.kind, need.name, need.type): need.missing for need in self._clients.needs()}
+            found.update((interface, (node, lacking[interface])) for interface, node in own.items())
+            if not any(reason for _, reason in found.values()) or time.monotonic() >= until:
+                return {self._named(interface): lack for interface, lack in found.items()}
+            time.sleep(_LOOK)
+
+    def _spoken(self, wanted: Mapping[Interface, Node | None]) -> dict[Interface, Node | None]:
+        """With the type of velocity that the robot listens to."""
+        types = {VELOCITY: self.robot.velocity_type()}
+        return {i.replace(type=types.get(i.name, i.type)): node for i, node in wanted.items()}
+
+    def _lacks(self, wanted: Interface) -> str:
+        """What is wrong with an interface that shipped leaves need, "" for nothing."""
+        node, name = self._spun.node, self._named(wanted).name
+        reason = absent(node, wanted.kind, name, wanted.type)
+        if not reason and wanted.flows and not self.robot.inbox.has(wanted.name):
+            return f"nothing has come on {name} yet"
+        return reason if reason or is_connected(node, name) else f"{name} is not connected yet"
+
+    def _named(self, interface: Interface) -> Interface:
+        named: Interface = interface.replace(name=full_name(self._spun.node, interface.kind, interface.name))
+        return named
 
     def _bound(self, tree: Tree, vocabulary: Vocabulary) -> tuple[set[str], dict[Interface, Node]]:
         """The ids of leaves that are done by `ros` tables, and what these need, each with the first such leaf."""
@@ -115,7 +147,7 @@ class RosStage:
         return RosPace(controls, self._now)
 
     def close(self) -> None:
-        """Leaves the robot at rest and its goals cancelled, then the ROS graph. Takes about two seconds at most."""
+        """Leaves the robot at rest and its goals cancelled, then the ROS graph. Takes a few seconds at most."""
         try:
             self._clients.close(_LAST_ANSWERS)
             self.robot.close()

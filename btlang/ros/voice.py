@@ -10,7 +10,7 @@ from std_msgs.msg import Bool, String
 from btlang.robots.robot import RobotError
 from btlang.ros.inbox import Inbox
 
-SPEECH, SPEAKING, PRINT = "/speech", "/speaking", "/print"
+SPEECH, SPEAKING, PRINT = "speech", "speaking", "print"
 _BEGINS = 0.5  # seconds of real time that it gets to begin
 _LATEST = 5.0  # how many times as long as expected it may speak
 
@@ -30,7 +30,7 @@ class RosVoice:
     def say(self, text: str) -> None:
         """Starts to speak. Raises RobotError where nobody listens."""
         if not self._speech.get_subscription_count():
-            raise RobotError(f"nobody listens on {SPEECH}")
+            raise RobotError(f"nobody listens on {self._speech.topic_name}")
         self._asked, self._heard, self._age, self._since = True, False, 0.0, time.monotonic()
         self._expected = 0.35 + 0.06 * len(text)
         self._speech.publish(String(data=text))
@@ -44,7 +44,7 @@ class RosVoice:
     def print(self, text: str) -> None:
         """Shows text. Raises RobotError where nobody listens."""
         if not self._print.get_subscription_count():
-            raise RobotError(f"nobody listens on {PRINT}")
+            raise RobotError(f"nobody listens on {self._print.topic_name}")
         self._print.publish(String(data=text))
 
     def step(self, dt: float) -> None:
@@ -62,5 +62,7 @@ class RosVoice:
     def speaking(self) -> bool:
         """True until it has spoken. Raises RobotError where that takes far longer than the text is long."""
         if self._asked and self._age > 2.0 + _LATEST * self._expected:
-            raise RobotError(f"it has been speaking for {self._age:.0f} s: {SPEAKING} does not change")
+            raise RobotError(
+                f"it has been speaking for {self._age:.0f} s: {self._inbox.shown(SPEAKING)} does not change"
+            )
         return self._asked

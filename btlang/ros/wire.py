@@ -9,10 +9,10 @@ from btlang.tree.node import Node, Tree
 
 
 class Interface(Record):
-    """`kind` is "listens", "tells" (topics, as the robot does), "serves" (a service) or "acts" (an action).
+    """What the robot has to offer: `kind` is "publisher" or "listener" of a topic, "service", "action" or "node".
 
-    `type` is as ROS 2 tools write it. What `flows` tells who listens how it is, at once or again and again, so that
-    silence is a fault.
+    A name without a slash before it is in the namespace of the robot. `type` is as ROS 2 tools write it. What `flows`
+    tells who listens how it is, at once or again and again, so that silence is a fault.
     """
 
     kind: str
@@ -23,42 +23,42 @@ class Interface(Record):
     @property
     def sort(self) -> str:
         """What it is in ROS 2."""
-        return {"serves": "service", "acts": "action", "listener": "topic", "publisher": "topic"}.get(
-            self.kind, "topic" if self.kind in ("listens", "tells") else self.kind
-        )
+        return "topic" if self.kind in ("publisher", "listener") else self.kind
 
 
-CLOCK = Interface("tells", "/clock", "rosgraph_msgs/msg/Clock", flows=True)
+VELOCITY = "cmd_vel"
+"""The topic whose type is Twist, or TwistStamped where the robot listens to that."""
+CLOCK = Interface("publisher", "/clock", "rosgraph_msgs/msg/Clock", flows=True)
 _BASE = (
-    Interface("listens", "/cmd_vel", "geometry_msgs/msg/Twist"),
-    Interface("tells", "/odom", "nav_msgs/msg/Odometry", flows=True),
+    Interface("listener", VELOCITY, "geometry_msgs/msg/Twist"),
+    Interface("publisher", "odom", "nav_msgs/msg/Odometry", flows=True),
 )
 _HAND = "std_srvs/srv/SetBool"
 _HOLDING = "std_msgs/msg/String"
 CAPABILITIES: dict[str, tuple[Interface, ...]] = {
     "base": _BASE,
     "pose": _BASE[1:],
-    "navigation": (Interface("acts", "/navigate_to_pose", "nav2_msgs/action/NavigateToPose"), *_BASE[1:]),
-    "scan": (Interface("tells", "/scan", "sensor_msgs/msg/LaserScan", flows=True),),
-    "bump": (Interface("tells", "/bump", "std_msgs/msg/String"),),
-    "battery": (Interface("tells", "/battery_state", "sensor_msgs/msg/BatteryState", flows=True),),
-    "docked": (Interface("tells", "/docked", "std_msgs/msg/Bool", flows=True),),
+    "navigation": (Interface("action", "navigate_to_pose", "nav2_msgs/action/NavigateToPose"), *_BASE[1:]),
+    "scan": (Interface("publisher", "scan", "sensor_msgs/msg/LaserScan", flows=True),),
+    "bump": (Interface("publisher", "bump", "std_msgs/msg/String"),),
+    "battery": (Interface("publisher", "battery_state", "sensor_msgs/msg/BatteryState", flows=True),),
+    "docked": (Interface("publisher", "docked", "std_msgs/msg/Bool", flows=True),),
     "docking": (
-        Interface("serves", "/dock", "std_srvs/srv/Trigger"),
-        Interface("serves", "/undock", "std_srvs/srv/Trigger"),
+        Interface("service", "dock", "std_srvs/srv/Trigger"),
+        Interface("service", "undock", "std_srvs/srv/Trigger"),
     ),
     "joints": (
-        Interface("listens", "/joint_trajectory", "trajectory_msgs/msg/JointTrajectory"),
-        Interface("tells", "/joint_states", "sensor_msgs/msg/JointState", flows=True),
+        Interface("listener", "joint_trajectory", "trajectory_msgs/msg/JointTrajectory"),
+        Interface("publisher", "joint_states", "sensor_msgs/msg/JointState", flows=True),
     ),
-    "left hand": (Interface("serves", "/left_hand/close", _HAND),),
-    "right hand": (Interface("serves", "/right_hand/close", _HAND),),
+    "left hand": (Interface("service", "left_hand/close", _HAND),),
+    "right hand": (Interface("service", "right_hand/close", _HAND),),
     "holding": (
-        Interface("tells", "/left_hand/holding", _HOLDING, flows=True),
-        Interface("tells", "/right_hand/holding", _HOLDING, flows=True),
+        Interface("publisher", "left_hand/holding", _HOLDING, flows=True),
+        Interface("publisher", "right_hand/holding", _HOLDING, flows=True),
     ),
-    "voice": (Interface("listens", "/speech", "std_msgs/msg/String"),),
-    "print": (Interface("listens", "/print", "std_msgs/msg/String"),),
+    "voice": (Interface("listener", "speech", "std_msgs/msg/String"),),
+    "print": (Interface("listener", "print", "std_msgs/msg/String"),),
 }
 """What the robot needs for each thing that it can do."""
 

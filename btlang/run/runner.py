@@ -20,11 +20,29 @@ from btlang.tree.node import Tree
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any
+    from typing import Any, Protocol
 
     from btlang.engine.timing import Stopwatch
     from btlang.engine.watch import Changes
     from btlang.run.events import Robot
+
+    class Ticked(Protocol):
+        """What a run ticks: an Engine, or several that count as one."""
+
+        on_wake: Callable[[], object] | None
+
+        @property
+        def failure(self) -> Failure | None: ...
+
+        def tick(self) -> int: ...
+
+        def halt(self, emergency: bool = False) -> None: ...
+
+        def suspend(self) -> None: ...
+
+        def take_halt_failures(self) -> list[Failure]: ...
+
+        def close(self, patience: float = 0.0) -> list[Failure]: ...
 
 
 _REST = 2.0  # seconds of the mission that a robot gets to come to rest
@@ -84,7 +102,7 @@ class Runner:
 
     def __init__(
         self,
-        engine: Engine,
+        engine: Ticked,
         *,
         clock: Clock,
         robot: Robot | None = None,
@@ -107,7 +125,7 @@ class Runner:
         self._began = clock.now
         self._pace = pace(speed, self.controls)
         self._overruns: Overruns | None = None
-        if engine.stopwatch is not None and speed < math.inf:
+        if isinstance(engine, Engine) and engine.stopwatch is not None and speed < math.inf:
             self._overruns = Overruns(engine, engine.stopwatch, self._pause, clock, self._events)
         self.ticks = 0
         self.controls.robot = robot
@@ -173,7 +191,7 @@ class Runner:
             self._advance(self._pace.sleep(self._period_left()))
         return IDLE, "interrupted"
 
-    def _tick(self, ticking: Engine | Overruns) -> int:
+    def _tick(self, ticking: Ticked | Overruns) -> int:
         self._suspended = False
         self._pace.tick_begins()
         status = ticking.tick()

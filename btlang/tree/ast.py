@@ -317,6 +317,20 @@ def parts(node: Ast) -> list[Ast]:
     return found
 
 
+def exact_nodes(mission: Mission) -> list[Exact]:
+    """The nodes that a mission and its definitions say by their ids."""
+    found: list[Exact] = []
+    stack = [mission.body] if mission.body is not None else []
+    stack += [definition.body for definition in reversed(all_definitions(mission))]
+    while stack:
+        item = stack.pop()
+        if type(item) is Exact:
+            found.append(item)
+        if item.parts:
+            stack += reversed(parts(item))
+    return found
+
+
 def keys_of(node: Ast) -> Iterator[str]:
     """The keys of values of the mission that a node itself uses, not those in its parts."""
     if isinstance(node, Phrase | Name | Compared | Remember):

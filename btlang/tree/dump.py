@@ -6,6 +6,8 @@ from collections.abc import Callable, Iterator
 
 from btlang.tree.node import Node, Tree
 
+_ESCAPES = str.maketrans({"\\": "\\\\", '"': '\\"', "\n": "\\n", "\r": "\\r", "\t": "\\t"})
+
 
 def plain(tree: Tree) -> str:
     """One line a node, `Id port=value`, indented by two spaces a level; named subtrees follow, sorted by name.
@@ -59,4 +61,4 @@ def _branches(root: Node, label: Callable[[Node], str]) -> Iterator[str]:
 def _value(text: str) -> str:
     if text and not any(c.isspace() or c in '"=\\' or not c.isprintable() for c in text):
         return text
-    return '"' + text.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n").replace("\t", "\\t") + '"'
+    return '"' + text.translate(_ESCAPES) + '"'

@@ -35,6 +35,7 @@ _LIMITS = dict.fromkeys(LIMITS, "value")
 _DRIVE = {"speed": "amount", "odometry": "text", "tolerance": "number", "patience": "positive"}
 KINDS: dict[str, dict[str, dict[str, str]]] = {
     "action": {"action": {"goal": "fields", **_ANSWER}},
+    "phrase": {"action": {"wait": "positive"}},
     "service": {"action": {"request": "fields", **_ANSWER, "limit": "positive"}},
     "publish": {
         "action": {
@@ -72,6 +73,7 @@ _FORMS = {
 _TYPED = {
     "action": "action", "service": "srv", "publish": "msg", "topic": "msg", "drive": "msg", "joints": "msg"
 }  # fmt: skip
+_UNTYPED = {"parameter": "the name of a parameter", "phrase": "a phrase or the id of the action that is served"}
 _EXAMPLES = {
     "action": "nav2_msgs/action/NavigateToPose", "srv": "std_srvs/srv/Trigger", "msg": "std_msgs/msg/String"
 }  # fmt: skip
@@ -105,7 +107,7 @@ def read_ros(table: object, sort: str) -> tuple[RosBinding | None, list[tuple[st
     if middle and not (isinstance(interface, str) and re.fullmatch(rf"\w+/{middle}/\w+", interface)):
         wrong.append((f'{kind} is a type, written such as "{_EXAMPLES[middle]}"', str(interface)))
     elif not isinstance(interface, str) or not interface:
-        wrong.append((f"{kind} is the name of a parameter", kind))
+        wrong.append((f"{kind} is {_UNTYPED[kind]}", kind))
     if not isinstance(name, str) or not re.fullmatch(r"[/~]?\w+(/\w+)*", name):
         wrong.append((f'name = "..." is the name of {_named(kind)}, such as "/robot/arm"', str(name or kind)))
     options = []
@@ -185,7 +187,8 @@ def _plural(sort: str) -> str:
 
 
 def _named(kind: str) -> str:
-    return {"service": "the service", "action": "the action", "parameter": "the node"}.get(kind, "the topic")
+    names = {"service": "the service", "action": "the action", "phrase": "the action", "parameter": "the node"}
+    return names.get(kind, "the topic")
 
 
 def slots_of(value: Value) -> Iterator[str]:

@@ -2,18 +2,25 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
+import pytest
 from hypothesis import given, note, settings
 
-from btlang.api import world_vocabulary
+from btlang.api import parse_tree, world_vocabulary
 from btlang.backends.english import to_english
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.reading import read_source
 from btlang.frontends.mission import read_mission
 from btlang.passes import lower_mission
 from btlang.text.source import Source
 from btlang.tree.dump import plain
-from btlang.tree.node import Tree
+from btlang.tree.node import Node, Tree
 from tests.backends.any_tree import trees
+from tests.conftest import matches_golden
 
 PARSERS = ("shunting-yard", "lark")
+CORPUS = sorted((Path(__file__).parents[1] / "corpus" / "good").glob("*.xml"))
 
 
 @settings(max_examples=300)
@@ -26,3 +33,29 @@ def test_any_tree_is_said_and_read_back(tree: Tree) -> None:
         again = lower_mission(read_mission(Source(text), vocabulary, parser).mission, vocabulary)
         assert plain(again) == plain(tree)
         assert to_english(again.replace(models=tree.models), vocabulary) == text
+
+
+@pytest.mark.parametrize("path", CORPUS, ids=lambda path: path.stem)
+def test_trees_of_the_corpus(path: Path) -> None:
+    tree = parse_tree(read_source(str(path)))
+    text = str(tree.to("english"))
+    for parser in PARSERS:
+        again = lower_mission(read_mission(Source(text), tree.vocabulary, parser).mission, tree.vocabulary)
+        assert plain(again) == plain(tree.tree)
+
+
+def test_comments_stand_before_what_they_are_about() -> None:
+    folder = Path(__file__).parent
+    matches_golden(str(parse_tree(read_source(str(folder / "comments.xml"))).to("english")), folder / "comments.txt")
+
+
+def test_a_tree_without_a_text() -> None:
+    """No quotes hold a line end in the name of a subtree, so that there is a message in place of a wrong mission."""
+    tree = Tree(Node("SubTree", (), (("ID", "a\nb"),)), (("a\nb", Node("Wave")),))
+    with pytest.raises(MissionError, match="BT142"):
+        to_english(tree, world_vocabulary())
+
+
+def test_explaining_a_tree_of_xml() -> None:
+    explained = parse_tree('<root BTCPP_format="4"><BehaviorTree ID="MainTree"><Wave/></BehaviorTree></root>').explain()
+    assert explained == "line 1: wave\n  read as: wave\n\n  Wave: wave"

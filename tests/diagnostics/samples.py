@@ -9,8 +9,9 @@ from pathlib import Path
 from btlang.api import world_vocabulary
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError
 from btlang.diagnostics.reading import read_source
+from btlang.frontends.btcpp.reader import read_xml
 from btlang.frontends.mission import DEFAULT_PARSER, read_mission
-from btlang.passes import compile_mission
+from btlang.passes import checked, compile_mission
 from btlang.passes.lint import lint
 from btlang.text.source import Source
 from btlang.vocabulary.vocabulary import Vocabulary
@@ -24,6 +25,9 @@ def told(source: Source, command: str = "") -> list[Diagnostic]:
     options = {word: words[at + 1] for at, word in enumerate(words) if word.startswith("--") and at + 1 < len(words)}
     try:
         vocabulary = words_of(options.get("--keywords"), options.get("--world"))
+        if source.text.startswith("<"):
+            checked(read_xml(source), vocabulary)
+            return []
         reading = read_mission(source, vocabulary, DEFAULT_PARSER)
         tree = compile_mission(reading.mission, vocabulary)
     except MissionError as error:

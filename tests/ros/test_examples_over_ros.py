@@ -1,9 +1,8 @@
-"""The missions that ship end on a ROS 2 robot as they do in the built-in simulation, each of their commands too."""
+"""The missions that ship do the same on a ROS 2 robot as in the built-in simulation, command by command."""
 
 from __future__ import annotations
 
 import json
-from collections import Counter
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -12,61 +11,94 @@ import pytest
 
 from btlang.api import world_vocabulary
 from btlang.cli import main
+from btlang.vocabulary.shipped import DEFAULT_WORLD
 from tests.examples.cases import CASES
 from tests.examples.test_examples import mission, words_of
-from tests.ros.processes import Command
+from tests.ros.lock_step import in_lock_step
+from tests.ros.processes import LONG, Command
 
-SPEED = {"oily_floor": "2"}
-"""Of the simulator, where it is not 6: there the mission has to begin soon, before its faults."""
-LONGEST = 150.0
-"""Seconds of the longest mission, by the clock of the simulator."""
-VARYING = {"careful_walk", "locked_lab", "look_before_you_go", "oily_floor"}
-"""How often a command runs in them, if at all, depends on when the mission begins, or on a centimetre: what is compared
-is how those commands ended that ran in both."""
 ENDING = [name for name, case in CASES.items() if "--for" not in case.options]
+LATER = 0.1
+"""How much longer or shorter a mission may take over ROS 2."""
+TURN = 1.0
+"""Seconds within which the order of two commands that go on at the same time may be another one."""
 
 
-def outcomes(path: Path, world: str | None) -> Counter[tuple[str, str]]:
-    """How often each command ended how. Their order may differ where several run at the same time."""
+class Simulator(Command):
+    """The robot, which waits for the mission."""
+
+    program = ("-m", "tests.ros.lock_step")
+
+
+def story(path: Path, world: str | None) -> list[tuple[float, str, str]]:
+    """When each command ended, and how, with all that was said and shown meanwhile."""
     vocabulary = world_vocabulary(world=world)
-    lines: list[dict[str, Any]] = [json.loads(line) for line in path.read_text(encoding="utf-8").splitlines()]
-    ended = [line for line in lines if line.get("status") in ("SUCCESS", "FAILURE") and "id" in line]
-    entries = [(line, vocabulary.entry(line["id"])) for line in ended]
-    return Counter(
-        (words_of(line), line["status"]) for line, entry in entries if entry is not None and entry.sort == "action"
-    )
+    told: list[tuple[float, str, str]] = []
+    for text in path.read_text(encoding="utf-8").splitlines():
+        line: dict[str, Any] = json.loads(text)
+        if line.get("event") in ("say", "print"):
+            told.append((line["t"], line["event"], line["text"]))
+        elif line.get("status") in ("SUCCESS", "FAILURE") and "id" in line:
+            entry = vocabulary.entry(line["id"])
+            if entry is not None and entry.sort == "action":
+                told.append((line["t"], line["status"], words_of(line)))
+    return told
+
+
+def assert_same(over_ros: Path, built_in: Path, world: str | None) -> None:
+    """The same happened in the same order, took as long, and ended for the same reason."""
+    found, expected = story(over_ros, world), story(built_in, world)
+    assert sorted(what for _, *what in found) == sorted(what for _, *what in expected)
+    for (_, *what), (turn, *_) in zip(found, expected, strict=True):
+        assert any(what == other and abs(when - turn) <= TURN for when, *other in expected), f"{what} at {turn}"
+    end, expected_end = ending(over_ros), ending(built_in)
+    assert end.pop("seconds") == pytest.approx(expected_end.pop("seconds"), rel=LATER)
+    assert end == expected_end
+
+
+def ending(path: Path) -> dict[str, Any]:
+    """What is told of the end."""
+    end: dict[str, Any] = json.loads(path.read_text(encoding="utf-8").splitlines()[-1])
+    assert end.pop("event") == "end"
+    del end["t"]
+    return end
 
 
 @pytest.mark.parametrize("name", ENDING)
-def test_an_example_ends_as_in_the_simulation(
+def test_an_example_does_as_in_the_simulation(
     name: str,
     tmp_path: Path,
     domain: int,
-    start_sim: Callable[..., Command],
+    monkeypatch: pytest.MonkeyPatch,
     nav2: object,
     capsys: pytest.CaptureFixture[str],
 ) -> None:
     path, *rest = mission(name)
     world = rest[1] if rest else None
+    command = ["run", path, *rest, *CASES[name].options, "--quiet", "--log"]
     built_in, over_ros = tmp_path / "built_in.json", tmp_path / "over_ros.json"
-    code = main(["run", path, *rest, *CASES[name].options, "--speed", "max", "--quiet", "--log", str(built_in)])
-    capsys.readouterr()
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
+    simulator = Simulator(tmp_path, domain, world or str(DEFAULT_WORLD))
+    code = main([*command, str(built_in), "--speed", "max"])
+    expected = capsys.readouterr().err
+    simulator.wait_for("ready")
+    in_lock_step(monkeypatch)
+    assert main([*command, str(over_ros), "--robot", "ros", "--sim-time"]) == code, capsys.readouterr().err
+    assert simulator.end() == 130
+    assert simulator.err == ""
 
-    start_sim(*(rest or ["--world", str(shipped_world())]), "--speed", SPEED.get(name, "6"))
-    options = ["--robot", "ros", "--sim-time", "--log", str(over_ros)]
-    command = Command(tmp_path, domain, "run", path, *rest, *CASES[name].options, *options)
-    assert command.process.wait(LONGEST) == code, command.err
-    expected, found = outcomes(built_in, world), outcomes(over_ros, world)
-    if name in VARYING:
-        both = {command for command, _ in expected} & {command for command, _ in found}
-        assert both
-        assert {end for end in found if end[0] in both} == {end for end in expected if end[0] in both}
-    else:
-        assert found == expected
+    assert bool(capsys.readouterr().err) == bool(expected)
+    assert_same(over_ros, built_in, world)
 
 
-def shipped_world() -> str:
-    """The world of missions that name none."""
-    from btlang.vocabulary.shipped import DEFAULT_WORLD
-
-    return DEFAULT_WORLD
+def test_it_does_with_clocks_that_wait_for_nobody(
+    tmp_path: Path, domain: int, start_sim: Callable[..., Command], capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = mission("first_steps")[0]
+    built_in, over_ros = tmp_path / "built_in.json", tmp_path / "over_ros.json"
+    assert main(["run", path, "--quiet", "--log", str(built_in), "--speed", "max"]) == 0
+    start_sim("--world", str(DEFAULT_WORLD), "--speed", "3")
+    command = Command(tmp_path, domain, "run", path, "--log", str(over_ros), "--robot", "ros", "--sim-time")
+    assert command.process.wait(LONG * 2) == 0, command.err
+    found, expected = story(over_ros, None), story(built_in, None)
+    assert [what for _, *what in found] == [what for _, *what in expected]

@@ -14,6 +14,7 @@ from nav_msgs.msg import Odometry
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
+from btlang.api import parse_tree
 from btlang.cli import main
 from tests.ros.client import LATCHED, Client, Heard, answer
 from tests.ros.processes import Command, wait_until
@@ -40,9 +41,12 @@ class Goal:
         assert self._client.ask(self.handle.cancel_goal_async).goals_canceling
 
 
-def test_a_sentence_runs(start_node, client: Client, run_mission: Any):
+@pytest.mark.parametrize("form", ["english", "xml"])
+def test_a_mission_runs(form: str, start_node, client: Client, run_mission: Any):
+    """A sentence, and the same tree in XML."""
     start_node("--speed", "10")
-    goal = Goal(client, run_mission, "move forward 1 meter then say done")
+    sentence = "move forward 1 meter then say done"
+    goal = Goal(client, run_mission, sentence if form == "english" else str(parse_tree(sentence).to("xml")))
     assert goal.handle.accepted
     end = goal.result()
     assert end.status == GoalStatus.STATUS_SUCCEEDED

@@ -26,6 +26,7 @@ class Script:
             self.process = subprocess.Popen(
                 [sys.executable, "-m", "tests.ros.scripted_robot", *parts],
                 env=environment,
+                stdin=subprocess.PIPE,  # it ends when this is closed
                 stdout=out,
                 start_new_session=True,
             )
@@ -50,7 +51,7 @@ class Script:
 
     def kill(self) -> None:
         self.process.kill()
-        self.process.wait()
+        self.process.communicate()
 
 
 @pytest.fixture
@@ -93,8 +94,11 @@ def code_of(command: Command, seconds: float = LONG) -> int:
     return code
 
 
-def test_a_robot_moves_as_far_as_it_is_told(robot: Callable[..., Script], btc: Callable[..., Command]) -> None:
-    script = robot("base")
+@pytest.mark.parametrize("base", ["base", "base=stamped"])
+def test_a_robot_moves_as_far_as_it_is_told(
+    base: str, robot: Callable[..., Script], btc: Callable[..., Command]
+) -> None:
+    script = robot(base)
     command = btc("move forward 1 meter")
     assert code_of(command) == 0, command.err
     assert script.drives[-1].startswith("drive 0.000 0.000")
@@ -132,6 +136,15 @@ def test_what_goes_wrong_is_a_failure_with_its_reason(
         assert script.drives[-1].startswith("drive 0.000 0.000")
 
 
+def test_a_service_that_does_not_answer_costs_the_tick_nothing(
+    robot: Callable[..., Script], btc: Callable[..., Command]
+) -> None:
+    robot("hand=mute")
+    command = btc("close the hand within 1 second")
+    assert code_of(command) == 1
+    assert "Timeout: took longer than 1 s" in command.err
+
+
 def test_a_journey_arrives(robot: Callable[..., Script], btc: Callable[..., Command], nav2: object) -> None:
     script = robot("base", "navigation=arrive")
     command = btc("go to the kitchen")
@@ -160,12 +173,12 @@ def test_a_base_that_is_killed(robot: Callable[..., Script], btc: Callable[..., 
     assert "MoveForward: no odometry for 2 s: /odom is silent" in command.err
 
 
-@pytest.mark.parametrize("when", ["goal", "accepted"])
+@pytest.mark.parametrize(("manner", "when"), [("slow", "goal"), ("hang", "accepted")])
 def test_a_goal_is_cancelled_when_the_mission_is(
-    when: str, robot: Callable[..., Script], btc: Callable[..., Command], nav2: object
+    manner: str, when: str, robot: Callable[..., Script], btc: Callable[..., Command], nav2: object
 ) -> None:
     """Also one that is not accepted yet."""
-    script = robot("base", "navigation=slow")
+    script = robot("base", f"navigation={manner}")
     command = btc("go to the kitchen")
     script.wait_for(when)
     command.process.send_signal(signal.SIGINT)
@@ -200,9 +213,12 @@ def test_what_is_missing_is_told_before_the_run(btc: Callable[..., Command], nav
     command = btc("move forward then go to the kitchen")
     assert code_of(command) == 2
     assert time.monotonic() - began < 10
-    assert "error BT101: 'move forward' needs the topic /cmd_vel, but nothing subscribes to it." in command.err
-    assert "error BT101: 'move forward' needs the topic /odom, but nothing publishes it." in command.err
-    assert "error BT101: 'go to the kitchen' needs the action /navigate_to_pose, but nothing serves it" in command.err
+    assert "error BT101: 'move forward' needs the topic /cmd_vel, but nobody listens to /cmd_vel." in command.err
+    assert "error BT101: 'move forward' needs the topic /odom, but nobody publishes /odom." in command.err
+    assert (
+        "error BT101: 'go to the kitchen' needs the action /navigate_to_pose, but there is no action server "
+        in command.err
+    )
 
 
 def test_preflight(robot: Callable[..., Script], btc: Callable[..., Command]) -> None:
@@ -212,6 +228,6 @@ def test_preflight(robot: Callable[..., Script], btc: Callable[..., Command]) ->
     assert ready.out.splitlines()[-1] == "The robot has all that the mission needs."
     lacking = btc("move forward until there is a wall in front", "--preflight")
     assert code_of(lacking) == 1
-    assert re.search(r"^topic   /scan +sensor_msgs/msg/LaserScan +missing: nothing publishes it$", lacking.out, re.M)
+    assert re.search(r"^topic   /scan +sensor_msgs/msg/LaserScan +missing: nobody publishes /scan$", lacking.out, re.M)
     assert lacking.out.splitlines()[-1] == "The robot lacks 1 of 3."
     assert script.drives == []

@@ -72,6 +72,9 @@ TOPIC = {"topic": "std_msgs/msg/Bool", "name": "/docked"}
         ({"parameter": "p", "name": "/n"}, "action", "parameter needs set"),
         ({"parameter": "p", "name": "/n"}, "condition", "parameter needs one of below"),
         ({"parameter": 3, "name": "/n", "set": 1}, "action", "parameter is the name of a parameter"),
+        ({"phrase": "", "name": "/n"}, "action", "phrase is a phrase or the id of the action that is served"),
+        ({"phrase": "say {text}"}, "action", 'name = "..." is the name of the action, such as "/robot/arm"'),
+        ({"phrase": "battery", "name": "/n"}, "condition", "phrase is for actions, not for conditions"),
     ],
 )
 def test_what_is_wrong(table: Any, sort: str, reason: str) -> None:

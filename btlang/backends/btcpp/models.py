@@ -41,8 +41,8 @@ class Uses:
             if any(key == "name" for key, _ in node.ports):
                 self.misnamed.append(node)
         strange = [node_id for node_id in self._ports if node_id not in self._known and not vocabulary.entry(node_id)]
-        if not _OTHERS.isdisjoint(strange):
-            self._known |= nav2_models(_OTHERS.intersection(strange))
+        if strange:
+            self._known |= nav2_models(strange)
         self._trees = {name for name, _ in tree.subtrees} | {tree.name}
         self._kinds: dict[str, str] = {}
 
@@ -54,7 +54,7 @@ class Uses:
     def _add(self, node: Node) -> None:
         ports = self._ports.setdefault(node.id, {})
         for key, _ in node.ports:
-            if key[:1] != "_":
+            if key[:1] != "_" and key != "ID":
                 ports[key] = None
         self._most[node.id] = max(self._most.get(node.id, 0), len(node.children))
 
@@ -112,16 +112,16 @@ class Uses:
         return "int" if kind.whole else "double"
 
 
-def model_part(models: list[NodeModel], ids: dict[str, str], dialect: int) -> Element | None:
+def model_part(models: list[NodeModel], ids: dict[str, str]) -> Element | None:
     """TreeNodesModel, None where there is nothing to tell."""
     if not models:
         return None
-    return Element(MODEL, (), tuple(_element(model, ids, dialect) for model in models))
+    return Element(MODEL, (), tuple(_element(model, ids) for model in models))
 
 
-def _element(model: NodeModel, ids: dict[str, str], dialect: int) -> Element:
+def _element(model: NodeModel, ids: dict[str, str]) -> Element:
     inner = [_port(port) for port in model.ports]
-    if model.text and dialect == 4:  # version 3 has no place for it
+    if model.text:
         inner.append(Element("MetadataFields", (), (Element("Metadata", (("description", model.text),)),)))
     node_id = ids.get(model.id, model.id) if model.kind == "SubTree" else model.id
     return Element(model.kind, (("ID", node_id),), tuple(inner))

@@ -8,7 +8,7 @@ from btlang.backends.btcpp.names import tree_ids
 from btlang.frontends.btcpp.file import SPOKEN_NAME
 from btlang.frontends.btcpp.models import why_no_port
 from btlang.frontends.btcpp.origin import Element, Markup, TreeOrigin, XmlOrigin
-from btlang.frontends.btcpp.spelling import SPELL
+from btlang.frontends.btcpp.spelling import MAIN_TREE, SPELL
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.vocabulary import Vocabulary
 
@@ -83,13 +83,13 @@ class _Writer:
 
     def _items(self) -> tuple[Element | Markup | str, ...]:
         """The main tree, the others in their order, the models."""
-        models = model_part(self._uses.models(), self._ids, self._dialect)
+        models = model_part(self._uses.models(), self._ids)
         return (self._tree.name, *(name for name, _ in self._tree.subtrees), *((models,) if models else ()))
 
     def _tree_attributes(self, name: str) -> Pairs:
         written = self._ids[name]
-        spoken = ((SPOKEN_NAME, name),) if name and name != written else ()
-        return (("ID", written), *spoken)
+        spoken = name or MAIN_TREE
+        return (("ID", written),) if spoken == written else (("ID", written), (SPOKEN_NAME, spoken))
 
     def _tree_lines(self, name: str, root: Node, lines: list[str]) -> None:
         origin = _NOTHING if self._origin is None else self._origin.trees[name]

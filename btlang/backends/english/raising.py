@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from btlang.backends.english.code import Computed, computed
+from btlang.backends.english.comments import comments_of
 from btlang.backends.english.forms import FORMS
 from btlang.backends.english.kinds import Around
 from btlang.backends.english.known import Known
@@ -47,6 +48,7 @@ class Raiser:
                  for name in sorted(known.names)]  # fmt: skip
         self.speaker = Speaker(vocabulary, heads)
         self._node_kinds = {model.id: model.kind for model in tree.models}
+        self._comments = comments_of(tree)
         self._conditions: set[str] = set()  # the names that stand for conditions
         bodies = {loop.name for loop in known.loops.values()}
         names = [name for name, _ in tree.subtrees if name not in bodies]
@@ -61,9 +63,16 @@ class Raiser:
             body = raised.condition
             self._conditions.add(name)
         made = ast.Definition(name, self._known.parameters(name), body, NOWHERE, NOWHERE, not is_natural)
+        self.speaker.note(made, self._comments.trees.get(name, ()))
         if is_natural:
             self._checked.scope.define(made, self._checked.can_skip(body))
         return made
+
+    def main(self, root: Node) -> ast.Ast:
+        """The commands of the mission; the subtrees have been raised before."""
+        body = self.raised(root).body
+        self.speaker.note(_first_line(body), self._comments.trees.get("", ()))
+        return body
 
     def raised(self, root: Node, name: str = "") -> Raised:
         """What a tree is said as; `name` is that of a subtree."""
@@ -93,11 +102,22 @@ class Raiser:
         is_condition = is_condition and not isinstance(natural, ast.Remember)
         is_rule = natural is not None and node.id == "Whenever"
         in_lines = any(part.in_lines for part in inner) or is_rule or (natural is None and bool(parts))
+        self._note([node] if inner is parts else [node, *node.children], natural or exact, condition)
         if natural is None:
             return Raised(node, exact, exact, condition, is_condition, in_lines, parts)
         is_chain = isinstance(natural, ast.Chain) and natural.operator == "sequence"
         command = exact if in_lines and is_chain else natural  # no line can hold lines that are a sequence
         return Raised(node, command, natural, condition, is_condition, in_lines, parts)
+
+    def _note(self, nodes: Iterable[Node], said: ast.Ast, condition: ast.Ast | None = None) -> None:
+        """The comments of nodes that are said as one; those of a sequence stand before its first line."""
+        lines = tuple(line for node in nodes for line in self._comments.nodes.get(id(node), ()))
+        if not lines:
+            return
+        if condition is not None:
+            self.speaker.note(condition, lines)
+        if not isinstance(said, ast.Check):
+            self.speaker.note(_first_line(said), lines)
 
     def _exact(self, node: Node, children: tuple[Raised, ...]) -> ast.Ast:
         items = tuple(child.command for child in children)
@@ -120,6 +140,8 @@ class Raiser:
             made = ast.Nothing(NOWHERE)
             self._checked.assume(made, Lowered(node))
             return Raised(node, made, made)
+        self.speaker.note(_first_line(body.part), self._comments.trees.get(loop.name, ()))
+        self._note([node, *node.children], made)
         return Raised(node, made, made, in_lines=body.in_lines)
 
     def _natural_form(
@@ -221,3 +243,9 @@ class Raiser:
         if not texts.keys() <= slots:
             return ""
         return leaf_words(node_id, texts, self._checked.around.vocabulary, self.speaker.names, exactly=True)
+
+
+def _first_line(said: ast.Ast) -> ast.Ast:
+    """The statement that stands first where all of it are lines."""
+    is_chain = isinstance(said, ast.Chain) and said.operator == "sequence"
+    return ast.parts(said)[0] if is_chain else said

@@ -2,18 +2,20 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
+from btlang.backends.english.comments import comments_of
 from btlang.backends.english.known import Known, Refused
 from btlang.backends.english.raised import NOWHERE
 from btlang.backends.english.raising import Raiser
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.english.exact import is_one_piece
 from btlang.english.sentence import mission_lines
 from btlang.english.speaker import Speaker
 from btlang.frontends.mission import read_mission
 from btlang.passes import lower_mission
 from btlang.text.source import Source
-from btlang.tree.ast import Mission
+from btlang.tree.ast import Fact, Mission
 from btlang.tree.dump import plain
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.vocabulary import Vocabulary
@@ -26,25 +28,35 @@ WIDTH = 100
 """Columns; what would be a longer line becomes a block where it can."""
 
 
-def to_english(tree: Tree, vocabulary: Vocabulary) -> str:
+def to_english(tree: Tree, vocabulary: Vocabulary, *, facts: Sequence[Fact] = ()) -> str:
     """A mission that compiles to an equal tree: natural words where the language has them, else nodes by their ids.
 
-    Raises MissionError (BT142) for a tree that no text can say, such as one with a line end in the name of a subtree.
+    It begins with the `facts`, whose places it may name. Raises MissionError (BT142) for a tree that no text can say,
+    such as one with a line end in the name of a subtree.
     """
-    wanted, reason = plain(tree), ""
+    names = [name for name, _ in tree.subtrees] + [name for node in tree.walk() for name, _ in node.ports]
+    odd = next((name for name in names if not is_one_piece(name)), None)
+    if odd is not None:
+        raise _unsayable(tree, f"no quotes can hold the name {odd!r}")
+    wanted, reason = plain(tree), "it would be read as another one"
+    words = vocabulary.with_places(tuple(fact.name for fact in facts)) if facts else vocabulary
     refused = Refused()
     for level in _LEVELS:
-        mission, speaker = _mission(tree, vocabulary, level, refused)
-        text = "".join(f"{line}\n" for line in mission_lines(mission, speaker, WIDTH))
+        mission, speaker = _mission(tree, words, level, refused)
+        text = "".join(f"{line}\n" for line in _lines(tree, mission.replace(facts=tuple(facts)), speaker))
         try:
             again = lower_mission(read_mission(Source(text), vocabulary, suggest=False).mission, vocabulary)
         except MissionError as error:
-            reason = error.diagnostics[0].message
+            reason = error.diagnostics[0].message.rstrip(".")
             continue
         if plain(again) == wanted:
             return text
         refused = Refused(frozenset(_differing(tree, again)))
-    raise MissionError([diagnostic("BT142", tree.root.span or NOWHERE, reason=reason or "it reads as another tree")])
+    raise _unsayable(tree, reason)
+
+
+def _unsayable(tree: Tree, reason: str) -> MissionError:
+    return MissionError([diagnostic("BT142", tree.root.span or NOWHERE, reason=reason)])
 
 
 def _differing(tree: Tree, again: Tree) -> Iterator[str]:
@@ -53,6 +65,13 @@ def _differing(tree: Tree, again: Tree) -> Iterator[str]:
     for name, root in tree.subtrees:
         if name not in bodies or plain(Tree(root)) != plain(Tree(bodies[name])):
             yield name
+
+
+def _lines(tree: Tree, mission: Mission, speaker: Speaker) -> Iterator[str]:
+    comments = comments_of(tree)
+    yield from (f"# {line}" for line in comments.head)
+    yield from mission_lines(mission, speaker, WIDTH)
+    yield from (f"# {line}" for line in comments.foot)
 
 
 def _mission(tree: Tree, vocabulary: Vocabulary, level: str, refused: Refused) -> tuple[Mission, Speaker]:
@@ -64,7 +83,7 @@ def _mission(tree: Tree, vocabulary: Vocabulary, level: str, refused: Refused) -
         bodies = {loop.name for loop in known.loops.values()}
         named = [(name, root) for name, root in _used_first(tree) if name not in bodies]
         definitions = tuple(raiser.definition(name, root) for name, root in named)
-        mission = Mission(raiser.raised(tree.root).body, definitions, NOWHERE, name=tree.name)
+        mission = Mission(raiser.main(tree.root), definitions, NOWHERE, name=tree.name)
         before, refused = refused, known.refused_by(mission, refused, raiser.refused)
         if refused == before:
             break

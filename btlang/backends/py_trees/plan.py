@@ -134,7 +134,7 @@ class _Planner:
         self._acts[index] = any(self._acts[i] for i in below) or (not node.children and self._is_action(node))
         part = Part("Skipped", self._name(node))
         try:
-            if self._depths[index] > DEEPEST:
+            if self._depths[index] == DEEPEST + 1:  # once is enough
                 raise _Untold(f"it is more than {DEEPEST} levels deep, and py_trees calls itself at each")
             if self._always_skipped(node):
                 self._skips[index] = True

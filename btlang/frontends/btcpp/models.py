@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 from collections.abc import Iterable, Iterator
+from functools import cache
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.btcpp.fragments import Notes
@@ -102,13 +103,19 @@ def why_no_port(name: str) -> str:
 
 def nav2_models(ids: Iterable[str]) -> dict[str, NodeModel]:
     """The models of those ids that Nav2 has nodes for."""
+    found = _nav2()
+    return {node_id: NodeModel(found[node_id][0], node_id, tuple(map(_port, found[node_id][1])))
+            for node_id in ids if node_id in found}  # fmt: skip
+
+
+@cache
+def _nav2() -> dict[str, tuple[str, list[str]]]:
+    """Kinds and ports of Nav2's nodes by id."""
     import tomllib
 
     with open(_NAV2, "rb") as file:
         kinds = tomllib.load(file)
-    found = {node_id: (kind, ports) for kind, nodes in kinds.items() for node_id, ports in nodes.items()}
-    return {node_id: NodeModel(found[node_id][0], node_id, tuple(map(_port, found[node_id][1])))
-            for node_id in ids if node_id in found}  # fmt: skip
+    return {node_id: (kind, ports) for kind, nodes in kinds.items() for node_id, ports in nodes.items()}
 
 
 def _port(text: str) -> PortModel:

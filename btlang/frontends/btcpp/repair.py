@@ -34,14 +34,16 @@ class Repaired:
     def __init__(self, text: str, swaps: dict[str, str] | None = None) -> None:
         self.text = text
         self._back = str.maketrans({there: here for here, there in (swaps or {}).items()})
-        self._return = (swaps or {}).get("\r", "")
+        self._line_end = ""
+        if swaps:
+            self._line_end = swaps["\r"] + swaps["\n"]
+            self._back[ord(swaps["\r"])] = "\n"
 
     def restored(self, value: str) -> str:
         """A value or comment as it stands in the file; a line end is a newline, as tinyxml2 has it."""
-        if not self._back:
+        if not self._line_end:
             return value
-        value = value.translate(self._back)
-        return value.replace("\r\n", "\n").replace("\r", "\n") if self._return else value
+        return value.replace(self._line_end, "\n").translate(self._back)
 
 
 def is_odd(text: str) -> bool:

@@ -5,6 +5,7 @@ Entities and what a DOCTYPE may declare or fetch are refused, and so is nesting 
 
 from __future__ import annotations
 
+import re
 from xml.parsers import expat
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
@@ -19,6 +20,7 @@ if TYPE_CHECKING:
     Element: TypeAlias = tuple[str, list[str], int, int]
     """Tag; names and values of attributes in turn; where it starts; how many elements ended before."""
 
+_WORD = re.compile(r"[^\s=>]*")
 MOST_DEEP = 10_000  # nodes inside one another; <root> and <BehaviorTree> stand around them
 _AROUND = 2
 _ERRORS = expat.errors.codes
@@ -38,6 +40,8 @@ _REASONS = {
 }
 _BY_NUMBER = {_ERRORS[getattr(expat.errors, name)]: reason for name, reason in _REASONS.items()}
 _MISMATCH = _ERRORS[expat.errors.XML_ERROR_TAG_MISMATCH]
+_INVALID = _ERRORS[expat.errors.XML_ERROR_INVALID_TOKEN]
+_TWICE = _ERRORS[expat.errors.XML_ERROR_DUPLICATE_ATTRIBUTE]
 _NO_MORE = _ERRORS[expat.errors.XML_ERROR_NO_ELEMENTS]
 
 
@@ -128,7 +132,9 @@ class _Scanner:
         def start(tag: str, attributes: list[str]) -> None:
             elements.append((tag, attributes, parser.CurrentByteIndex, len(ends)))
             if len(elements) - len(ends) > depth:
-                self._refuse(f"tags in more than {MOST_DEEP:,} others", "Make named subtrees of the inner ones.")
+                self._refuse(
+                    f"more than {MOST_DEEP:,} nodes inside one another", "Make named subtrees of the inner ones."
+                )
 
         def text(data: str) -> None:
             if not data.isspace():
@@ -181,20 +187,22 @@ class _Scanner:
         raise _Refused
 
     def _here(self) -> Span:
-        """The place of the parser, up to the end of the tag there."""
+        """The tag where the parser is, as far as it stands on the line."""
         source, text = self._document.source, self._document.text
         index = max(self._parser.CurrentByteIndex, 0)
-        start = len(text.encode()[:index].decode(errors="ignore"))
-        end = text.find(">", start) + 1
-        line_end = text.find("\n", start)
-        ends = [place for place in (end, line_end) if place > start]
-        return Span(source, start, min(ends, default=len(text)))
+        inside = len(text.encode()[:index].decode(errors="ignore"))
+        start = max(text.rfind("<", 0, inside + 1), 0)
+        ends = (text.find(">", inside) + 1, text.find("\n", inside))
+        return Span(source, start, min((end for end in ends if end > inside), default=len(text)))
 
     def _broken(self, code: int) -> Diagnostic:
         document = self._document
         start = len(document.text.encode()[: max(self._parser.ErrorByteIndex, 0)].decode(errors="ignore"))
-        place = Span(document.source, start, min(start + 1, len(document.text)))
+        length = len(_WORD.match(document.text, start)[0]) if code == _TWICE else 1  # type: ignore[index]
+        place = Span(document.source, start, min(start + length, len(document.text)))
         reason = _BY_NUMBER.get(code, expat.ErrorString(code))
+        if code == _INVALID:
+            reason = _why_invalid(document.text, start) or reason
         opened = self._innermost()
         if opened is not None and code in (_MISMATCH, _NO_MORE):
             tag = document.elements[opened][0]
@@ -214,6 +222,18 @@ class _Scanner:
     def _opening(self, index: int) -> Span:
         _count_characters(self._document)
         return self._document.span(index)
+
+
+def _why_invalid(text: str, start: int) -> str:
+    """What is wrong with a character inside a tag, "" where that cannot be told."""
+    before = text[max(start - 100, 0) : start].rstrip()
+    if text[start : start + 1] < " ":
+        return f"the character U+{ord(text[start]):04X} cannot stand in XML" if text[start : start + 1] else ""
+    if before.endswith("="):
+        return "the value of an attribute stands in quotes"
+    if text[start] in "/>" and before[-1:].isalnum():
+        return "an attribute needs a value"
+    return ""
 
 
 def _count_characters(document: Document) -> None:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Generator
+from collections.abc import Callable, Generator, Mapping
 
 from action_msgs.msg import GoalStatus
 from action_msgs.srv import CancelGoal
@@ -85,9 +85,17 @@ class Goal:
 
 
 def action_leaf(word: Word, clients: Clients) -> Callable[..., Any]:
-    """A generator leaf. FAILURE with a reason where there is no server, or where it rejects, aborts or is lost."""
-    cls, name = word.interface(), word.ros.name
-    make = filler(word, cls.Goal, word.ros.get("goal"), clients.clock.message)
+    """A generator leaf that fills the goal as the table says. See goal_leaf."""
+    cls = word.interface()
+    return goal_leaf(word, clients, cls, filler(word, cls.Goal, word.ros.get("goal"), clients.clock.message))
+
+
+def goal_leaf(word: Word, clients: Clients, cls: Any, make: Callable[[Mapping[str, Any]], Any]) -> Callable[..., Any]:
+    """A generator leaf; `make` gives the goal for the values of the slots.
+
+    FAILURE with a reason where there is no server, or where it rejects, aborts or is lost.
+    """
+    name = word.ros.name
     judge = Judge(word, cls.Result)
     client, limit = clients.action(cls, name), word.ros.get("wait", WAIT)
     status = clients.node.resolve_topic_name(f"{name}/_action/status")

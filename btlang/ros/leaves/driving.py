@@ -39,7 +39,7 @@ def drive_leaf(word: Word, clients: Clients) -> Callable[..., Any]:
     close = word.ros.get("tolerance", _CLOSE[turns])
     patience = word.ros.get("patience", _PATIENCE)
     publisher = clients.publisher(cls, name)
-    odometry = clients.latest(Odometry, word.ros.get("odometry", "/odom"))
+    odometry = clients.latest(Odometry, word.ros.get("odometry", "odom"))
     now = clients.clock.now
 
     def send(velocity: float, turning: float = 0.0) -> None:

@@ -31,7 +31,7 @@ def joints_leaf(word: Word, clients: Clients) -> Callable[..., Any]:
         raise word.misfit(cls, word.ros.interface, "joints takes trajectory_msgs/msg/JointTrajectory")
     targets = {joint: _target(word, joint, given) for joint, given in word.ros.get("positions").given}
     publisher = clients.publisher(cls, name)
-    states = clients.latest(JointState, word.ros.get("states", "/joint_states"))
+    states = clients.latest(JointState, word.ros.get("states", "joint_states"))
     seconds, close = word.amount("duration", _DURATION), word.ros.get("tolerance", _CLOSE)
     patience, now = word.ros.get("patience", _PATIENCE), clients.clock.now
 

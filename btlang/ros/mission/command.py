@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 import argparse
-import time
 from functools import partial
 from typing import Any
 
+from btlang.arguments import node_name
 from btlang.robots.stages import ROBOTS
 from btlang.ros.available import require_interfaces, require_ros
+from btlang.ros.command import add_namespace
 
 PACKAGES = ("diagnostic_msgs", "lifecycle_msgs", "std_msgs", "std_srvs")
 """The packages of messages that it needs beside rclpy and btlang_interfaces."""
@@ -19,8 +20,11 @@ def add_node_options(parser: argparse.ArgumentParser) -> None:
     """The options of `btc ros-node` that are about the node."""
     parser.add_argument("--mission", default="", metavar="FILE", help="run this one when the node is activated")
     parser.add_argument("--robot", choices=list(ROBOTS), default="simulated", help="(default: %(default)s)")
-    parser.add_argument("--sim-time", action="store_true", help="with --robot ros: time is that of the topic /clock")
-    parser.add_argument("--name", default="btlang", type=_name, help="of the node (default: %(default)s)")
+    parser.add_argument(
+        "--sim-time", action="store_true", help="with --robot ros or actions: time is that of the topic /clock"
+    )
+    add_namespace(parser, "of the node, and of the robot with --robot ros or actions (default: none)")
+    parser.add_argument("--name", default="btlang", type=node_name, help="of the node (default: %(default)s)")
     parser.add_argument(
         "--autostart",
         action=argparse.BooleanOptionalAction,
@@ -36,10 +40,10 @@ def serve(options: argparse.Namespace) -> int:
 
     Raises MissionError where ROS 2 is not there (BT100, BT110), or where the node cannot be configured at its start.
     """
-    if options.sim_time and options.robot != "ros":
-        options.refuse("--sim-time is for --robot ros")
-    if options.speed != "real" and options.robot == "ros":
-        options.refuse("--robot ros runs in real time, so it takes no --speed")
+    if options.sim_time and options.robot == "simulated":
+        options.refuse("--sim-time is for --robot ros and --robot actions")
+    if options.speed != "real" and options.robot != "simulated":
+        options.refuse(f"--robot {options.robot} runs in real time, so it takes no --speed")
     require_ros()
     require_interfaces()
     require_ros(*PACKAGES)
@@ -51,13 +55,18 @@ def serve(options: argparse.Namespace) -> int:
     from btlang.run.emergency import emergency_signal
 
     setup = Setup(
-        options.name, options.robot, options.sim_time, options.speed,
+        options.name, options.robot, options.sim_time, options.namespace, options.speed,
         options.mission, options.keywords, options.world, options.parser,
     )  # fmt: skip
     controls = Controls()
     with ending_signals() as came:
         came.on_arrival = controls.wake
-        spun = SpunNode(options.name, use_sim_time=options.sim_time, make=partial(MissionNode, setup, _print))
+        spun = SpunNode(
+            options.name,
+            namespace=options.namespace,
+            use_sim_time=options.sim_time,
+            make=partial(MissionNode, setup, _print),
+        )
         node: Any = spun.node
         try:
             if options.autostart:
@@ -71,7 +80,7 @@ def serve(options: argparse.Namespace) -> int:
                 while not came.numbers:
                     controls.wait(None)
                 node.halt()
-                _wait_for_answers(node)
+                spun.settle(_ANSWERS)
         finally:
             try:
                 node.halt()
@@ -79,20 +88,6 @@ def serve(options: argparse.Namespace) -> int:
             finally:
                 node.release()
     return 128 + came.numbers[0]
-
-
-def _wait_for_answers(node: Any) -> None:
-    """Until the executor has done what was asked of it before now."""
-    task = node.executor.create_task(lambda: None)
-    end = time.monotonic() + _ANSWERS
-    while not task.done() and time.monotonic() < end:
-        time.sleep(0.01)
-
-
-def _name(text: str) -> str:
-    if not (text.isidentifier() and text.isascii()):
-        raise argparse.ArgumentTypeError(f"a name of letters, digits and _ is needed, not '{text}'")
-    return text
 
 
 def _print(line: str) -> None:

@@ -98,8 +98,9 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
         if self._run is None:
             return True
         self._run.stop()
-        if self._run.join(_END):
+        if self._run.join(0.0 if self._run.hangs else _END):
             return True
+        self._run.hangs = True  # who asks again need not wait again
         self._run.emergency_stop()
         self._topics.complain("the mission does not end: a command hangs; the robot was stopped")
         return False

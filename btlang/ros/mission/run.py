@@ -53,6 +53,8 @@ class MissionRun:
     ) -> None:
         self.over = False
         """Whether another mission may begin."""
+        self.hangs = False
+        """Whether it was told to end and did not."""
         self._stage, self._speed = stage, speed
         self._compiled, self._watch, self._ended = compiled, watch, ended
         self._tree: RunnableTree | None = None

@@ -2,13 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from functools import partial
 
 from btlang.api import RunnableTree, parse_tree, read_world
 from btlang.record import Record
 from btlang.robots.stages import stage_maker
-from btlang.ros.command import ros_stage
 from btlang.text.source import Source
 
 TYPE_CHECKING = False
@@ -22,6 +21,7 @@ class Setup(Record):
     name: str = "btlang"
     robot: str = "simulated"
     sim_time: bool = False
+    namespace: str = ""
     speed: float | str = "real"
     file: str = ""
     keywords: Sequence[str] = ()
@@ -30,9 +30,9 @@ class Setup(Record):
 
     def stage(self) -> Stage:
         """The robot in its world. Raises MissionError."""
-        make = stage_maker(self.robot)
-        if self.robot == "ros":
-            make = partial(ros_stage, sim_time=self.sim_time, name=f"{self.name}_robot")
+        make: Callable[..., Stage] = stage_maker(self.robot)
+        if self.robot != "simulated":
+            make = partial(make, sim_time=self.sim_time, namespace=self.namespace, name=f"{self.name}_robot")
         return make(read_world(self.world))
 
     def compiled(self, source: Source, keywords: Sequence[str] = ()) -> RunnableTree:

@@ -57,9 +57,17 @@ class Body:
         self._inbox.post(lambda: act(message))
 
     def _close(self, hand: Hand, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
-        job = partial(self._robot.grasp if request.data else self._robot.release, hand)
-        response.success, response.message = self._inbox.ask(job)
+        response.success, response.message = self._inbox.ask(partial(self._turn, hand, request.data))
         return response
+
+    def _turn(self, hand: Hand, closes: bool) -> str | None:
+        """Closes or opens a hand; the name of what it took or put down. Raises RobotError."""
+        if closes:
+            self._robot.grasp(hand)
+            return self._robot.holding(hand)
+        held = self._robot.holding(hand)
+        self._robot.release(hand)
+        return held
 
     def _move(self, message: JointTrajectory) -> None:
         """The last point counts, and how fast is up to the joints. No point at all: they stay where they are."""

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
+import argparse
 import os
 import sys
 from time import monotonic
 
+from btlang.api import RATES, read_world
+from btlang.arguments import between, real_speed
+from btlang.ros.command import add_namespace
 from btlang.ros.ending import ending_signals
 from btlang.run.emergency import emergency_signal
-
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    from btlang.robots.world import World
 
 PACKAGES = (
     "builtin_interfaces", "geometry_msgs", "nav_msgs", "rosgraph_msgs",
@@ -20,24 +20,38 @@ PACKAGES = (
 """The packages of messages that it needs beside rclpy."""
 
 
-def serve(world: World, *, speed: float, rate: float, gives_clock: bool, namespace: str) -> int:
+def add_simulator_options(parser: argparse.ArgumentParser) -> None:
+    """The options of `btc sim-ros` but its world."""
+    parser.add_argument("--speed", type=real_speed, default="real", help="real, or a factor of real time")
+    parser.add_argument(
+        "--rate", type=between(*RATES), default=20.0, metavar="HZ", help="steps a simulated second (default: 20)"
+    )
+    parser.add_argument(
+        "--clock", action=argparse.BooleanOptionalAction, default=True, help="give the simulated time on /clock"
+    )
+    add_namespace(parser, "of all topics (default: none)")
+
+
+def serve(options: argparse.Namespace) -> int:
     """Steps the simulation `rate` times a simulated second, `speed` simulated seconds a second, until a signal comes.
 
-    Returns the exit code, 128 and the number of the signal. Raises MissionError (BT100).
+    Returns the exit code, 128 and the number of the signal. Raises MissionError (BT070, BT100).
     """
+    world = read_world(options.world)
+    speed, rate = 1.0 if options.speed == "real" else options.speed, options.rate
     from btlang.ros.available import require_ros
 
     require_ros(*PACKAGES)
     from btlang.ros.simulator.simulator import Simulator, can_navigate
 
     with ending_signals() as came:
-        simulator = Simulator(world, namespace=namespace, gives_clock=gives_clock, show=_print)
+        simulator = Simulator(world, namespace=options.namespace, gives_clock=options.clock, show=_print)
         with simulator, emergency_signal(simulator.robot.stop):
             came.on_arrival = simulator.wake
             simulator.step(1 / rate)
             if not can_navigate():
                 print("btlang sim-ros: no /navigate_to_pose: the package nav2_msgs is not installed", file=sys.stderr)
-            where = f"domain {os.environ.get('ROS_DOMAIN_ID') or 0}, namespace /{namespace.strip('/')}"
+            where = f"domain {os.environ.get('ROS_DOMAIN_ID') or 0}, namespace /{options.namespace.strip('/')}"
             _print(f"btlang sim-ros: ready at speed {speed:g} ({where}); Ctrl-C ends it")
             due = monotonic()
             while not came.numbers:

@@ -24,13 +24,14 @@ class Inbox:
         """Hands over something to do, and waits for nothing."""
         self._jobs.put(job)
 
-    def ask(self, job: Callable[[], str | None]) -> tuple[bool, str]:
-        """Waits until it is done: True and what it returned, or False and why the robot cannot do it."""
+    def ask(self, job: Callable[[], object]) -> tuple[bool, str]:
+        """Waits until it is done: True and the text it returned, or False and why the robot cannot do it."""
         answer: Future[str] = Future()
 
         def do() -> None:
             try:
-                answer.set_result(job() or "")
+                told = job()
+                answer.set_result(told if isinstance(told, str) else "")
             except RobotError as error:
                 answer.set_exception(error)
 

@@ -29,8 +29,9 @@ class Part(Protocol):
 
 
 class Simulator:
-    """A node with the simulated robot of a world. To be used with `with`; `work` and `step` from one thread, in turn.
+    """A node, `node`, with the simulated robot of a world. To be used with `with`.
 
+    `work` and `step` are for one thread, in turn.
     With `gives_clock` the simulated time is published on /clock and stamps are of that time, else of the system's.
     `show` gets what the robot says and prints, a line at a time. Without nav2_msgs nothing is offered that navigates.
     """
@@ -40,7 +41,7 @@ class Simulator:
         self._show = show
         self._inbox = Inbox()
         self._spun = SpunNode("btlang_sim", namespace=namespace)
-        node = self._spun.node
+        self.node = node = self._spun.node
         self._wheels = Wheels(node, self.robot, self._inbox)
         self._parts: list[Part] = [
             self._wheels,

@@ -16,18 +16,18 @@ from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.callback_groups import ReentrantCallbackGroup
 from rclpy.node import Node
 
-from tests.ros.peers.peer import serve, tell
+from tests.ros.peers.peer import a_moment, pause, serve, tell
 
 MODE = sys.argv[1]
 SECONDS = float(sys.argv[2]) if len(sys.argv) > 2 else 0.2
 
 
-def _goal(goal: Any) -> GoalResponse:
+async def _goal(goal: Any) -> GoalResponse:
     pose = goal.pose
     tell("goal", pose.header.frame_id, *(f"{v:.3f}" for v in (pose.pose.position.x, pose.pose.position.y)),
          f"{pose.pose.orientation.z:.3f}", f"{pose.pose.orientation.w:.3f}")  # fmt: skip
     if MODE == "slow":
-        time.sleep(SECONDS)
+        await pause(SECONDS)
     return GoalResponse.REJECT if MODE == "reject" else GoalResponse.ACCEPT
 
 
@@ -36,7 +36,7 @@ def _cancel(handle: Any) -> CancelResponse:
     return CancelResponse.ACCEPT
 
 
-def _execute(handle: Any) -> NavigateToPose.Result:
+async def _execute(handle: Any) -> NavigateToPose.Result:
     tell("executing")
     result = NavigateToPose.Result()
     until = time.monotonic() + SECONDS
@@ -45,7 +45,7 @@ def _execute(handle: Any) -> NavigateToPose.Result:
             handle.canceled()
             tell("cancelled")
             return result
-        time.sleep(0.01)
+        await a_moment()
     if MODE == "abort":
         result.error_code, result.error_msg = 7, "the way is blocked by a box"
         handle.abort()

@@ -1,0 +1,59 @@
+"""The comments of an XML file as those of a mission: before the statement in which their node is said."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+
+from btlang.frontends.btcpp.origin import Markup, TreeOrigin, XmlOrigin
+from btlang.record import Record
+from btlang.tree.node import Node, Tree
+
+_OPEN, _CLOSE = "<!--", "-->"
+
+
+class Comments(Record):
+    """Comments as lines without marks: by node (its `id()`), by the name of a subtree, and around all of them."""
+
+    nodes: dict[int, tuple[str, ...]]
+    trees: dict[str, tuple[str, ...]]
+    head: tuple[str, ...] = ()
+    foot: tuple[str, ...] = ()
+
+
+def comments_of(tree: Tree) -> Comments:
+    """Those of the file that a tree was read from; none where it comes from elsewhere."""
+    origin = tree.origin
+    if not isinstance(origin, XmlOrigin):
+        return Comments({}, {})
+    roots = {**dict(tree.subtrees), "": tree.root}
+    nodes: dict[int, tuple[str, ...]] = {}
+    trees: dict[str, tuple[str, ...]] = {}
+    waiting: list[str] = []
+    for item in origin.items:
+        if isinstance(item, Markup):
+            waiting += _lines((item.text,))
+        elif isinstance(item, str) and item in origin.trees:
+            name = item if item in roots else ""
+            trees[name] = (*waiting, *_lines(origin.trees[item].after))
+            waiting = []
+            nodes |= _of_tree(roots[name], origin.trees[item])
+    return Comments(nodes, trees, tuple(_lines(origin.head)), (*waiting, *_lines(origin.foot)))
+
+
+def _of_tree(root: Node, origin: TreeOrigin) -> dict[int, tuple[str, ...]]:
+    """What stands behind the last child of a node stands before the node here."""
+    if not origin.before and not origin.inside:
+        return {}
+    found: dict[int, tuple[str, ...]] = {}
+    for number, node in enumerate(Tree(root).walk()):
+        lines = tuple(_lines((*origin.before.get(number, ()), *origin.inside.get(number, ()))))
+        if lines:
+            found[id(node)] = lines
+    return found
+
+
+def _lines(texts: Iterable[str]) -> Iterator[str]:
+    for text in texts:
+        if text.startswith(_OPEN):
+            lines = text.removeprefix(_OPEN).removesuffix(_CLOSE).split("\n")
+            yield from filter(None, (" ".join(line.split()) for line in lines))

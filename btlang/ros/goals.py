@@ -1,0 +1,85 @@
+"""Action servers whose goals are worked on in other threads, so that no callback waits for one."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+from rclpy.action import ActionServer, CancelResponse, GoalResponse
+from rclpy.action.server import GoalEvent, ServerGoalHandle
+from rclpy.node import Node
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+
+class HeldGoal:
+    """A goal that was accepted and goes on until `end`. Both methods may be called from any thread."""
+
+    def __init__(self, handle: ServerGoalHandle, end: Callable[[bool, Any], object]) -> None:
+        self.request: Any = handle.request
+        self._handle = handle
+        self._end = end
+
+    def tell(self, feedback: Any) -> None:
+        """Publishes feedback."""
+        self._handle.publish_feedback(feedback)
+
+    def end(self, success: bool, result: Any) -> None:
+        """Gives the result: it has succeeded, or was cancelled where somebody asked for that, else aborted."""
+        self._end(success, result)
+
+
+class GoalServer:
+    """Any number of goals of one action, as far as `accepts` takes them.
+
+    `begin` starts the work of a goal that was accepted and returns what cancels it; the work calls `HeldGoal.end` once,
+    also after that. Both functions, and what cancels, are called in the thread of the executor and must not wait.
+    """
+
+    def __init__(
+        self,
+        node: Node,
+        action: Any,
+        name: str,
+        begin: Callable[[HeldGoal], Callable[[], object]],
+        accepts: Callable[[], bool] = lambda: True,
+    ) -> None:
+        self._begin = begin
+        self._cancels: dict[bytes, Callable[[], object]] = {}
+        self._server = ActionServer(
+            node,
+            action,
+            name,
+            execute_callback=lambda handle: action.Result(),
+            goal_callback=lambda request: GoalResponse.ACCEPT if accepts() else GoalResponse.REJECT,
+            handle_accepted_callback=self._accept,
+            cancel_callback=self._cancel,
+        )
+
+    def _accept(self, handle: ServerGoalHandle) -> None:
+        # handle.execute() would occupy the executor until the work ends: the goal only says that it executes
+        handle._update_state(GoalEvent.EXECUTE)
+
+        def end(success: bool, result: Any) -> None:
+            self._server.notify_execute(handle, partial(self._finish, success, result))
+
+        self._cancels[bytes(handle.goal_id.uuid)] = self._begin(HeldGoal(handle, end))
+
+    def _cancel(self, handle: ServerGoalHandle) -> CancelResponse:
+        cancel = self._cancels.get(bytes(handle.goal_id.uuid))
+        if cancel is not None:
+            cancel()
+        return CancelResponse.ACCEPT
+
+    def _finish(self, success: bool, result: Any, handle: ServerGoalHandle) -> Any:
+        """In the thread of the executor, after the cancelling of the goal was answered."""
+        self._cancels.pop(bytes(handle.goal_id.uuid), None)
+        if success:
+            handle.succeed()
+        elif handle.is_cancel_requested:
+            handle.canceled()
+        else:
+            handle.abort()
+        return result

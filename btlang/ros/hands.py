@@ -1,0 +1,97 @@
+"""The hands of a ROS 2 robot: a service closes and opens each, a topic tells what it holds."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from functools import partial
+
+from rclpy.node import Node
+from std_msgs.msg import String
+from std_srvs.srv import SetBool
+
+from btlang.robots.geometry import Pose
+from btlang.robots.robot import Hand, RobotError
+from btlang.robots.world import said
+from btlang.ros.inbox import Inbox
+from btlang.ros.places import Places
+from btlang.ros.services import Call, Services
+
+_HANDS: tuple[Hand, Hand] = ("left", "right")
+
+
+class RosHands:
+    """`where` is where the robot is, None where nobody knows; `emit` is told what happens."""
+
+    def __init__(
+        self,
+        node: Node,
+        inbox: Inbox,
+        services: Services,
+        places: Places,
+        where: Callable[[], Pose | None],
+        emit: Callable[..., object],
+    ) -> None:
+        self._inbox, self._services, self._places = inbox, services, places
+        self._where, self._emit = where, emit
+        self._holding: dict[Hand, str] = {}
+        self._opening: dict[Hand, Call] = {}
+        for hand in _HANDS:
+            inbox.listen(_held(hand), String, f"word of the {hand} hand", qos="state")
+            services.add(_close(hand), SetBool)
+
+    def grasp(self, hand: Hand, name: str | None) -> Call:
+        """Closes a hand; where it closes on another object than the named one, it opens again. Raises RobotError."""
+        wanted = None if name is None else self._places.known(name)
+        return self._services.call(_close(hand), partial(self._grasped, hand, wanted), data=True)
+
+    def release(self, hand: Hand) -> Call:
+        """Opens a hand. Raises RobotError."""
+        self._opening[hand] = self._services.call(_close(hand), partial(self._released, hand), data=False)
+        return self._opening[hand]
+
+    def holding(self, hand: Hand) -> str | None:
+        """The name of what the hand holds. Raises RobotError where nothing tells of it."""
+        if hand not in self._holding:
+            self._inbox.get(_held(hand))
+        return self._holding.get(hand) or None
+
+    def step(self) -> None:
+        """Hears what the hands hold."""
+        for hand in _HANDS:
+            for message in self._inbox.events(_held(hand)):
+                before = self._holding.get(hand, "")
+                self._holds(hand, message.data)
+                opens = hand in self._opening and not self._opening[hand].done  # and is about to answer
+                if before and not message.data and not opens:
+                    self._emit("drop", hand=hand, name=before)
+
+    def _grasped(self, hand: Hand, wanted: str | None, found: str) -> None:
+        if wanted is not None and found.lower() != wanted.lower():
+            self._services.fire(_close(hand), data=False)
+            raise RobotError(f"the {hand} hand closed on {said(found)} instead of {said(wanted)}")
+        self._holds(hand, found)
+        self._emit("grasp", hand=hand, name=found)
+
+    def _released(self, hand: Hand, name: str) -> None:
+        self._holds(hand, "")
+        self._emit("release", hand=hand, name=name or None)
+
+    def _holds(self, hand: Hand, name: str) -> None:
+        before = self._holding.get(hand, "")
+        if name == before:
+            return
+        self._holding[hand] = name
+        objects = self._places.world.names.objects
+        here = self._where()
+        if before in objects and here is not None:
+            self._places.put_down(before, here)
+        if name in objects:
+            self._places.picked_up(name)
+
+
+def _held(hand: Hand) -> str:
+    return f"{hand}_hand/holding"
+
+
+def _close(hand: Hand) -> str:
+    return f"{hand}_hand/close"

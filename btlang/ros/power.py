@@ -1,0 +1,65 @@
+"""The battery and the dock of a ROS 2 robot."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from rclpy.node import Node
+from sensor_msgs.msg import BatteryState
+from std_msgs.msg import Bool
+from std_srvs.srv import Trigger
+
+from btlang.robots.robot import RobotError
+from btlang.ros.inbox import Inbox
+from btlang.ros.services import Call, Services
+
+BATTERY, DOCKED, DOCK, UNDOCK = "battery_state", "docked", "dock", "undock"
+_SILENT = 30.0  # seconds without word of the battery
+
+
+class RosPower:
+    """`emit` is told what happens. All raise RobotError where nothing tells what is asked for."""
+
+    def __init__(self, node: Node, inbox: Inbox, services: Services, emit: Callable[..., object]) -> None:
+        self._inbox, self._services, self._emit = inbox, services, emit
+        self._docked: bool | None = None
+        inbox.listen(BATTERY, BatteryState, "battery state")
+        inbox.listen(DOCKED, Bool, "word of the dock", qos="state")
+        services.add(DOCK, Trigger)
+        services.add(UNDOCK, Trigger)
+
+    @property
+    def battery(self) -> float:
+        """Percent left."""
+        share = float(self._inbox.get(BATTERY, _SILENT).percentage)
+        if not 0.0 <= share <= 1.0:
+            raise RobotError(f"{self._inbox.shown(BATTERY)} tells no percentage")
+        return 100.0 * share
+
+    @property
+    def charging(self) -> bool:
+        """True while the battery is being charged."""
+        state = self._inbox.get(BATTERY, _SILENT)
+        return bool(state.power_supply_status == BatteryState.POWER_SUPPLY_STATUS_CHARGING)
+
+    @property
+    def docked(self) -> bool:
+        """True while connected to the dock."""
+        return self._docked if self._docked is not None else bool(self._inbox.get(DOCKED).data)
+
+    def dock(self) -> Call:
+        """Connects to the charger."""
+        return self._services.call(DOCK, lambda _: self._connected(True))
+
+    def undock(self) -> Call:
+        """Disconnects."""
+        return self._services.call(UNDOCK, lambda _: self._connected(False))
+
+    def step(self) -> None:
+        """Hears whether it is docked."""
+        for message in self._inbox.events(DOCKED):
+            self._docked = bool(message.data)
+
+    def _connected(self, docked: bool) -> None:
+        self._docked = docked  # before the topic tells so
+        self._emit("dock" if docked else "undock")

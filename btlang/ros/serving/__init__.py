@@ -1,0 +1,1 @@
+"""Actions of the vocabulary as action servers of ROS 2."""

@@ -1,0 +1,124 @@
+"""What `btc serve-actions` does, until a signal ends it. Imports no ROS before it is asked for."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+
+from btlang.api import RATES, world_vocabulary
+from btlang.arguments import between, namespace, node_name, real_speed
+from btlang.backends.engine import bind_leaf
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.engine.build import EngineError
+from btlang.ros.available import require_interfaces, require_ros
+from btlang.ros.mission.setup import Setup
+from btlang.ros.serving.choosing import chosen, servable
+from btlang.ros.serving.names import FOLDER
+from btlang.text.source import Source, Span
+from btlang.tree.node import Node, Tree
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.run.stage import Stage
+    from btlang.vocabulary.vocabulary import Vocabulary
+
+_ANSWERS = 1.0  # seconds that the last answers to clients get
+
+
+def add_serving_options(parser: argparse.ArgumentParser) -> None:
+    """The options of `btc serve-actions` that are not those of all words and worlds."""
+    parser.add_argument(
+        "--robot", choices=["simulated", "ros"], default="simulated", help="what does them (default: %(default)s)"
+    )
+    parser.add_argument("--sim-time", action="store_true", help="with --robot ros: time is that of the topic /clock")
+    parser.add_argument("--speed", type=real_speed, default="real", help="real, or a factor of real time")
+    parser.add_argument("--rate", type=between(*RATES), default=20.0, metavar="HZ", help="ticks a second (default: 20)")
+    parser.add_argument(
+        "--only", nargs="+", action="extend", default=[], metavar="ID", help="serve these actions or topics of words"
+    )
+    parser.add_argument("--name", default="btlang_actions", type=node_name, help="of the node (default: %(default)s)")
+    parser.add_argument("--namespace", type=namespace, default="", metavar="NS", help="of the actions (default: none)")
+    parser.add_argument("--ros-args", nargs=argparse.REMAINDER, help="the rest are arguments of ROS 2")
+    parser.set_defaults(refuse=parser.error)
+
+
+def serve(options: argparse.Namespace) -> int:
+    """Serves actions until a signal comes; returns the exit code, 128 and the number of the signal.
+
+    Raises MissionError where ROS 2 is not there (BT100, BT110), or where an action cannot run (BT080, BT104 to BT106).
+    """
+    if options.robot != "ros" and options.sim_time:
+        options.refuse("--sim-time is for --robot ros")
+    if options.robot == "ros" and options.speed != "real":
+        options.refuse("--robot ros runs in real time, so it takes no --speed")
+    vocabulary = world_vocabulary(options.keywords, options.world)
+    try:
+        ids = chosen(options.only, servable(vocabulary, ros=options.robot == "ros"), vocabulary)
+    except ValueError as problem:
+        options.refuse(str(problem))
+    require_ros("std_srvs")
+    require_interfaces()
+    stage = Setup(options.name, options.robot, options.sim_time, keywords=options.keywords, world=options.world).stage()
+    try:
+        _check(stage, ids, vocabulary)
+        return _spin(stage, ids, vocabulary, options)
+    finally:
+        stage.close()
+
+
+def _check(stage: Stage, ids: Sequence[str], vocabulary: Vocabulary) -> None:
+    """Tells what the robot lacks. Raises MissionError where an action cannot be bound."""
+    everything = Tree(Node("Sequence", tuple(Node(node_id) for node_id in ids)))
+    survey = getattr(stage, "survey", None)  # of a ROS 2 robot
+    for interface, (node, reason) in survey(everything, vocabulary).items() if survey is not None else ():
+        if reason:
+            user = f", which {node.id} needs" if node is not None else ""
+            print(f"btlang serve-actions: no {interface.name}{user}: {reason}", file=sys.stderr)
+    for node_id in ids:
+        try:
+            bind_leaf(node_id, vocabulary, stage.bind)
+        except EngineError as error:
+            span = error.node.span or Span(Source(""), 0, 0)
+            raise MissionError([diagnostic("BT080", span, id=node_id, reason=error.message)]) from None
+
+
+def _spin(stage: Stage, ids: Sequence[str], vocabulary: Vocabulary, options: argparse.Namespace) -> int:
+    from btlang.english.phrase import phrase_of
+    from btlang.ros.ending import ending_signals
+    from btlang.ros.node import SpunNode
+    from btlang.ros.serving.server import serve_actions
+    from btlang.ros.serving.work import Work
+    from btlang.run.controls import Controls
+    from btlang.run.emergency import emergency_signal
+    from btlang.run.lines import Lines
+    from btlang.run.runner import Runner
+
+    stage.begin([Lines(lambda node: phrase_of(node, vocabulary), lambda node: True, _print)])
+    controls = Controls()
+    work = Work(stage, vocabulary)
+    runner = Runner(
+        work, clock=stage.clock, robot=stage.robot, rate=options.rate,
+        speed=1.0 if options.speed == "real" else options.speed,
+        events=stage.events, controls=controls, pace=stage.pace,
+    )  # fmt: skip
+    with ending_signals() as came, emergency_signal(controls.emergency_stop):
+        came.on_arrival = controls.stop
+        spun = SpunNode(options.name, namespace=options.namespace, use_sim_time=options.sim_time)
+        try:
+            serve_actions(spun.node, ids, vocabulary, work, controls.emergency_stop)
+            spun.start()
+            where = f"{spun.node.get_namespace().rstrip('/')}/{FOLDER}"
+            _print(f"btlang serve-actions: ready with {len(ids)} actions in {where}; Ctrl-C ends it")
+            while not came.numbers:
+                runner.run()  # until a signal, or an emergency stop, after which it goes on
+                controls.take_emergency()
+                work.answer_all()
+            spun.settle(_ANSWERS)
+        finally:
+            spun.close()
+    return 128 + came.numbers[0]
+
+
+def _print(line: str) -> None:
+    print(line, flush=True)

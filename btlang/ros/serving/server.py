@@ -1,0 +1,66 @@
+"""A node with an action server for each action."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+from btlang_interfaces.action import RunPhrase
+from rclpy.node import Node
+from std_srvs.srv import Trigger
+
+from btlang.engine.leaf import ActionFailed
+from btlang.ros.goals import GoalServer, HeldGoal
+from btlang.ros.serving.asked import asked_leaf
+from btlang.ros.serving.names import FOLDER, action_name
+from btlang.ros.serving.work import Work
+from btlang.vocabulary.vocabulary import Vocabulary
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+
+class _Caller:
+    """See `btlang.ros.serving.job.Caller`."""
+
+    def __init__(self, goal: HeldGoal) -> None:
+        self._goal = goal
+
+    def tell(self, share: float, state: str) -> None:
+        self._goal.tell(RunPhrase.Feedback(progress=share, state=state))
+
+    def end(self, success: bool, reason: str) -> None:
+        self._goal.end(success, RunPhrase.Result(success=success, reason=reason))
+
+
+def serve_actions(
+    node: Node, ids: Iterable[str], vocabulary: Vocabulary, work: Work, stop: Callable[[], object]
+) -> None:
+    """Each action by its name, see names.py; and ~/stop, the emergency stop, which calls `stop`.
+
+    A goal that makes no sense is accepted and aborted: ROS 2 has no reason for one that is rejected.
+    """
+
+    def stopped(request: Any, response: Any) -> Any:
+        stop()
+        response.success = True
+        return response
+
+    node.create_service(Trigger, "~/stop", stopped)
+    for node_id in ids:
+        GoalServer(node, RunPhrase, f"{FOLDER}/{action_name(node_id)}", _beginner(node_id, vocabulary, work))
+
+
+def _beginner(node_id: str, vocabulary: Vocabulary, work: Work) -> Callable[[HeldGoal], Callable[[], object]]:
+    entries = vocabulary.entries[node_id]
+
+    def begin(goal: HeldGoal) -> Callable[[], object]:
+        caller, asked = _Caller(goal), goal.request
+        try:
+            leaf = asked_leaf(asked.phrase, asked.names, asked.values, entries, vocabulary)
+        except ActionFailed as problem:
+            caller.end(False, str(problem))
+            return lambda: None
+        return work.begin(leaf, caller)
+
+    return begin

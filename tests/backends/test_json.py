@@ -1,0 +1,105 @@
+"""Trees as JSON: the form is that of the schema, and what is read back is the same tree."""
+
+from __future__ import annotations
+
+import json
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from btlang.api import parse_tree, world_vocabulary
+from btlang.backends.json_tree import SCHEMA, read_json, to_json
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.tree.model import NodeModel, PortModel
+from btlang.tree.node import Node, Tree
+
+WORDS = world_vocabulary()
+TEXTS = st.text(st.characters(exclude_categories=["Cs"]), max_size=8)
+PORTS = st.dictionaries(TEXTS, TEXTS, max_size=3).map(lambda ports: tuple(ports.items()))
+IDS = st.sampled_from(("Sequence", "GoTo", "SubTree", "Script")) | TEXTS.filter(bool)
+NODES = st.recursive(
+    st.builds(Node, IDS, st.just(()), PORTS, TEXTS),
+    lambda nodes: st.builds(Node, IDS, st.lists(nodes, max_size=3).map(tuple), PORTS, TEXTS),
+    max_leaves=8,
+)
+MODELS = st.builds(
+    NodeModel,
+    st.sampled_from(("Action", "Condition", "Decorator", "Control", "SubTree")),
+    TEXTS,
+    st.lists(
+        st.builds(PortModel, TEXTS, st.sampled_from(("input", "output", "inout")), TEXTS, st.none() | TEXTS, TEXTS),
+        max_size=2,
+    ).map(tuple),
+    TEXTS,
+)
+TREES = st.builds(
+    Tree,
+    NODES,
+    st.lists(st.tuples(TEXTS, NODES), max_size=2).map(tuple),
+    TEXTS,
+    st.lists(MODELS, max_size=2).map(tuple),
+)
+
+
+@cache
+def schema() -> Any:
+    """What checks a document. The package comes with the extra `dev`."""
+    jsonschema = pytest.importorskip("jsonschema")
+    text = json.loads(Path(SCHEMA).read_text(encoding="utf-8"))
+    jsonschema.Draft202012Validator.check_schema(text)
+    return jsonschema.Draft202012Validator(text)
+
+
+@settings(max_examples=50)
+@given(TREES)
+def test_what_is_written_is_read_back(tree: Tree) -> None:
+    read = read_json(to_json(tree, WORDS))
+    assert read == tree
+    assert read.models == tree.models
+
+
+@settings(max_examples=30, deadline=None)
+@given(TREES)
+def test_documents_fit_the_schema(tree: Tree) -> None:
+    schema().validate(json.loads(to_json(tree, WORDS)))
+
+
+def test_a_document_of_a_mission_fits_the_schema() -> None:
+    told = json.loads(to_json(parse_tree("patrol is wave then nod\nif battery is above 20% patrol").tree, WORDS))
+    schema().validate(told)
+    for broken in ({}, {**told, "format": 2}, {**told, "trees": []}, {**told, "trees": [{"name": "", "nodes": [{}]}]}):
+        assert not schema().is_valid(broken)
+
+
+def test_spans_are_those_of_the_ids() -> None:
+    tree = read_json(to_json(parse_tree("wave then nod then wave").tree, WORDS))
+    assert [node.span.text for node in tree.walk() if node.span] == [f'"id": "{node.id}"' for node in tree.walk()]
+
+
+@pytest.mark.parametrize(
+    ("document", "reason"),
+    [
+        ("{", "it is not JSON"),
+        ("[" * 100_000, "it is nested too deep"),
+        ("[]", "the document is no object"),
+        ('{"format": 2}', '"format" is not 1'),
+        ('{"format": 1, "trees": []}', "holds no tree"),
+        ('{"format": 1, "trees": [{"nodes": []}]}', "0 roots"),
+        ('{"format": 1, "trees": [{"nodes": [{"id": "a"}, {"id": "b"}]}]}', "2 roots"),
+        ('{"format": 1, "trees": [{"nodes": [{"id": "a", "children": [0]}]}]}', "nodes after it"),
+        ('{"format": 1, "trees": [{"nodes": [{"id": "a", "children": [true]}]}]}', "nodes after it"),
+        ('{"format": 1, "trees": [{"nodes": [{"id": "a", "children": [1, 1]}, {"id": "b"}]}]}', "two nodes"),
+        ('{"format": 1, "trees": [{"nodes": [{"id": "a", "ports": {"p": 1}}]}]}', "the port p"),
+        ('{"format": 1, "trees": [{"nodes": [{"id": 1}]}]}', "the id of node 0"),
+        ('{"format": 1, "trees": [{"nodes": [{"id": "a"}]}], "models": [{"ports": [1]}]}', "model 0"),
+    ],
+)
+def test_what_is_no_tree_is_told(document: str, reason: str) -> None:
+    with pytest.raises(MissionError) as refused:
+        read_json(document)
+    assert [problem.code for problem in refused.value.diagnostics] == ["BT133"]
+    assert reason in str(refused.value)

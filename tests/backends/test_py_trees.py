@@ -1,0 +1,80 @@
+"""What a tree becomes in py_trees, and what is refused."""
+
+from __future__ import annotations
+
+import pytest
+from py_trees import composites, decorators
+from py_trees.behaviours import Success
+from py_trees.common import Status
+
+from btlang.api import parse_tree, world_vocabulary
+from btlang.backends.py_trees.build import to_py_trees
+from btlang.backends.py_trees.in_order import SkippableSequence
+from btlang.backends.py_trees.module import to_module
+from btlang.backends.py_trees.plan import DEEPEST
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.tree.node import Node, Tree
+
+from ..engine.scripted import n
+
+WORDS = world_vocabulary()
+
+
+def refusals(root: Node) -> list[str]:
+    """The ids of the nodes that cannot be told."""
+    with pytest.raises(MissionError) as refused:
+        to_py_trees(Tree(root), WORDS)
+    with pytest.raises(MissionError) as again:
+        to_module(Tree(root), WORDS)
+    assert refused.value.diagnostics == again.value.diagnostics
+    assert {problem.code for problem in refused.value.diagnostics} == {"BT134"}
+    return sorted(dict(problem.arguments)["id"] for problem in refused.value.diagnostics)
+
+
+def test_nodes_of_py_trees_are_used_where_they_mean_the_same() -> None:
+    root = to_py_trees(Tree(n("Sequence", n("Wave"), n("Inverter", n("Nod")))), WORDS, bind=lambda node: Success("x"))
+    assert type(root) is composites.Sequence
+    assert root.memory
+    assert type(root.children[1]) is decorators.Inverter
+    skippable = to_py_trees(Tree(n("Sequence", n("AlwaysSuccess"), n("AlwaysSuccess", _skipIf="true"))), WORDS)
+    assert type(skippable) is SkippableSequence
+    assert isinstance(skippable, composites.Sequence)
+
+
+def test_leaves_do_what_their_keyword_entries_name() -> None:
+    tree = parse_tree('set count to 2; increase count by 1\nif {count} is above 2, print "more"')
+    root = to_py_trees(tree.tree, tree.vocabulary, services={"robot": tree.robot})
+    root.tick_once()
+    assert root.status == Status.SUCCESS
+
+
+def test_leaves_that_cannot_be_bound_are_told() -> None:
+    with pytest.raises(MissionError) as refused:
+        to_py_trees(Tree(n("GoTo")), WORDS)
+    assert [problem.code for problem in refused.value.diagnostics] == ["BT132"]
+
+
+def test_what_py_trees_cannot_do_is_refused_all_at_once() -> None:
+    leaf = n("Wave")
+    root = n(
+        "Sequence",
+        n("AsyncSequence", leaf),
+        n("Switch2", leaf, leaf, leaf, variable="{x}", case_1="1", case_2="2"),
+        n("TryCatch", leaf, leaf, catch_on_halt="true"),
+        n("Repeat", leaf, num_cycles="{x}"),
+        n("Nod", _failureIf="x == 1"),
+    )
+    assert refusals(root) == ["AsyncSequence", "Nod", "Repeat", "Switch2", "TryCatch"]
+
+
+def test_trees_that_are_too_deep_are_refused() -> None:
+    root = n("AlwaysSuccess")
+    for _ in range(DEEPEST):
+        root = n("Repeat", root, num_cycles=1)
+    made = to_py_trees(Tree(root), WORDS)
+    made.tick_once()
+    assert made.status == Status.SUCCESS
+    assert refusals(n("Inverter", root)) == ["AlwaysSuccess"]
+    for _ in range(10_000):
+        root = n("Inverter", root)
+    assert refusals(root) == ["Inverter"]

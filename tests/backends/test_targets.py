@@ -1,0 +1,213 @@
+"""The table of targets, `btc compile`, and what each target writes."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+import warnings
+from importlib.util import find_spec
+from pathlib import Path
+
+import pydot
+import pytest
+
+import btlang
+from btlang.api import RunnableTree, world_vocabulary
+from btlang.backends.json_tree import read_json
+from btlang.backends.targets import TARGETS, compiled, target_of
+from btlang.cli import main
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.text.source import Source
+from btlang.tree.model import NodeModel, PortModel
+from btlang.tree.node import Node, Tree
+
+ROOT = Path(__file__).parents[2]
+EXAMPLES = sorted((ROOT / "examples").glob("*.txt"))
+MISSION = """bay is at (1 m, 1 m)
+patrol is: go to the kitchen then say "a 'b\\n"
+repeat 2 times patrol
+if battery is above 20% go to the bay
+"""
+
+
+def example(path: Path) -> RunnableTree:
+    text = path.read_text(encoding="utf-8")
+    world = re.search(r"--world (\S+)", text)
+    return btlang.parse_tree(Source(text, str(path)), world=str(ROOT / world[1]) if world else None)
+
+
+def deep(levels: int = 10_000) -> RunnableTree:
+    node = Node("Wave")
+    for _ in range(levels):
+        node = Node("Inverter", (node,))
+    return RunnableTree(Tree(node), world_vocabulary())
+
+
+@pytest.mark.parametrize("name", TARGETS)
+def test_every_target_can_be_loaded(name: str) -> None:
+    module = TARGETS[name].make.partition(":")[0]
+    if find_spec(module) is None:
+        pytest.skip(f"{module} is not there")
+    made = btlang.parse_tree("wave then nod").to(name)
+    assert isinstance(made, bytes if TARGETS[name].binary else str)
+    assert made
+
+
+def test_suffixes_belong_to_one_target() -> None:
+    suffixes = [suffix for target in TARGETS.values() for suffix in target.suffixes]
+    assert len(set(suffixes)) == len(suffixes)
+    assert target_of("a/tree.SVG") == "svg"
+    assert target_of("tree") == ""
+
+
+def test_unknown_targets_and_options_are_refused() -> None:
+    tree = btlang.parse_tree("wave")
+    with pytest.raises(ValueError, match="the targets are xml, "):
+        tree.to("cobol")
+    with pytest.raises(ValueError, match="takes no dialect"):
+        tree.to("dot", dialect=3)
+
+
+@pytest.mark.parametrize("name", ["json", "dot", "python", "keywords", "tree"])
+def test_deep_trees_have_text(name: str) -> None:
+    assert len(compiled(deep().tree, deep().vocabulary, name)) > 40
+
+
+@pytest.mark.parametrize("path", EXAMPLES, ids=lambda path: path.stem)
+def test_examples_can_be_compiled_to_all(path: Path) -> None:
+    tree = example(path)
+    for name in ("json", "dot", "python", "keywords", "tree", "py_trees"):
+        made = tree.to(name)
+        assert isinstance(made, str)
+        if name == "json":
+            assert read_json(made) == tree.tree
+        elif name == "dot":
+            assert_graph(made, tree.tree)
+        elif name in ("python", "py_trees"):
+            compile(made, "made.py", "exec")
+        elif name == "keywords":
+            assert made == "# Every leaf of this tree has its keyword entry.\n"
+
+
+def assert_graph(text: str, tree: Tree) -> None:
+    """It is read by the grammar of pydot, and has a box for each node and an arrow for each child and use."""
+    graph = graph_of(text)
+    boxes = [box for part in (graph, *graph.get_subgraphs()) for box in boxes_of(part)]
+    arrows = [arrow for part in (graph, *graph.get_subgraphs()) for arrow in part.get_edges()]
+    nodes = list(tree.walk())
+    assert len(boxes) == len(nodes)
+    assert len(arrows) == sum(len(node.children) + (node.id == "SubTree") for node in nodes)
+
+
+def boxes_of(graph: pydot.Dot) -> list[str]:
+    """The names of its nodes, without what is set for all."""
+    return [node.get_name() for node in graph.get_nodes() if node.get_name() not in ("node", "graph")]
+
+
+def graph_of(text: str) -> pydot.Dot:
+    """What the grammar of pydot reads; it uses old names of pyparsing."""
+    with warnings.catch_warnings():
+        warnings.simplefilter("ignore", DeprecationWarning)
+        [graph] = pydot.graph_from_dot_data(text) or []
+    return graph
+
+
+def test_dot_escapes_everything() -> None:
+    odd = Node('a"b\\n]', ports=(("p", '{x} "\\" <&> \n ü'),), name='"')
+    text = compiled(Tree(odd, (('t"\\', odd),)), world_vocabulary(), "dot")
+    assert isinstance(text, str)
+    graph = graph_of(text)
+    assert boxes_of(graph) == ["n0"]
+
+
+def test_the_module_does_what_run_does(tmp_path: Path) -> None:
+    (tmp_path / "mission.txt").write_text(MISSION, encoding="utf-8")
+    (tmp_path / "mission.py").write_text(str(btlang.parse_tree(MISSION).to("python")), encoding="utf-8")
+    runs = [["mission.py"], ["-m", "btlang", "run", "mission.txt", "--lines"]]
+    ran, run = (python(tmp_path, *words, "--speed", "max") for words in runs)
+    assert (ran.returncode, ran.stdout) == (run.returncode, run.stdout) == (0, run.stdout)
+    assert "going to bay" in run.stdout or "go to bay" in run.stdout
+
+
+def test_a_deep_module_makes_the_same_tree() -> None:
+    names: dict[str, RunnableTree] = {"__name__": "made"}  # type: ignore[dict-item]
+    exec(str(deep().to("python")), names)
+    assert names["tree"].tree == deep().tree
+
+
+def test_the_module_for_py_trees_needs_py_trees_only(tmp_path: Path) -> None:
+    (tmp_path / "tree.py").write_text(str(btlang.parse_tree(MISSION).to("py_trees")), encoding="utf-8")
+    (tmp_path / "btlang.py").write_text("raise ImportError('it is not needed')", encoding="utf-8")
+    ran = python(tmp_path, "tree.py", path=tmp_path)
+    assert ran.returncode == 0, ran.stderr
+    assert ran.stdout.endswith("battery is above 20%\ngo to bay\nSUCCESS\n")
+
+
+def python(folder: Path, *words: str, path: Path = ROOT) -> subprocess.CompletedProcess[str]:
+    environment = {**os.environ, "PYTHONPATH": str(path)}
+    command = [sys.executable, "-W", "error", *words]
+    return subprocess.run(command, cwd=folder, env=environment, capture_output=True, encoding="utf-8", check=False)
+
+
+def test_keyword_entries_make_the_tree_known(tmp_path: Path) -> None:
+    ports = (PortModel("p", "input", "double", "1.5"), PortModel("q-r", "input", "std::string"))
+    leaves = (
+        Node("MoveTo", ports=(("goal", "1;2"), ("speed", "0.5"))),
+        Node("IsDoorOpen"),
+        Node("Then"),
+        Node("A"),
+        Node("SaySomething", ports=(("message", "{m}"),)),
+        Node("SAY_something", ports=(("message", "hello"),)),
+        Node("DockNow", ports=(("p", "2"),)),
+    )
+    tree = Tree(Node("Sequence", leaves), models=(NodeModel("Condition", "DockNow", ports, 'Is "docked"\n now\x7f'),))
+    text = compiled(tree, world_vocabulary(), "keywords")
+    assert isinstance(text, str)
+    file = tmp_path / "words.toml"
+    file.write_text(text, encoding="utf-8")
+    vocabulary = world_vocabulary([str(file)])
+    assert [vocabulary.entries[leaf.id][0].sort for leaf in leaves] == [
+        "action", "condition", "action", "action", "action", "action", "condition"
+    ]  # fmt: skip
+    assert compiled(tree, vocabulary, "keywords").count("[[") == 0
+    RunnableTree(tree, vocabulary).check()
+
+
+def test_compile_writes_a_file_at_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    out = tmp_path / "tree.json"
+    assert main(["compile", "-c", "wave", "-o", str(out)]) == 0
+    assert read_json(out.read_text(encoding="utf-8")) == btlang.parse_tree("wave").tree
+    out.chmod(0o640)
+    assert main(["compile", "-c", "nod", "-o", str(out), "--to", "tree"]) == 0
+    assert (out.read_text(encoding="utf-8"), out.stat().st_mode & 0o777) == ("Nod\n", 0o640)
+    assert [path.name for path in tmp_path.iterdir()] == ["tree.json"]
+    assert main(["compile", "-c", "nod", "--to", "tree"]) == 0
+    assert capsys.readouterr().out == "Nod\n"
+    assert main(["compile", "-c", "nod", "-o", str(tmp_path / "no" / "tree.json")]) == 2
+    assert "error BT009" in capsys.readouterr().err
+
+
+def test_compile_says_what_it_can_write(capsys: pytest.CaptureFixture[str]) -> None:
+    for words in (["-c", "wave"], ["-c", "wave", "-o", "tree"], ["-c", "wave", "--to", "dot", "--dialect", "3"]):
+        with pytest.raises(SystemExit) as refused:
+            main(["compile", *words])
+        assert refused.value.code == 2
+        assert "--to says" in capsys.readouterr().err or "--dialect" in words
+
+
+def test_all_that_is_wrong_is_told_at_once() -> None:
+    inner = (("ID", "inner"),)
+    leaves = (Node("Nobody"), Node("Repeat"), Node("GoTo", ports=(("plase", "x"),)), Node("SubTree", ports=inner))
+    tree = Tree(
+        Node("Sequence", leaves), (("inner", Node("Foo", (Node("SubTree", ports=inner),))), ("free", leaves[0]))
+    )
+    runnable = RunnableTree(tree, world_vocabulary())
+    for attempt in (runnable.check, lambda: runnable.run(speed="max")):
+        with pytest.raises(MissionError) as refused:
+            attempt()
+        told = sorted(problem.code for problem in refused.value.diagnostics)
+        assert told == ["BT130", "BT131", "BT132", "BT132", "BT132"], refused.value
+    assert str(runnable)
+    assert runnable.to("json")

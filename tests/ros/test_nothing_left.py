@@ -1,0 +1,57 @@
+"""What is left on the machine and in the ROS graph when missions have ended: nothing."""
+
+from __future__ import annotations
+
+import re
+import time
+from collections.abc import Callable
+from contextlib import closing
+from pathlib import Path
+
+from tests.ros.client import Client
+from tests.ros.processes import LONG, Command
+
+RUNS = 20
+
+
+def segments(process: int) -> set[str]:
+    """The shared memory of Fast DDS that a process has mapped; none when it has ended.
+
+    Without its ports: these have few names, which the next participants use again, those of other tests too.
+    """
+    try:
+        maps = Path(f"/proc/{process}/maps").read_text(encoding="utf-8")
+    except (FileNotFoundError, ProcessLookupError):
+        return set()
+    return set(re.findall(r"/dev/shm/fastrtps_[0-9a-f]{16}", maps))
+
+
+def wait_for_nodes(client: Client, *names: str) -> None:
+    """Until these nodes are in the graph, and no others."""
+    until = time.monotonic() + LONG
+    while sorted(client.node.get_node_names()) != sorted(names) and time.monotonic() < until:
+        time.sleep(0.01)
+    assert sorted(client.node.get_node_names()) == sorted(names)
+
+
+def test_twenty_missions_in_a_row(start_sim: Callable[..., Command], domain: int, tmp_path: Path) -> None:
+    sim = start_sim("--speed", "1")
+    with closing(Client(domain)) as client:
+        wait_for_nodes(client, "btlang_sim", "client")
+        used = segments(sim.process.pid)
+        assert used
+        for number in range(RUNS):
+            folder = tmp_path / str(number)
+            folder.mkdir()
+            mission = Command(folder, domain, "run", "--robot", "ros", "-c", "print done", "--quiet")
+            own, until = set(), time.monotonic() + LONG
+            while mission.process.poll() is None and time.monotonic() < until:
+                own |= segments(mission.process.pid)
+                time.sleep(0.01)
+            assert own - used, "no segment of its own was seen"
+            used |= own
+            assert (mission.end(), mission.err) == (0, "")  # and no process of its group is left
+        wait_for_nodes(client, "btlang_sim", "client")
+        assert sim.end() == 130
+        wait_for_nodes(client, "client")
+    assert [file for segment in used for file in (segment, f"{segment}_el") if Path(file).exists()] == []
