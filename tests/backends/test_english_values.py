@@ -9,7 +9,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings
 
-from btlang.api import world_vocabulary
+from btlang.api import parse_tree, world_vocabulary
 from btlang.backends.english import to_english
 from btlang.frontends.mission import read_mission
 from btlang.passes import lower_mission
@@ -138,3 +138,17 @@ def test_a_type_that_only_the_first_use_tells() -> None:
     uses = [Node("SubTree", (), (("ID", "greet {who}"), ("who", text))) for text in ("Alice", "3")]
     tree = Tree(Node("Sequence", (script("x := 1"), *uses)), (("greet {who}", Node("Wave")),))
     assert "set x to 1" in said_and_read(tree, world_vocabulary())
+
+
+def test_comments_of_what_is_said_as_one_stand_before_it() -> None:
+    mission = 'for each n in 1, 2: say "round {n}"\nset x to 1\nsay "{x} more"\n'
+    lines = str(parse_tree(mission).to("xml")).splitlines()
+    start, end = (
+        next(i for i, line in enumerate(lines) if tag in line) for tag in ("<BehaviorTree", "<TreeNodesModel")
+    )
+    for at in range(end - 1, start - 1, -1):
+        if "</" not in lines[at]:
+            lines.insert(at, f"<!-- {lines[at].split()[0][1:].strip('>')} -->")
+    said = str(parse_tree(Source("\n".join(lines), "tree.xml")).to("english"))
+    assert "\n".join(line for line in said.splitlines() if line[0] != "#") == mission.strip()
+    assert said.count("# ") == sum("<!--" in line for line in lines)

@@ -150,6 +150,13 @@ def _parallel(node: Node, children: tuple[Raised, ...], checked: Checked) -> Ite
     yield from _chain("parallel")(node, children, checked)
 
 
+def _fallback(node: Node, children: tuple[Raised, ...], checked: Checked) -> Iterator[ast.Ast]:
+    """Two of which one is a sequence in lines of its own are said as blocks."""
+    if len(children) == 2 and any(child.part is not child.command for child in children):
+        yield ast.Try(children[0].part, children[1].part, NOWHERE)
+    yield from _chain("fallback")(node, children, checked)
+
+
 def _within(node: Node, children: tuple[Raised, ...], checked: Checked) -> Iterator[ast.Ast]:
     part = _round(children[0], checked) if len(children) == 1 and not children[0].in_lines else None
     if part is not None:
@@ -191,7 +198,7 @@ def _fail(_node: Node, _children: tuple[Raised, ...], _checked: Checked) -> Iter
 
 FORMS: dict[str, Form] = {
     "Sequence": _chain("sequence"),
-    "Fallback": _chain("fallback"),
+    "Fallback": _fallback,
     "Parallel": _parallel,
     "IfThenElse": _if_then_else,
     "WhileDoElse": _while_do_else,
