@@ -17,7 +17,7 @@ _PARTS = re.compile(
     | <!\[CDATA\[.*?\]\]>
     | <\?.*?\?>
     | <!.*?>
-    | <(?P<tag>/?[^\s/>"'=<]+ (?:\s+ | /(?!>) | [^\s"'=<>/]+\s*=\s*(?:"[^"]*"|'[^']*')) * ) /?>
+    | <(?P<tag>/?[^\s/>"'=<]+ (?:\s++ | /(?!>) | [^\s"'=<>/]++\s*+=\s*+(?:"[^"]*+"|'[^']*+')) *+ ) /?>
     | (?P<text>[^<]+)
     """,
     re.VERBOSE | re.DOTALL,
@@ -62,10 +62,9 @@ def repaired(text: str) -> Repaired:
         pieces.append(re.sub(r"\S", " ", text[:done]))  # strict XML has its declaration first or not at all
     while done < len(text):
         match = _PARTS.match(text, done)
-        if match is None:
-            pieces.append(text[done])
-            done += 1
-            continue
+        if match is None:  # the parser will complain of this place
+            pieces.append(text[done:])
+            break
         piece = match[0]
         comment = match["comment"]
         if comment is not None and ("--" in comment or comment.endswith("-")):

@@ -127,14 +127,10 @@ class _Scanner:
         document, parser = self._document, self._parser
         parser.ordered_attributes = True
         parser.buffer_text = True
-        elements, ends, depth = document.elements, self._ends, MOST_DEEP + _AROUND
+        elements, ends = document.elements, self._ends
 
         def start(tag: str, attributes: list[str]) -> None:
             elements.append((tag, attributes, parser.CurrentByteIndex, len(ends)))
-            if len(elements) - len(ends) > depth:
-                self._refuse(
-                    f"more than {MOST_DEEP:,} nodes inside one another", "Make named subtrees of the inner ones."
-                )
 
         def text(data: str) -> None:
             if not data.isspace():
@@ -158,6 +154,8 @@ class _Scanner:
             what, advice = self._refused
             raise MissionError([diagnostic("BT121", self._here(), what=what, advice=advice)]) from None
         document.depths = [at - element[3] for at, element in enumerate(elements)]
+        if max(document.depths) >= MOST_DEEP + _AROUND:
+            raise MissionError([self._too_deep()])
         if not document.text.isascii():
             _count_characters(document)
         if document.is_repaired:
@@ -166,6 +164,13 @@ class _Scanner:
                 for tag, flat, start, ended in document.elements
             ]
         return document
+
+    def _too_deep(self) -> Diagnostic:
+        document = self._document
+        _count_characters(document)
+        place = document.span(document.depths.index(MOST_DEEP + _AROUND))
+        what = f"more than {MOST_DEEP:,} nodes inside one another"
+        return diagnostic("BT121", place, what=what, advice="Make named trees of the inner ones.")
 
     def _note(self, text: str, is_text: bool = False) -> None:
         self._document.notes.append(Note(text, len(self._document.elements), len(self._ends), is_text))
