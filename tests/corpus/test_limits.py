@@ -136,7 +136,7 @@ def test_a_failure_shows_the_tag(capsys: pytest.CaptureFixture[str], tmp_path: P
     )
     assert main(["run", str(file), "--speed", "max", "--quiet"]) in (1, 2)
     errors = capsys.readouterr().err
-    assert '    <GoTo place="atlantis"/>\n      ^^^^^^^^^^^^^^^^^^^^^^^^^\n' in errors
+    assert '    <GoTo place="atlantis"/>\n      ^^^^^^^^^^^^^^^^^^^^^^^^\n' in errors
     assert "Traceback" not in errors
 
 
