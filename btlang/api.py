@@ -58,7 +58,7 @@ def parse_tree(
     source = Source(text) if isinstance(text, str) else text
     with no_collection:
         vocabulary = world_vocabulary(keywords, world)
-        if source.text.lstrip("\ufeff \t\r\n")[:1] == "<":  # as no mission begins
+        if _is_xml(source):
             from btlang.frontends.btcpp.reader import read_xml
 
             return RunnableTree(checked(read_xml(source, main), vocabulary), vocabulary, world)
@@ -82,10 +82,17 @@ def format_mission(
     from btlang.english.layout import laid_out
 
     source = Source(text) if isinstance(text, str) else text
+    if _is_xml(source):
+        raise MissionError([diagnostic("BT003", Span(source, 0, 1), characters="<")])
     with no_collection:
         vocabulary = world_vocabulary(keywords, world)
         compile_mission(read_mission(source, vocabulary, parser).mission, vocabulary, needs_command=False)
     return laid_out(source, vocabulary.articles)
+
+
+def _is_xml(source: Source) -> bool:
+    """Whether it begins as no mission does."""
+    return source.text.lstrip("\ufeff \t\r\n")[:1] == "<"
 
 
 def world_vocabulary(keywords: Sequence[str | Entry | Callable[..., Any]] = (), world: str | None = None) -> Vocabulary:

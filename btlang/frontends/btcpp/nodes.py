@@ -116,7 +116,7 @@ class NodeReader:
         node_id = tag
         is_kind = tag in KINDS
         if is_kind or tag in ("SubTree", "SubTreePlus"):
-            if "ID" not in attributes:
+            if not attributes.get("ID"):
                 self.problems.append(diagnostic("BT123", span, tag=tag, attribute="ID", advice=_ID_ADVICE[is_kind]))
             if is_kind:
                 node_id = attributes.pop("ID", "")
