@@ -47,8 +47,11 @@ class Repaired:
 
 
 def is_odd(text: str) -> bool:
-    """Whether a strict parser would read a value of the text in another way than tinyxml2."""
-    return _ODD_VALUE.search(text) is not None
+    """Whether a strict parser could read a value of the text in another way than tinyxml2."""
+    if "'" in text:
+        return _ODD_VALUE.search(text) is not None
+    values = "".join(text.split('"')[1::2])  # where a quote stands elsewhere, parts of tags as well, which have a `>`
+    return any(letter in values for letter in ">\n\t\r")
 
 
 def repaired(text: str) -> Repaired:

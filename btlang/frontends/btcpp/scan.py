@@ -105,11 +105,18 @@ def scanned(source: Source) -> Document:
     """Raises MissionError (BT120, BT121)."""
     readable = repaired(source.text) if is_odd(source.text) else Repaired(source.text)
     try:
-        return _Scanner(source, readable).scan()
+        return _document(source, readable)
     except MissionError as error:
         if readable.text is not source.text or error.diagnostics[0].code != "BT120":
             raise
-    return _Scanner(source, repaired(source.text)).scan()
+    return _document(source, repaired(source.text))
+
+
+def _document(source: Source, readable: Repaired) -> Document:
+    """Most files hold no texts but the space between tags, and asking for the place of each takes time."""
+    quick = _Scanner(source, readable)
+    document = quick.scan()
+    return _Scanner(source, readable).scan(texts=True) if quick.has_texts else document
 
 
 class _Refused(Exception):
@@ -120,10 +127,17 @@ class _Scanner:
     def __init__(self, source: Source, readable: Repaired) -> None:
         self._document = Document(source, readable)
         self._ends: list[str] = []
+        self._texts: list[str] = []
         self._parser = expat.ParserCreate()
         self._refused: tuple[str, str] = ("", "")
 
-    def scan(self) -> Document:
+    @property
+    def has_texts(self) -> bool:
+        """Whether there is more than space between tags."""
+        return any(map(str.strip, self._texts))
+
+    def scan(self, texts: bool = False) -> Document:
+        """The document, with its texts among the notes where they are asked for."""
         document, parser = self._document, self._parser
         parser.ordered_attributes = True
         parser.buffer_text = True
@@ -138,7 +152,7 @@ class _Scanner:
 
         parser.StartElementHandler = start
         parser.EndElementHandler = ends.append  # only their number matters, and Python need not be entered for it
-        parser.CharacterDataHandler = text
+        parser.CharacterDataHandler = text if texts else self._texts.append
         parser.CommentHandler = lambda data: self._note(f"<!--{document.restored(data)}-->")
         parser.ProcessingInstructionHandler = lambda target, data: self._note(f"<?{f'{target} {data}'.rstrip()}?>")
         parser.XmlDeclHandler = self._declared
