@@ -59,6 +59,7 @@ class NodeReader:
         document = self._document
         elements, depths, source, find = document.elements, document.depths, document.source, document.text.find
         usual, kinds = self._usual, self._kinds
+        settled: dict[str, str] = {}  # ids whose kind tag is the usual one
         unusual: dict[int, Spelling] = {}
         levels: list[list[Node]] = [[] for _ in range(_ROOM)]  # those that wait for their parents, by depth
         deepest = len(levels) - 1
@@ -79,8 +80,11 @@ class NodeReader:
             node_id, name = tag, ""
             if skipped == _KIND:
                 node_id = flat[1] if flat and flat[0] == "ID" else ""
-                if node_id in _RENAMED_OR_OWN or kinds.setdefault(node_id, tag) != tag:
-                    skipped = -1
+                if settled.get(node_id) != tag:
+                    if node_id in _RENAMED_OR_OWN or kinds.setdefault(node_id, tag) != tag:
+                        skipped = -1
+                    else:
+                        settled[node_id] = tag
             if skipped >= 0 and "name" in flat:
                 if flat[skipped] == "name" and (name := flat[skipped + 1]) and flat.count("name") == 1:
                     skipped += 2
