@@ -71,9 +71,13 @@ def test_deep_missions() -> None:
 
 
 def test_a_tree_without_a_mission() -> None:
-    tree = parse_tree("wave")
-    with pytest.raises(ValueError, match="not compiled from a mission"):
-        RunnableTree(tree.tree, tree.vocabulary).explain()
+    """Its statements are those of its English."""
+    tree = parse_tree("turn left then wave")
+    explained = RunnableTree(tree.tree, tree.vocabulary).explain()
+    assert (
+        explained
+        == "line 1: turn left\n  read as: turn left\n\n  TurnLeft: turn left\n\nline 2: wave\n  read as: wave\n\n  Wave: wave"
+    )
 
 
 def test_the_command(capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
