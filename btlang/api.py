@@ -6,6 +6,7 @@ import math
 from collections.abc import Callable, Iterable, Sequence
 from functools import cache, partial
 
+from btlang.backends.data import data_mark, read_tree
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.frontends.mission import DEFAULT_PARSER, read_mission
 from btlang.garbage import no_collection
@@ -57,24 +58,12 @@ def parse_tree(
     source = Source(text) if isinstance(text, str) else text
     with no_collection:
         vocabulary = world_vocabulary(keywords, world)
-        begin = source.text.lstrip("\ufeff \t\r\n")
-        if begin[:1] == "<" or (begin[:1] == "{" and begin[1:].lstrip()[:1] in ('"', "}")):  # as no mission begins
-            tree = _read_data(source, begin[0], main)
-            return RunnableTree(checked(tree, vocabulary), vocabulary, world)
+        if data_mark(source):
+            return RunnableTree(checked(read_tree(source, main), vocabulary), vocabulary, world)
         reading = read_mission(source, vocabulary, parser)
         tree = compile_mission(reading.mission, vocabulary)
         warnings = lint(reading.mission, tree, vocabulary, reading.warnings)
     return RunnableTree(tree, vocabulary, world, warnings, mission=reading.mission)
-
-
-def _read_data(source: Source, start: str, main: str) -> Tree:
-    if start == "<":
-        from btlang.frontends.btcpp.reader import read_xml
-
-        return read_xml(source, main)
-    from btlang.backends.json_tree import read_json
-
-    return read_json(source)
 
 
 def format_mission(
@@ -91,6 +80,8 @@ def format_mission(
     from btlang.english.layout import laid_out
 
     source = Source(text) if isinstance(text, str) else text
+    if data_mark(source):
+        raise MissionError([diagnostic("BT003", Span(source, 0, 1), characters=data_mark(source))])
     with no_collection:
         vocabulary = world_vocabulary(keywords, world)
         compile_mission(read_mission(source, vocabulary, parser).mission, vocabulary, needs_command=False)

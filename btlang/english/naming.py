@@ -65,7 +65,7 @@ def spelt(key: str, vocabulary: Vocabulary) -> str:
     ends = {
         phrase.split()[0] for role in ("set_to", "by", "remember_as", "each_in") for phrase in vocabulary.roles[role]
     }
-    return key if ends.intersection(key.split("_")) else key.replace("_", " ")
+    return key if ends.intersection(key.split("_")) else key.replace("_", " ").strip()
 
 
 def definition(node: ast.Definition, parts: list[Said], speaker: Speaker) -> Said:

@@ -77,7 +77,7 @@ def misread_head(text: Words, at: int, role: str, vocabulary: Vocabulary) -> Dia
 
 def unknown_value(span: Span, key: str, known: Iterable[str]) -> Diagnostic:
     """BT043: a name in braces that no value has."""
-    name, names = key.replace("_", " "), [other.replace("_", " ") for other in known]
+    name, names = (key.replace("_", " ").strip(), [other.replace("_", " ").strip() for other in known])
     near = nearest(name, names)
     advice = _near_names(near, names) if names else "Nothing has a name in this mission yet."
     braces = re.search(r"\{(\s*" + r"[\W_]+".join(map(re.escape, key.split("_"))) + r"\s*)\}", span.text, re.IGNORECASE)

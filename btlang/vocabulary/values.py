@@ -387,8 +387,12 @@ class Values:
 
 
 def key_of(words: Iterable[str]) -> str:
-    """The key on the blackboard of a name of several words."""
-    return re.sub(r"\W", "_", "_".join(words))
+    """The key on the blackboard of a name of several words.
+
+    `name` is another one in XML: as the port of a SubTree it would be the name of that node.
+    """
+    key = re.sub(r"\W", "_", "_".join(words))
+    return key if key != "name" else "name_"
 
 
 def _too_small(value: float, value_type: ValueType) -> bool:

@@ -71,9 +71,10 @@ def test_deep_missions() -> None:
 
 
 def test_a_tree_without_a_mission() -> None:
-    tree = parse_tree("wave")
-    with pytest.raises(ValueError, match="not compiled from a mission"):
-        RunnableTree(tree.tree, tree.vocabulary).explain()
+    """Its statements are those of its English."""
+    tree = parse_tree("wave if bumped")
+    explained = RunnableTree(tree.tree, tree.vocabulary).explain()
+    assert explained.startswith("line 1: if bumped, wave\n  read as: if bumped, wave\n\n  IfThenElse\n")
 
 
 def test_the_command(capsys: pytest.CaptureFixture[str], tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

@@ -29,8 +29,8 @@ from btlang.vocabulary.values import Unit, ValueType
 from btlang.vocabulary.vocabulary import Vocabulary
 
 GOOD = Path(__file__).parents[1] / "samples" / "good"
-# What a mission includes is in English, and ids and ports of nodes are the same in every language.
-SAMPLES = sorted(path for path in GOOD.glob("*.txt") if path.stem not in ("includes", "nodes"))
+# What a mission includes is in English; ids and ports of nodes, and the attribute `name`, are the same in every language.
+SAMPLES = sorted(path for path in GOOD.glob("*.txt") if path.stem not in ("includes", "nodes", "called_name"))
 _TYPES = re.compile(r"(?<![a-z])(cynpr|crefba|bowrpg|grkg|pbhag)(?![a-z])")
 
 

@@ -37,6 +37,7 @@ class Markers:
     def __init__(self) -> None:
         self.problems: list[Diagnostic] = []
         self._sound: set[str] = set()
+        self._texts: dict[str, str] = {}
 
     def attributes(self, pairs: Pairs, span: Span | None = None) -> str:
         """As they stand in a tag, each after a space; `span` is where to complain."""
@@ -44,12 +45,17 @@ class Markers:
         for key, text in pairs:
             if key not in self._sound:
                 self._check_name(key, span)
-            if not text.isalnum():
-                if _NO_XML.search(text) is not None:
-                    self.wrong(text, "XML has no way to write one of its characters", span)
-                text = text.translate(_IN_VALUES)
-            written += f' {key}="{text}"'
+            value = self._texts.get(text)
+            if value is None:
+                value = self._value(text, span)
+            written += f' {key}="{value}"'
         return written
+
+    def _value(self, text: str, span: Span | None) -> str:
+        if _NO_XML.search(text) is not None:
+            self.wrong(text, "XML has no way to write one of its characters", span)
+        value = self._texts[text] = text.translate(_IN_VALUES)
+        return value
 
     def _check_name(self, name: str, span: Span | None) -> None:
         self._sound.add(name)

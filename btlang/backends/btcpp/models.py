@@ -38,8 +38,9 @@ class Uses:
         for node in tree.walk():
             if node.id not in self._own:
                 self._add(node)
-            if any(key == "name" for key, _ in node.ports):
-                self.misnamed.append(node)
+            for key, _ in node.ports:
+                if key == "name":
+                    self.misnamed.append(node)
         strange = [node_id for node_id in self._ports if node_id not in self._known and not vocabulary.entry(node_id)]
         if strange:
             self._known |= nav2_models(strange)

@@ -39,12 +39,16 @@ class _Writer:
         self._dialect = dialect
         self._markers = Markers()
         self._origin = _own_origin(tree, dialect)
-        self._uses = Uses(tree, vocabulary, dialect)
-        for node in self._uses.misnamed:
-            self._markers.wrong("name", why_no_port("name"), node.span)
+        self._uses: Uses | None = None
         if self._origin is None:
+            self._uses = Uses(tree, vocabulary, dialect)
+            for node in self._uses.misnamed:
+                self._markers.wrong("name", why_no_port("name"), node.span)
+            self._kind = self._uses.kind
             self._ids = tree_ids(tree, self._uses.ids, dialect)
         else:
+            kinds = {model.id: model.kind for model in tree.models}
+            self._kind = lambda node_id: kinds.get(node_id, "")  # any other tag is told by the origin
             written = {name: dict(own.attributes).get("ID", name) for name, own in self._origin.trees.items()}
             self._ids = {name: ID for name, ID in written.items() if name != ID}
 
@@ -83,7 +87,7 @@ class _Writer:
 
     def _items(self) -> tuple[Element | Markup | str, ...]:
         """The main tree, the others in their order, the models."""
-        models = model_part(self._uses.models(), self._ids)
+        models = None if self._uses is None else model_part(self._uses.models(), self._ids)
         return (self._tree.name, *(name for name, _ in self._tree.subtrees), *((models,) if models else ()))
 
     def _tree_attributes(self, name: str) -> Pairs:
@@ -95,7 +99,7 @@ class _Writer:
         origin = _NOTHING if self._origin is None else self._origin.trees[name]
         attributes = self._tree_attributes(name) if self._origin is None else origin.attributes
         lines.append(f"{INDENT}<BehaviorTree{self._markers.attributes(attributes)}>")
-        spell, kind, ids, write = SPELL[self._dialect], self._uses.kind, self._ids, self._markers.attributes
+        spell, kind, ids, write = SPELL[self._dialect], self._kind, self._ids, self._markers.attributes
         tags, before, inside = origin.tags, origin.before, origin.inside
         number = 0
         stack: list[tuple[Node | str | tuple[str, ...], int]] = [(root, 2)]

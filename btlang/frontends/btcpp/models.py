@@ -36,8 +36,7 @@ class ModelReader:
     def read(self, index: int) -> Iterator[NodeModel]:
         """The models in element `index`, a TreeNodesModel."""
         document = self._document
-        at = index + 1
-        while at < document.end(index):
+        for at in self._inner(index):
             tag = document.elements[at][0]
             node_id = document.attributes(at).get("ID", "")
             if tag not in MODEL_KINDS:
@@ -46,7 +45,6 @@ class ModelReader:
                 self._wrong("BT123", at, tag=tag, attribute="ID", advice="Name the node that it describes.")
             else:
                 yield NodeModel(tag, node_id, tuple(self._ports(at)), self._description(at))
-            at = document.end(at)
 
     def _ports(self, index: int) -> Iterator[PortModel]:
         for at in self._inner(index):

@@ -14,6 +14,7 @@ from btlang.frontends.btcpp.spelling import (
     PORTS_TO_4,
     SHARED,
     SPELL,
+    TO_3,
     TO_4,
     TRUE,
 )
@@ -26,6 +27,9 @@ if TYPE_CHECKING:
 
 _ODD = frozenset((*KINDS, *TO_4, "SubTree"))
 """Tags that are not the id of their node, or need a second look."""
+_PLAIN_3 = IN_3 - TO_3.keys() - PORTS_TO_4.keys()
+_KIND = 2  # entries of `ID="..."`
+_RENAMED_OR_OWN = IN_3 | TO_4.keys() | {"", "SubTree"}
 _ROOM = 64  # levels; more are added where a tree is deeper
 
 
@@ -45,8 +49,7 @@ class NodeReader:
         self._names = names
         self._written = {name: written for written, name in names.items()}
         self._kinds = kinds
-        self._is_plain = dialect == 4 and all(name == written for written, name in names.items())
-        self._odd = _ODD | names.keys()
+        self._usual = self._usual_tags()
 
     def read(self, first: int, end: int) -> tuple[Node, dict[int, Spelling]]:
         """The node of element `first`, with all inside it up to element `end`; and what is written in an unusual way.
@@ -55,7 +58,8 @@ class NodeReader:
         """
         document = self._document
         elements, depths, source, find = document.elements, document.depths, document.source, document.text.find
-        is_plain, odd = self._is_plain, self._odd
+        usual, kinds = self._usual, self._kinds
+        settled: dict[str, str] = {}  # ids whose kind tag is the usual one
         unusual: dict[int, Spelling] = {}
         levels: list[list[Node]] = [[] for _ in range(_ROOM)]  # those that wait for their parents, by depth
         deepest = len(levels) - 1
@@ -72,17 +76,39 @@ class NodeReader:
             else:
                 children = ()
             span = Span(source, start, find(">", start) + 1)
-            if not is_plain or tag in odd or "name" in flat:
+            skipped = usual.get(tag, -1)
+            node_id, name = tag, ""
+            if skipped == _KIND:
+                node_id = flat[1] if flat and flat[0] == "ID" else ""
+                if settled.get(node_id) != tag:
+                    if node_id in _RENAMED_OR_OWN or kinds.setdefault(node_id, tag) != tag:
+                        skipped = -1
+                    else:
+                        settled[node_id] = tag
+            if skipped >= 0 and "name" in flat:
+                if flat[skipped] == "name" and (name := flat[skipped + 1]) and flat.count("name") == 1:
+                    skipped += 2
+                else:
+                    skipped = -1
+            if skipped >= 0:
+                turns = iter(flat[skipped:] if skipped else flat)
+                node = Node(node_id, children, tuple(zip(turns, turns)), name, span)  # noqa: B905, strict costs time
+            else:
                 node, spelling = self._unusual(tag, flat, children, span)
                 if spelling is not None:
                     unusual[index - first] = spelling
-            elif flat:
-                turns = iter(flat)
-                node = Node(tag, children, tuple(zip(turns, turns)), "", span)  # noqa: B905, strict costs time
-            else:
-                node = Node(tag, children, (), "", span)
             levels[depth].append(node)
         return levels[depths[first]][0], unusual
+
+    def _usual_tags(self) -> dict[str, int]:
+        """Tags that the writer would write as well; how many entries of their attributes tell of the node itself."""
+        document = self._document
+        if self._dialect == 4:
+            tags = {element[0] for element in document.elements} - _ODD - self._names.keys()
+            return dict.fromkeys(tags, 0)
+        if "${" in document.text:
+            return {}
+        return dict.fromkeys(_PLAIN_3, 0) | dict.fromkeys(KINDS, _KIND)
 
     def _unusual(
         self, tag: str, flat: list[str], children: tuple[Node, ...], span: Span
@@ -94,7 +120,7 @@ class NodeReader:
         node_id = tag
         is_kind = tag in KINDS
         if is_kind or tag in ("SubTree", "SubTreePlus"):
-            if "ID" not in attributes:
+            if not attributes.get("ID"):
                 self.problems.append(diagnostic("BT123", span, tag=tag, attribute="ID", advice=_ID_ADVICE[is_kind]))
             if is_kind:
                 node_id = attributes.pop("ID", "")

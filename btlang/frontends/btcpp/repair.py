@@ -17,7 +17,7 @@ _PARTS = re.compile(
     | <!\[CDATA\[.*?\]\]>
     | <\?.*?\?>
     | <!.*?>
-    | <(?P<tag>/?[^\s/>"'=<]+ (?:\s+ | /(?!>) | [^\s"'=<>/]+\s*=\s*(?:"[^"]*"|'[^']*')) * ) /?>
+    | <(?P<tag>/?[^\s/>"'=<]+ (?:\s++ | /(?!>) | [^\s"'=<>/]++\s*+=\s*+(?:"[^"]*+"|'[^']*+')) *+ ) /?>
     | (?P<text>[^<]+)
     """,
     re.VERBOSE | re.DOTALL,
@@ -47,8 +47,11 @@ class Repaired:
 
 
 def is_odd(text: str) -> bool:
-    """Whether a strict parser would read a value of the text in another way than tinyxml2."""
-    return _ODD_VALUE.search(text) is not None
+    """Whether a strict parser could read a value of the text in another way than tinyxml2."""
+    if "'" in text:
+        return _ODD_VALUE.search(text) is not None
+    values = "".join(text.split('"')[1::2])  # where a quote stands elsewhere, parts of tags as well, which have a `>`
+    return any(letter in values for letter in ">\n\t\r")
 
 
 def repaired(text: str) -> Repaired:
@@ -62,10 +65,9 @@ def repaired(text: str) -> Repaired:
         pieces.append(re.sub(r"\S", " ", text[:done]))  # strict XML has its declaration first or not at all
     while done < len(text):
         match = _PARTS.match(text, done)
-        if match is None:
-            pieces.append(text[done])
-            done += 1
-            continue
+        if match is None:  # the parser will complain of this place
+            pieces.append(text[done:])
+            break
         piece = match[0]
         comment = match["comment"]
         if comment is not None and ("--" in comment or comment.endswith("-")):

@@ -105,11 +105,18 @@ def scanned(source: Source) -> Document:
     """Raises MissionError (BT120, BT121)."""
     readable = repaired(source.text) if is_odd(source.text) else Repaired(source.text)
     try:
-        return _Scanner(source, readable).scan()
+        return _document(source, readable)
     except MissionError as error:
         if readable.text is not source.text or error.diagnostics[0].code != "BT120":
             raise
-    return _Scanner(source, repaired(source.text)).scan()
+    return _document(source, repaired(source.text))
+
+
+def _document(source: Source, readable: Repaired) -> Document:
+    """Most files hold no texts but the space between tags, and asking for the place of each takes time."""
+    quick = _Scanner(source, readable)
+    document = quick.scan()
+    return _Scanner(source, readable).scan(texts=True) if quick.has_texts else document
 
 
 class _Refused(Exception):
@@ -120,21 +127,24 @@ class _Scanner:
     def __init__(self, source: Source, readable: Repaired) -> None:
         self._document = Document(source, readable)
         self._ends: list[str] = []
+        self._texts: list[str] = []
         self._parser = expat.ParserCreate()
         self._refused: tuple[str, str] = ("", "")
 
-    def scan(self) -> Document:
+    @property
+    def has_texts(self) -> bool:
+        """Whether there is more than space between tags."""
+        return any(map(str.strip, self._texts))
+
+    def scan(self, texts: bool = False) -> Document:
+        """The document, with its texts among the notes where they are asked for."""
         document, parser = self._document, self._parser
         parser.ordered_attributes = True
         parser.buffer_text = True
-        elements, ends, depth = document.elements, self._ends, MOST_DEEP + _AROUND
+        elements, ends = document.elements, self._ends
 
         def start(tag: str, attributes: list[str]) -> None:
             elements.append((tag, attributes, parser.CurrentByteIndex, len(ends)))
-            if len(elements) - len(ends) > depth:
-                self._refuse(
-                    f"more than {MOST_DEEP:,} nodes inside one another", "Make named subtrees of the inner ones."
-                )
 
         def text(data: str) -> None:
             if not data.isspace():
@@ -142,7 +152,7 @@ class _Scanner:
 
         parser.StartElementHandler = start
         parser.EndElementHandler = ends.append  # only their number matters, and Python need not be entered for it
-        parser.CharacterDataHandler = text
+        parser.CharacterDataHandler = text if texts else self._texts.append
         parser.CommentHandler = lambda data: self._note(f"<!--{document.restored(data)}-->")
         parser.ProcessingInstructionHandler = lambda target, data: self._note(f"<?{f'{target} {data}'.rstrip()}?>")
         parser.XmlDeclHandler = self._declared
@@ -158,6 +168,8 @@ class _Scanner:
             what, advice = self._refused
             raise MissionError([diagnostic("BT121", self._here(), what=what, advice=advice)]) from None
         document.depths = [at - element[3] for at, element in enumerate(elements)]
+        if max(document.depths) >= MOST_DEEP + _AROUND:
+            raise MissionError([self._too_deep()])
         if not document.text.isascii():
             _count_characters(document)
         if document.is_repaired:
@@ -166,6 +178,13 @@ class _Scanner:
                 for tag, flat, start, ended in document.elements
             ]
         return document
+
+    def _too_deep(self) -> Diagnostic:
+        document = self._document
+        _count_characters(document)
+        place = document.span(document.depths.index(MOST_DEEP + _AROUND))
+        what = f"more than {MOST_DEEP:,} nodes inside one another"
+        return diagnostic("BT121", place, what=what, advice="Make named trees of the inner ones.")
 
     def _note(self, text: str, is_text: bool = False) -> None:
         self._document.notes.append(Note(text, len(self._document.elements), len(self._ends), is_text))

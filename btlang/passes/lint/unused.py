@@ -46,7 +46,7 @@ def _values(mission: Mission) -> Iterator[Diagnostic]:
         asked.update(_asked(mission.body, given))
     for key, span in given.items():
         if key not in asked and span.source is mission.span.source:
-            yield diagnostic("BT051", span, name=key.replace("_", " "))
+            yield diagnostic("BT051", span, name=key.replace("_", " ").strip())
 
 
 def _asked(root: Ast, given: dict[str, Span]) -> Iterator[str]:
