@@ -29,7 +29,7 @@ from btlang.vocabulary.values import Unit, ValueType
 from btlang.vocabulary.vocabulary import Vocabulary
 
 GOOD = Path(__file__).parents[1] / "samples" / "good"
-# What a mission includes is in English; ids and ports of nodes, and the attribute `name`, are the same in every language.
+# What a mission includes is in English; ids and ports of nodes, and the attribute `name`, are so in every language.
 SAMPLES = sorted(path for path in GOOD.glob("*.txt") if path.stem not in ("includes", "nodes", "called_name"))
 _TYPES = re.compile(r"(?<![a-z])(cynpr|crefba|bowrpg|grkg|pbhag)(?![a-z])")
 
