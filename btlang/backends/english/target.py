@@ -14,10 +14,11 @@ from btlang.english.sentence import mission_lines
 from btlang.english.speaker import Speaker
 from btlang.frontends.mission import read_mission
 from btlang.passes import lower_mission
+from btlang.passes.order import used_first
 from btlang.text.source import Source
 from btlang.tree.ast import Fact, Mission
 from btlang.tree.dump import plain
-from btlang.tree.node import Node, Tree
+from btlang.tree.node import Tree
 from btlang.vocabulary.vocabulary import Vocabulary
 
 _LEVELS = ("values", "sure values", "words", "ids")
@@ -81,30 +82,10 @@ def _mission(tree: Tree, vocabulary: Vocabulary, level: str, refused: Refused) -
         known = Known(tree, vocabulary, refused, values=values, sure=level == "sure values")
         raiser = Raiser(tree, vocabulary, known, natural=level != "ids")
         bodies = {loop.name for loop in known.loops.values()}
-        named = [(name, root) for name, root in _used_first(tree) if name not in bodies]
+        named = [(name, root) for name, root in used_first(tree)[:-1] if name not in bodies]
         definitions = tuple(raiser.definition(name, root) for name, root in named)
         mission = Mission(raiser.main(tree.root), definitions, NOWHERE, name=tree.name)
         before, refused = refused, known.refused_by(mission, refused, raiser.refused)
         if refused == before:
             break
     return mission, raiser.speaker
-
-
-def _used_first(tree: Tree) -> Iterator[tuple[str, Node]]:
-    """The subtrees, used ones before their users; of some in a circle one is used before it stands."""
-    roots = dict(tree.subtrees)
-    done: set[str] = set()
-    for start in roots:
-        stack = [(start, False)]
-        while stack:
-            name, left = stack.pop()
-            if left:
-                yield name, roots[name]
-            elif name not in done:
-                done.add(name)
-                stack.append((name, True))
-                stack += [(used, False) for used in reversed(_used_by(roots[name])) if used in roots]
-
-
-def _used_by(root: Node) -> list[str]:
-    return [node.port("ID") for node in Tree(root).walk() if node.id == "SubTree"]
