@@ -14,7 +14,7 @@ import pydot
 import pytest
 
 import btlang
-from btlang.api import RunnableTree, world_vocabulary
+from btlang.api import RunnableTree, format_mission, world_vocabulary
 from btlang.backends.json_tree import read_json
 from btlang.backends.targets import TARGETS, compiled, target_of
 from btlang.cli import main
@@ -245,3 +245,19 @@ def test_attributes_of_editors_do_nothing() -> None:
     assert tree.run(speed="max").status
     assert "_description" in str(tree.to("xml"))
     assert tree.to("py_trees")
+
+
+def test_a_run_tells_of_all_nodes_that_a_mission_says_by_unknown_ids() -> None:
+    tree = btlang.parse_tree('do "OpenGripper" with width 1 then do "Pour"')
+    with pytest.raises(MissionError) as checked:
+        tree.check()
+    with pytest.raises(MissionError) as refused:
+        tree.run(speed="max")
+    assert [problem.code for problem in refused.value.diagnostics] == ["BT130", "BT130"]
+    assert refused.value.diagnostics == checked.value.diagnostics
+
+
+@pytest.mark.parametrize("text", ["<root/>", '{"format": 1}'])
+def test_what_is_no_english_has_no_layout(text: str) -> None:
+    with pytest.raises(MissionError, match="BT001: I cannot read <text>: this is no English"):
+        format_mission(text)
