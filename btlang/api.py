@@ -81,7 +81,7 @@ def format_mission(
 
     source = Source(text) if isinstance(text, str) else text
     if data_mark(source):
-        raise MissionError([diagnostic("BT003", Span(source, 0, 1), characters=data_mark(source))])
+        raise MissionError([diagnostic("BT001", Span(source, 0, 1), file=source.name, reason="this is no English")])
     with no_collection:
         vocabulary = world_vocabulary(keywords, world)
         compile_mission(read_mission(source, vocabulary, parser).mission, vocabulary, needs_command=False)
@@ -369,10 +369,10 @@ class RunnableTree:
         return self._runner
 
     def _refused(self, error: EngineError, stage: Stage) -> list[Diagnostic]:
-        """What to say of a tree that no engine runs: of one that was no mission, all that is wrong with it."""
+        """What to say of a tree that no engine runs: all that is wrong with it where it says nodes by their ids."""
         span = error.node.span or Span(Source(""), 0, 0)
         told = diagnostic("BT080", span, id=error.node.id, reason=error.message)
-        if self.mission is not None:
+        if self.mission is not None and not exact_nodes(self.mission):
             return [told]
         from btlang.backends.checking import tree_problems
         from btlang.backends.engine import bind_leaf

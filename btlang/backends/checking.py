@@ -34,6 +34,7 @@ def tree_problems(
     cannot be loaded here is no problem then, as it may be there on the robot.
     """
     found = faults(tree, bind or cache(partial(_bound, vocabulary)), services or {"robot": None})
+    found.sort(key=_place)  # so that an entry is told where it is missed first
     entries = drafts(tree, vocabulary) if any(isinstance(error, UnknownNode) for error in found) else {}
     problems = []
     for error in found:
@@ -48,7 +49,8 @@ def _told(error: EngineError, tree: Tree, vocabulary: Vocabulary, entries: dict[
     if isinstance(error, UnknownSubTree):
         near = nearest(node.port("ID").lower(), [name for name, _ in tree.subtrees])
         return diagnostic("BT126", span, name=node.port("ID"), help=_near(near))
-    if not isinstance(error, UnknownNode):
+    missing = node.id not in NODE_TYPES and node.id not in vocabulary.entries and node.id != "SubTree"
+    if not isinstance(error, UnknownNode) and not (node.children and missing):
         return diagnostic("BT132", span, id=node.id, reason=error.message)
     if node.children:
         near = nearest(node.id.lower(), [id for id, kind in NODE_TYPES.items() if kind.most])
@@ -58,6 +60,11 @@ def _told(error: EngineError, tree: Tree, vocabulary: Vocabulary, entries: dict[
     lines = [line for line in (_near(near), _entry(node, entries)) if line]
     made: Diagnostic = told.replace(arguments=(*told.arguments, ("help", "\n".join(lines))))
     return made
+
+
+def _place(error: EngineError) -> tuple[str, int]:
+    span = error.node.span
+    return (span.source.name, span.start) if span else ("", 0)
 
 
 def _near(names: list[str]) -> str:

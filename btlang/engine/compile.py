@@ -221,7 +221,7 @@ def _compile_leaf(site: Site, children: Sequence[Compiled]) -> Compiled:
             raise site.error(f"nothing is bound to {node_id}")
         plan = shared.plans[node_id] = Plan(binding)
     if children:
-        raise site.error(f"{node_id} is a leaf, but has {len(children)} children")
+        raise site.error(f"{node_id} is a leaf, which takes no children")
     compiled = bound_leaf(site, plan)
     return compiled if shared.stopwatch is None else shared.stopwatch.wrap(site.index, compiled)
 

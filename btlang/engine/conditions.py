@@ -44,6 +44,8 @@ _DECIDES = {
     "_while": (False, SKIPPED),
 }  # in the order in which they are asked: the answer that decides, and what it decides
 _AFTER = ("_onSuccess", "_onFailure", "_onHalted", "_post")
+OF_EDITORS = frozenset(("_description", "_fullpath", "_uid"))
+"""Attributes that Groot2 and BehaviorTree.CPP write into every node; they do nothing."""
 
 
 def conditioned(site: Site, compiled: Compiled) -> Compiled:
@@ -54,7 +56,7 @@ def conditioned(site: Site, compiled: Compiled) -> Compiled:
             continue
         if port in _DECIDES or port in _AFTER:
             texts[port] = text
-        elif port != "_autoremap" or site.node.id != "SubTree":
+        elif port not in OF_EDITORS and (port != "_autoremap" or site.node.id != "SubTree"):
             raise site.error(f"{site.node.id} takes no port {port}")
     if texts.get("_skipIf") == "false":
         del texts["_skipIf"]

@@ -172,7 +172,9 @@ class Completer:
     def _defining(self, start: str) -> Iterator[Completion]:
         """`is` after the unknown words of a line: they may become a name."""
         tokens = self._tokens
-        if tokens and tokens[-1].kind == "unknown" and (len(tokens) == 1 or tokens[-2].kind == "newline"):
+        if not tokens or '"' in self._text[tokens[-1].start : tokens[-1].end]:
+            return  # `do "Id" with` is no name
+        if tokens[-1].kind == "unknown" and (len(tokens) == 1 or tokens[-2].kind == "newline"):
             for role in reversed(DEFINING):
                 for word in self._vocabulary.roles[role]:
                     if word.startswith(start):

@@ -66,6 +66,7 @@ def find_definitions(
     The `included` ones are known, too.
     """
     found = Definitions()
+    quoted = {definition.name for definition in included if definition.is_quoted}
     for definition in included:
         if not definition.is_quoted:
             _add(found.trie, definition.name, dict(definition.parameters))
@@ -84,6 +85,9 @@ def find_definitions(
         found.headers[first] = header
         if header.is_quoted:
             found.types[header.body] = ()
+            if header.name in quoted:
+                found.problems.append(diagnostic("BT017", header.span, name=header.name))
+            quoted.add(header.name)
         elif header.name and not header.parameters:
             add_name(header, found, vocabulary, {})
     return found

@@ -54,7 +54,7 @@ def read_node(text: Words, at: int, meaning: Meaning, vocabulary: Vocabulary) ->
     while following := reader.word("with", at):
         key, value_at = reader.key(following)
         if any(key == known for known, _ in ports):
-            raise Unreadable(following, f"another port: {key} is given twice")
+            raise Unreadable(following, f"another port than {key}")
         value, at = reader.text(value_at)
         ports.append((key, value))
     return NodeCall(node_id, tuple(ports), name), at
@@ -108,7 +108,7 @@ class _Reader:
         while last < at + _MOST_WORDS and words[last][0].isalpha() and (last == at or not self._is_text(last)):
             last += 1
         if last == at:
-            raise Unreadable(at, "the name of a port")
+            raise Unreadable(at, "the name of a port, in words or in quotes,")
         return "_".join(words[at:last]), last
 
     def text(self, at: int) -> tuple[str, int]:

@@ -41,7 +41,8 @@ def lower_mission(mission: Mission, vocabulary: Vocabulary, *, needs_command: bo
         subtrees.append((definition.name, lowered.node))
         scope.define(definition, lowered.can_skip)
     if mission.body is None and needs_command:
-        example = mission.definitions[-1].name if mission.definitions else "move forward 1 m"
+        last = mission.definitions[-1] if mission.definitions else None
+        example = "move forward 1 m" if last is None else f'do subtree "{last.name}"' if last.is_quoted else last.name
         raise MissionError([diagnostic("BT005", mission.span, example=example)])
     root = Node("AlwaysSuccess") if mission.body is None else lower(mission.body, scope).node
     conditions = dict.fromkeys(node.id for node in exact_nodes(mission) if node.is_condition)

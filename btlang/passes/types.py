@@ -40,8 +40,8 @@ def _with_spans(root: Node) -> Iterator[tuple[Node, Span | None]]:
 def _out_of_range(node: Node) -> str:
     """What would be in range, "" where it is."""
     text = node.port(_LIMITED[node.id])
-    if "{" in text:
-        return ""  # only known when it runs
+    if not text or "{" in text:
+        return ""  # not given, which is another mistake, or only known when it runs
     try:
         number = int(text)
     except ValueError:

@@ -14,7 +14,7 @@ import pydot
 import pytest
 
 import btlang
-from btlang.api import RunnableTree, world_vocabulary
+from btlang.api import RunnableTree, format_mission, world_vocabulary
 from btlang.backends.json_tree import read_json
 from btlang.backends.targets import TARGETS, compiled, target_of
 from btlang.cli import main
@@ -211,3 +211,53 @@ def test_all_that_is_wrong_is_told_at_once() -> None:
         assert told == ["BT130", "BT131", "BT132", "BT132", "BT132"], refused.value
     assert str(runnable)
     assert runnable.to("json")
+
+
+def told(text: str) -> list[tuple[str, int, bool]]:
+    """The code and line of each message of a check, and whether it holds a keyword entry."""
+    with pytest.raises(MissionError) as refused:
+        btlang.parse_tree(text).check()
+    found = refused.value.diagnostics
+    return [(each.code, each.span.source.position(each.span.start)[0], "[[action]]" in each.hint) for each in found]
+
+
+def test_an_entry_is_told_where_its_leaf_is_first_missed() -> None:
+    used_first = '<BehaviorTree ID="Part"><Pour/></BehaviorTree>\n'
+    main = '<BehaviorTree ID="Main"><Sequence><SubTree ID="Part"/><Pour/></Sequence></BehaviorTree>\n'
+    root = '<root BTCPP_format="4" main_tree_to_execute="Main">\n'
+    assert told(f"{root}{used_first}{main}</root>") == [("BT130", 2, True), ("BT130", 3, False)]
+
+
+def test_a_port_that_is_missing_is_no_number_out_of_range() -> None:
+    tree = '<BehaviorTree ID="Main">\n<Timeout><Pour/></Timeout>\n</BehaviorTree>'
+    assert told(f'<root BTCPP_format="4">{tree}</root>') == [("BT132", 2, False), ("BT130", 2, True)]
+
+
+def test_py_trees_tells_of_nodes_with_children_that_are_not_there() -> None:
+    tree = btlang.parse_tree('do "DistanceController" with distance 1:\n  wave')
+    with pytest.raises(MissionError, match="BT131: There is no node 'DistanceController' that has children"):
+        tree.to("py_trees")
+
+
+def test_attributes_of_editors_do_nothing() -> None:
+    tree = btlang.parse_tree((ROOT / "tests/corpus/good/v4_attributes_of_editors.xml").read_text())
+    tree.check()
+    assert tree.run(speed="max").status
+    assert "_description" in str(tree.to("xml"))
+    assert tree.to("py_trees")
+
+
+def test_a_run_tells_of_all_nodes_that_a_mission_says_by_unknown_ids() -> None:
+    tree = btlang.parse_tree('do "OpenGripper" with width 1 then do "Pour"')
+    with pytest.raises(MissionError) as checked:
+        tree.check()
+    with pytest.raises(MissionError) as refused:
+        tree.run(speed="max")
+    assert [problem.code for problem in refused.value.diagnostics] == ["BT130", "BT130"]
+    assert refused.value.diagnostics == checked.value.diagnostics
+
+
+@pytest.mark.parametrize("text", ["<root/>", '{"format": 1}'])
+def test_what_is_no_english_has_no_layout(text: str) -> None:
+    with pytest.raises(MissionError, match="BT001: I cannot read <text>: this is no English"):
+        format_mission(text)

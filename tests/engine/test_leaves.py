@@ -274,7 +274,7 @@ class NoHalt:
         (n("A", x="1"), lambda x, /: None, "A takes no port x"),
         (n("A", x="one"), lambda x: None, "x cannot be 'one': invalid literal"),
         (n("A"), NoHalt, "NoHalt has no halt, so it is no leaf"),
-        (n("A", n("AlwaysSuccess")), lambda: None, "A is a leaf, but has 1 children"),
+        (n("A", n("AlwaysSuccess")), lambda: None, "A is a leaf, which takes no children"),
         (n("Sequence"), None, "Sequence has 0 children instead of 1 or more"),
         (n("Inverter"), None, "Inverter has 0 children instead of 1"),
         (n("IfThenElse", n("AlwaysSuccess")), None, "IfThenElse has 1 children instead of 2 or 3"),

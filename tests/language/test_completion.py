@@ -124,6 +124,7 @@ def test_offered(text: str, among: list[str]) -> None:
         ('say "go to ', ["lab"]),
         ("patrol is wave\nwave if pa", ["patrol"]),
         ("wave nod ", ["then"]),
+        ('do "GoTo" with ', ["is ", "means "]),
     ],
 )
 def test_not_offered(text: str, absent: list[str]) -> None:

@@ -10,6 +10,7 @@ from btlang.engine.blackboard import Blackboard
 from btlang.engine.build import Shared, Site
 from btlang.engine.clock import Clock
 from btlang.engine.compile import NODE_TYPES, expand
+from btlang.engine.conditions import OF_EDITORS
 from btlang.engine.leaf import LeafBinding
 from btlang.english.phrase import phrase_of
 from btlang.record import Record
@@ -185,7 +186,9 @@ class _Planner:
 
     def _always_skipped(self, node: Node) -> bool:
         for port, text in node.ports:
-            if port[:1] == "_" and port != "_autoremap" and (port != "_skipIf" or text not in ("true", "false")):
+            if port[:1] != "_" or port == "_autoremap" or port in OF_EDITORS:
+                continue
+            if port != "_skipIf" or text not in ("true", "false"):
                 raise _Untold(f"py_trees has no {port}")
         return node.port("_skipIf") == "true"
 
