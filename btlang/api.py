@@ -188,9 +188,10 @@ class RunnableTree:
         """
         if self.mission is not None and not exact_nodes(self.mission):
             return
-        from btlang.backends.checking import tree_problems
+        from btlang.backends.checking import misnamed, tree_problems
 
-        problems = tree_problems(self.tree, self.vocabulary)
+        named = self.vocabulary.with_places(tuple(fact.name for fact in self.facts))
+        problems = [*tree_problems(self.tree, self.vocabulary), *misnamed(self.tree, named)]
         if problems:
             raise MissionError(problems)
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from functools import cache, partial
 
 from btlang.backends.engine import bind_leaf, leaf_binding
@@ -41,6 +41,19 @@ def tree_problems(
         problems.append(_told(error, tree, vocabulary, entries))
         entries.pop(error.node.id, None)  # once is enough
     return in_order(problems)
+
+
+def misnamed(tree: Tree, vocabulary: Vocabulary) -> Iterator[Diagnostic]:
+    """Names of places and the like that nothing has (BT132): no phrase could hold them."""
+    for node in tree.walk():
+        slots = {slot.name: slot.type for entry in vocabulary.entries.get(node.id, ()) for slot in entry.slots}
+        for port, text in node.ports:
+            kind = vocabulary.types.get(slots.get(port, ""))
+            if kind is None or kind.kind != "names" or "{" in text or vocabulary.value(kind.name, text) is not None:
+                continue
+            near = nearest(text.lower(), vocabulary.values.names(kind.name))
+            reason = f"there is no {kind.name} '{text}'" + (f"; the nearest: {', '.join(near)}" if near else "")
+            yield diagnostic("BT132", node.span or Span(Source(""), 0, 0), id=node.id, reason=reason)
 
 
 def _told(error: EngineError, tree: Tree, vocabulary: Vocabulary, entries: dict[str, Draft | None]) -> Diagnostic:
