@@ -78,7 +78,7 @@ class Uses:
         entry = self._vocabulary.entry(node_id)
         if entry is not None:
             return entry.sort.capitalize()
-        return ("Action", "Decorator")[self._most.get(node_id, 0)] if self._most.get(node_id, 0) < 2 else "Control"
+        return ("Action", "Decorator", "Control")[min(self._most.get(node_id, 0), 2)]
 
     def models(self) -> list[NodeModel]:
         """One for each, in an order that does not change with the tree: by kind, then by id."""
