@@ -42,7 +42,7 @@ TREES = st.builds(
     st.lists(st.tuples(TEXTS, NODES), max_size=2).map(tuple),
     TEXTS,
     st.lists(MODELS, max_size=2).map(tuple),
-)
+).filter(lambda tree: len({tree.name, *dict(tree.subtrees)}) == 1 + len(tree.subtrees))
 
 
 @cache
@@ -85,6 +85,7 @@ def test_spans_are_those_of_the_ids() -> None:
     [
         ("{", "it is not JSON"),
         ("[" * 100_000, "it is nested too deep"),
+        (f'{{"format": {"1" * 5000}}}', "a number is too long"),
         ("[]", "the document is no object"),
         ('{"format": 2}', '"format" is not 1'),
         ('{"format": 1, "trees": []}', "holds no tree"),
@@ -95,6 +96,7 @@ def test_spans_are_those_of_the_ids() -> None:
         ('{"format": 1, "trees": [{"nodes": [{"id": "a", "children": [1, 1]}, {"id": "b"}]}]}', "two nodes"),
         ('{"format": 1, "trees": [{"nodes": [{"id": "a", "ports": {"p": 1}}]}]}', "the port p"),
         ('{"format": 1, "trees": [{"nodes": [{"id": 1}]}]}', "the id of node 0"),
+        ('{"format": 1, "trees": [{"nodes": [{"id": "a"}]}, {"nodes": [{"id": "b"}]}]}', "two trees have the name ''"),
         ('{"format": 1, "trees": [{"nodes": [{"id": "a"}]}], "models": [{"ports": [1]}]}', "model 0"),
     ],
 )
