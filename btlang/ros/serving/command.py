@@ -15,7 +15,7 @@ from btlang.ros.available import require_interfaces, require_ros
 from btlang.ros.mission.setup import Setup
 from btlang.ros.serving.choosing import chosen, servable
 from btlang.ros.serving.names import FOLDER
-from btlang.text.source import Source, Span
+from btlang.text.source import NOWHERE
 from btlang.tree.node import Node, Tree
 
 TYPE_CHECKING = False
@@ -79,7 +79,7 @@ def _check(stage: Stage, ids: Sequence[str], vocabulary: Vocabulary) -> None:
         try:
             bind_leaf(node_id, vocabulary, stage.bind)
         except EngineError as error:
-            span = error.node.span or Span(Source(""), 0, 0)
+            span = error.node.span or NOWHERE
             raise MissionError([diagnostic("BT080", span, id=node_id, reason=error.message)]) from None
 
 
