@@ -105,3 +105,24 @@ def test_what_is_no_tree_is_told(document: str, reason: str) -> None:
         read_json(document)
     assert [problem.code for problem in refused.value.diagnostics] == ["BT133"]
     assert reason in str(refused.value)
+
+
+@pytest.mark.parametrize("parallel", ["Parallel", "P\\u0061rallel"])
+def test_checks_do_without_places(parallel: str) -> None:
+    """A node whose id is spelled with escapes has no place in the text, nor has any after it."""
+    nodes = f'[{{"id": "{parallel}", "children": [1, 2]}}, {{"id": "MoveForward"}}, {{"id": "MoveBackward"}}]'
+    with pytest.raises(MissionError) as refused:
+        parse_tree(f'{{"format": 1, "trees": [{{"nodes": {nodes}}}]}}')
+    assert [problem.code for problem in refused.value.diagnostics] == ["BT041"]
+    assert "MoveForward and MoveBackward as children of a Sequence" in str(refused.value)
+
+
+def test_too_large_without_places() -> None:
+    uses = [f'{{"id": "SubTr\\u0065e", "ports": {{"ID": "t{at}"}}}}' for at in range(25)]
+    trees = [f'{{"nodes": [{uses[0]}]}}']
+    for at, use in enumerate([*uses[1:], '{"id": "Wave"}']):
+        nodes = f'{{"id": "Sequ\\u0065nce", "children": [1, 2]}}, {use}, {use}'
+        trees.append(f'{{"name": "t{at}", "nodes": [{nodes}]}}')
+    with pytest.raises(MissionError) as refused:
+        parse_tree(f'{{"format": 1, "trees": [{", ".join(trees)}]}}')
+    assert [problem.code for problem in refused.value.diagnostics] == ["BT042"]
