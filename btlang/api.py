@@ -12,7 +12,7 @@ from btlang.frontends.mission import DEFAULT_PARSER, read_mission
 from btlang.garbage import no_collection
 from btlang.passes import checked, compile_mission, lower_mission
 from btlang.passes.lint import lint
-from btlang.text.source import Source, Span
+from btlang.text.source import NOWHERE, Source, Span
 from btlang.tree.ast import Fact, Mission, all_facts, exact_nodes
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.cache import kept
@@ -371,7 +371,7 @@ class RunnableTree:
 
     def _refused(self, error: EngineError, stage: Stage) -> list[Diagnostic]:
         """What to say of a tree that no engine runs: all that is wrong with it where it says nodes by their ids."""
-        span = error.node.span or Span(Source(""), 0, 0)
+        span = error.node.span or NOWHERE
         told = diagnostic("BT080", span, id=error.node.id, reason=error.message)
         if self.mission is not None and not exact_nodes(self.mission):
             return [told]

@@ -105,7 +105,7 @@ def _draw_tree(tree: RunnableTree, path: str, apart: bool) -> None:
 
 
 def _compile(options: argparse.Namespace) -> int:
-    from btlang.backends.mission_file import write_file
+    from btlang.backends.files import write_file
     from btlang.backends.targets import TARGETS, target_of
 
     name = options.to or (target_of(options.out) if options.out is not None else "")
@@ -198,7 +198,7 @@ def _format_one(source: Source, options: argparse.Namespace) -> bool:
     if options.text is not None or source.name == "-":
         print(text, end="")
     elif changes:
-        from btlang.backends.mission_file import replace_text
+        from btlang.backends.files import replace_text
 
         replace_text(source.name, text)
         print(f"{source.name} is laid out anew.")

@@ -12,7 +12,7 @@ from btlang.engine.build import EngineError
 from btlang.engine.compile import NODE_TYPES
 from btlang.engine.faults import UnknownNode, UnknownSubTree, faults
 from btlang.engine.leaf import LeafBinding
-from btlang.text.source import Source, Span
+from btlang.text.source import NOWHERE
 from btlang.text.spelling import nearest
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.vocabulary import Vocabulary
@@ -53,12 +53,12 @@ def misnamed(tree: Tree, vocabulary: Vocabulary) -> Iterator[Diagnostic]:
                 continue
             near = nearest(text.lower(), vocabulary.values.names(kind.name))
             reason = f"there is no {kind.name} '{text}'" + (f"; the nearest: {', '.join(near)}" if near else "")
-            yield diagnostic("BT132", node.span or Span(Source(""), 0, 0), id=node.id, reason=reason)
+            yield diagnostic("BT132", node.span or NOWHERE, id=node.id, reason=reason)
 
 
 def _told(error: EngineError, tree: Tree, vocabulary: Vocabulary, entries: dict[str, Draft | None]) -> Diagnostic:
     node = error.node
-    span = node.span or Span(Source(""), 0, 0)
+    span = node.span or NOWHERE
     if isinstance(error, UnknownSubTree):
         near = nearest(node.port("ID").lower(), [name for name, _ in tree.subtrees])
         return diagnostic("BT126", span, name=node.port("ID"), help=_near(near))
@@ -103,13 +103,13 @@ def _bound(vocabulary: Vocabulary, node_id: str) -> LeafBinding | None:
         assert binding is not None
     except EngineError:
         slots = {slot.name: slot for entry in entries for slot in entry.slots}
-        return leaf_binding(entries[0].replace(measures=""), vocabulary, _anything, tuple(slots.values()))
+        return leaf_binding(entries[0].replace(measures=""), vocabulary, anything, tuple(slots.values()))
     made: LeafBinding = binding.replace(call=_standing_in(binding.call), thread=False)
     return made
 
 
-def _anything(**ports: object) -> None:
-    """Takes every port."""
+def anything(**ports: object) -> None:
+    """A leaf that takes every port and does nothing."""
 
 
 def _standing_in(call: Callable[..., Any]) -> Callable[..., Any]:
@@ -122,7 +122,7 @@ def _standing_in(call: Callable[..., Any]) -> Callable[..., Any]:
     try:
         found = signature(call.start if isclass(call) else call)  # type: ignore[attr-defined]
     except (AttributeError, TypeError, ValueError):
-        return _anything
+        return anything
     parameters = list(found.parameters.values())
     leaf.__signature__ = found.replace(parameters=parameters[1:] if isclass(call) else parameters)  # type: ignore[attr-defined]
     return leaf

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from btlang.engine.compile import NODE_TYPES
+from btlang.engine.compile import CONDITIONS, NODE_TYPES
 from btlang.english.phrase import phrase_of
 from btlang.tree.dump import described
 from btlang.tree.node import Node, Tree
@@ -17,7 +17,6 @@ _LOOKS = {
     "action": 'shape=box, style="rounded,filled", fillcolor=white',
     "condition": 'shape=ellipse, style=filled, fillcolor="#f4f1e4"',
 }
-_ASKS = ("ScriptCondition", "WasEntryUpdated")
 _LONGEST = 60  # characters of a line in a box
 
 
@@ -75,7 +74,7 @@ def _kind(node: Node, vocabulary: Vocabulary, kinds: dict[str, str]) -> str:
         return "decorator" if (known.most == 1 if known is not None else decorates) else "control"
     entry = vocabulary.entry(node.id)
     asks = entry.sort == "condition" if entry is not None else kinds.get(node.id) == "condition"
-    return "condition" if asks or node.id in _ASKS else "action"
+    return "condition" if asks or node.id in CONDITIONS else "action"
 
 
 def _label(node: Node, vocabulary: Vocabulary) -> str:

@@ -91,6 +91,8 @@ def read_json(text: str | Source) -> Tree:
         return _tree(json.loads(source.text), _Places(source))
     except json.JSONDecodeError as error:
         at, reason = error.pos, f"it is not JSON: {error.msg}"
+    except ValueError:
+        at, reason = 0, "a number is too long"
     except RecursionError:
         at, reason = 0, "it is nested too deep"
     except _Wrong as error:
@@ -126,6 +128,11 @@ def _tree(document: Any, places: _Places) -> Tree:
     if not trees:
         raise _Wrong('"trees" holds no tree')
     read = [_root(item, f"tree {at}", places) for at, item in enumerate(trees)]
+    names: set[str] = set()
+    for name, _ in read:
+        if name in names:
+            raise _Wrong(f"two trees have the name {name!r}")
+        names.add(name)
     models = [
         _read_model(item, f"model {at}") for at, item in enumerate(_of(document.get("models", []), list, "models"))
     ]

@@ -99,6 +99,8 @@ NODE_TYPES = {
     "Script": NodeType(script_nodes.script, 0, 0, ("code",)),
     "ScriptCondition": NodeType(script_nodes.script_condition, 0, 0, ("code",)),
 }
+CONDITIONS = frozenset(("ScriptCondition", "WasEntryUpdated"))
+"""Those of them that only ask."""
 _SUBTREE = NodeType(subtree, 1, 1, waits=True)
 
 

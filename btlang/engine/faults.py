@@ -12,6 +12,7 @@ from btlang.engine.leaf import LeafBinding
 from btlang.engine.status import SUCCESS
 from btlang.engine.subtree import child_scope
 from btlang.tree.node import Node, Tree
+from btlang.tree.visit import used_subtrees
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -37,28 +38,13 @@ def faults(tree: Tree, bind: Callable[[str], LeafBinding | None], services: Mapp
     shared = Shared(bind, Clock(), {"wake": None, **services}, {}, None)
     found: list[EngineError] = []
     uses: dict[str, list[Node]] = {}
-    used = _used(tree)
+    used = dict(used_subtrees(tree))
     for name, root in (("", tree.root), *used.items()):
         for node in Tree(root).walk():
             found += _wrong_with(node, used, shared)
             if node.id == "SubTree" and node.port("ID") in used:
                 uses.setdefault(name, []).append(node)
     return found + [EngineError(f"the subtree {node.port('ID')} contains itself", node) for node in _circles(uses)]
-
-
-def _used(tree: Tree) -> dict[str, Node]:
-    """The subtrees that the main tree uses, also by way of others, in the order defined."""
-    subtrees = dict(tree.subtrees)
-    names: set[str] = set()
-    waiting = [tree.root]
-    while waiting:
-        node = waiting.pop()
-        waiting += node.children
-        name = node.port("ID") if node.id == "SubTree" else ""
-        if name in subtrees and name not in names:
-            names.add(name)
-            waiting.append(subtrees[name])
-    return {name: root for name, root in tree.subtrees if name in names}
 
 
 def _wrong_with(node: Node, subtrees: dict[str, Node], shared: Shared) -> Iterator[EngineError]:

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from bisect import bisect_right
-from collections.abc import Container, Iterable, Iterator, Mapping, Set
+from collections.abc import Container, Iterable, Mapping
 from itertools import takewhile
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.frontends.nodes import Unreadable, read_node
 from btlang.record import Record
 from btlang.text.source import Span
-from btlang.text.words import END_OF_STATEMENT, Words
+from btlang.text.words import END_OF_STATEMENT, Words, statements
 from btlang.tree.ast import Definition
 from btlang.vocabulary.entry import Entry, Meaning, SlotSpec
 from btlang.vocabulary.pattern import Part, Slot, name_form
@@ -117,23 +118,6 @@ def _add(trie: TrieNode, name: str, types: Mapping[str, str]) -> Meaning | None:
     """What had the name before."""
     slots = tuple(SlotSpec(key, kind) for key, kind in types.items())
     return add(trie, name_form(name), types, Meaning("name", Entry("name", name, (name,), slots=slots)))
-
-
-def statements(text: Words, holding: Set[str]) -> Iterator[tuple[int, int, int]]:
-    """(indent, first word, last word) of what stands between line ends, `;` and full stops.
-
-    Only of the lines that hold one of some words.
-    """
-    for line in text.lines:
-        first = line.first
-        words = text.words[first : line.last]
-        if holding.isdisjoint(words):
-            continue
-        for at in range(line.first, line.last) if END_OF_STATEMENT in words else ():
-            if text.words[at] == END_OF_STATEMENT:
-                yield line.indent, first, at
-                first = at + 1
-        yield line.indent, first, line.last
 
 
 def reach(text: Words, at: int) -> int:
@@ -245,8 +229,6 @@ def _defining_word(text: Words, first: int, last: int, vocabulary: Vocabulary) -
 
 def _behind_node(text: Words, head: Match, last: int, vocabulary: Vocabulary) -> int:
     """Where a node ends that is said by its id: what defines is a word in it like any other."""
-    from btlang.frontends.nodes import Unreadable, read_node  # most missions have none
-
     try:
         read = read_node(text, head.last, head.meaning, vocabulary)
     except Unreadable as problem:

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.frontends.definitions import statements
-from btlang.text.words import Words
+from btlang.text.words import Words, statements
 from btlang.tree.ast import Fact
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.vocabulary import Vocabulary

@@ -3,10 +3,9 @@
 from __future__ import annotations
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.frontends.definitions import statements
 from btlang.record import Record
 from btlang.text.source import Span
-from btlang.text.words import Words
+from btlang.text.words import Words, statements
 from btlang.tree.ast import Mission
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.values import Known

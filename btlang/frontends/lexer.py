@@ -11,6 +11,7 @@ from btlang.frontends.heads import JOINTS, Head, span_of
 from btlang.frontends.includes import ROLE as INCLUDE
 from btlang.frontends.includes import misplaced
 from btlang.frontends.names import Load, Names
+from btlang.frontends.nodes import Unreadable, read_node, unreadable
 from btlang.frontends.token import Listed, Token
 from btlang.text.source import Source, Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, split
@@ -239,8 +240,6 @@ class Lexer:
 
     def _node(self, head: Match, at: int) -> int:
         """A node that is said by its id. Returns where to go on, 0 where the words are no such node."""
-        from btlang.frontends.nodes import Unreadable, read_node, unreadable  # most missions have none
-
         text = self.text
         try:
             read = read_node(text, head.last, head.meaning, self.vocabulary)

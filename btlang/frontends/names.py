@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from btlang.diagnostics.diagnostic import Diagnostic
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.definitions import find_definitions
 from btlang.frontends.facts import find_facts
 from btlang.frontends.heads import find_heads
@@ -46,8 +46,9 @@ class Names:
         self.facts = facts.found
         self.ends = includes.ends | facts.ends
         self.main_name = ""
+        main_span: Span | None = None
         for name, first, last in find_main_names(text, vocabulary):
-            self.main_name = name
+            self.main_name, main_span = name, text.span(first, last)
             self.ends[first] = last
         places = [*(fact for part in parts for fact in all_facts(part.mission)), *self.facts]
         if places:
@@ -58,6 +59,10 @@ class Names:
         elsewhere = [definition for part in parts for definition in all_definitions(part.mission)]
         self.definitions = find_definitions(text, vocabulary, self.ends, compared, elsewhere)
         self.problems: list[Diagnostic] = [*facts.problems, *self.definitions.problems]
+        if main_span is not None:
+            defined = [header.name for header in self.definitions.headers.values()]
+            if self.main_name in (*defined, *(definition.name for definition in elsewhere)):
+                self.problems.append(diagnostic("BT127", main_span, name=self.main_name))
         self.others = {*self.heads, *self.ends, *self.definitions.headers}
         self.bounds: list[int] = []
         self.known = {key: one for named in (shared or {}, *(p.known for p in parts)) for key, one in named.items()}

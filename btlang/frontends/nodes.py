@@ -8,10 +8,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.frontends.definitions import statements
 from btlang.frontends.token import NodeCall
 from btlang.text.source import Span
-from btlang.text.words import Words
+from btlang.text.words import Words, statements
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.vocabulary import Vocabulary
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from btlang.tree.node import Node, Tree
+from btlang.tree.visit import subtree_names
 
 
 def used_first(tree: Tree) -> list[tuple[str, Node]]:
@@ -22,9 +23,5 @@ def used_first(tree: Tree) -> list[tuple[str, Node]]:
             elif name not in done:
                 done.add(name)
                 stack.append((name, True))
-                stack += [(used, False) for used in _used(roots[name]) if used in roots and used not in done]
+                stack += [(used, False) for used in subtree_names(roots[name]) if used in roots and used not in done]
     return [*ordered, ("", tree.root)]
-
-
-def _used(root: Node) -> list[str]:
-    return [node.port("ID") for node in Tree(root).walk() if node.id == "SubTree"]

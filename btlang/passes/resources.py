@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.order import used_first
+from btlang.text.source import NOWHERE
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import children_first
 from btlang.vocabulary.vocabulary import Vocabulary
@@ -66,9 +67,12 @@ def _conflicts(parts: Sequence[Holders]) -> list[Diagnostic]:
 
 
 def _conflict(resource: str, first: Node, second: Node) -> Diagnostic:
-    assert first.span is not None
-    assert second.span is not None
-    one, other = first.span.text, second.span.text
-    notes = ((first.span, f"this needs the {resource} too"),)
-    fixed = f"<Sequence> {one} {other} </Sequence>" if one[:1] == "<" else f"{one} then {other}"
-    return diagnostic("BT041", second.span, notes, resource=resource, first=one, second=other, fixed=fixed)
+    one, other = (node.id if node.span is None else node.span.text for node in (first, second))
+    notes = ((first.span, f"this needs the {resource} too"),) if first.span is not None else ()
+    fixed = f"{one} then {other}"
+    if one[:1] == "<":
+        fixed = f"<Sequence> {one} {other} </Sequence>"
+    elif first.span is None or one[:1] == '"':  # of JSON
+        fixed = f"{first.id} and {second.id} as children of a Sequence"
+    span = second.span or NOWHERE
+    return diagnostic("BT041", span, notes, resource=resource, first=one, second=other, fixed=fixed)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.order import used_first
+from btlang.text.source import NOWHERE
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.vocabulary import Vocabulary
 
@@ -17,8 +18,7 @@ def check_size(tree: Tree, _vocabulary: Vocabulary) -> list[Diagnostic]:
         sizes[name] = _size(root, sizes)
     if sizes[""] <= MOST_NODES:
         return []
-    assert tree.root.span is not None
-    return [diagnostic("BT042", tree.root.span, limit=f"{MOST_NODES:,}")]
+    return [diagnostic("BT042", tree.root.span or NOWHERE, limit=f"{MOST_NODES:,}")]
 
 
 def _size(root: Node, sizes: dict[str, int]) -> int:

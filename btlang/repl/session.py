@@ -16,7 +16,8 @@ from btlang.passes.lint import lint
 from btlang.record import Record
 from btlang.text.source import Source
 from btlang.tree.ast import Ast, Chain, Definition, Fact, Include, Mission, parts
-from btlang.tree.node import Node, Tree
+from btlang.tree.node import Tree
+from btlang.tree.visit import used_subtrees
 from btlang.vocabulary.values import Known
 
 TYPE_CHECKING = False
@@ -108,7 +109,7 @@ class Session:
         own = [d for d in named if d.span.start < len(text)]
         tree = compile_mission(reading.mission, self.vocabulary, needs_command=False)
         entry = Entry(text, tuple((d.name, d.span.text) for d in own), reading.mission.body is not None)
-        shown = Tree(tree.root, _used(tree, [name for name, _ in entry.definitions]))
+        shown = Tree(tree.root, used_subtrees(tree, [name for name, _ in entry.definitions]))
         warnings = lint(mission, tree, self.vocabulary, reading.warnings, grows=True)
         own_warnings = [warning for warning in warnings if warning.span.start < len(text)]
         return Compiled(entry, self._runnable(shown, reading.mission, own_warnings, self._values()))
@@ -192,18 +193,3 @@ class Session:
         self, tree: Tree, mission: Mission, warnings: Sequence[Diagnostic], values: Blackboard
     ) -> RunnableTree:
         return RunnableTree(tree, self.vocabulary, self.world, warnings, self.simulation, mission, values)
-
-
-def _used(tree: Tree, names: Sequence[str]) -> tuple[tuple[str, Node], ...]:
-    """The subtrees of these names and those that they and the main tree use."""
-    bodies = dict(tree.subtrees)
-    needed = set(names)
-    pending = [tree.root, *(bodies[name] for name in names if name in bodies)]
-    while pending:
-        node = pending.pop()
-        pending += node.children
-        name = node.port("ID") if node.id == "SubTree" else ""
-        if name in bodies and name not in needed:
-            needed.add(name)
-            pending.append(bodies[name])
-    return tuple((name, body) for name, body in tree.subtrees if name in needed)

@@ -64,3 +64,7 @@ class Span(Record, uncompared=("source",)):
         """`file:line:column`, as compilers print it."""
         line, column = self.source.position(self.start)
         return f"{self.source.name}:{line}:{column}"
+
+
+NOWHERE = Span(Source(""), 0, 0)
+"""Where a message points that is about no text."""

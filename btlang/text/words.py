@@ -8,6 +8,7 @@ each punctuation mark is a word of its own. Articles leave no word, only a note 
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator, Set
 
 from btlang.record import Record
 from btlang.text.source import Source, Span
@@ -149,3 +150,20 @@ def split(source: Source, articles: frozenset[str]) -> Words:
 
 def _indent(blank: str) -> int:
     return len(blank.replace("\r", "").expandtabs(4))
+
+
+def statements(text: Words, holding: Set[str]) -> Iterator[tuple[int, int, int]]:
+    """(indent, first word, last word) of what stands between line ends, `;` and full stops.
+
+    Only of the lines that hold one of some words.
+    """
+    for line in text.lines:
+        first = line.first
+        words = text.words[first : line.last]
+        if holding.isdisjoint(words):
+            continue
+        for at in range(line.first, line.last) if END_OF_STATEMENT in words else ():
+            if text.words[at] == END_OF_STATEMENT:
+                yield line.indent, first, at
+                first = at + 1
+        yield line.indent, first, line.last

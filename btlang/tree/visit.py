@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterable, Sequence
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import TypeVar
 
-    from btlang.tree.node import Node
+    from btlang.tree.node import Node, Tree
 
     Item = TypeVar("Item")
     Result = TypeVar("Result")
@@ -47,3 +47,21 @@ def children_first(root: Node) -> list[Node]:
         waiting += node.children
     found.reverse()
     return found
+
+
+def subtree_names(root: Node) -> list[str]:
+    """The names of the subtrees that a tree uses itself, from left to right, each as often as it is used."""
+    return [node.port("ID") for node in children_first(root) if node.id == "SubTree"]
+
+
+def used_subtrees(tree: Tree, names: Iterable[str] = ()) -> tuple[tuple[str, Node], ...]:
+    """The subtrees of these names and those that they and the main tree use, in the order defined."""
+    roots = dict(tree.subtrees)
+    used = {name for name in names if name in roots}
+    waiting = [tree.root, *(roots[name] for name in used)]
+    while waiting:
+        for name in subtree_names(waiting.pop()):
+            if name in roots and name not in used:
+                used.add(name)
+                waiting.append(roots[name])
+    return tuple((name, root) for name, root in tree.subtrees if name in used)

@@ -42,7 +42,7 @@ TREES = st.builds(
     st.lists(st.tuples(TEXTS, NODES), max_size=2).map(tuple),
     TEXTS,
     st.lists(MODELS, max_size=2).map(tuple),
-)
+).filter(lambda tree: len({tree.name, *dict(tree.subtrees)}) == 1 + len(tree.subtrees))
 
 
 @cache
@@ -85,6 +85,7 @@ def test_spans_are_those_of_the_ids() -> None:
     [
         ("{", "it is not JSON"),
         ("[" * 100_000, "it is nested too deep"),
+        (f'{{"format": {"1" * 5000}}}', "a number is too long"),
         ("[]", "the document is no object"),
         ('{"format": 2}', '"format" is not 1'),
         ('{"format": 1, "trees": []}', "holds no tree"),
@@ -95,6 +96,7 @@ def test_spans_are_those_of_the_ids() -> None:
         ('{"format": 1, "trees": [{"nodes": [{"id": "a", "children": [1, 1]}, {"id": "b"}]}]}', "two nodes"),
         ('{"format": 1, "trees": [{"nodes": [{"id": "a", "ports": {"p": 1}}]}]}', "the port p"),
         ('{"format": 1, "trees": [{"nodes": [{"id": 1}]}]}', "the id of node 0"),
+        ('{"format": 1, "trees": [{"nodes": [{"id": "a"}]}, {"nodes": [{"id": "b"}]}]}', "two trees have the name ''"),
         ('{"format": 1, "trees": [{"nodes": [{"id": "a"}]}], "models": [{"ports": [1]}]}', "model 0"),
     ],
 )
@@ -103,3 +105,24 @@ def test_what_is_no_tree_is_told(document: str, reason: str) -> None:
         read_json(document)
     assert [problem.code for problem in refused.value.diagnostics] == ["BT133"]
     assert reason in str(refused.value)
+
+
+@pytest.mark.parametrize("parallel", ["Parallel", "P\\u0061rallel"])
+def test_checks_do_without_places(parallel: str) -> None:
+    """A node whose id is spelled with escapes has no place in the text, nor has any after it."""
+    nodes = f'[{{"id": "{parallel}", "children": [1, 2]}}, {{"id": "MoveForward"}}, {{"id": "MoveBackward"}}]'
+    with pytest.raises(MissionError) as refused:
+        parse_tree(f'{{"format": 1, "trees": [{{"nodes": {nodes}}}]}}')
+    assert [problem.code for problem in refused.value.diagnostics] == ["BT041"]
+    assert "MoveForward and MoveBackward as children of a Sequence" in str(refused.value)
+
+
+def test_too_large_without_places() -> None:
+    uses = [f'{{"id": "SubTr\\u0065e", "ports": {{"ID": "t{at}"}}}}' for at in range(25)]
+    trees = [f'{{"nodes": [{uses[0]}]}}']
+    for at, use in enumerate([*uses[1:], '{"id": "Wave"}']):
+        nodes = f'{{"id": "Sequ\\u0065nce", "children": [1, 2]}}, {use}, {use}'
+        trees.append(f'{{"name": "t{at}", "nodes": [{nodes}]}}')
+    with pytest.raises(MissionError) as refused:
+        parse_tree(f'{{"format": 1, "trees": [{", ".join(trees)}]}}')
+    assert [problem.code for problem in refused.value.diagnostics] == ["BT042"]

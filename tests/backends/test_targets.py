@@ -189,6 +189,13 @@ def test_compile_writes_a_file_at_once(tmp_path: Path, capsys: pytest.CaptureFix
     assert "error BT009" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize("target", ["json", "python", "english", "tree"])
+def test_a_file_holds_what_utf_8_does_not(target: str, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    assert main(["compile", "-c", 'say "a\udcff"', "-o", str(out), "--to", target]) == 0
+    assert "a\\udcff" in out.read_text(encoding="utf-8")
+
+
 def test_compile_says_what_it_can_write(capsys: pytest.CaptureFixture[str]) -> None:
     for words in (["-c", "wave"], ["-c", "wave", "-o", "tree"], ["-c", "wave", "--to", "dot", "--dialect", "3"]):
         with pytest.raises(SystemExit) as refused:

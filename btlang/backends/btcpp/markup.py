@@ -11,7 +11,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.frontends.btcpp.models import why_no_port
 from btlang.frontends.btcpp.origin import Element, Markup
 from btlang.frontends.btcpp.spelling import is_xml_name
-from btlang.text.source import Source, Span
+from btlang.text.source import NOWHERE, Span
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -64,7 +64,7 @@ class Markers:
 
     def wrong(self, words: str, reason: str, span: Span | None) -> None:
         """BT129."""
-        self.problems.append(diagnostic("BT129", span or Span(Source(""), 0, 0), words=words, reason=reason))
+        self.problems.append(diagnostic("BT129", span or NOWHERE, words=words, reason=reason))
 
     def finish(self) -> None:
         """Raises MissionError where something was wrong."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from btlang.engine.compile import NODE_TYPES
+from btlang.engine.compile import CONDITIONS, NODE_TYPES
 from btlang.frontends.btcpp.models import nav2_models
 from btlang.frontends.btcpp.origin import Element
 from btlang.frontends.btcpp.spelling import IN_3, KINDS, MODEL
@@ -15,7 +15,6 @@ from btlang.vocabulary.vocabulary import Vocabulary
 
 _OTHERS = frozenset(("Whenever", "PipelineSequence", "RecoveryNode", "RoundRobin", "RateController"))
 """Nodes that the engine has beside those of BehaviorTree.CPP."""
-_CONDITIONS = frozenset(("ScriptCondition", "WasEntryUpdated"))
 _WHENEVER = NodeModel(
     "Control", "Whenever", (),
     "Condition, reaction, work. Each time the condition becomes true, the work is suspended, the reaction runs once, "
@@ -73,12 +72,12 @@ class Uses:
         built_in = NODE_TYPES.get(node_id)
         if built_in is not None:
             if built_in.most == 0:
-                return "Condition" if node_id in _CONDITIONS else "Action"
+                return "Condition" if node_id in CONDITIONS else "Action"
             return "Decorator" if built_in.most == 1 else "Control"
         entry = self._vocabulary.entry(node_id)
         if entry is not None:
             return entry.sort.capitalize()
-        return ("Action", "Decorator")[self._most.get(node_id, 0)] if self._most.get(node_id, 0) < 2 else "Control"
+        return ("Action", "Decorator", "Control")[min(self._most.get(node_id, 0), 2)]
 
     def models(self) -> list[NodeModel]:
         """One for each, in an order that does not change with the tree: by kind, then by id."""

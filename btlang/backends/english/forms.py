@@ -6,7 +6,8 @@ import re
 from collections.abc import Callable, Iterator
 from decimal import Decimal
 
-from btlang.backends.english.raised import NOWHERE, REFERENCE, Checked, Raised
+from btlang.backends.english.raised import REFERENCE, Checked, Raised
+from btlang.text.source import NOWHERE
 from btlang.tree import ast
 from btlang.tree.node import Node
 

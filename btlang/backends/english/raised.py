@@ -12,12 +12,10 @@ from btlang.backends.english.kinds import Around
 from btlang.passes.lower import Lowered, lower_one
 from btlang.passes.scope import Scope
 from btlang.record import Record
-from btlang.text.source import Source, Span
 from btlang.tree import ast
 from btlang.tree.node import Node
 from btlang.vocabulary.references import keys_in, plain
 
-NOWHERE = Span(Source(""), 0, 0)
 REFERENCE = re.compile(r"\{[^{}]+\}")
 
 

@@ -10,20 +10,20 @@ from btlang.backends.english.forms import FORMS
 from btlang.backends.english.kinds import Around
 from btlang.backends.english.known import Known
 from btlang.backends.english.loops import Loop
-from btlang.backends.english.raised import NOWHERE, Checked, Raised
+from btlang.backends.english.raised import Checked, Raised
 from btlang.backends.english.values import assigned, can_say, compared, remembered, texts_of
+from btlang.engine.compile import CONDITIONS
 from btlang.english.phrase import leaf_words
 from btlang.english.speaker import Speaker
 from btlang.passes.lower import Lowered
 from btlang.passes.scope import Scope
 from btlang.record import Record
+from btlang.text.source import NOWHERE
 from btlang.tree import ast
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import fold
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.vocabulary import Vocabulary
-
-_CONDITIONS = frozenset(("ScriptCondition", "WasEntryUpdated"))
 
 
 class _Place(Record):
@@ -206,7 +206,7 @@ class Raiser:
         known = self._node_kinds.get(node.id) or (entry.sort.title() if entry is not None else "")
         if known not in ("", "Condition") or node.id == "SubTree" or node.id in FORMS:
             return None
-        if not known and node.id in self._vocabulary.nodes and node.id not in _CONDITIONS:
+        if not known and node.id in self._vocabulary.nodes and node.id not in CONDITIONS:
             return None
         made = ast.Exact(node.id, node.ports, node.name, (), True, NOWHERE)
         assert self._checked.says(made, node)
@@ -219,7 +219,7 @@ class Raiser:
             return True
         entry = self._vocabulary.entry(node.id)
         is_known = self._node_kinds.get(node.id) == "Condition" or (entry is not None and entry.sort == "condition")
-        return is_known or node.id in _CONDITIONS
+        return is_known or node.id in CONDITIONS
 
     def _name(self, node: Node) -> Iterator[ast.Ast]:
         """A defined name; what else its ports hold are values that it needs."""

@@ -6,7 +6,6 @@ from collections.abc import Iterator, Sequence
 
 from btlang.backends.english.comments import comments_of
 from btlang.backends.english.known import Known, Refused
-from btlang.backends.english.raised import NOWHERE
 from btlang.backends.english.raising import Raiser
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.english.exact import is_one_piece
@@ -15,7 +14,7 @@ from btlang.english.speaker import Speaker
 from btlang.frontends.mission import read_mission
 from btlang.passes import lower_mission
 from btlang.passes.order import used_first
-from btlang.text.source import Source
+from btlang.text.source import NOWHERE, Source
 from btlang.tree.ast import Fact, Mission
 from btlang.tree.dump import plain
 from btlang.tree.node import Tree

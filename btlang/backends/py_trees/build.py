@@ -16,7 +16,7 @@ from btlang.backends.py_trees.values import engine_leaf, values_of
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.build import EngineError
-from btlang.text.source import Source, Span
+from btlang.text.source import NOWHERE
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import fold
 from btlang.vocabulary.vocabulary import Vocabulary
@@ -75,7 +75,7 @@ def to_py_trees(
     try:
         return fold(plan.root, lambda part: part.children, made)
     except EngineError as error:
-        span = error.node.span or Span(Source(""), 0, 0)
+        span = error.node.span or NOWHERE
         raise MissionError([diagnostic("BT132", span, id=error.node.id, reason=error.message)]) from None
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from btlang.backends.checking import tree_problems
+from btlang.backends.checking import anything, tree_problems
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.build import Shared, Site
@@ -14,7 +14,7 @@ from btlang.engine.conditions import OF_EDITORS
 from btlang.engine.leaf import LeafBinding
 from btlang.english.phrase import phrase_of
 from btlang.record import Record
-from btlang.text.source import Source, Span
+from btlang.text.source import NOWHERE
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.vocabulary import Vocabulary
 
@@ -71,16 +71,12 @@ def plan_of(tree: Tree, vocabulary: Vocabulary, is_action: Callable[[Node], bool
 
     Raises MissionError with all that is wrong with the tree (BT126, BT131, BT132), or all that cannot be told (BT134).
     """
-    problems = tree_problems(tree, vocabulary, lambda id: LeafBinding(_anything))
+    problems = tree_problems(tree, vocabulary, lambda id: LeafBinding(anything))
     if problems:
         raise MissionError(problems)
     sites = expand(tree, Blackboard(), Shared(lambda id: None, Clock(), {}, {}, None))
     planner = _Planner(sites, tree, vocabulary, is_action)
     return planner.plan()
-
-
-def _anything(**ports: object) -> None:
-    """Takes every port."""
 
 
 class _Planner:
@@ -142,7 +138,7 @@ class _Planner:
             else:
                 part = self._told(site, below, children)
         except _Untold as problem:
-            span = node.span or Span(Source(""), 0, 0)
+            span = node.span or NOWHERE
             self._problems.append(diagnostic("BT134", span, id=node.id, target="py_trees", reason=str(problem)))
         self._uses.add(part.make)
         if part.starts:

@@ -46,7 +46,7 @@ class EngineLeaf(Node):
         status = self.engine.tick()
         self.feedback_message = self.engine.failure.reason if self.engine.failure is not None else ""
         return _STATUSES.get(status, SKIPPED)
-        yield self
+        yield self  # never; but it makes this a generator, as `run` is
 
 
 def engine_leaf(

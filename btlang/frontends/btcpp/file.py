@@ -107,7 +107,7 @@ class XmlFile:
         """Texts stand in models alone."""
         elements = self.document.elements
         ends = [(at, self.document.end(at)) for at in self._parts if elements[at][0] == MODEL]
-        for note, inside in self.notes.texts():
+        for note, inside in self.notes.texts:
             if not any(first < inside < end for first, end in ends):
                 span = self._text_span(note)
                 tag = elements[inside][0]

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-
 from btlang.frontends.btcpp.origin import Element, Markup
 from btlang.frontends.btcpp.scan import Document, Note
 
@@ -21,20 +19,13 @@ class Notes:
         self._document = document
         self._before: dict[int, list[Note]] = {}
         self._inside: dict[int, list[Note]] = {}
+        self.texts: list[tuple[Note, int]] = []
+        """Texts, each with the element that it stands in, in the order of the file."""
         if document.notes:
             self._place()
 
     def __bool__(self) -> bool:
         return bool(self._document.notes)
-
-    def texts(self) -> Iterator[tuple[Note, int]]:
-        """Texts, each with the element that it stands in."""
-        for before, notes in self._before.items():
-            depth = self._document.depths[before] - 1
-            around = next((at for at in range(before - 1, -1, -1) if self._document.depths[at] == depth), 0)
-            yield from ((note, around) for note in notes if note.is_text)
-        for inside, notes in self._inside.items():
-            yield from ((note, inside) for note in notes if note.is_text)
 
     def before(self, index: int) -> list[Note]:
         """Those right before an element, which may be one behind the last."""
@@ -55,10 +46,13 @@ class Notes:
                 opened.append(started)
                 started += 1
             del opened[note.before - note.ended :]
+            around = opened[-1] if opened else -1
+            if note.is_text:
+                self.texts.append((note, around))
             if note.before < len(elements) and elements[note.before][3] == note.ended:
                 self._before.setdefault(note.before, []).append(note)
             else:
-                self._inside.setdefault(opened[-1] if opened else -1, []).append(note)
+                self._inside.setdefault(around, []).append(note)
 
 
 def as_items(notes: list[Note]) -> Items:

@@ -173,9 +173,8 @@ def _ports_3(node_id: str, attributes: dict[str, str], children: int) -> tuple[t
     names = PORTS_TO_4.get(node_id, {})
     ports = [(names.get(key, key), _pointer(text)) for key, text in attributes.items()]
     enough = attributes.get("threshold", "")
-    if (
-        node_id == "Parallel" and enough.isdecimal() and len(enough) < 10
-    ):  # so many successes; the rest may fail, but no more
+    if node_id == "Parallel" and enough.isdecimal() and len(enough) < 10:
+        # so many successes; the rest may fail, but no more
         counts = (("success_count", enough), ("failure_count", str(max(children - int(enough) + 1, 1))))
         ports = [port for port in ports if port[0] != "threshold"] + list(counts)
     return tuple(ports)

@@ -179,7 +179,7 @@ def _circles(uses: dict[str, list[str]]) -> list[list[str]]:
                 done.add(name)
                 path.append(name)
                 stack.append((name, True))
-                stack += [(used, False) for used in reversed(uses[name])]
+                stack += [(used, False) for used in reversed(dict.fromkeys(uses[name]))]
     return found
 
 

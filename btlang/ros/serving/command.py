@@ -7,15 +7,16 @@ import sys
 from collections.abc import Sequence
 
 from btlang.api import RATES, world_vocabulary
-from btlang.arguments import between, namespace, node_name, real_speed
+from btlang.arguments import between, node_name, real_speed
 from btlang.backends.engine import bind_leaf
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.engine.build import EngineError
 from btlang.ros.available import require_interfaces, require_ros
+from btlang.ros.command import add_namespace
 from btlang.ros.mission.setup import Setup
 from btlang.ros.serving.choosing import chosen, servable
 from btlang.ros.serving.names import FOLDER
-from btlang.text.source import Source, Span
+from btlang.text.source import NOWHERE
 from btlang.tree.node import Node, Tree
 
 TYPE_CHECKING = False
@@ -38,7 +39,7 @@ def add_serving_options(parser: argparse.ArgumentParser) -> None:
         "--only", nargs="+", action="extend", default=[], metavar="ID", help="serve these actions or topics of words"
     )
     parser.add_argument("--name", default="btlang_actions", type=node_name, help="of the node (default: %(default)s)")
-    parser.add_argument("--namespace", type=namespace, default="", metavar="NS", help="of the actions (default: none)")
+    add_namespace(parser, "of the actions (default: none)")
     parser.add_argument("--ros-args", nargs=argparse.REMAINDER, help="the rest are arguments of ROS 2")
     parser.set_defaults(refuse=parser.error)
 
@@ -79,7 +80,7 @@ def _check(stage: Stage, ids: Sequence[str], vocabulary: Vocabulary) -> None:
         try:
             bind_leaf(node_id, vocabulary, stage.bind)
         except EngineError as error:
-            span = error.node.span or Span(Source(""), 0, 0)
+            span = error.node.span or NOWHERE
             raise MissionError([diagnostic("BT080", span, id=node_id, reason=error.message)]) from None
 
 

@@ -21,8 +21,11 @@ def replace_text(path: str, text: str) -> None:
 
 
 def write_file(path: str, content: str | bytes) -> None:
-    """Writes a file, new or not, at once. Raises MissionError (BT009) where that fails; the file is then as it was."""
-    data = content.encode() if isinstance(content, str) else content
+    """Writes a file, new or not, at once. Raises MissionError (BT009) where that fails; the file is then as it was.
+
+    What a mission may hold and UTF-8 does not becomes an escape, which JSON and Python read back.
+    """
+    data = content.encode(errors="backslashreplace") if isinstance(content, str) else content
     target = os.path.realpath(path)
     new = f"{target}.{os.getpid()}.new"
     try:
