@@ -6,7 +6,8 @@ from collections.abc import Iterable, Iterator
 
 from btlang.backends.english.code import compared_by, given_by
 from btlang.backends.english.kinds import readable
-from btlang.backends.english.raised import NOWHERE, Checked
+from btlang.backends.english.raised import Checked
+from btlang.text.source import NOWHERE
 from btlang.tree import ast
 from btlang.tree.node import Node
 from btlang.vocabulary.entry import MEASURED, Entry
