@@ -131,9 +131,9 @@ def test_goals_of_a_program_that_knows_rclpy_alone(serve, client: Client, tmp_pa
 
 
 def test_cancelled_half_way_the_robot_stands(start_sim, serve, client: Client):
-    start_sim("--speed", "2")
+    start_sim("--speed", "2", "--namespace", "anna")
     serve("--robot", "ros", "--sim-time", "--only", "motion", "speech", "--namespace", "anna")
-    odometry = client.hear(Odometry, "/odom")
+    odometry = client.hear(Odometry, "/anna/odom")
     start = odometry.next().pose.pose.position.y
     goal = Goal(client, "/anna/actions/move_forward", distance="1.5 m", speed="0.1 m/s")
     odometry.wait(lambda message: message.pose.pose.position.y > start + 0.3)

@@ -39,7 +39,7 @@ def add_serving_options(parser: argparse.ArgumentParser) -> None:
         "--only", nargs="+", action="extend", default=[], metavar="ID", help="serve these actions or topics of words"
     )
     parser.add_argument("--name", default="btlang_actions", type=node_name, help="of the node (default: %(default)s)")
-    add_namespace(parser, "of the actions (default: none)")
+    add_namespace(parser, "of the actions, and of the robot with --robot ros (default: none)")
     parser.add_argument("--ros-args", nargs=argparse.REMAINDER, help="the rest are arguments of ROS 2")
     parser.set_defaults(refuse=parser.error)
 
@@ -60,7 +60,10 @@ def serve(options: argparse.Namespace) -> int:
         options.refuse(str(problem))
     require_ros("std_srvs")
     require_interfaces()
-    stage = Setup(options.name, options.robot, options.sim_time, keywords=options.keywords, world=options.world).stage()
+    stage = Setup(
+        options.name, options.robot, options.sim_time, options.namespace,
+        keywords=options.keywords, world=options.world,
+    ).stage()  # fmt: skip
     try:
         _check(stage, ids, vocabulary)
         return _spin(stage, ids, vocabulary, options)
