@@ -27,8 +27,8 @@ def segments(process: int) -> set[str]:
 
 
 def wait_for_nodes(client: Client, *names: str) -> None:
-    """Until these nodes are in the graph, and no others."""
-    until = time.monotonic() + LONG
+    """Until these nodes are in the graph, and no others. Where its farewell gets lost, DDS misses one after 20 s."""
+    until = time.monotonic() + 2 * LONG
     while sorted(client.node.get_node_names()) != sorted(names) and time.monotonic() < until:
         time.sleep(0.01)
     assert sorted(client.node.get_node_names()) == sorted(names)
