@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Generator, Sequence
 
 from py_trees import common, composites
 
@@ -78,18 +78,22 @@ class Parallel(Node, composites.Parallel):
         if not keep:
             self.done = {}
 
+    def complete(self, index: int, child: Behaviour) -> Generator[Behaviour, None, bool]:
+        """Ticks a child that has not completed; whether it was skipped."""
+        if index in self.done:
+            return False
+        status = yield from self.ask(child)
+        if status not in (RUNNING, SKIPPED):
+            self.done[index] = status
+        return status == SKIPPED
+
     def run(self) -> Asking:
         count = len(self.children)
         required = self.required + (count + 1 if self.required < 0 else 0)
         allowed = self.allowed + (count + 1 if self.allowed < 0 else 0)
         skipped = 0
         for index, child in enumerate(self.children):
-            if index not in self.done:
-                status = yield from self.ask(child)
-                if status == SKIPPED:
-                    skipped += 1
-                elif status != RUNNING:
-                    self.done[index] = status
+            skipped += yield from self.complete(index, child)
             successes = list(self.done.values()).count(SUCCESS)
             failures = len(self.done) - successes
             if successes >= required or (self.required < 0 and successes + skipped >= required):
@@ -109,12 +113,7 @@ class ParallelAll(Parallel):
         allowed = self.allowed + (count + 1 if self.allowed < 0 else 0)
         skipped = 0
         for index, child in enumerate(self.children):
-            if index not in self.done:
-                status = yield from self.ask(child)
-                if status == SKIPPED:
-                    skipped += 1
-                elif status != RUNNING:
-                    self.done[index] = status
+            skipped += yield from self.complete(index, child)
         if skipped == count:
             return SKIPPED
         if skipped + len(self.done) < count:

@@ -28,6 +28,7 @@ import time
 {imports}
 '''
 _IMPORTS = {
+    "abc": ("abstractmethod",),
     "collections.abc": ("Callable", "Generator", "Iterator", "Sequence"),
     "typing": ("Any", "ClassVar"),
     "py_trees": ("behaviour", "behaviours", "common", "composites", "decorators", "display"),

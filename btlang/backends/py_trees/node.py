@@ -7,6 +7,7 @@ the text of a class, and of what it uses, into its module: nothing here needs bt
 
 from __future__ import annotations
 
+from abc import abstractmethod
 from collections.abc import Callable, Generator, Iterator, Sequence
 from typing import Any
 
@@ -33,9 +34,9 @@ class Node(composites.Composite):
     def __init__(self, name: str, children: Sequence[Behaviour] = (), **more: Any) -> None:
         super().__init__(name, children=list(children), **more)
 
+    @abstractmethod
     def run(self) -> Asking:
         """A tick; yields the nodes that are ticked below."""
-        raise NotImplementedError
 
     def halt(self, keep: bool) -> None:
         """Stops what runs below; resets where nothing is kept."""
