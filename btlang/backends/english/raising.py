@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator, Mapping
 
 from btlang.backends.english.code import Computed, computed
-from btlang.backends.english.comments import comments_of
+from btlang.backends.english.comments import Comments
 from btlang.backends.english.forms import FORMS
 from btlang.backends.english.kinds import Around
 from btlang.backends.english.known import Known
@@ -36,10 +36,11 @@ class _Place(Record):
 class Raiser:
     """Raises the nodes of one tree, of which `known` tells what can be said.
 
-    With `natural` False every node is said by its id. `refused` are the bodies of loops that turned out to be none.
+    With `natural` False every node is said by its id. `comments` are those of the file that
+    the tree was read from, `refused` the bodies of loops that turned out to be none.
     """
 
-    def __init__(self, tree: Tree, vocabulary: Vocabulary, known: Known, *, natural: bool) -> None:
+    def __init__(self, tree: Tree, vocabulary: Vocabulary, known: Known, comments: Comments, *, natural: bool) -> None:
         self._vocabulary = vocabulary
         self._natural = natural
         self._known = known
@@ -48,7 +49,7 @@ class Raiser:
                  for name in sorted(known.names)]  # fmt: skip
         self.speaker = Speaker(vocabulary, heads)
         self._node_kinds = {model.id: model.kind for model in tree.models}
-        self._comments = comments_of(tree)
+        self._comments = comments
         self._conditions: set[str] = set()  # the names that stand for conditions
         bodies = {loop.name for loop in known.loops.values()}
         names = [name for name, _ in tree.subtrees if name not in bodies]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from btlang.backends.english.comments import comments_of
+from btlang.backends.english.comments import Comments, comments_of
 from btlang.backends.english.known import Known, Refused
 from btlang.backends.english.raising import Raiser
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
@@ -40,10 +40,10 @@ def to_english(tree: Tree, vocabulary: Vocabulary, *, facts: Sequence[Fact] = ()
         raise _unsayable(tree, f"no quotes can hold the name {odd!r}")
     wanted, reason = plain(tree), "it would be read as another one"
     words = vocabulary.with_places(tuple(fact.name for fact in facts)) if facts else vocabulary
-    refused = Refused()
+    comments, refused = comments_of(tree), Refused()
     for level in _LEVELS:
-        mission, speaker = _mission(tree, words, level, refused)
-        text = "".join(f"{line}\n" for line in _lines(tree, mission.replace(facts=tuple(facts)), speaker))
+        mission, speaker = _mission(tree, words, level, refused, comments)
+        text = "".join(f"{line}\n" for line in _lines(mission.replace(facts=tuple(facts)), speaker, comments))
         try:
             again = lower_mission(read_mission(Source(text), vocabulary, suggest=False).mission, vocabulary)
         except MissionError as error:
@@ -67,19 +67,20 @@ def _differing(tree: Tree, again: Tree) -> Iterator[str]:
             yield name
 
 
-def _lines(tree: Tree, mission: Mission, speaker: Speaker) -> Iterator[str]:
-    comments = comments_of(tree)
+def _lines(mission: Mission, speaker: Speaker, comments: Comments) -> Iterator[str]:
     yield from (f"# {line}" for line in comments.head)
     yield from mission_lines(mission, speaker, WIDTH)
     yield from (f"# {line}" for line in comments.foot)
 
 
-def _mission(tree: Tree, vocabulary: Vocabulary, level: str, refused: Refused) -> tuple[Mission, Speaker]:
+def _mission(
+    tree: Tree, vocabulary: Vocabulary, level: str, refused: Refused, comments: Comments
+) -> tuple[Mission, Speaker]:
     """With what is refused, and whatever else turns out not to be read back, said in another way."""
     values = level in ("values", "sure values")
     for _ in range(_MOST_TRIES if values else 1):
         known = Known(tree, vocabulary, refused, values=values, sure=level == "sure values")
-        raiser = Raiser(tree, vocabulary, known, natural=level != "ids")
+        raiser = Raiser(tree, vocabulary, known, comments, natural=level != "ids")
         bodies = {loop.name for loop in known.loops.values()}
         named = [(name, root) for name, root in used_first(tree)[:-1] if name not in bodies]
         definitions = tuple(raiser.definition(name, root) for name, root in named)
