@@ -31,7 +31,8 @@ def compile_mission(mission: Mission, vocabulary: Vocabulary, *, needs_command: 
 
 def lower_mission(mission: Mission, vocabulary: Vocabulary, *, needs_command: bool = True) -> Tree:
     """As `compile_mission`, without the checks of the tree."""
-    ordered, problems = order_of_use(mission)
+    exact = exact_nodes(mission)
+    ordered, problems = order_of_use(mission, exact)
     if problems:
         raise MissionError(problems)
     scope = Scope((definition.name for definition in ordered), vocabulary.types)
@@ -45,7 +46,7 @@ def lower_mission(mission: Mission, vocabulary: Vocabulary, *, needs_command: bo
         example = "move forward 1 m" if last is None else f'do subtree "{last.name}"' if last.is_quoted else last.name
         raise MissionError([diagnostic("BT005", mission.span, example=example)])
     root = Node("AlwaysSuccess") if mission.body is None else lower(mission.body, scope).node
-    conditions = dict.fromkeys(node.id for node in exact_nodes(mission) if node.is_condition)
+    conditions = dict.fromkeys(node.id for node in exact if node.is_condition)
     return Tree(root, tuple(subtrees), mission.name, tuple(NodeModel("Condition", id) for id in conditions))
 
 

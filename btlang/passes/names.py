@@ -2,37 +2,24 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.tree.ast import Ast, Definition, Exact, Mission, Name, all_definitions, exact_nodes, parts
+from btlang.tree.ast import Ast, Definition, Exact, Mission, Name, all_definitions, parts
+from btlang.tree.visit import in_order_of_use
 
 
-def order_of_use(mission: Mission) -> tuple[list[Definition], list[Diagnostic]]:
-    """The definitions, used ones before their users.
+def order_of_use(mission: Mission, exact: Iterable[Exact]) -> tuple[list[Definition], list[Diagnostic]]:
+    """The definitions, used ones before their users; `exact` are the nodes that the mission says by their ids.
 
     A name that reaches itself is a problem (BT040), and so is a subtree that is not there (BT140).
     """
     definitions = {definition.name: definition for definition in all_definitions(mission)}
     uses = {name: names_in(definition.body) for name, definition in definitions.items()}
-    ordered: list[Definition] = []
-    uses_of_trees = [node for node in exact_nodes(mission) if node.id == "SubTree"]
-    problems = [_missing(node) for node in uses_of_trees if _subtree(node) not in definitions]
-    done: set[str] = set()
-    for start in definitions:
-        path: list[str] = []  # the names being followed, each used by the one before
-        stack = [(start, False)]
-        while stack:
-            name, left = stack.pop()
-            if left:
-                path.pop()
-                ordered.append(definitions[name])
-            elif name in path:
-                problems.append(_circle(path[path.index(name) :], definitions))
-            elif name not in done:
-                done.add(name)
-                path.append(name)
-                stack.append((name, True))
-                stack += [(used, False) for used in reversed(uses[name]) if used in definitions]
-    return ordered, problems
+    problems = [_missing(node) for node in exact if node.id == "SubTree" and _subtree(node) not in definitions]
+    ordered, circles = in_order_of_use(uses)
+    problems += [_circle(circle, definitions) for circle in circles]
+    return [definitions[name] for name in ordered], problems
 
 
 def _subtree(item: Exact) -> str:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -65,3 +65,29 @@ def used_subtrees(tree: Tree, names: Iterable[str] = ()) -> tuple[tuple[str, Nod
                 used.add(name)
                 waiting.append(roots[name])
     return tuple((name, root) for name, root in tree.subtrees if name in used)
+
+
+def in_order_of_use(uses: Mapping[str, Iterable[str]]) -> tuple[list[str], list[list[str]]]:
+    """All names, each behind those that it uses, and the circles of names that use each other, each once.
+
+    What is used and has no entry is left out.
+    """
+    ordered: list[str] = []
+    circles: list[list[str]] = []
+    done: set[str] = set()
+    for start in uses:
+        path: list[str] = []  # the names being followed, each used by the one before
+        stack = [(start, False)]
+        while stack:
+            name, left = stack.pop()
+            if left:
+                path.pop()
+                ordered.append(name)
+            elif name in path:
+                circles.append(path[path.index(name) :])
+            elif name not in done:
+                done.add(name)
+                path.append(name)
+                stack.append((name, True))
+                stack += [(used, False) for used in reversed(dict.fromkeys(uses[name])) if used in uses]
+    return ordered, circles

@@ -16,6 +16,7 @@ from btlang.text.source import Source, Span
 from btlang.text.spelling import nearest
 from btlang.tree.model import NodeModel
 from btlang.tree.node import Node, Tree
+from btlang.tree.visit import in_order_of_use
 from btlang.vocabulary.keyword_file import NODE_IDS
 
 _NO_NODES = NODE_IDS | TO_4.keys() | {"root", "BehaviorTree", MODEL, *MODEL_KINDS}
@@ -157,30 +158,9 @@ class _Reader:
                     uses[name].append(used)
                 elif used and node.span is not None:
                     self._problems.append(_no_tree(node.span, used, trees))
-        for circle in _circles(uses):
+        for circle in in_order_of_use(uses)[1]:
             told = " contains ".join(f"'{name}'" for name in (*circle, circle[0]))
             self._problems.append(diagnostic("BT124", heads[circle[0]].span, name=circle[0], circle=told))
-
-
-def _circles(uses: dict[str, list[str]]) -> list[list[str]]:
-    """Trees that contain one another, each circle once, from its first tree on."""
-    found: list[list[str]] = []
-    done: set[str] = set()
-    for start in uses:
-        path: list[str] = []
-        stack = [(start, False)]
-        while stack:
-            name, left = stack.pop()
-            if left:
-                path.pop()
-            elif name in path:
-                found.append(path[path.index(name) :])
-            elif name not in done:
-                done.add(name)
-                path.append(name)
-                stack.append((name, True))
-                stack += [(used, False) for used in reversed(dict.fromkeys(uses[name]))]
-    return found
 
 
 def _no_tree(span: Span, name: str, trees: Sequence[str] | dict[str, Node]) -> Diagnostic:
