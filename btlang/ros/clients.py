@@ -18,6 +18,7 @@ from btlang.record import Record
 from btlang.ros.errands import Errands
 from btlang.ros.graph import full_name, is_ready, no_listener, no_publisher, no_server
 from btlang.ros.latest import Latest, NodeClock
+from btlang.ros.waiting import wait_until
 from btlang.ros.word import type_name
 
 TYPE_CHECKING = False
@@ -33,7 +34,6 @@ if TYPE_CHECKING:
         def waits_for(self) -> str: ...
 
 
-_LOOK = 0.01  # seconds between two looks at what is waited for
 _HEARD = 0.5  # seconds that those who listen to one topic get to acknowledge
 
 
@@ -140,10 +140,8 @@ class Clients:
 
     def wait(self, limit: float) -> list[str]:
         """Blocks until nothing is missing, for so many real seconds at most; returns what still is."""
-        until = time.monotonic() + limit
-        while (missing := self.missing()) and time.monotonic() < until:
-            time.sleep(_LOOK)
-        return missing
+        wait_until(lambda: not self.missing(), limit)
+        return self.missing()
 
     def close(self, limit: float) -> list[str]:
         """Waits until all that was halted has ended and who listens has heard it, for so many real seconds at most.
@@ -151,14 +149,16 @@ class Clients:
         Says what has not ended.
         """
         until = time.monotonic() + limit
-        while (left := [reason for ending in self.endings if (reason := ending.waits_for())]) or self.errands.left:
-            if time.monotonic() >= until:
-                break
-            time.sleep(_LOOK)
+        wait_until(lambda: not (self._left() or self.errands.left), limit)
+        left = self._left()
         for publisher in self._publishers:
             publisher.wait_for_all_acked(Duration(seconds=max(0.0, min(_HEARD, until - time.monotonic()))))
         self.endings.clear()
         return left
+
+    def _left(self) -> list[str]:
+        """What goals that were halted wait for."""
+        return [reason for ending in self.endings if (reason := ending.waits_for())]
 
     def _client(self, kind: str, cls: Any, name: str, create: Callable[[], Any]) -> Any:
         name = self._claim(kind, cls, name)

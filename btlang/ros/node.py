@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from threading import Thread
 
@@ -15,13 +14,13 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.signals import SignalHandlerOptions
 
 from btlang.ros.available import unusable
+from btlang.ros.waiting import wait_until
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from types import TracebackType
 
 _LAST_DOMAIN = 232
-_LOOK = 0.01  # seconds between two looks at what is waited for
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 """Who subscribes later gets the last message."""
@@ -64,9 +63,7 @@ class SpunNode:
     def settle(self, seconds: float) -> None:
         """Waits until what was asked of the thread before now is done, for so many real seconds at most."""
         task = self._executor.create_task(lambda: None)
-        until = time.monotonic() + seconds
-        while not task.done() and time.monotonic() < until:
-            time.sleep(_LOOK)
+        wait_until(task.done, seconds)
 
     def close(self) -> None:
         """Ends the thread, then the node, then its context. May be called twice."""
