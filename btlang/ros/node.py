@@ -72,6 +72,8 @@ class SpunNode:
         if self._thread.ident is not None:
             self._thread.join()
         if self.context.ok():
+            for waitable in tuple(self.node.waitables):  # clients and servers of actions, which destroy_node forgets:
+                waitable.destroy()  # each would keep the node in the graph until Python collects garbage
             self.node.destroy_node()
             rclpy.shutdown(context=self.context)
 

@@ -77,9 +77,34 @@ class Client:
         time.sleep(_SETTLE)
         return client
 
-    def ask(self, question: Callable[[], Any]) -> Any:
-        """What the future of an action client comes to; asked by the thread that spins, else an answer may be lost."""
-        return answer(answer(self.node.executor.create_task(question)))
+    def begin(self, question: Callable[[], Any]) -> Any:
+        """The future of an action client, asked for by the thread that spins: rclpy notes a question after it has
+        sent it, and elsewhere the answer may come in between, and is lost."""
+        return answer(self.node.executor.create_task(question))
+
+
+class Goal:
+    """A goal that was sent and answered, with what is heard of it."""
+
+    def __init__(self, client: Client, server: ActionClient, goal: Any) -> None:
+        self.feedback = Heard()
+        self._client = client
+        self._handle = answer(
+            client.begin(lambda: server.send_goal_async(goal, lambda message: self.feedback(message.feedback)))
+        )
+        self.accepted: bool = self._handle.accepted
+
+    def ending(self) -> Any:
+        """The future of the result."""
+        return self._client.begin(self._handle.get_result_async)
+
+    def result(self) -> Any:
+        """Waits for it."""
+        return answer(self.ending())
+
+    def cancel(self) -> int:
+        """Says how many goals are being cancelled."""
+        return len(answer(self._client.begin(self._handle.cancel_goal_async)).goals_canceling)
 
 
 def answer(future: Any) -> Any:

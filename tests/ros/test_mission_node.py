@@ -16,29 +16,15 @@ from std_srvs.srv import Trigger
 
 from btlang.api import parse_tree
 from btlang.cli import main
-from tests.ros.client import LATCHED, Client, Heard, answer
+from tests.ros.client import LATCHED, Client, Goal, answer
 from tests.ros.processes import Command, wait_until
 
 FAR = "move forward 3 meters at 0.2 meters per second"
 
 
-class Goal:
-    """A mission that was sent; it has to be accepted."""
-
-    def __init__(self, client: Client, run_mission: Any, mission: str, **fields: Any) -> None:
-        self.feedback = Heard()
-        self._server = client.action(run_mission, "/btlang/run_mission")
-        goal = run_mission.Goal(mission=mission, **fields)
-        self._client = client
-        self.handle = client.ask(
-            lambda: self._server.send_goal_async(goal, lambda message: self.feedback(message.feedback))
-        )
-
-    def result(self) -> Any:
-        return self._client.ask(self.handle.get_result_async)
-
-    def cancel(self) -> None:
-        assert self._client.ask(self.handle.cancel_goal_async).goals_canceling
+def mission(client: Client, run_mission: Any, text: str, **fields: Any) -> Goal:
+    """A mission that was sent."""
+    return Goal(client, client.action(run_mission, "/btlang/run_mission"), run_mission.Goal(mission=text, **fields))
 
 
 @pytest.mark.parametrize("form", ["english", "xml"])
@@ -46,8 +32,8 @@ def test_a_mission_runs(form: str, start_node, client: Client, run_mission: Any)
     """A sentence, and the same tree in XML."""
     start_node("--speed", "10")
     sentence = "move forward 1 meter then say done"
-    goal = Goal(client, run_mission, sentence if form == "english" else str(parse_tree(sentence).to("xml")))
-    assert goal.handle.accepted
+    goal = mission(client, run_mission, sentence if form == "english" else str(parse_tree(sentence).to("xml")))
+    assert goal.accepted
     end = goal.result()
     assert end.status == GoalStatus.STATUS_SUCCEEDED
     assert (end.result.success, end.result.outcome, end.result.reason) == (True, "success", "")
@@ -65,9 +51,9 @@ def test_what_it_tells_on_topics(start_node, client: Client, run_mission: Any):
     log = client.hear(String, "/btlang/log")
     health = client.hear(DiagnosticArray, "/diagnostics")
     health.wait(lambda array: array.status[0].message == "no mission has run yet")
-    goal = Goal(client, run_mission, "say hello then go to the moon")
+    goal = mission(client, run_mission, "say hello then go to the moon")
     assert goal.result().status == GoalStatus.STATUS_ABORTED
-    Goal(client, run_mission, "say hello").result()
+    mission(client, run_mission, "say hello").result()
     outline = client.hear(String, "/btlang/tree", LATCHED).wait()  # whoever comes later hears it too
     assert outline.data == "Say: say hello"
     status = client.hear(TreeStatus, "/btlang/status", LATCHED).wait()
@@ -80,13 +66,13 @@ def test_what_it_tells_on_topics(start_node, client: Client, run_mission: Any):
 
 def test_why_it_fails(start_node, client: Client, run_mission: Any):
     node = start_node("--speed", "10")
-    wrong = Goal(client, run_mission, "move forwarrd 1 meter").result()
+    wrong = mission(client, run_mission, "move forwarrd 1 meter").result()
     assert wrong.status == GoalStatus.STATUS_ABORTED
     assert (wrong.result.success, wrong.result.outcome) == (False, "failure")
     assert "mission:1:1: error BT010" in wrong.result.reason
-    absent = Goal(client, run_mission, "wave", keywords=["nowhere.toml"]).result()
+    absent = mission(client, run_mission, "wave", keywords=["nowhere.toml"]).result()
     assert "nowhere.toml" in absent.result.reason
-    failed = Goal(client, run_mission, "move forward 100 meters").result()
+    failed = mission(client, run_mission, "move forward 100 meters").result()
     assert failed.result.outcome == "failure"
     assert "move forward 100 meters" in failed.result.reason
     assert node.err == ""
@@ -94,28 +80,28 @@ def test_why_it_fails(start_node, client: Client, run_mission: Any):
 
 def test_one_mission_at_a_time(start_node, client: Client, run_mission: Any):
     node = start_node()
-    first = Goal(client, run_mission, "wait 1 minute")
+    first = mission(client, run_mission, "wait 1 minute")
     first.feedback.wait()
-    second = Goal(client, run_mission, "say hello")
-    assert not second.handle.accepted
+    second = mission(client, run_mission, "say hello")
+    assert not second.accepted
     wait_until(lambda: "a mission is rejected: another one runs" in node.err, "the reason on the log")
-    first.cancel()
+    assert first.cancel()
     assert first.result().status == GoalStatus.STATUS_CANCELED
-    assert Goal(client, run_mission, "wait 0.1 seconds").result().result.success
+    assert mission(client, run_mission, "wait 0.1 seconds").result().result.success
 
 
 def test_cancelled_half_way_over_ros(start_sim, start_node, client: Client, run_mission: Any, nav2: Any):
     start_sim("--speed", "2")
     start_node("--robot", "ros", "--sim-time")
     odometry = client.hear(Odometry, "/odom")
-    done = Goal(client, run_mission, "move forward 1 meter then say done").result()
+    done = mission(client, run_mission, "move forward 1 meter then say done").result()
     assert done.result.success, done.result.reason
     start = odometry.next().pose.pose.position.y
     assert start == pytest.approx(3.0, abs=0.1)
-    goal = Goal(client, run_mission, "turn around then move forward 2 meters")
+    goal = mission(client, run_mission, "turn around then move forward 2 meters")
     goal.feedback.wait(lambda news: news.running == "move forward 2 m")
     odometry.wait(lambda message: message.pose.pose.position.y < start - 0.5)
-    goal.cancel()
+    assert goal.cancel()
     end = goal.result()
     still = odometry.next()
     assert (end.status, end.result.outcome) == (GoalStatus.STATUS_CANCELED, "stopped")
@@ -127,7 +113,7 @@ def test_cancelled_half_way_over_ros(start_sim, start_node, client: Client, run_
 
 def test_emergency_stop(start_node, client: Client, run_mission: Any):
     start_node()
-    goal = Goal(client, run_mission, FAR)
+    goal = mission(client, run_mission, FAR)
     goal.feedback.wait()
     began = time.monotonic()
     assert client.call(Trigger, "/btlang/stop").success
@@ -136,17 +122,17 @@ def test_emergency_stop(start_node, client: Client, run_mission: Any):
     assert end.status == GoalStatus.STATUS_ABORTED
     assert (end.result.outcome, end.result.reason) == ("stopped", "emergency stop")
     assert client.call(Trigger, "/btlang/stop").success  # nothing runs
-    assert Goal(client, run_mission, "move forward 10 centimeters then say on").result().result.success
+    assert mission(client, run_mission, "move forward 10 centimeters then say on").result().result.success
 
 
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])
 def test_a_signal_ends_a_mission(start_node, client: Client, run_mission: Any, number: signal.Signals, code: int):
     node: Command = start_node()
-    goal = Goal(client, run_mission, FAR)
+    goal = mission(client, run_mission, FAR)
     goal.feedback.wait()
-    result = client.node.executor.create_task(goal.handle.get_result_async)
+    result = goal.ending()
     assert node.end(number) == code
-    assert answer(answer(result)).result.outcome == "stopped"
+    assert answer(result).result.outcome == "stopped"
     assert node.err == ""
 
 

@@ -13,7 +13,7 @@ from std_srvs.srv import Trigger
 
 from tests.ros.client import Client
 from tests.ros.processes import Command, wait_until
-from tests.ros.test_mission_node import FAR, Goal
+from tests.ros.test_mission_node import FAR, mission
 
 CONFIGURE, CLEANUP = Transition.TRANSITION_CONFIGURE, Transition.TRANSITION_CLEANUP
 ACTIVATE, DEACTIVATE = Transition.TRANSITION_ACTIVATE, Transition.TRANSITION_DEACTIVATE
@@ -44,13 +44,13 @@ def test_all_transitions(start_node, client: Client, run_mission: Any):
     wait_until(lambda: "mission:1:1: error BT010" in node.err, "why it is not configured")
     set_mission(client, FAR)
     assert change(client, CONFIGURE)
-    assert not Goal(client, run_mission, "say hello").handle.accepted
+    assert not mission(client, run_mission, "say hello").accepted
     wait_until(lambda: "a mission is rejected: the node is not active" in node.err, "why it is rejected")
     for _ in range(2):  # each activation runs the mission from its start
         before = node.out.count("start  move forward")
         assert change(client, ACTIVATE)
         wait_until(lambda before=before: node.out.count("start  move forward") > before, "the mission")
-        assert not Goal(client, run_mission, "say hello").handle.accepted
+        assert not mission(client, run_mission, "say hello").accepted
         assert change(client, DEACTIVATE)
         assert state(client) == "inactive"
         assert node.out.rstrip().endswith(": interrupted")
@@ -65,7 +65,7 @@ def test_its_own_mission(start_node, client: Client, run_mission: Any, tmp_path:
     node = start_node("--speed", "10", "--mission", str(file))
     node.wait_for("the mission succeeded after")
     assert state(client) == "active"
-    assert Goal(client, run_mission, "say again").result().result.success
+    assert mission(client, run_mission, "say again").result().result.success
 
 
 def test_a_mission_that_cannot_be_read(tmp_path: Path, domain: int, run_mission: Any):

@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import gc
 import threading
+from collections.abc import Callable
+from functools import partial
+from typing import Any
 
 import pytest
+from rclpy.action import ActionClient, ActionServer
 from std_msgs.msg import String
 
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.ros.node import SpunNode
-from tests.ros.processes import wait_until
+from tests.ros.processes import LONG, wait_until
 
 
 def test_a_callback_that_raises_does_not_end_the_others(domain: int, capfd: pytest.CaptureFixture[str]):
@@ -40,6 +45,22 @@ def test_it_may_be_closed_twice_and_before_it_starts(domain: int):
         pass
     spun.close()
     assert threading.active_count() == before
+
+
+@pytest.mark.parametrize("make", [ActionClient, partial(ActionServer, execute_callback=print)])
+def test_a_node_with_actions_leaves_the_graph_when_it_is_closed(make: Callable[..., object], nav2: Any, domain: int):
+    """And not when Python next collects garbage."""
+    gc.disable()
+    try:
+        with SpunNode("stays", domain_id=domain) as stays:
+            spun = SpunNode("leaves", domain_id=domain)
+            make(spun.node, nav2, "navigate")
+            spun.start()
+            wait_until(lambda: "leaves" in stays.node.get_node_names(), "the node")
+            spun.close()
+            wait_until(lambda: "leaves" not in stays.node.get_node_names(), "its farewell", 2 * LONG)
+    finally:
+        gc.enable()
 
 
 def test_a_domain_that_cannot_be():

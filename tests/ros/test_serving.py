@@ -8,7 +8,6 @@ import sys
 from collections import Counter
 from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
 from action_msgs.msg import GoalStatus
@@ -18,7 +17,7 @@ from std_srvs.srv import Trigger
 from btlang.api import world_vocabulary
 from btlang.cli import main
 from btlang.vocabulary.shipped import DEFAULT_WORLD
-from tests.ros.client import Client, Heard, answer
+from tests.ros.client import Client, Goal, answer
 from tests.ros.processes import LONG, REPOSITORY, Command, wait_until
 
 FAR = {"distance": "3 m", "speed": "0.2 meters per second"}
@@ -77,26 +76,14 @@ def serve(tmp_path: Path, domain: int, run_mission: object) -> Iterator[Callable
     assert [command.err for command in started] == [""] * len(started)
 
 
-class Goal:
-    """A goal of RunPhrase that was sent and accepted, with what is heard of it."""
+def phrase(client: Client, action: str, phrase: str = "", **values: str) -> Goal:
+    """A goal of RunPhrase, which is accepted."""
+    from btlang_interfaces.action import RunPhrase
 
-    def __init__(self, client: Client, action: str, phrase: str = "", **values: str) -> None:
-        from btlang_interfaces.action import RunPhrase
-
-        self.feedback = Heard()
-        self._client = client
-        self._server = client.action(RunPhrase, action)
-        goal = RunPhrase.Goal(phrase=phrase, names=list(values), values=list(values.values()))
-        self.handle = client.ask(
-            lambda: self._server.send_goal_async(goal, lambda message: self.feedback(message.feedback))
-        )
-        assert self.handle.accepted
-
-    def result(self) -> Any:
-        return self._client.ask(self.handle.get_result_async)
-
-    def cancel(self) -> None:
-        assert self._client.ask(self.handle.cancel_goal_async).goals_canceling
+    request = RunPhrase.Goal(phrase=phrase, names=list(values), values=list(values.values()))
+    goal = Goal(client, client.action(RunPhrase, action), request)
+    assert goal.accepted
+    return goal
 
 
 def end_of(goal: Goal) -> tuple[int, bool, str]:
@@ -108,22 +95,22 @@ def test_goals_of_a_program_that_knows_rclpy_alone(serve, client: Client, tmp_pa
     (tmp_path / "words.toml").write_text(WORDS, encoding="utf-8")
     (tmp_path / "serving_words.py").write_text(PYTHON, encoding="utf-8")
     server = serve("--keywords", str(tmp_path / "words.toml"), "--speed", "5")
-    drive = Goal(client, "/actions/move_forward", "MoveForward", distance="1 m")
+    drive = phrase(client, "/actions/move_forward", "MoveForward", distance="1 m")
     assert end_of(drive) == (GoalStatus.STATUS_SUCCEEDED, True, "")
     shares = [message.progress for message in drive.feedback.messages]
     assert shares == sorted(shares)
     assert len(shares) > 3
     assert drive.feedback.messages[0].state == "move forward 1 m"
-    own = Goal(client, "/actions/count_to", "count to {number}", number="twenty")  # a class of the user
+    own = phrase(client, "/actions/count_to", "count to {number}", number="twenty")  # a class of the user
     assert end_of(own) == (GoalStatus.STATUS_SUCCEEDED, True, "")
     assert own.feedback.messages[-1].state.startswith("says")
     aborted = GoalStatus.STATUS_ABORTED
-    wrong = Goal(client, "/actions/move_forward", distance="two cats")
+    wrong = phrase(client, "/actions/move_forward", distance="two cats")
     assert end_of(wrong) == (aborted, False, "distance is 'two cats', which is no length, such as 5 m")
-    wrong = Goal(client, "/actions/go_to", "fly to {place}", place="lab")
+    wrong = phrase(client, "/actions/go_to", "fly to {place}", place="lab")
     reason = "'fly to {place}' is not served here: this is GoTo, whose phrase is 'go to {place}'"
     assert end_of(wrong) == (aborted, False, reason)
-    failed = Goal(client, "/actions/move_forward", distance="50 m")
+    failed = phrase(client, "/actions/move_forward", distance="50 m")
     status, _, reason = end_of(failed)
     assert status == aborted
     assert reason.startswith("bumped into something after")
@@ -135,27 +122,27 @@ def test_cancelled_half_way_the_robot_stands(start_sim, serve, client: Client):
     serve("--robot", "ros", "--sim-time", "--only", "motion", "speech", "--namespace", "anna")
     odometry = client.hear(Odometry, "/anna/odom")
     start = odometry.next().pose.pose.position.y
-    goal = Goal(client, "/anna/actions/move_forward", distance="1.5 m", speed="0.1 m/s")
+    goal = phrase(client, "/anna/actions/move_forward", distance="1.5 m", speed="0.1 m/s")
     odometry.wait(lambda message: message.pose.pose.position.y > start + 0.3)
-    second = Goal(client, "/anna/actions/turn_left", angle="90")
+    second = phrase(client, "/anna/actions/turn_left", angle="90")
     assert end_of(second)[2] == "'move forward 1.5 m at 0.1 m/s' is using the base"
-    goal.cancel()
+    assert goal.cancel()
     assert end_of(goal) == (GoalStatus.STATUS_CANCELED, False, "it was cancelled")
     still = odometry.next()
     assert abs(still.twist.twist.linear.x) < 1e-3
     assert still.pose.pose.position.y < start + 1.4
-    assert end_of(Goal(client, "/anna/actions/turn_left", angle="0.25 turns"))[1]
+    assert end_of(phrase(client, "/anna/actions/turn_left", angle="0.25 turns"))[1]
 
 
 def test_a_signal_and_an_emergency_stop(serve, client: Client):
     server = serve("--name", "mover")
-    goal = Goal(client, "/actions/move_forward", **FAR)
+    goal = phrase(client, "/actions/move_forward", **FAR)
     goal.feedback.wait()
     assert client.call(Trigger, "/mover/stop").success
     assert end_of(goal) == (GoalStatus.STATUS_ABORTED, False, "emergency stop")
-    goal = Goal(client, "/actions/move_forward", **FAR)  # it goes on
+    goal = phrase(client, "/actions/move_forward", **FAR)  # it goes on
     goal.feedback.wait()
-    result = answer(client.node.executor.create_task(goal.handle.get_result_async))
+    result = goal.ending()
     assert server.end(signal.SIGTERM) == 143
     assert answer(result).result.reason == "the server was stopped"
 

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+from functools import partial
 from math import cos, hypot, nan, radians, sin
 
 import pytest
@@ -10,7 +12,7 @@ from geometry_msgs.msg import PoseStamped, Twist
 from nav_msgs.msg import Odometry
 from std_srvs.srv import Trigger
 
-from tests.ros.client import Client, Heard, answer
+from tests.ros.client import Client, Goal, Heard
 from tests.ros.processes import wait_until
 
 
@@ -38,20 +40,20 @@ def odometry(sim, client: Client) -> Heard:
 
 
 @pytest.fixture
-def navigator(nav2, sim, client: Client):
-    return client.action(nav2, "/navigate_to_pose")
+def send(nav2, sim, client: Client) -> Callable[..., Goal]:
+    """Sends a goal to the navigation."""
+    return partial(Goal, client, client.action(nav2, "/navigate_to_pose"))
 
 
-def under_way(navigator, request, odometry: Heard):
+def under_way(sent: Goal, odometry: Heard) -> Goal:
     """A goal that has been accepted, once the robot rolls."""
-    handle = answer(navigator.send_goal_async(request))
-    assert handle.accepted
+    assert sent.accepted
     odometry.wait(lambda message: message.twist.twist.linear.x > 0.1)
-    return handle
+    return sent
 
 
-def ended(handle) -> tuple[int, int, str]:
-    outcome = answer(handle.get_result_async())
+def ended(sent: Goal) -> tuple[int, int, str]:
+    outcome = sent.result()
     return outcome.status, outcome.result.error_code, outcome.result.error_msg
 
 
@@ -71,14 +73,13 @@ def test_the_definition_is_that_of_nav2(nav2):
     }
 
 
-def test_it_arrives_and_faces_as_told(nav2, navigator, odometry: Heard):
-    told = Heard()
-    handle = answer(navigator.send_goal_async(goal(nav2, 4.0, 3.0, facing=180.0), feedback_callback=told))
-    assert ended(handle) == (GoalStatus.STATUS_SUCCEEDED, nav2.Result.NONE, "")
+def test_it_arrives_and_faces_as_told(nav2, send, odometry: Heard):
+    sent = send(goal(nav2, 4.0, 3.0, facing=180.0))
+    assert ended(sent) == (GoalStatus.STATUS_SUCCEEDED, nav2.Result.NONE, "")
     at = odometry.next().pose.pose
     assert hypot(at.position.x - 4.0, at.position.y - 3.0) < 0.05
     assert abs(at.orientation.z) == pytest.approx(1.0, abs=0.001)
-    feedback = [message.feedback for message in told.messages]
+    feedback = sent.feedback.messages
     assert len(feedback) > 20
     assert feedback[0].distance_remaining > 2.5 > 0.3 > feedback[-1].distance_remaining
     times = [seconds(message.navigation_time) for message in feedback]
@@ -91,26 +92,26 @@ def test_it_arrives_and_faces_as_told(nav2, navigator, odometry: Heard):
 def test_cancelled_half_way_it_stands_still(nav2, start_sim, client: Client):
     start_sim("--speed", "2")
     odometry = client.hear(Odometry, "/odom")
-    handle = under_way(client.action(nav2, "/navigate_to_pose"), goal(nav2, 5.0, 1.0), odometry)
-    assert len(answer(handle.cancel_goal_async()).goals_canceling) == 1
+    sent = under_way(Goal(client, client.action(nav2, "/navigate_to_pose"), goal(nav2, 5.0, 1.0)), odometry)
+    assert sent.cancel() == 1
     cancelled = seconds(odometry.messages[-1].header.stamp)
-    status, _, reason = ended(handle)
+    status, _, reason = ended(sent)
     assert (status, reason) == (GoalStatus.STATUS_CANCELED, "the way was given up")
     assert odometry.wait(stands).pose.pose.position.x < 4.0
     rolling = [message for message in odometry.messages if not stands(message)]
     assert seconds(rolling[-1].header.stamp) - cancelled < 1.0
 
 
-def test_cancelled_at_once(nav2, navigator, odometry: Heard):
-    handle = answer(navigator.send_goal_async(goal(nav2, 5.0, 1.0)))
-    answer(handle.cancel_goal_async())
-    assert ended(handle)[0] == GoalStatus.STATUS_CANCELED
+def test_cancelled_at_once(nav2, send, odometry: Heard):
+    sent = send(goal(nav2, 5.0, 1.0))
+    sent.cancel()
+    assert ended(sent)[0] == GoalStatus.STATUS_CANCELED
     odometry.wait(stands)
 
 
-def test_a_new_goal_takes_the_place_of_the_one_under_way(nav2, navigator, odometry: Heard):
-    first = under_way(navigator, goal(nav2, 5.0, 1.0, -90.0), odometry)
-    second = answer(navigator.send_goal_async(goal(nav2, 2.0, 1.0)))
+def test_a_new_goal_takes_the_place_of_the_one_under_way(nav2, send, odometry: Heard):
+    first = under_way(send(goal(nav2, 5.0, 1.0, -90.0)), odometry)
+    second = send(goal(nav2, 2.0, 1.0))
     status, code, reason = ended(first)
     assert (status, reason) == (GoalStatus.STATUS_ABORTED, "the robot set out for (2.00, 1.00) instead")
     assert code != nav2.Result.NONE
@@ -127,39 +128,39 @@ def test_a_new_goal_takes_the_place_of_the_one_under_way(nav2, navigator, odomet
         (nan, 2.0, "", "the goal is no pose: one of its numbers is infinite, or not a number"),
     ],
 )
-def test_why_it_does_not_arrive(nav2, navigator, x: float, y: float, frame: str, reason: str):
-    status, code, told = ended(answer(navigator.send_goal_async(goal(nav2, x, y, frame=frame))))
+def test_why_it_does_not_arrive(nav2, send, x: float, y: float, frame: str, reason: str):
+    status, code, told = ended(send(goal(nav2, x, y, frame=frame)))
     assert (status, told) == (GoalStatus.STATUS_ABORTED, reason)
     assert code != nav2.Result.NONE
 
 
-def test_a_refused_goal_leaves_the_one_under_way_alone(nav2, navigator, odometry: Heard):
-    first = under_way(navigator, goal(nav2, 4.0, 2.0), odometry)
-    refused = answer(navigator.send_goal_async(goal(nav2, nan, 1.0)))
+def test_a_refused_goal_leaves_the_one_under_way_alone(nav2, send, odometry: Heard):
+    first = under_way(send(goal(nav2, 4.0, 2.0)), odometry)
+    refused = send(goal(nav2, nan, 1.0))
     assert ended(refused)[0] == GoalStatus.STATUS_ABORTED
     assert ended(first)[0] == GoalStatus.STATUS_SUCCEEDED
 
 
-def test_a_thing_is_approached_as_by_its_name(nav2, navigator, odometry: Heard):
-    away = answer(navigator.send_goal_async(goal(nav2, 3.0, 2.0)))
+def test_a_thing_is_approached_as_by_its_name(nav2, send, odometry: Heard):
+    away = send(goal(nav2, 3.0, 2.0))
     assert ended(away)[0] == GoalStatus.STATUS_SUCCEEDED
-    back = answer(navigator.send_goal_async(goal(nav2, 0.7, 2.25)))
+    back = send(goal(nav2, 0.7, 2.25))
     assert ended(back)[0] == GoalStatus.STATUS_SUCCEEDED
     at = odometry.next().pose.pose.position
     assert 0.2 < hypot(at.x - 0.7, at.y - 2.25) < 0.6
 
 
-def test_a_stop_ends_it_and_says_so(nav2, navigator, odometry: Heard, client: Client):
-    handle = under_way(navigator, goal(nav2, 5.0, 1.0), odometry)
+def test_a_stop_ends_it_and_says_so(nav2, send, odometry: Heard, client: Client):
+    sent = under_way(send(goal(nav2, 5.0, 1.0)), odometry)
     assert client.call(Trigger, "/stop").success
-    assert ended(handle)[::2] == (GoalStatus.STATUS_ABORTED, "the robot was told to stop")
+    assert ended(sent)[::2] == (GoalStatus.STATUS_ABORTED, "the robot was told to stop")
     odometry.wait(stands)
 
 
-def test_a_command_to_move_ends_it_and_a_zero_does_not(nav2, navigator, odometry: Heard, client: Client):
+def test_a_command_to_move_ends_it_and_a_zero_does_not(nav2, send, odometry: Heard, client: Client):
     wheels = client.publisher(Twist, "/cmd_vel")
-    handle = under_way(navigator, goal(nav2, 5.0, 1.0), odometry)
-    result = handle.get_result_async()
+    sent = under_way(send(goal(nav2, 5.0, 1.0)), odometry)
+    result = sent.ending()
     wheels.publish(Twist())
     odometry.next()
     odometry.next()
@@ -172,6 +173,6 @@ def test_a_command_to_move_ends_it_and_a_zero_does_not(nav2, navigator, odometry
     odometry.wait(stands)
 
 
-def test_it_ends_by_a_signal_while_a_goal_is_under_way(nav2, sim, navigator, odometry: Heard):
-    under_way(navigator, goal(nav2, 5.0, 1.0), odometry)
+def test_it_ends_by_a_signal_while_a_goal_is_under_way(nav2, sim, send, odometry: Heard):
+    under_way(send(goal(nav2, 5.0, 1.0)), odometry)
     assert sim.end() == 130
