@@ -34,7 +34,8 @@ if TYPE_CHECKING:
     from btlang.vocabulary.entry import Entry
     from btlang.vocabulary.vocabulary import Vocabulary
 
-_DISCOVERY = 2.0  # seconds of real time in which all that is needed has to be found
+_DISCOVERY = 7.0  # seconds of a node's life in which it has found all: DDS announces every 3 s, and two may get lost
+_AGAIN = 2.0  # seconds that an older node gets
 _LOOK = 0.01
 _LAST_ANSWERS = 2.0  # seconds that goals which were halted get to end
 
@@ -55,6 +56,7 @@ class RosStage:
         self.events = EventStream()
         self._sim_time = sim_time
         self._servers = servers
+        self._discovers_until = time.monotonic() + _DISCOVERY
         self._spun = SpunNode(name, namespace=namespace, use_sim_time=sim_time)
         self.node = self._spun.node
         self._now = self._ros_time if sim_time else time.monotonic
@@ -80,7 +82,7 @@ class RosStage:
     def survey(self, tree: Tree, vocabulary: Vocabulary) -> dict[Interface, tuple[Node | None, str]]:
         """What a tree needs of the robot, the first leaf that needs it, and what is wrong with it, "" for nothing.
 
-        Waits two seconds at most for what is missing. Raises MissionError (BT100) where nav2_msgs is needed and is
+        Waits for what is missing: until the node is seven seconds old, at least for two seconds. Raises MissionError (BT100) where nav2_msgs is needed and is
         not installed.
         """
         wanted: dict[Interface, Node | None] = {CLOCK: None} if self._sim_time else {}
@@ -89,7 +91,7 @@ class RosStage:
         if any(interface.kind == "action" for interface in wanted):
             require_ros("nav2_msgs")
             self.robot.prepare_navigation()
-        until = time.monotonic() + _DISCOVERY
+        until = max(self._discovers_until, time.monotonic() + _AGAIN)
         while True:
             found = {spoken: (node, self._lacks(spoken)) for spoken, node in self._spoken(wanted).items()}
             lacking = {Interface(need.kind, need.name, need.type): need.missing for need in self._clients.needs()}
