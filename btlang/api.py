@@ -52,14 +52,17 @@ def parse_tree(
 
     `parser` is "shunting-yard" or "lark" (both read the same); `keywords` are paths of keyword files, names of
     installed packs, or functions made words by `action` or `condition`; `world` is the path of a world file, by
-    default the world that ships; `main` is the ID of the tree to run, where XML has several. Raises MissionError, which
-    holds every diagnostic.
+    default the world that ships; `main` is the ID of the tree to run, where XML or JSON has several. Raises
+    MissionError, which holds every diagnostic.
     """
     source = Source(text) if isinstance(text, str) else text
     with no_collection:
         vocabulary = world_vocabulary(keywords, world)
         if data_mark(source):
             return RunnableTree(checked(read_tree(source, main), vocabulary), vocabulary, world)
+        if main:
+            place = Span(source, 0, 0)
+            raise MissionError([diagnostic("BT126", place, name=main, help="A mission in English is one tree.")])
         reading = read_mission(source, vocabulary, parser)
         tree = compile_mission(reading.mission, vocabulary)
         warnings = lint(reading.mission, tree, vocabulary, reading.warnings)

@@ -57,12 +57,16 @@ def _reading_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--parser", choices=list(PARSERS), default=DEFAULT_PARSER, help="(default: %(default)s)")
 
 
+def _main_option(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--main", default="", metavar="ID", help="tree to take of an XML or JSON file that has several")
+
+
 def _mission_options(parser: argparse.ArgumentParser) -> None:
     _reading_options(parser)
     parser.add_argument(
         "--format", choices=FORMATS, default="text", help="of messages: text, or json for programs (default: text)"
     )
-    parser.add_argument("--main", default="", metavar="ID", help="tree to take of an XML file that has several")
+    _main_option(parser)
     text = parser.add_mutually_exclusive_group(required=True)
     text.add_argument("file", nargs="?", metavar="FILE", help="mission, or - for standard input")
     text.add_argument("-c", dest="text", metavar="TEXT", help="mission as text")
@@ -127,6 +131,7 @@ def _examples_options(parser: argparse.ArgumentParser) -> None:
 
 def _explain_options(parser: argparse.ArgumentParser) -> None:
     _reading_options(parser)
+    _main_option(parser)
     subject = parser.add_mutually_exclusive_group()
     subject.add_argument("file", nargs="?", metavar="FILE|CODE", help="mission, - for standard input, or e.g. BT013")
     subject.add_argument("-c", dest="text", metavar="TEXT", help="mission as text")

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from btlang.text.source import Source
+from btlang.diagnostics.diagnostic import MissionError
+from btlang.text.source import Source, Span
 from btlang.tree.node import Tree
 
 
@@ -21,4 +22,19 @@ def read_tree(source: Source, main: str) -> Tree:
         return read_xml(source, main)
     from btlang.backends.json_tree import read_json
 
-    return read_json(source)
+    return _chosen(read_json(source), main, source)
+
+
+def _chosen(tree: Tree, main: str, source: Source) -> Tree:
+    """The same trees, of which this one is the main one; where none is asked for, the first. Nothing can use an
+    unnamed one, so it is dropped where another is chosen."""
+    if main in ("", tree.name):
+        return tree
+    trees = dict((*([(tree.name, tree.root)] if tree.name else []), *tree.subtrees))
+    if main not in trees:
+        from btlang.frontends.btcpp.reader import no_tree
+
+        raise MissionError([no_tree(Span(source, 0, 0), main, trees)])
+    others = tuple(named for named in trees.items() if named[0] != main)
+    chosen: Tree = tree.replace(root=trees[main], subtrees=others, name=main)
+    return chosen

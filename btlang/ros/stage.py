@@ -82,8 +82,8 @@ class RosStage:
     def survey(self, tree: Tree, vocabulary: Vocabulary) -> dict[Interface, tuple[Node | None, str]]:
         """What a tree needs of the robot, the first leaf that needs it, and what is wrong with it, "" for nothing.
 
-        Waits for what is missing: until the node is seven seconds old, at least for two seconds. Raises MissionError (BT100) where nav2_msgs is needed and is
-        not installed.
+        Waits for what is missing: until the node is seven seconds old, at least for two seconds. Raises MissionError
+        (BT100) where nav2_msgs is needed and is not installed.
         """
         wanted: dict[Interface, Node | None] = {CLOCK: None} if self._sim_time else {}
         declared, own = self._bound(tree, vocabulary)

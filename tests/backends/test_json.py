@@ -126,3 +126,19 @@ def test_too_large_without_places() -> None:
     with pytest.raises(MissionError) as refused:
         parse_tree(f'{{"format": 1, "trees": [{", ".join(trees)}]}}')
     assert [problem.code for problem in refused.value.diagnostics] == ["BT042"]
+
+
+@pytest.mark.parametrize("name", ["", '"name": "Main", '])
+def test_another_tree_may_be_the_main_one(name: str) -> None:
+    trees = f'{{{name}"nodes": [{{"id": "Wave"}}]}}, {{"name": "B", "nodes": [{{"id": "Nod"}}]}}'
+    document = f'{{"format": 1, "trees": [{trees}]}}'
+    others = (("Main", Node("Wave")),) if name else ()
+    assert parse_tree(document, main="B").tree == Tree(Node("Nod"), others, "B")
+    with pytest.raises(MissionError, match="BT126: There is no tree 'C'"):
+        parse_tree(document, main="C")
+
+
+def test_a_mission_has_no_other_tree() -> None:
+    with pytest.raises(MissionError, match="BT126: There is no tree 'B'") as refused:
+        parse_tree("wave", main="B")
+    assert "A mission in English is one tree." in str(refused.value)

@@ -88,6 +88,8 @@ def test_main_chooses_a_tree(capsys: pytest.CaptureFixture[str], tmp_path: Path)
     assert capsys.readouterr().out.splitlines() == [
         "BehaviorTree ID=B main=true", "Nod", "BehaviorTree ID=A", "  Wave"
     ]  # fmt: skip
+    assert main(["explain", str(file), "--main", "B"]) == 0
+    assert '"A" means wave' in capsys.readouterr().out
     assert main(["check", str(file), "--main", "C"]) == 2
     assert "error BT126" in capsys.readouterr().err
 

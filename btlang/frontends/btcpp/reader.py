@@ -135,7 +135,7 @@ class _Reader:
         if name in trees:
             return name
         if asked:
-            self._problems.append(_no_tree(file.root_span, asked, trees))
+            self._problems.append(no_tree(file.root_span, asked, trees))
             return ""
         if len(trees) == 1 or MAIN_TREE in trees:
             return MAIN_TREE if MAIN_TREE in trees else next(iter(trees))
@@ -157,13 +157,14 @@ class _Reader:
                 if used in trees:
                     uses[name].append(used)
                 elif used and node.span is not None:
-                    self._problems.append(_no_tree(node.span, used, trees))
+                    self._problems.append(no_tree(node.span, used, trees))
         for circle in in_order_of_use(uses)[1]:
             told = " contains ".join(f"'{name}'" for name in (*circle, circle[0]))
             self._problems.append(diagnostic("BT124", heads[circle[0]].span, name=circle[0], circle=told))
 
 
-def _no_tree(span: Span, name: str, trees: Sequence[str] | dict[str, Node]) -> Diagnostic:
+def no_tree(span: Span, name: str, trees: Sequence[str] | dict[str, Node]) -> Diagnostic:
+    """That none of the trees has this name (BT126)."""
     near = nearest(name, trees)
     told = f"The nearest: {', '.join(near)}" if near else f"There are: {', '.join(list(trees)[:8])}"
     return diagnostic("BT126", span, name=name, help=told)
