@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from contextlib import closing
 from threading import Condition, Event
 from typing import Any
 
@@ -15,6 +16,7 @@ from tests.ros.processes import LONG, wait_until
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
+_ALL_FOUND = 2.0  # seconds: nodes of tests announce themselves every 0.1 s
 _SETTLE = 0.3  # seconds: a server that has not yet found the client's reader drops its answer, and no call tells when
 
 
@@ -113,3 +115,17 @@ def answer(future: Any) -> Any:
     future.add_done_callback(lambda _: done.set())
     assert done.wait(LONG), "no answer"
     return future.result()
+
+
+def check_nodes(domain: int, *names: str) -> None:
+    """A new node finds these in the graph, and no others. Where its farewell gets lost, DDS misses one after 20 s.
+
+    The graph of an older node may keep one for ever: where its last words come after its farewell, rmw adds it anew.
+    """
+    wanted = sorted((*names, "client"))
+    with closing(Client(domain)) as client:
+        time.sleep(_ALL_FOUND)
+        until = time.monotonic() + 2 * LONG
+        while sorted(client.node.get_node_names()) != wanted and time.monotonic() < until:
+            time.sleep(0.01)
+        assert sorted(client.node.get_node_names()) == wanted

@@ -14,7 +14,8 @@ from std_msgs.msg import String
 
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.ros.node import SpunNode
-from tests.ros.processes import LONG, wait_until
+from tests.ros.client import check_nodes
+from tests.ros.processes import wait_until
 
 
 def test_a_callback_that_raises_does_not_end_the_others(domain: int, capfd: pytest.CaptureFixture[str]):
@@ -52,13 +53,10 @@ def test_a_node_with_actions_leaves_the_graph_when_it_is_closed(make: Callable[.
     """And not when Python next collects garbage."""
     gc.disable()
     try:
-        with SpunNode("stays", domain_id=domain) as stays:
-            spun = SpunNode("leaves", domain_id=domain)
+        with SpunNode("leaves", domain_id=domain) as spun:
             make(spun.node, nav2, "navigate")
-            spun.start()
-            wait_until(lambda: "leaves" in stays.node.get_node_names(), "the node")
-            spun.close()
-            wait_until(lambda: "leaves" not in stays.node.get_node_names(), "its farewell", 2 * LONG)
+            check_nodes(domain, "leaves")
+        check_nodes(domain)
     finally:
         gc.enable()
 

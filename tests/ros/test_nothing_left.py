@@ -5,10 +5,9 @@ from __future__ import annotations
 import re
 import time
 from collections.abc import Callable
-from contextlib import closing
 from pathlib import Path
 
-from tests.ros.client import Client
+from tests.ros.client import check_nodes
 from tests.ros.processes import LONG, Command
 
 RUNS = 20
@@ -26,32 +25,23 @@ def segments(process: int) -> set[str]:
     return set(re.findall(r"/dev/shm/fastrtps_[0-9a-f]{16}", maps))
 
 
-def wait_for_nodes(client: Client, *names: str) -> None:
-    """Until these nodes are in the graph, and no others. Where its farewell gets lost, DDS misses one after 20 s."""
-    until = time.monotonic() + 2 * LONG
-    while sorted(client.node.get_node_names()) != sorted(names) and time.monotonic() < until:
-        time.sleep(0.01)
-    assert sorted(client.node.get_node_names()) == sorted(names)
-
-
 def test_twenty_missions_in_a_row(start_sim: Callable[..., Command], domain: int, tmp_path: Path) -> None:
     sim = start_sim("--speed", "1")
-    with closing(Client(domain)) as client:
-        wait_for_nodes(client, "btlang_sim", "client")
-        used = segments(sim.process.pid)
-        assert used
-        for number in range(RUNS):
-            folder = tmp_path / str(number)
-            folder.mkdir()
-            mission = Command(folder, domain, "run", "--robot", "ros", "-c", "print done", "--quiet")
-            own, until = set(), time.monotonic() + LONG
-            while mission.process.poll() is None and time.monotonic() < until:
-                own |= segments(mission.process.pid)
-                time.sleep(0.01)
-            assert own - used, "no segment of its own was seen"
-            used |= own
-            assert (mission.end(), mission.err) == (0, "")  # and no process of its group is left
-        wait_for_nodes(client, "btlang_sim", "client")
-        assert sim.end() == 130
-        wait_for_nodes(client, "client")
+    check_nodes(domain, "btlang_sim")
+    used = segments(sim.process.pid)
+    assert used
+    for number in range(RUNS):
+        folder = tmp_path / str(number)
+        folder.mkdir()
+        mission = Command(folder, domain, "run", "--robot", "ros", "-c", "print done", "--quiet")
+        own, until = set(), time.monotonic() + LONG
+        while mission.process.poll() is None and time.monotonic() < until:
+            own |= segments(mission.process.pid)
+            time.sleep(0.01)
+        assert own - used, "no segment of its own was seen"
+        used |= own
+        assert (mission.end(), mission.err) == (0, "")  # and no process of its group is left
+    check_nodes(domain, "btlang_sim")
+    assert sim.end() == 130
+    check_nodes(domain)
     assert [file for segment in used for file in (segment, f"{segment}_el") if Path(file).exists()] == []
