@@ -5,17 +5,20 @@ What is in quotes is kept as it stands; several quoted texts, `newline` and `cha
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
+from itertools import takewhile
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.token import NodeCall
 from btlang.text.source import Span
-from btlang.text.words import Words, statements
+from btlang.text.spelling import respellings
+from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, statements
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.vocabulary import Vocabulary
 
 SUBTREE = "SubTree"
 _MOST_WORDS = 12  # of the name of a port
+_BEHIND_ID = (END_OF_TEXT, END_OF_STATEMENT, ":", ",", "(", ")")
 
 
 class Unreadable(Exception):
@@ -83,6 +86,31 @@ def unreadable(text: Words, at: int, problem: Unreadable) -> Diagnostic:
     last = text.words[problem.at]
     place = words if last in ("\n", ";") else Span(text.source, words.start, text.ends[problem.at])
     return diagnostic("BT141", place, words=words.text, wanted=problem.wanted)
+
+
+def misread_node(text: Words, at: int, vocabulary: Vocabulary) -> tuple[Span, list[str]] | None:
+    """For a `do` or `test` without a node: the words that look like one, and how it may have been meant.
+
+    None where they look like words of a command: `do the dishes`.
+    """
+    words, reader = text.words, _Reader(text, vocabulary)
+    last = at + 1
+    while words[last] not in _BEHIND_ID and not reader.word("called", last) and not reader.word("with", last):
+        last += 1
+    head = text.span(at, at + 1)
+    with_articles = text.source.text[head.end : text.starts[last]].rstrip()
+    written = with_articles.lstrip()
+    slips = [f"{head.text} {name}" for name in respellings(written.lower(), vocabulary.nodes.values())]
+    has_port = reader.word("with", last) and any(word[0] in '"{-' or word[0].isdigit() for word in _rest(words, last))
+    is_meant = slips or words[last] == ":" or reader.word("called", last) or has_port or written != written.lower()
+    if not written or '"' in written or not is_meant:
+        return None
+    return Span(text.source, head.start, head.end + len(with_articles)), [*slips, f'{head.text} "{written}"']
+
+
+def _rest(words: Sequence[str], at: int) -> Iterator[str]:
+    """Up to the end of the statement."""
+    return takewhile(lambda word: word not in _BEHIND_ID, words[at:])
 
 
 class _Reader:

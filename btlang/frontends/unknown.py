@@ -11,6 +11,7 @@ from itertools import takewhile
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.definitions import Definitions
 from btlang.frontends.heads import span_of
+from btlang.frontends.nodes import misread_node
 from btlang.frontends.token import Token
 from btlang.record import Record
 from btlang.text.source import Span
@@ -227,6 +228,10 @@ def _unknown_phrase(
         rest = text.span(at + 1, meant.last).text
         whole = text.span(at, meant.last)
         return diagnostic("BT010", span, fix=(whole, rest), words=span.text, help=nearest_known([rest]))
+    node = misread_node(text, at, vocabulary) if is_node else None
+    if node is not None:
+        advice = f"A node by its id: {' or '.join(node[1])}"
+        return diagnostic("BT010", node[0], fix=(node[0], node[1][0]), words=node[0].text, help=advice)
     names = [header.name for header in definitions.headers.values()]
     written = f" {' '.join(text.words[at:end])} "
     inside = [(name, end - at) for name in names if f" {name} " in written]
