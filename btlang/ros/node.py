@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable
 from threading import Thread
 
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
     from types import TracebackType
 
 _LAST_DOMAIN = 232
+_TASKS_OF_AN_ANSWER = 3  # that begin one another: the goal ends, its future is told, the result is sent
+_DELIVERY = 0.2  # seconds
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 """Who subscribes later gets the last message."""
@@ -61,9 +64,14 @@ class SpunNode:
         self._thread.start()
 
     def settle(self, seconds: float) -> None:
-        """Waits until what was asked of the thread before now is done, for so many real seconds at most."""
-        task = self._executor.create_task(lambda: None)
-        wait_until(task.done, seconds)
+        """Waits until what was asked of the thread before now is done and its answers are out.
+
+        For so many real seconds at most, and the moment that DDS needs: nobody is told when a client has its answer.
+        """
+        until = time.monotonic() + seconds
+        for _ in range(_TASKS_OF_AN_ANSWER):
+            wait_until(self._executor.create_task(lambda: None).done, until - time.monotonic())
+        time.sleep(_DELIVERY)
 
     def close(self) -> None:
         """Ends the thread, then the node, then its context. May be called twice."""

@@ -10,6 +10,7 @@ from typing import Any
 import pytest
 from action_msgs.msg import GoalStatus
 from diagnostic_msgs.msg import DiagnosticArray
+from lifecycle_msgs.srv import GetState
 from nav_msgs.msg import Odometry
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
@@ -131,6 +132,7 @@ def test_a_signal_ends_a_mission(start_node, client: Client, run_mission: Any, n
     goal = mission(client, run_mission, FAR)
     goal.feedback.wait()
     result = goal.ending()
+    client.call(GetState, "/btlang/get_state")  # by its answer the node knows who asks for the result
     assert node.end(number) == code
     assert answer(result).result.outcome == "stopped"
     assert node.err == ""

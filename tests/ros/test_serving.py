@@ -143,6 +143,7 @@ def test_a_signal_and_an_emergency_stop(serve, client: Client):
     goal = phrase(client, "/actions/move_forward", **FAR)  # it goes on
     goal.feedback.wait()
     result = goal.ending()
+    goal.feedback.next()  # the server knows by now who asks
     assert server.end(signal.SIGTERM) == 143
     assert answer(result).result.reason == "the server was stopped"
 
