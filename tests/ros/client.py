@@ -33,16 +33,25 @@ class Heard:
             self._news.notify_all()
 
     def wait(self, wanted: Callable[[Any], object] = lambda message: True) -> Any:
-        """The last message, or else the next one, that is as wanted."""
+        """The last message, or else the first one after it, that is as wanted."""
         with self._news:
-            found = self._news.wait_for(lambda: self.messages and wanted(self.messages[-1]), LONG)
-            assert found, f"the last of {len(self.messages)} messages: {self.messages[-1:]}"
-            return self.messages[-1]
+            at = max(len(self.messages) - 1, 0)
+
+            def found() -> bool:
+                nonlocal at
+                while at < len(self.messages) and not wanted(self.messages[at]):
+                    at += 1
+                return at < len(self.messages)
+
+            assert self._news.wait_for(found, LONG), f"{len(self.messages)} messages, last: {self.messages[-1:]}"
+            return self.messages[at]
 
     def next(self) -> Any:
         """A message that is not there yet."""
-        count = len(self.messages)
-        return self.wait(lambda _: len(self.messages) > count)
+        with self._news:
+            count = len(self.messages)
+            assert self._news.wait_for(lambda: len(self.messages) > count, LONG), f"no message after {count}"
+            return self.messages[count]
 
 
 class Client:
