@@ -12,7 +12,7 @@ from btlang.engine.build import EngineError
 from btlang.engine.compile import NODE_TYPES
 from btlang.engine.faults import UnknownNode, UnknownSubTree, faults
 from btlang.engine.leaf import LeafBinding
-from btlang.text.source import NOWHERE
+from btlang.text.source import NOWHERE, Span
 from btlang.text.spelling import nearest
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.vocabulary import Vocabulary
@@ -60,8 +60,9 @@ def _told(error: EngineError, tree: Tree, vocabulary: Vocabulary, entries: dict[
     node = error.node
     span = node.span or NOWHERE
     if isinstance(error, UnknownSubTree):
-        near = nearest(node.port("ID").lower(), [name for name, _ in tree.subtrees])
-        return diagnostic("BT126", span, name=node.port("ID"), help=_near(near))
+        name = node.port("ID")
+        near = nearest(name.lower(), [name for name, _ in tree.subtrees])
+        return _helped(diagnostic("BT126", span, name=name), _near(near), _defining(name, span))
     missing = node.id not in NODE_TYPES and node.id not in vocabulary.entries and node.id != "SubTree"
     if not isinstance(error, UnknownNode) and not (node.children and missing):
         return diagnostic("BT132", span, id=node.id, reason=error.message)
@@ -69,15 +70,25 @@ def _told(error: EngineError, tree: Tree, vocabulary: Vocabulary, entries: dict[
         near = nearest(node.id.lower(), [id for id, kind in NODE_TYPES.items() if kind.most])
         return diagnostic("BT131", span, id=node.id, help=_near(near))
     near = nearest(node.id.lower(), [*vocabulary.entries, *(id for id, kind in NODE_TYPES.items() if not kind.least)])
-    told = diagnostic("BT130", span, id=node.id)
-    lines = [line for line in (_near(near), _entry(node, entries)) if line]
-    made: Diagnostic = told.replace(arguments=(*told.arguments, ("help", "\n".join(lines))))
-    return made
+    return _helped(diagnostic("BT130", span, id=node.id), _near(near), _entry(node, entries))
+
+
+def _helped(told: Diagnostic, *advice: str) -> Diagnostic:
+    """With advice of several lines."""
+    lines = "\n".join(line for line in advice if line)
+    helped: Diagnostic = told.replace(arguments=(*told.arguments, ("help", lines)))
+    return helped
 
 
 def _place(error: EngineError) -> tuple[str, int]:
     span = error.node.span
     return (span.source.name, span.start) if span else ("", 0)
+
+
+def _defining(name: str, span: Span) -> str:
+    if span.text[:1] == "<":
+        return 'Where it stands in another file: <include path="..."/>'
+    return f'Define it, at the left margin: "{name}" means: ...'
 
 
 def _near(names: list[str]) -> str:

@@ -126,7 +126,6 @@ _ALL = (
     Code("BT132", "The node '{id}' cannot be used so: {reason}."),
     Code("BT133", "This is no tree in JSON: {reason}.", "Its form is in docs/targets.md."),
     Code("BT134", "The node '{id}' cannot be told to {target}: {reason}."),
-    Code("BT140", "There is no subtree '{name}'.", "Define it, at the left margin: \"{name}\" means: ..."),
     Code("BT141", "I cannot read '{words}' any further: {wanted} is needed.", "Write for example: do \"OpenGripper\" with width 0.05"),
     Code("BT142", "This tree cannot be said in English: {reason}."),
 )  # fmt: skip

@@ -181,7 +181,7 @@ class Site:
         stored: list[tuple[str, str, Callable[[str], Any]]] = []
         for port, text in ports.items():
             convert = converters.get(port, str)
-            if text[:1] == "{" and (key := blackboard_key(port, text)) is not None:
+            if "{" in text and (key := blackboard_key(port, text)) is not None:
                 stored.append((port, key, convert))
                 continue
             try:
@@ -194,7 +194,11 @@ class Site:
 
 
 def blackboard_key(port: str, text: str) -> str | None:
-    """The key that a text `{key}` refers to, None for any other text; `{=}` is the key named as the port."""
+    """The key that a text `{key}` refers to, None for any other text; `{=}` is the key named as the port.
+
+    Spaces around it do not count (TreeNode::isBlackboardPointer).
+    """
+    text = text.strip(" ")
     key = text[1:-1]
     if text[:1] != "{" or text[-1:] != "}" or not key or "{" in key or "}" in key:
         return None

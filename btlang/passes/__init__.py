@@ -24,15 +24,14 @@ def compile_mission(mission: Mission, vocabulary: Vocabulary, *, needs_command: 
     """The tree of a mission. Its subtrees come in an order in which used ones precede their users.
 
     A text that only defines names is refused; where it needs no command, its tree does nothing.
-    Raises MissionError with everything that the passes find (BT005, BT014, BT040 to BT042, BT140).
+    Raises MissionError with everything that the passes find (BT005, BT014, BT040 to BT042).
     """
     return checked(lower_mission(mission, vocabulary, needs_command=needs_command), vocabulary)
 
 
 def lower_mission(mission: Mission, vocabulary: Vocabulary, *, needs_command: bool = True) -> Tree:
     """As `compile_mission`, without the checks of the tree."""
-    exact = exact_nodes(mission)
-    ordered, problems = order_of_use(mission, exact)
+    ordered, problems = order_of_use(mission)
     if problems:
         raise MissionError(problems)
     scope = Scope((definition.name for definition in ordered), vocabulary.types)
@@ -46,7 +45,7 @@ def lower_mission(mission: Mission, vocabulary: Vocabulary, *, needs_command: bo
         example = "move forward 1 m" if last is None else f'do subtree "{last.name}"' if last.is_quoted else last.name
         raise MissionError([diagnostic("BT005", mission.span, example=example)])
     root = Node("AlwaysSuccess") if mission.body is None else lower(mission.body, scope).node
-    conditions = dict.fromkeys(node.id for node in exact if node.is_condition)
+    conditions = dict.fromkeys(node.id for node in exact_nodes(mission) if node.is_condition)
     return Tree(root, tuple(subtrees), mission.name, tuple(NodeModel("Condition", id) for id in conditions))
 
 

@@ -2,32 +2,24 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
-
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.tree.ast import Ast, Definition, Exact, Mission, Name, all_definitions, parts
 from btlang.tree.visit import in_order_of_use
 
 
-def order_of_use(mission: Mission, exact: Iterable[Exact]) -> tuple[list[Definition], list[Diagnostic]]:
-    """The definitions, used ones before their users; `exact` are the nodes that the mission says by their ids.
+def order_of_use(mission: Mission) -> tuple[list[Definition], list[Diagnostic]]:
+    """The definitions, used ones before their users.
 
-    A name that reaches itself is a problem (BT040), and so is a subtree that is not there (BT140).
+    A name that reaches itself is a problem (BT040).
     """
     definitions = {definition.name: definition for definition in all_definitions(mission)}
     uses = {name: names_in(definition.body) for name, definition in definitions.items()}
-    problems = [_missing(node) for node in exact if node.id == "SubTree" and _subtree(node) not in definitions]
     ordered, circles = in_order_of_use(uses)
-    problems += [_circle(circle, definitions) for circle in circles]
-    return [definitions[name] for name in ordered], problems
+    return [definitions[name] for name in ordered], [_circle(circle, definitions) for circle in circles]
 
 
 def _subtree(item: Exact) -> str:
     return dict(item.ports).get("ID", "")
-
-
-def _missing(item: Exact) -> Diagnostic:
-    return diagnostic("BT140", item.span, name=_subtree(item))
 
 
 def names_in(node: Ast) -> list[str]:

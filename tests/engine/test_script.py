@@ -45,7 +45,7 @@ def run(code: str, **values: object) -> object:
         ("1/0 - 1/0", math.nan),
         # texts
         ("'a' + 'b'", "ab"), ("'a' .. 'b' .. 'c'", "abc"), ("'a' .. 3", "a3"), ("0.5 .. 'a'", "0.5a"),
-        ("65..'a'", "65a"),
+        ("65..'a'", "65a"), ("1 + \\\n 2", 3), ("x := 1; \\\r\n\\\n x + 1", 2),
         ("1/3 .. ''", "0.333333"), ("-0.0 .. ''", "0"), ("1e15 .. ''", "1000000000000000"),
         ("1e300 .. ''", "1e+300"), ("1/0 .. ''", "inf"), ("'a' .. 'b' + 'c'", "abc"), ("2 * 3 .. ''", "6"),
         # bits
@@ -98,6 +98,7 @@ def test_values(code: str, value: object) -> None:
         ("a := 'don't'", "this quote is not closed", 11),
         ("x := 'abc", "this quote is not closed", 5),
         ('x := "abc"', "'\"' means nothing in a script", 5),
+        ("1 + \\ \n 2", "'\\\\' means nothing in a script", 4),
         ("2 % 3", "'%' means nothing in a script", 2),
         ("1 . 2", "'.' means nothing in a script", 2),
         ("höhe", "'ö' means nothing in a script", 1),

@@ -101,6 +101,15 @@ def test_autoremap_shares_all_but_private_keys_and_ports() -> None:
     assert {key: seen.get(key) for key in seen.keys()} == {"x": 2, "port": "up", "made": 4, "top": 5}  # noqa: SIM118
 
 
+def test_spaces_around_a_key_do_not_count() -> None:
+    body = n("Script", code="there := there + ' it is'")
+    use = n("Sequence", n("Script", code="here := 'well,'"), n("SubTree", ID="a", there=" {here}  "))
+    world = World()
+    engine = world.engine(Tree(use, (("a", body),)))
+    assert engine.tick() == SUCCESS
+    assert engine.blackboard.get("here") == "well, it is"
+
+
 def test_without_autoremap_nothing_is_shared() -> None:
     body = n("Script", code="x := 2")
     for ports in ({}, {"_autoremap": "false"}):

@@ -148,16 +148,9 @@ class _Reader:
         return tops[0]
 
     def _check_uses(self, trees: dict[str, Node], heads: dict[str, TreeHead]) -> None:
-        """Trees that are used must be there, and none may contain itself."""
-        uses: dict[str, list[str]] = {}
-        for name, nodes in (tree for each in self._files for tree in each.uses.items()):
-            uses[name] = []
-            for node in nodes:
-                used = node.port("ID")
-                if used in trees:
-                    uses[name].append(used)
-                elif used and node.span is not None:
-                    self._problems.append(no_tree(node.span, used, trees))
+        """None may contain itself. One that is not there may stand in another file, as Nav2's do."""
+        named = {name: nodes for each in self._files for name, nodes in each.uses.items()}
+        uses = {name: [used for node in nodes if (used := node.port("ID")) in trees] for name, nodes in named.items()}
         for circle in in_order_of_use(uses)[1]:
             told = " contains ".join(f"'{name}'" for name in (*circle, circle[0]))
             self._problems.append(diagnostic("BT124", heads[circle[0]].span, name=circle[0], circle=told))
