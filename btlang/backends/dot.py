@@ -27,7 +27,8 @@ def to_dot(tree: Tree, vocabulary: Vocabulary) -> str:
     """
     trees = ((tree.name, tree.root), *tree.subtrees)
     kinds = {model.id: model.kind.lower() for model in tree.models}
-    lines = ["digraph tree {", "  graph [ordering=out, compound=true];", "  node [fontname=Helvetica, fontsize=11];"]
+    font = "fontname=Helvetica, fontsize=11"
+    lines = ["digraph tree {", f"  graph [ordering=out, compound=true, {font}];", f"  node [{font}];"]
     roots: dict[str, int] = {}
     uses: list[tuple[int, str]] = []
     number = 0

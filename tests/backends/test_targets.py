@@ -9,6 +9,7 @@ import sys
 import warnings
 from importlib.util import find_spec
 from pathlib import Path
+from shutil import which
 
 import pydot
 import pytest
@@ -114,12 +115,24 @@ def graph_of(text: str) -> pydot.Dot:
     return graph
 
 
+ODD = Node('a"b\\n]', ports=(("p", '{x} "\\" <&> \n ü'),), name='"')
+
+
 def test_dot_escapes_everything() -> None:
-    odd = Node('a"b\\n]', ports=(("p", '{x} "\\" <&> \n ü'),), name='"')
-    text = compiled(Tree(odd, (('t"\\', odd),)), world_vocabulary(), "dot")
+    text = compiled(Tree(ODD, (('t"\\', ODD),)), world_vocabulary(), "dot")
     assert isinstance(text, str)
     graph = graph_of(text)
     assert boxes_of(graph) == ["n0"]
+
+
+@pytest.mark.skipif(which("dot") is None, reason="Graphviz is not installed")
+@pytest.mark.parametrize("tree", [ODD, *EXAMPLES], ids=lambda tree: getattr(tree, "stem", "odd"))
+def test_graphviz_draws_it_without_a_word(tree: Node | Path) -> None:
+    made = Tree(tree, (('t"\\', tree),)) if isinstance(tree, Node) else example(tree).tree
+    text = str(compiled(made, world_vocabulary(), "dot"))
+    drawn = subprocess.run(["dot", "-Tsvg"], input=text.encode(), capture_output=True, check=True, timeout=60)
+    assert drawn.stderr == b""
+    assert drawn.stdout.count(b'class="node"') == text.count("[label=")
 
 
 def test_the_module_does_what_run_does(tmp_path: Path) -> None:
