@@ -12,7 +12,7 @@ import pytest
 import btlang
 from btlang.engine.status import SUCCESS
 from btlang.ros.command import ros_stage
-from tests.ros.processes import Command, wait_until
+from tests.ros.processes import LONG, Command, wait_until
 
 
 @pytest.fixture(autouse=True)
@@ -30,10 +30,16 @@ def test_runs_leave_no_thread_behind(sim: Command) -> None:
 
 def test_an_emergency_stop_from_another_thread(sim: Command) -> None:
     tree = btlang.parse_tree("turn left 99999 degrees")
-    timer = threading.Timer(2.0, tree.emergency_stop)
-    timer.start()
-    outcome = tree.run(robot=partial(ros_stage, sim_time=True))
-    timer.join()
+    began = threading.Event()
+
+    def stop() -> None:
+        began.wait(LONG)
+        tree.emergency_stop()
+
+    stopping = threading.Thread(target=stop)
+    stopping.start()
+    outcome = tree.run(robot=partial(ros_stage, sim_time=True), sinks=[lambda event: began.set()])
+    stopping.join()
     assert outcome.stopped == "emergency stop"
     tree.emergency_stop()  # the robot is gone; nothing happens
 
