@@ -5,10 +5,11 @@ from __future__ import annotations
 from btlang.backends.btcpp.markup import INDENT, Markers, margin
 from btlang.backends.btcpp.models import Uses, model_part
 from btlang.backends.btcpp.names import tree_ids
+from btlang.frontends.btcpp.dialect import told_by_shapes
 from btlang.frontends.btcpp.file import SPOKEN_NAME
 from btlang.frontends.btcpp.models import why_no_port
 from btlang.frontends.btcpp.origin import Element, Markup, TreeOrigin, XmlOrigin
-from btlang.frontends.btcpp.spelling import MAIN_TREE, SPELL
+from btlang.frontends.btcpp.spelling import MAIN_TREE, SPELL, spelled_3
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.vocabulary import Vocabulary
 
@@ -83,7 +84,13 @@ class _Writer:
 
     def _root_attributes(self) -> Pairs:
         main = (("main_tree_to_execute", self._ids[self._tree.name]),)
-        return (("BTCPP_format", "4"), *main) if self._dialect == 4 else main
+        return (("BTCPP_format", "4"), *main) if self._dialect == 4 else self._format_3() + main
+
+    def _format_3(self) -> Pairs:
+        """Told only where the file would be taken for one of format 4."""
+        spelled = (spelled_3(node, self._kind, self._ids) for node in self._tree.walk())
+        shapes = {(tag, *(key for key, _ in pairs)) for tag, pairs in spelled}
+        return (("BTCPP_format", "3"),) if told_by_shapes(shapes) == 4 else ()
 
     def _items(self) -> tuple[Element | Markup | str, ...]:
         """The main tree, the others in their order, the models."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 from itertools import pairwise
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.frontends.btcpp.dialect import dialect_of
 from btlang.frontends.btcpp.fragments import Notes, as_items, fragment
 from btlang.frontends.btcpp.models import ModelReader, among
 from btlang.frontends.btcpp.nodes import NodeReader
@@ -41,10 +42,11 @@ class TreeHead(Record):
 class XmlFile:
     """What a document holds. `problems` is what is wrong with it; then the rest may lack parts.
 
-    Nodes are read by `read_trees`, when the trees of all included files are known.
+    Nodes are read by `read_trees`, when the trees of all included files are known. `within` is the dialect of the file
+    that includes it.
     """
 
-    def __init__(self, document: Document) -> None:
+    def __init__(self, document: Document, within: int = 3) -> None:
         self.document = document
         self.notes = Notes(document)
         self.problems: list[Diagnostic] = []
@@ -57,7 +59,7 @@ class XmlFile:
         """The SubTree nodes of each tree."""
         self._parts: list[int] = []
         self.attributes = document.attributes(0)
-        self.dialect = 3 if self.attributes.get("BTCPP_format", "3").strip().startswith("3") else 4
+        self.dialect = dialect_of(document, within)
         self._survey()
 
     @property

@@ -17,6 +17,7 @@ from btlang.frontends.btcpp.spelling import (
     TO_3,
     TO_4,
     TRUE,
+    without_dollar,
 )
 from btlang.text.source import Span
 from btlang.tree.node import Node
@@ -157,7 +158,7 @@ class NodeReader:
             elif key == AUTOREMAP_3:
                 ports.append((AUTOREMAP, text))
             else:
-                value = _pointer(text)
+                value = without_dollar(text)
                 bare = not is_plus and key != "ID" and key[:1] != "_" and value and value[:1] != "{"
                 ports.append((key, f"{{{value}}}" if bare else value))
         return tuple(ports)
@@ -171,15 +172,10 @@ _ID_ADVICE = {
 
 def _ports_3(node_id: str, attributes: dict[str, str], children: int) -> tuple[tuple[str, str], ...]:
     names = PORTS_TO_4.get(node_id, {})
-    ports = [(names.get(key, key), _pointer(text)) for key, text in attributes.items()]
+    ports = [(names.get(key, key), without_dollar(text)) for key, text in attributes.items()]
     enough = attributes.get("threshold", "")
     if node_id == "Parallel" and enough.isdecimal() and len(enough) < 10:
         # so many successes; the rest may fail, but no more
         counts = (("success_count", enough), ("failure_count", str(max(children - int(enough) + 1, 1))))
         ports = [port for port in ports if port[0] != "threshold"] + list(counts)
     return tuple(ports)
-
-
-def _pointer(text: str) -> str:
-    """`${key}` is the older form of `{key}`."""
-    return text[1:] if text[:2] == "${" and text[-1:] == "}" and len(text) > 3 else text

@@ -68,10 +68,10 @@ class _Reader:
         if self._problems:
             raise MissionError(self._problems)
 
-    def _add(self, source: Source, within: tuple[str, ...], include: Span | None = None) -> None:
-        """Reads a file and what it includes; `within` are the files around it, its own last."""
+    def _add(self, source: Source, within: tuple[str, ...], dialect: int = 3) -> None:
+        """Reads a file and what it includes; `within` are the files around it, its own last, `dialect` is theirs."""
         try:
-            file = XmlFile(scanned(source))
+            file = XmlFile(scanned(source), dialect)
         except MissionError as error:
             self._problems += error.diagnostics
             return
@@ -83,9 +83,9 @@ class _Reader:
             if "path" not in attributes:
                 self._problems.append(diagnostic("BT123", span, tag="include", attribute="path", advice=""))
                 continue
-            self._include(attributes, span, within)
+            self._include(attributes, span, within, file.dialect)
 
-    def _include(self, attributes: dict[str, str], span: Span, within: tuple[str, ...]) -> None:
+    def _include(self, attributes: dict[str, str], span: Span, within: tuple[str, ...], dialect: int) -> None:
         path = os.path.join(span.source.folder, attributes["path"])
         if "ros_pkg" in attributes:
             found = _in_package(attributes["ros_pkg"], attributes["path"])
@@ -107,7 +107,7 @@ class _Reader:
                     return
                 self._not_included(span, path=attributes["path"], reason=dict(problem.arguments)["reason"])
                 return
-            self._add(included, (*within, real))
+            self._add(included, (*within, real), dialect)
 
     def _not_included(self, span: Span, *, path: str, reason: str) -> None:
         self._problems.append(diagnostic("BT128", span, path=path, reason=reason))

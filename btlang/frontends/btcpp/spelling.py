@@ -57,6 +57,11 @@ def is_reference(text: str) -> bool:
     return len(text) > 2 and text[0] == "{" and text[-1] == "}" and "{" not in text[1:] and "}" not in text[:-1]
 
 
+def without_dollar(text: str) -> str:
+    """`${key}` is the form of `{key}` before format 4."""
+    return text[1:] if text[:2] == "${" and text[-1:] == "}" and len(text) > 3 else text
+
+
 def spelled_4(node: Node, kind: Callable[[str], str], written: Mapping[str, str]) -> Spelling:
     """In format 4. `kind` is that of a node by its id, `written` has the IDs of trees whose names cannot be IDs."""
     named = (("name", node.name),) if node.name else ()

@@ -1,0 +1,59 @@
+"""Which version of BehaviorTree.CPP a file is for, where it does not tell: what nodes and ports it has."""
+
+from __future__ import annotations
+
+from btlang.frontends.btcpp.scan import Document
+from btlang.frontends.btcpp.spelling import AUTOREMAP, AUTOREMAP_3, PORTS_TO_4, SHARED, TO_4, without_dollar
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+    Shape: TypeAlias = tuple[str, ...]
+    """A tag and the names of its attributes."""
+
+_NODES = {
+    3: TO_4.keys() | {"BlackboardCheckBool", "BlackboardCheckDouble", "BlackboardCheckInt", "BlackboardCheckString"},
+    4: frozenset((
+        "Script", "ScriptCondition", "SequenceWithMemory", "AsyncSequence", "AsyncFallback", "ParallelAll", "TryCatch",
+        "RunOnce", "Precondition", "LoopInt", "LoopBool", "LoopDouble", "LoopString", "SkipUnlessUpdated",
+        "WaitValueUpdate", "WasEntryUpdated", "UnsetBlackboard",
+    )),
+}  # fmt: skip
+"""Tags that only one version has. Kind tags tell nothing: `<Action ID="Script"/>` may be a node that somebody made."""
+_KEYS = {
+    3: frozenset((SHARED, AUTOREMAP_3)),
+    4: frozenset((
+        AUTOREMAP, "_skipIf", "_failureIf", "_successIf", "_while", "_onSuccess", "_onFailure", "_onHalted", "_post",
+    )),
+}  # fmt: skip
+_PORTS: dict[int, dict[str, frozenset[str]]] = {
+    3: {"Parallel": frozenset((*PORTS_TO_4["Parallel"], "threshold"))},
+    4: {
+        "Parallel": frozenset(PORTS_TO_4["Parallel"].values()),
+        "Sleep": frozenset(("msec",)),  # a Sleep that somebody made for version 3 need not have it
+    },
+}
+_NONE: frozenset[str] = frozenset()
+
+
+def dialect_of(document: Document, within: int = 3) -> int:
+    """3 or 4: what BTCPP_format tells, else what the nodes tell, else `within`, that of the file that includes it."""
+    told = document.attributes(0).get("BTCPP_format")
+    if told is not None:
+        return 3 if told.strip().startswith("3") else 4
+    elements = document.elements
+    if "${" in document.text and any(without_dollar(text) != text for _, flat, _, _ in elements for text in flat[1::2]):
+        return 3
+    return told_by_shapes({(tag, *flat[::2]) for tag, flat, _, _ in elements}) or within
+
+
+def told_by_shapes(shapes: set[Shape]) -> int:
+    """3 where something is only in version 3, else 4 where something is only in version 4, else 0."""
+    return next((version for version in (3, 4) if any(_is_only_in(version, *shape) for shape in shapes)), 0)
+
+
+def _is_only_in(version: int, tag: str, *keys: str) -> bool:
+    if tag in _NODES[version] or not _KEYS[version].isdisjoint(keys):
+        return True
+    return not _PORTS[version].get(tag, _NONE).isdisjoint(keys)
