@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from btlang.engine.compile import CONDITIONS, NODE_TYPES
 from btlang.frontends.btcpp.models import nav2_models
 from btlang.frontends.btcpp.origin import Element
-from btlang.frontends.btcpp.spelling import IN_3, KINDS, MODEL
+from btlang.frontends.btcpp.spelling import AUTOREMAP, IN_3, KINDS, MODEL, TRUE
 from btlang.tree.model import NodeModel, PortModel
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.entry import COMPARISONS, MEASURED, Entry
@@ -32,11 +32,14 @@ class Uses:
         self._own = IN_3 | {"SubTree"} if dialect == 3 else _BUILT_IN
         self._ports: dict[str, dict[str, None]] = {}  # those in use, by the id of a node
         self._most: dict[str, int] = {}  # children
+        self._given: dict[str, set[str]] = {}  # ports that all SubTree nodes of a tree have, by its name
         self.misnamed: list[Node] = []
         """Nodes with a port whose name XML has another use for."""
         for node in tree.walk():
             if node.id not in self._own:
                 self._add(node)
+            elif node.id == "SubTree" and dialect == 4:
+                self._add_use(node)
             for key, _ in node.ports:
                 if key == "name":
                     self.misnamed.append(node)
@@ -57,6 +60,11 @@ class Uses:
             if key[:1] != "_" and key != "ID":
                 ports[key] = None
         self._most[node.id] = max(self._most.get(node.id, 0), len(node.children))
+
+    def _add_use(self, node: Node) -> None:
+        if node.port(AUTOREMAP) not in TRUE:
+            name, ports = node.port("ID"), {key for key, _ in node.ports}
+            self._given[name] = self._given.get(name, ports) & ports
 
     def kind(self, node_id: str) -> str:
         """Action, Condition, Control or Decorator: as told, else as it is used."""
@@ -82,8 +90,13 @@ class Uses:
     def models(self) -> list[NodeModel]:
         """One for each, in an order that does not change with the tree: by kind, then by id."""
         found = [self._model(node_id) for node_id in self._ports]
-        subtrees = [m for m in self._known.values() if m.kind == "SubTree" and m.id in self._trees]
+        subtrees = [self._subtree(m) for m in self._known.values() if m.kind == "SubTree" and m.id in self._trees]
         return sorted(found, key=lambda m: (KINDS.index(m.kind), m.id)) + sorted(subtrees, key=lambda m: m.id)
+
+    def _subtree(self, model: NodeModel) -> NodeModel:
+        """Without ports that a node leaves out: BehaviorTree.CPP would set their defaults, or refuse the node."""
+        given = self._given.get(model.id)
+        return model if given is None else model.replace(ports=tuple(p for p in model.ports if p.name in given))
 
     def _model(self, node_id: str) -> NodeModel:
         model = self._known.get(node_id)

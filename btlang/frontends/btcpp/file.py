@@ -20,6 +20,7 @@ from btlang.tree.node import Node
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.frontends.btcpp.fragments import Items
+    from btlang.frontends.btcpp.spelling import Pairs
 
 _PARTS = ("BehaviorTree", MODEL, "include")
 SPOKEN_NAME = "_name"
@@ -123,13 +124,14 @@ class XmlFile:
         start = document.source.text.find(line, last.end)
         return last if start < 0 else Span(document.source, start, start + len(line))
 
-    def read_trees(self, names: dict[str, str], kinds: dict[str, str]) -> None:
+    def read_trees(self, names: dict[str, str], kinds: dict[str, str], defaults: dict[str, Pairs]) -> None:
         """Reads the nodes.
 
-        `names` are the trees of all files by the ID that they have there; `kinds` gets those that tags tell.
+        `names` are the trees of all files by the ID that they have there, `defaults` those of their ports; `kinds` gets
+        those that tags tell.
         """
         document = self.document
-        reader = NodeReader(document, self.dialect, names, kinds)
+        reader = NodeReader(document, self.dialect, names, kinds, defaults)
         for head in self.heads:
             first, end = head.index + 1, head.end
             root, tags = reader.read(first, end)

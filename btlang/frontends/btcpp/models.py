@@ -13,6 +13,10 @@ from btlang.frontends.btcpp.spelling import KINDS, is_xml_name
 from btlang.text.spelling import nearest
 from btlang.tree.model import NodeModel, PortModel
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.frontends.btcpp.spelling import Pairs
+
 _DIRECTIONS = {
     "input_port": "input",
     "output_port": "output",
@@ -97,6 +101,15 @@ def why_no_port(name: str) -> str:
     if name in ("ID", "name"):
         return "this attribute tells of the node itself"
     return "" if is_xml_name(name) else "an attribute cannot have this name"
+
+
+def subtree_defaults(models: Iterable[NodeModel]) -> dict[str, Pairs]:
+    """By the ID of a tree, its ports that have a default, with it.
+
+    As in BehaviorTree.CPP an empty text is none; a name such as `_autoremap` tells of the node, and is no port.
+    """
+    return {model.id: tuple((port.name, port.default) for port in model.ports if port.default and port.name[:1] != "_")
+            for model in models if model.kind == "SubTree"}  # fmt: skip
 
 
 def nav2_models(ids: Iterable[str]) -> dict[str, NodeModel]:

@@ -24,7 +24,7 @@ from btlang.tree.node import Node
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.frontends.btcpp.spelling import Spelling
+    from btlang.frontends.btcpp.spelling import Pairs, Spelling
 
 _ODD = frozenset((*KINDS, *TO_4, "SubTree"))
 """Tags that are not the id of their node, or need a second look."""
@@ -38,10 +38,17 @@ class NodeReader:
     """Makes the nodes of one file. `problems` is what is wrong with them.
 
     `names` are the trees by the ID that they have in the file. `kinds` are the kinds of nodes by id; those that tags
-    tell are added to it.
+    tell are added to it. `defaults` are ports that a SubTree of format 4 has where they are not written, by that ID.
     """
 
-    def __init__(self, document: Document, dialect: int, names: Mapping[str, str], kinds: dict[str, str]) -> None:
+    def __init__(
+        self,
+        document: Document,
+        dialect: int,
+        names: Mapping[str, str],
+        kinds: dict[str, str],
+        defaults: Mapping[str, Pairs],
+    ) -> None:
         self.problems: list[Diagnostic] = []
         self.uses: list[Node] = []
         """The SubTree nodes that were read, from the last to the first."""
@@ -50,6 +57,7 @@ class NodeReader:
         self._names = names
         self._written = {name: written for written, name in names.items()}
         self._kinds = kinds
+        self._defaults = defaults
         self._usual = self._usual_tags()
 
     def read(self, first: int, end: int) -> tuple[Node, dict[int, Spelling]]:
@@ -146,8 +154,11 @@ class NodeReader:
         return self._kinds.get(node_id, "")
 
     def _subtree(self, attributes: dict[str, str], is_plus: bool) -> tuple[tuple[str, str], ...]:
-        if "ID" in attributes:
-            name = attributes.pop("ID")
+        name = attributes.pop("ID", None)
+        if self._dialect == 4 and attributes.get(AUTOREMAP) not in TRUE:  # else ports have the values around
+            for key, text in self._defaults.get(name or "", ()):
+                attributes.setdefault(key, text)
+        if name is not None:
             attributes = {"ID": self._names.get(name, name), **attributes}
         if self._dialect == 4:
             return tuple(attributes.items())

@@ -8,7 +8,7 @@ from collections.abc import Sequence
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.diagnostics.reading import read_source
 from btlang.frontends.btcpp.file import TreeHead, XmlFile
-from btlang.frontends.btcpp.models import MODEL_KINDS, nav2_models
+from btlang.frontends.btcpp.models import MODEL_KINDS, nav2_models, subtree_defaults
 from btlang.frontends.btcpp.origin import XmlOrigin
 from btlang.frontends.btcpp.scan import scanned
 from btlang.frontends.btcpp.spelling import MAIN_TREE, MODEL, TO_4
@@ -48,11 +48,13 @@ class _Reader:
         file = self._files[0]
         heads = self._distinct()
         names = {head.written or head.name: name for name, head in heads.items()}
-        models = {node_id: model for each in self._files for node_id, model in each.models.items()}
+        # what a file tells counts for more than what those tell that it includes
+        models = {node_id: model for each in self._files[::-1] for node_id, model in each.models.items()}
         kinds = {node_id: model.kind for node_id, model in models.items() if model.kind != "SubTree"}
+        defaults = subtree_defaults(models.values())
         self._stop_where_wrong()
         for each in self._files:
-            each.read_trees(names, kinds)
+            each.read_trees(names, kinds, defaults)
             self._problems += each.problems
         trees = dict(tree for each in self._files for tree in each.trees)
         self._check_uses(trees, heads)
