@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 
 from btlang.tree.node import Node
@@ -14,6 +15,7 @@ SUCCESS, FAILURE, SKIPPED, NEVER = 1, 2, 4, 8
 Ends: TypeAlias = int
 """A sum of these four; NEVER: it may run for ever."""
 
+_NUMBER = re.compile(r"[0-9]{1,9}")
 ANY: Ends = SUCCESS | FAILURE | SKIPPED
 EITHER: Ends = SUCCESS | FAILURE
 
@@ -24,10 +26,12 @@ def ends_of(node: Node, children: Sequence[Ends], named: dict[str, Ends]) -> End
         return SKIPPED
     if node.id == "SubTree":
         return named.get(node.port("ID"), ANY)
+    if node.id in _LEAVES:
+        return _LEAVES[node.id]
     known = _KINDS.get(node.id)
-    if known is not None:
-        return known(node, children)
-    return ANY if children else EITHER
+    if known is None or len(children) < _LEAST.get(node.id, 1):
+        return ANY if children else EITHER  # with too few children no mission runs, which is told elsewhere
+    return known(node, children)
 
 
 def going_on(node: Node) -> Ends:
@@ -54,7 +58,7 @@ def _in_turn(on: int) -> Callable[[Node, Sequence[Ends]], Ends]:
 def _at_once(node: Node, children: Sequence[Ends]) -> Ends:
     """Parallel: it succeeds with `success_count` of its children, fails with `failure_count` of them."""
     wanted = node.port("success_count")
-    least = int(wanted) if wanted.isdigit() else len(children)
+    least = int(wanted) if _NUMBER.fullmatch(wanted) else len(children)
     found = 0
     if sum(bool(child & (SUCCESS | SKIPPED)) for child in children) >= least:
         found |= SUCCESS
@@ -98,10 +102,7 @@ def _ruled(_node: Node, children: Sequence[Ends]) -> Ends:
     return children[2] | (children[1] & FAILURE)
 
 
-def _always(ends: Ends) -> Callable[[Node, Sequence[Ends]], Ends]:
-    return lambda _node, _children: ends
-
-
+_LEAVES: dict[str, Ends] = {"Sleep": SUCCESS, "AlwaysSuccess": SUCCESS, "AlwaysFailure": FAILURE}
 _KINDS: dict[str, Callable[[Node, Sequence[Ends]], Ends]] = {
     "Sequence": _in_turn(SUCCESS),
     "ReactiveSequence": _in_turn(SUCCESS),
@@ -117,7 +118,6 @@ _KINDS: dict[str, Callable[[Node, Sequence[Ends]], Ends]] = {
     "RetryUntilSuccessful": _rounds(FAILURE, "num_attempts"),
     "Timeout": _same(FAILURE, but=NEVER),
     "Delay": _same(),
-    "Sleep": _always(SUCCESS),
-    "AlwaysSuccess": _always(SUCCESS),
-    "AlwaysFailure": _always(FAILURE),
 }
+_LEAST = {"IfThenElse": 2, "WhileDoElse": 2, "Whenever": 3}
+"""How many children those look at that need more than one."""
