@@ -30,9 +30,11 @@ def test_any_tree_is_said_and_read_back(tree: Tree) -> None:
     note(plain(tree))
     text = to_english(tree, vocabulary)
     for parser in PARSERS:
-        again = lower_mission(read_mission(Source(text), vocabulary, parser).mission, vocabulary)
+        mission = read_mission(Source(text), vocabulary, parser).mission
+        again = lower_mission(mission, vocabulary)
         assert plain(again) == plain(tree)
-        assert to_english(again.replace(models=tree.models), vocabulary) == text
+        for models in (tree.models, (*tree.models, *again.models)):
+            assert to_english(again.replace(models=models), vocabulary) == text
 
 
 @pytest.mark.parametrize("path", CORPUS, ids=lambda path: path.stem)
@@ -47,6 +49,37 @@ def test_trees_of_the_corpus(path: Path) -> None:
 def test_comments_stand_before_what_they_are_about() -> None:
     folder = Path(__file__).parent
     matches_golden(str(parse_tree(read_source(str(folder / "comments.xml"))).to("english")), folder / "comments.txt")
+
+
+KINDS = """
+<root BTCPP_format="4">
+  <BehaviorTree ID="MainTree">
+    <Sequence>
+      <Condition ID="OnAir"/>
+      <Fallback> <OnAir name="still"/> <Wave/> </Fallback>
+      <OpenGripper/>
+      <IfThenElse> <IsOk/> <IsOk/> <Wave/> </IfThenElse>
+    </Sequence>
+  </BehaviorTree>
+</root>
+"""
+
+
+@pytest.mark.parametrize("parser", PARSERS)
+def test_a_condition_without_words_stays_one(parser: str) -> None:
+    """Told by a tag, or by where else it stands: `IsOk` is asked by the node around it."""
+    text = str(parse_tree(KINDS).to("english"))
+    assert text.splitlines() == [
+        'check test "OnAir"',
+        'check test "OnAir" called "still" or wave',
+        'do "OpenGripper"',
+        'if test "IsOk", check test "IsOk" otherwise wave',
+    ]
+    again = parse_tree(text, parser=parser)
+    assert again.to("english") == text
+    assert '<Condition ID="OnAir"/>' in str(again.to("xml", dialect=3))
+    assert '<Condition ID="IsOk"/>' in str(again.to("xml"))
+    assert '<Action ID="OpenGripper"/>' in str(again.to("xml"))
 
 
 def test_a_tree_without_a_text() -> None:

@@ -96,8 +96,8 @@ class Raiser:
         made = computed(node) if self._natural and not node.name else None
         if made is not None:
             ways.insert(0, (made, parts[-1].children))
-        exact = self._exact(node, parts)
         condition = self._condition(node, ways)
+        exact = self._exact(node, parts, condition)
         is_condition = condition is not None and self._is_condition(made.node if made is not None else node, parts)
         natural, inner = self._natural_form(node, ways, condition if is_condition else None)
         is_condition = is_condition and not isinstance(natural, ast.Remember)
@@ -120,9 +120,13 @@ class Raiser:
         if not isinstance(said, ast.Check):
             self.speaker.note(_first_line(said), lines)
 
-    def _exact(self, node: Node, children: tuple[Raised, ...]) -> ast.Ast:
-        items = tuple(child.command for child in children)
-        made = ast.Exact(node.id, node.ports, node.name, items, False, NOWHERE)
+    def _exact(self, node: Node, children: tuple[Raised, ...], condition: ast.Ast | None) -> ast.Ast:
+        """A condition is said as one, as only its words tell of what kind it is where no keyword entry does."""
+        if isinstance(condition, ast.Exact) and self._kind(node.id) == "Condition":
+            made: ast.Ast = ast.Check(condition, NOWHERE)
+        else:
+            items = tuple(child.command for child in children)
+            made = ast.Exact(node.id, node.ports, node.name, items, False, NOWHERE)
         assert self._checked.says(made, node)
         return made
 
@@ -203,8 +207,7 @@ class Raiser:
 
     def _exact_condition(self, node: Node) -> ast.Ast | None:
         """None for what is no condition: an action would be asked, and a subtree done."""
-        entry = self._vocabulary.entry(node.id)
-        known = self._node_kinds.get(node.id) or (entry.sort.title() if entry is not None else "")
+        known = self._kind(node.id)
         if known not in ("", "Condition") or node.id == "SubTree" or node.id in FORMS:
             return None
         if not known and node.id in self._vocabulary.nodes and node.id not in CONDITIONS:
@@ -218,9 +221,14 @@ class Raiser:
             return all(child.is_condition for child in children)
         if node.id == "SubTree":
             return True
-        entry = self._vocabulary.entry(node.id)
-        is_known = self._node_kinds.get(node.id) == "Condition" or (entry is not None and entry.sort == "condition")
-        return is_known or node.id in CONDITIONS
+        return self._kind(node.id) == "Condition" or node.id in CONDITIONS
+
+    def _kind(self, node_id: str) -> str:
+        """What the tree or a keyword entry tells of a kind of node, "" for one of the language itself."""
+        if node_id in self._vocabulary.nodes:
+            return ""
+        entry = self._vocabulary.entry(node_id)
+        return self._node_kinds.get(node_id) or (entry.sort.title() if entry is not None else "")
 
     def _name(self, node: Node) -> Iterator[ast.Ast]:
         """A defined name; what else its ports hold are values that it needs."""

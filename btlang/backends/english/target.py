@@ -15,8 +15,9 @@ from btlang.frontends.mission import read_mission
 from btlang.passes import lower_mission
 from btlang.passes.order import used_first
 from btlang.text.source import NOWHERE, Source
-from btlang.tree.ast import Fact, Mission
+from btlang.tree.ast import Fact, Mission, exact_nodes
 from btlang.tree.dump import plain
+from btlang.tree.model import NodeModel
 from btlang.tree.node import Tree
 from btlang.vocabulary.vocabulary import Vocabulary
 
@@ -50,9 +51,20 @@ def to_english(tree: Tree, vocabulary: Vocabulary, *, facts: Sequence[Fact] = ()
             reason = error.diagnostics[0].message.rstrip(".")
             continue
         if plain(again) == wanted:
+            both = _said_both_ways(mission, words)
+            if both:
+                tested = tuple(NodeModel("Condition", node_id) for node_id in both)
+                return to_english(tree.replace(models=(*tree.models, *tested)), vocabulary, facts=facts)
             return text
         refused = Refused(frozenset(_differing(tree, again)))
     raise _unsayable(tree, reason)
+
+
+def _said_both_ways(mission: Mission, vocabulary: Vocabulary) -> list[str]:
+    """Kinds of leaves that are conditions in one place and done in another: read again, they are conditions in all."""
+    leaves = [node for node in exact_nodes(mission) if not node.items and node.id not in vocabulary.nodes]
+    done = {node.id for node in leaves if not node.is_condition}
+    return sorted({node.id for node in leaves if node.is_condition} & done)
 
 
 def _unsayable(tree: Tree, reason: str) -> MissionError:
