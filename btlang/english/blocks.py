@@ -14,7 +14,7 @@ from btlang.english.exact import exact_block
 from btlang.english.naming import definition_head, each_head
 from btlang.english.pieces import COLON, Pieces, is_longer, mark
 from btlang.english.sentence import is_flat_fallback, statements
-from btlang.english.speaker import THEN, Speaker
+from btlang.english.speaker import THEN, Said, Speaker
 from btlang.tree import ast
 
 TYPE_CHECKING = False
@@ -32,7 +32,10 @@ Section = tuple["Pieces", "ast.Ast | Iterable[tuple[ast.Ast, str]]"]
 def lines_of(
     node: ast.Ast, speaker: Speaker, width: float = math.inf, joined: str = "", least: int = LEAST
 ) -> list[str]:
-    """The lines of a statement, at most `width` long where blocks can do that. See Speaker.statement."""
+    """The lines of a statement, at most `width` long where blocks can do that. See Speaker.statement.
+
+    With brackets "clear" those that people could misread are blocks, too.
+    """
     found: list[str] = []
     stack: list[tuple[int, ast.Ast | str, str]] = [(0, node, joined)]
     while stack:
@@ -43,7 +46,9 @@ def lines_of(
         said, room = speaker.say(item), width - len(INDENT) * depth
         line = "" if is_longer(said.pieces, room) else speaker.line(item, said, among)
         too_long = not line or len(line) > room
-        sections = _sections(item, among) if said.in_lines or (too_long and room >= least) else _none
+        unclear = speaker.is_clear and said.is_mixed
+        needs_block = said.in_lines or ((too_long or unclear) and room >= least)
+        sections = _sections(item, said, among, unclear) if needs_block else _none
         below: list[tuple[int, ast.Ast | str, str]] = []
         for head, body in sections(item, speaker):
             if isinstance(body, ast.Ast):
@@ -56,15 +61,29 @@ def lines_of(
     return found
 
 
-def _sections(node: ast.Ast, among: str) -> Callable[[Any, Speaker], Iterator[Section]]:
+def _sections(node: ast.Ast, said: Said, among: str, unclear: bool) -> Callable[[Any, Speaker], Iterator[Section]]:
     """How a statement is a block, which is one of a chain or of `children`."""
-    if among == "children" and isinstance(node, ast.Chain) and node.operator == "sequence":
-        return _sequence_node
+    if isinstance(node, ast.Chain):
+        if node.operator == "sequence" and (among == "children" or (unclear and not said.can_skip)):
+            return _sequence_node
+        if node.operator == "fallback" and unclear and _is_try(node):
+            return _try_otherwise
     return _SECTIONS.get(type(node), _none)
 
 
+def _is_try(node: ast.Chain) -> bool:
+    """Whether two parts are better `try:` and `otherwise:`: one is a sequence, which is then lines."""
+    operators = [item.operator for item in node.items if isinstance(item, ast.Chain)]
+    return len(node.items) == 2 and "sequence" in operators and "fallback" not in operators
+
+
+def _try_otherwise(node: ast.Chain, speaker: Speaker) -> Iterator[Section]:
+    yield (speaker.word("try"),), statements(node.items[0])
+    yield (speaker.word("otherwise"),), statements(node.items[1])
+
+
 def _sequence_node(node: ast.Chain, speaker: Speaker) -> Iterator[Section]:
-    """A child of a node that is said by its id may be said so itself: what holds it adds nothing to it."""
+    """It may be said by its id where what holds it adds nothing to it: below a node that is, or if it never skips."""
     yield from exact_block(ast.Exact("Sequence", (), "", node.items, False, node.span), speaker)
 
 

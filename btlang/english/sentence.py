@@ -31,7 +31,8 @@ def english(node: ast.Ast, vocabulary: Vocabulary, *, brackets: str = "needed", 
     """Canonical English of any AST; a Mission is its facts, its definitions and then its commands.
 
     Each is on a line, or in a block where a line cannot say it.
-    `brackets` is "needed" or "all" (see Speaker); `names` are those that are defined where a part of a mission stands.
+    `brackets` is "needed", "clear" or "all" (see Speaker); `names` are those that are defined where a part of a
+    mission stands.
     """
     from btlang.english.blocks import lines_of
 
@@ -85,6 +86,8 @@ def _chain(node: ast.Chain, parts: list[Said], speaker: Speaker) -> Said:
     word = speaker.word(role)
     inner = [speaker.inside(p, p.level <= level or p.reaches or speaker.reads_on(p, word)) for p in parts[:-1]]
     inner.append(speaker.inside(parts[-1], parts[-1].level <= level))
+    if speaker.is_clear:
+        inner = [speaker.inside(p, p.level < FORM or p.reaches or (p.behind and i > 0)) for i, p in enumerate(inner)]
     return Said(tuple(_joined(inner, word)), level, *_flags(inner))
 
 

@@ -22,8 +22,10 @@ class Said(Record):
     """What is said of a node, and what may not stand around it without brackets.
 
     `reaches`: what follows it would become part of it. `takes_otherwise`: an `otherwise` right behind it would.
-    `counts`: a count in it would close a `try` or `retry` before it. `in_lines`: it holds a standing rule, which no
-    bracket can, so that it is said in lines and blocks only (see blocks.py).
+    `counts`: a count in it would close a `try` or `retry` before it. `behind`: it is a form behind its body.
+    `in_lines`: it holds a standing rule, which no bracket can, so that it is said in lines and blocks only (see
+    blocks.py). `joins` and `chooses`: it holds `then` or `and`, `or` or `otherwise` between commands.
+    `can_skip`: it may end SKIPPED.
     """
 
     pieces: Pieces
@@ -31,7 +33,16 @@ class Said(Record):
     reaches: bool = False
     takes_otherwise: bool = False
     counts: bool = False
+    behind: bool = False
     in_lines: bool = False
+    joins: bool = False
+    chooses: bool = False
+    can_skip: bool = False
+
+    @property
+    def is_mixed(self) -> bool:
+        """Whether people read it in one line in more ways than one, whatever the brackets."""
+        return self.joins and self.chooses
 
 
 class Speaker:
@@ -39,16 +50,18 @@ class Speaker:
 
     With `brackets` "all" each chain and form inside another one is bracketed, with "needed" only those whose reading
     needs it (see the table in docs/language/joining.md): what binds less tightly than what is around it,
-    a chain in an equal chain, and a form that reaches to the right where something follows it.
+    a chain in an equal chain, and a form that reaches to the right where something follows it. With "clear" there
+    are also those without which people could read it in another way, and blocks where even these are too hard to read.
     """
 
     def __init__(
         self, vocabulary: Vocabulary, names: Iterable[str | ast.Definition] = (), brackets: str = "needed"
     ) -> None:
-        if brackets not in ("needed", "all"):
-            raise ValueError(f'brackets are "needed" or "all": {brackets!r}')
+        if brackets not in ("needed", "clear", "all"):
+            raise ValueError(f'brackets are "needed", "clear" or "all": {brackets!r}')
         self.vocabulary = vocabulary.with_references()
         self.all_brackets = brackets == "all"
+        self.is_clear = brackets == "clear"
         self.names: TrieNode = {}
         self._said: dict[int, tuple[ast.Ast, Said]] = {}  # with its node, whose id is then that of no other
         self._forms: dict[str, Form] = {}
@@ -75,6 +88,8 @@ class Speaker:
             said: Said = SAYS[type(item)](item, parts, self)
             if any(part.in_lines for part in parts) or any(isinstance(part, ast.Whenever) for part in ast.parts(item)):
                 said = said.replace(in_lines=True)
+            if parts or isinstance(item, ast.Name):
+                said = _with_flags(item, said, parts)
             self._said[id(item)] = item, said
             return said
 
@@ -190,17 +205,28 @@ class Speaker:
     def behind(self, body: Said, word: Piece, *rest: Pieces, counts: bool = False) -> Said:
         """A form that stands behind its body."""
         body = self.inside(body, body.level < FORM or body.reaches or self.reads_on(body, word))
-        return Said((body.pieces, word, *rest), FORM, counts=counts or body.counts)
+        return Said((body.pieces, word, *rest), FORM, counts=counts or body.counts, behind=True)
 
     def before(self, head: Pieces, body: Said, otherwise: Said | None = None) -> Said:
         """A form that stands before its body, and reaches to the right; its `otherwise` is as it is to be said."""
         if otherwise is None:
-            body = self.inside(body, False)
+            body = self.inside(body, self.is_clear and body.reaches)
             return Said((*head, body.pieces), FORM, True, body.takes_otherwise, body.counts)
         word = self.word("otherwise")
         body = self.inside(body, body.reaches or body.takes_otherwise or self.reads_on(body, word))
         pieces = (*head, body.pieces, word, otherwise.pieces)
         return Said(pieces, FORM, True, otherwise.takes_otherwise, body.counts or otherwise.counts)
+
+
+def _with_flags(node: ast.Ast, said: Said, parts: list[Said]) -> Said:
+    """What it holds, with what its parts hold."""
+    operator = node.operator if isinstance(node, ast.Chain) else ""
+    joins = operator in ("sequence", "parallel") or any(part.joins for part in parts)
+    branches = getattr(node, "otherwise", None) is not None
+    chooses = operator == "fallback" or branches or any(part.chooses for part in parts)
+    can_skip = isinstance(node, ast.If | ast.Name) or any(part.can_skip for part in parts)
+    flagged: Said = said.replace(joins=joins, chooses=chooses, can_skip=can_skip)
+    return flagged
 
 
 def bracketed(said: Said) -> Said:

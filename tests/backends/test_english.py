@@ -13,6 +13,8 @@ from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.reading import read_source
 from btlang.frontends.mission import read_mission
 from btlang.passes import lower_mission
+from btlang.passes.lint.subject import Subject
+from btlang.passes.lint.two_readings import two_readings
 from btlang.text.source import Source
 from btlang.tree.dump import plain
 from btlang.tree.node import Node, Tree
@@ -35,6 +37,7 @@ def test_any_tree_is_said_and_read_back(tree: Tree) -> None:
         assert plain(again) == plain(tree)
         for models in (tree.models, (*tree.models, *again.models)):
             assert to_english(again.replace(models=models), vocabulary) == text
+        assert not list(two_readings(Subject(mission, again, vocabulary)))
 
 
 @pytest.mark.parametrize("path", CORPUS, ids=lambda path: path.stem)

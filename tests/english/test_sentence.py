@@ -29,7 +29,7 @@ from tests.language import sentences
 from tests.language.letters import letters, read
 
 PARSERS = ("shunting-yard", "lark")
-BRACKETS = ("needed", "all")
+BRACKETS = ("needed", "clear", "all")
 ROOT = Path(__file__).parent.parent.parent
 MISSIONS = sorted([*(ROOT / "examples").glob("*.txt"), *(ROOT / "tests" / "samples" / "good").glob("*.txt")])
 

@@ -84,9 +84,9 @@ def with_brackets(text: str) -> Iterator[str]:
 
 
 @settings(max_examples=150, deadline=None)
-@given(trees())
-def test_what_is_said_with_all_brackets_has_one_reading(mission: object) -> None:
-    assert read(english(mission, letters(), brackets="all")).warnings == []  # type: ignore[arg-type]
+@given(trees(), st.sampled_from(["clear", "all"]))
+def test_what_is_said_with_more_brackets_has_one_reading(mission: object, brackets: str) -> None:
+    assert read(english(mission, letters(), brackets=brackets)).warnings == []  # type: ignore[arg-type]
 
 
 @settings(max_examples=400, deadline=None)

@@ -47,7 +47,7 @@ class Raiser:
         self.refused: set[str] = set()
         heads = [ast.Definition(name, known.parameters(name), ast.Nothing(NOWHERE), NOWHERE, NOWHERE)
                  for name in sorted(known.names)]  # fmt: skip
-        self.speaker = Speaker(vocabulary, heads)
+        self.speaker = Speaker(vocabulary, heads, "clear")
         self._node_kinds = {model.id: model.kind for model in tree.models}
         self._comments = comments
         self._conditions: set[str] = set()  # the names that stand for conditions
