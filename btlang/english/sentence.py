@@ -111,8 +111,10 @@ def _branching(positive: str, negative: str) -> Callable[[Any, list[Said], Speak
     def said(node: Any, parts: list[Said], speaker: Speaker) -> Said:
         condition = speaker.condition(parts[0])
         head = (speaker.word(negative if node.negated else positive), condition.pieces, mark(COMMA))
-        otherwise = speaker.inside(parts[2], False) if node.otherwise is not None else None
-        return speaker.before(head, parts[1], otherwise)
+        if node.otherwise is not None:
+            return speaker.before(head, parts[1], speaker.inside(parts[2], False))
+        whose = speaker.is_clear and parts[1].reaches and parts[1].chooses  # an `otherwise` could be of both
+        return speaker.before(head, speaker.inside(parts[1], whose))
 
     return said
 

@@ -210,7 +210,7 @@ class Speaker:
     def before(self, head: Pieces, body: Said, otherwise: Said | None = None) -> Said:
         """A form that stands before its body, and reaches to the right; its `otherwise` is as it is to be said."""
         if otherwise is None:
-            body = self.inside(body, self.is_clear and body.reaches)
+            body = self.inside(body, False)
             return Said((*head, body.pieces), FORM, True, body.takes_otherwise, body.counts)
         word = self.word("otherwise")
         body = self.inside(body, body.reaches or body.takes_otherwise or self.reads_on(body, word))
