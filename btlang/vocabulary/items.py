@@ -34,7 +34,15 @@ class Item(Record):
 
     def words(self) -> frozenset[str]:
         """All words of its patterns and names, in lower case, choices apart."""
-        return frozenset(re.findall(r"[^\W_]+(?:'\w+)?", " ".join((*self.ways, *self.names)).lower()))
+        return _words(*self.ways, *self.names)
+
+    def all_words(self) -> frozenset[str]:
+        """With those that explain it."""
+        return _words(*self.ways, *self.names, self.topic, self.help, *self.details)
+
+
+def _words(*texts: str) -> frozenset[str]:
+    return frozenset(re.findall(r"[^\W_]+(?:'\w+)?", " ".join(texts).lower()))
 
 
 def items(vocabulary: Vocabulary) -> list[Item]:
@@ -90,6 +98,8 @@ def _word(role: str, vocabulary: Vocabulary) -> Item | None:
         return None
     slots = dict.fromkeys(part.name for text in ways for form in forms(text) for part in form if isinstance(part, Slot))
     details = tuple(f"{{{name}}}: {_described(vocabulary.types[name], vocabulary)}" for name in slots)
+    if role == "do":
+        details += (f"nodes without quotes: {', '.join(vocabulary.nodes.values())}",)
     return Item(about.topic or "other words", "word", ways, about.help, about.example, (role,), details)
 
 

@@ -65,7 +65,7 @@ def _found(known: Sequence[Item], search: str) -> list[Item]:
     return (
         called
         or [item for item in known if _has(item.words(), wanted)]
-        or [item for item in known if _has({*item.words(), *item.help.lower().split(), item.topic}, wanted)]
+        or [item for item in known if _has(item.all_words(), wanted)]
     )
 
 

@@ -117,6 +117,7 @@ def heads(lines: list[str]) -> list[str]:
         ("retry", ["retry"]),
         ("kitchen", ["{place}     dock, door, hall, kitchen, lab, living room, lobby, office"]),
         ("spot towards person", ["face {person}"]),
+        ("round robin", ["do"]),
     ],
 )
 def test_search(search: str, found: list[str]) -> None:
