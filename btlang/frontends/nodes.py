@@ -5,6 +5,7 @@ What is in quotes is kept as it stands; several quoted texts, `newline` and `cha
 
 from __future__ import annotations
 
+import re
 from collections.abc import Iterator, Sequence
 from itertools import takewhile
 
@@ -18,6 +19,7 @@ from btlang.vocabulary.vocabulary import Vocabulary
 
 SUBTREE = "SubTree"
 _MOST_WORDS = 12  # of the name of a port
+_IDENTIFIER = re.compile(r"(?=\w*_|\w+[A-Z])[A-Za-z_]\w*", re.ASCII)  # `maxSpeed`, `_skipIf`: no word of English
 _BEHIND_ID = (END_OF_TEXT, END_OF_STATEMENT, ":", ",", "(", ")")
 
 
@@ -131,6 +133,9 @@ class _Reader:
         words = self._text.words
         if words[at][0] == '"' and len(words[at]) > 1:
             return words[at][1:], at + 1
+        written = self._written(at, at + 1)
+        if _IDENTIFIER.fullmatch(written):
+            return written, at + 1
         last = at
         while last < at + _MOST_WORDS and words[last][0].isalpha() and (last == at or not self._is_text(last)):
             last += 1
