@@ -20,6 +20,7 @@ from btlang.ros.node import SpunNode
 from btlang.ros.pace import RosPace
 from btlang.ros.robot import RosRobot
 from btlang.ros.serving.names import served
+from btlang.ros.waiting import wait_until
 from btlang.ros.wire import CLOCK, VELOCITY, Interface, needs
 from btlang.run.controls import Controls
 from btlang.run.events import EventStream, RobotEvent
@@ -36,7 +37,6 @@ if TYPE_CHECKING:
 
 _DISCOVERY = 7.0  # seconds of a node's life in which it has found all: DDS announces every 3 s, and two may get lost
 _AGAIN = 2.0  # seconds that an older node gets
-_LOOK = 0.01
 _LAST_ANSWERS = 2.0  # seconds that goals which were halted get to end
 
 
@@ -91,14 +91,17 @@ class RosStage:
         if any(interface.kind == "action" for interface in wanted):
             require_ros("nav2_msgs")
             self.robot.prepare_navigation()
-        until = max(self._discovers_until, time.monotonic() + _AGAIN)
-        while True:
-            found = {spoken: (node, self._lacks(spoken)) for spoken, node in self._spoken(wanted).items()}
+        found: dict[Interface, tuple[Node | None, str]] = {}
+
+        def has_all() -> bool:
+            found.clear()
+            found.update((spoken, (node, self._lacks(spoken))) for spoken, node in self._spoken(wanted).items())
             lacking = {Interface(need.kind, need.name, need.type): need.missing for need in self._clients.needs()}
             found.update((interface, (node, lacking[interface])) for interface, node in own.items())
-            if not any(reason for _, reason in found.values()) or time.monotonic() >= until:
-                return {self._named(interface): lack for interface, lack in found.items()}
-            time.sleep(_LOOK)
+            return not any(reason for _, reason in found.values())
+
+        wait_until(has_all, max(self._discovers_until - time.monotonic(), _AGAIN))
+        return {self._named(interface): lack for interface, lack in found.items()}
 
     def _spoken(self, wanted: Mapping[Interface, Node | None]) -> dict[Interface, Node | None]:
         """With the type of velocity that the robot listens to."""

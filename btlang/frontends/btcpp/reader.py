@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Sequence
+from collections.abc import Collection, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.diagnostics.reading import read_source
@@ -158,7 +158,7 @@ class _Reader:
             self._problems.append(diagnostic("BT124", heads[circle[0]].span, name=circle[0], circle=told))
 
 
-def no_tree(span: Span, name: str, trees: Sequence[str] | dict[str, Node]) -> Diagnostic:
+def no_tree(span: Span, name: str, trees: Collection[str]) -> Diagnostic:
     """That none of the trees has this name (BT126)."""
     near = nearest(name, trees)
     told = f"The nearest: {', '.join(near)}" if near else f"There are: {', '.join(list(trees)[:8])}"
