@@ -27,13 +27,9 @@ def matches_golden(actual: str, path: Path) -> None:
 
 
 def take_away_what_is_missed(code: str, patch: pytest.MonkeyPatch) -> None:
-    """So that a message about what is missed can be shown: matplotlib, ROS 2, a new lark, or a robot that speaks it."""
+    """So that a message about what is missed can be shown: matplotlib, ROS 2, or a robot that speaks it."""
     patch.setitem(sys.modules, "matplotlib", None)  # BT081
     patch.setitem(sys.modules, "btlang_interfaces", None)  # BT110
-    if code == "BT082":
-        old = ModuleType("lark")
-        old.__version__ = "0.12.0"  # type: ignore[attr-defined]
-        patch.setitem(sys.modules, "lark", old)
     if code != "BT101":
         patch.setitem(sys.modules, "rclpy", ModuleType("rclpy") if code == "BT110" else None)  # BT100
         return

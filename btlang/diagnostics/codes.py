@@ -99,8 +99,6 @@ _ALL = (
     Code("BT070", "This world file cannot be used: {reason}."),
     Code("BT080", "The command '{id}' cannot run: {reason}."),
     Code("BT081", "Pictures are drawn by matplotlib, which is not installed.", "Install it: pip install 'btlang[pictures]'"),
-    Code("BT082", "The parser lark needs the Python package lark from 1.2 on, and here is lark {version}.",
-         "Put it back: pip install --force-reinstall --no-deps 'lark>=1.2,<2'\nOr read with the other parser, which needs no package."),
     Code("BT090", "There is no code '{name}'.", "All of them: btc explain"),
     Code("BT100", "ROS 2 cannot be used: {reason}.", "{advice}"),
     Code("BT101", "'{words}' needs the {sort} {name}, but {reason}.", "All that the mission needs of the robot: the same command with --preflight"),

@@ -1,19 +1,14 @@
-"""The Lark parser: the grammar of `grammar/mission.lark`, LALR and strict, over the same tokens."""
+"""The Lark parser: runs the LALR tables that Lark made of `grammar/mission.lark` (`grammar/make_tables.py`)."""
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import json
+from collections.abc import Sequence
 from functools import cache
-from threading import Lock
-
-from lark import Lark, Transformer, UnexpectedInput
-from lark import Token as LarkToken
-from lark.lexer import Lexer
 
 from btlang.frontends.build import CHAINS, Builder
 from btlang.frontends.parse_error import ParseError
 from btlang.frontends.token import Token
-from btlang.text.source import Source
 from btlang.tree.ast import Ast
 from btlang.vocabulary.shipped import shipped
 
@@ -21,50 +16,65 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-_one_at_a_time = Lock()  # the transformer is bound to the parser and knows the source of one parse
+_END = "$END"  # Lark's name of the end of the text
 
 
 def parse(tokens: Sequence[Token], build: Builder) -> Ast:
     """The expression that the tokens of a unit make. Raises ParseError where they make none."""
-    lark, to_ast = _parser()
-    with _one_at_a_time:
-        to_ast.build = build
-        try:
-            return lark.parse(tokens)
-        except UnexpectedInput as error:
-            raise ParseError(str(error)) from None
+    tables, to_ast = _tables(), _ToAst(build)
+    rules, states, end = tables["rules"], tables["states"], tables["end"]
+    stack: list[int] = [0]
+    values: list[Any] = []
+    for token in (*tokens, None):
+        kind = token.kind if token is not None else _END
+        while (step := states[stack[-1]].get(kind)) is not None and step < 0:
+            symbol, callback, length, flag = rules[-1 - step]
+            parts = values[-length:]
+            del stack[-length:], values[-length:]
+            values.append(_reduced(flag, parts, getattr(to_ast, callback, None)))
+            stack.append(states[stack[-1]][symbol])
+            if token is None and stack[-1] == end:
+                whole: Ast = values[-1]
+                return whole
+        if step is None:
+            raise ParseError(f"unexpected {kind}")
+        stack.append(step)
+        values.append(token)
+    raise ParseError("unexpected end")
+
+
+class _Inline(list["Any"]):
+    """The parts of one of Lark's helper rules: they are parts of the rule that uses it."""
+
+
+def _reduced(flag: str, parts: list[Any], callback: Any) -> Any:
+    if isinstance(parts[0], _Inline):  # a helper that grows: copying it each time would take quadratic time
+        children = parts[0]
+        children.extend(parts[1:])
+    else:
+        children = _Inline()
+        for part in parts:
+            children.extend(part) if isinstance(part, _Inline) else children.append(part)
+    if flag == "inline":
+        return children
+    return children[0] if flag == "single" and len(children) == 1 else callback(children)
 
 
 @cache
-def _parser() -> tuple[Lark, _ToAst]:
-    to_ast = _ToAst()
-    with open(shipped("grammar", "mission.lark"), encoding="utf-8") as file:
-        grammar = file.read()
-    # strict: a conflict in the grammar is an error and not resolved silently
-    lark = Lark(grammar, start="mission", parser="lalr", lexer=_Tokens, strict=True, transformer=to_ast)
-    return lark, to_ast
+def _tables() -> dict[str, Any]:
+    with open(shipped("grammar", "mission.tables.json"), encoding="utf-8") as file:
+        tables: dict[str, Any] = json.load(file)
+    return tables
 
 
-class _Tokens(Lexer):
-    """Hands the grouped tokens on as they are; each Lark token carries one as its value."""
+class _ToAst:
+    """Called at each reduction, so that no parse tree is made and depth does not matter."""
 
-    def __init__(self, _configuration: object) -> None:
-        pass
-
-    def lex(self, tokens: Any, _parser_state: Any = None) -> Iterator[LarkToken]:
-        for token in tokens:
-            yield LarkToken(token.kind, token)
-
-
-class _ToAst(Transformer[LarkToken, Ast]):
-    """Called by the parser at each reduction, so that no parse tree is made and depth does not matter."""
-
-    def __init__(self) -> None:
-        super().__init__()
-        self.build = Builder(Source(""))
+    def __init__(self, build: Builder) -> None:
+        self.build = build
 
     def _chain(self, children: list[Any]) -> Ast:
-        items, connective = children[::2], children[1].value.kind
+        items, connective = children[::2], children[1].kind
         start, end = items[0].span.start, items[-1].span.end
         return self.build.chain(CHAINS[connective], items, start, end)
 
@@ -76,45 +86,45 @@ class _ToAst(Transformer[LarkToken, Ast]):
         return self.build.chain("sequence", items[::-1], items[0].span.start, items[-1].span.end)
 
     def leaf(self, children: list[Any]) -> Ast:
-        return self.build.leaf(children[0].value)
+        return self.build.leaf(children[0])
 
     def group(self, children: list[Any]) -> Ast:
         opener, inner, closer = children
-        return self.build.group(inner, opener.value.start, closer.value.end)
+        return self.build.group(inner, opener.start, closer.end)
 
     def postfix(self, children: list[Any]) -> Ast:
-        return self.build.postfix(children[0], children[1].value)
+        return self.build.postfix(children[0], children[1])
 
     def negation(self, children: list[Any]) -> Ast:
-        return self.build.negation(children[0].value, children[1])
+        return self.build.negation(children[0], children[1])
 
     def form(self, children: list[Any]) -> Ast:
         opener, condition, _do, body, *rest = children
         otherwise = rest[1] if len(rest) == 3 else None
-        return self.build.form(opener.value.value, condition, body, otherwise, opener.value.start, rest[-1].value.end)
+        return self.build.form(opener.value, condition, body, otherwise, opener.start, rest[-1].end)
 
     form_else = form
 
     def after_form(self, children: list[Any]) -> Ast:
         body, opener, condition, *rest = children
         otherwise = rest[1] if len(rest) == 3 else None
-        return self.build.form(opener.value.value, condition, body, otherwise, body.span.start, rest[-1].value.end)
+        return self.build.form(opener.value, condition, body, otherwise, body.span.start, rest[-1].end)
 
     wide_form = after_form_else = after_form
 
     def loop(self, children: list[Any]) -> Ast:
         opener, body, *rest = children
-        end = rest[-1].value.end
+        end = rest[-1].end
         if len(rest) == 1:
-            return self.build.loop(opener.value, body, None, end, end)
-        return self.build.loop(opener.value, body, rest[1], end, rest[0].value.value)
+            return self.build.loop(opener, body, None, end, end)
+        return self.build.loop(opener, body, rest[1], end, rest[0].value)
 
     loop_else = loop
 
     def loop_stop(self, children: list[Any]) -> Ast:
         opener, body, stop, condition, end = children
-        return self.build.form(stop.value.value, condition, body, None, opener.value.start, end.value.end)
+        return self.build.form(stop.value, condition, body, None, opener.start, end.end)
 
     def test(self, children: list[Any]) -> Ast:
         opener, condition, end = children
-        return self.build.test(opener.value, condition, end.value.end)
+        return self.build.test(opener, condition, end.end)

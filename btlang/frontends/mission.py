@@ -21,7 +21,7 @@ from btlang.vocabulary.vocabulary import Vocabulary
 
 PARSERS = {
     "shunting-yard": "btlang.frontends.shunting_yard",
-    "lark": "btlang.frontends.lark_parser",  # imported only when asked for: it costs more than a whole check
+    "lark": "btlang.frontends.lark_parser",  # imported only when asked for
 }
 DEFAULT_PARSER = "shunting-yard"
 _MOST_DEEP = 50  # files that include each other
@@ -44,25 +44,15 @@ def read_mission(
     """Reads a text and those that it includes; `known` are values that it may use though it does not set them.
 
     With `suggest` False no corrections of what is wrong are tried, which takes time.
-    Raises MissionError with all that is wrong with them, or where the parser cannot be used (BT082); ValueError for an
-    unknown parser.
+    Raises MissionError with all that is wrong with them, and ValueError for an unknown parser.
     """
     if parser not in PARSERS:
         raise ValueError(f"no parser '{parser}'; there are {', '.join(PARSERS)}")
-    if parser == "lark":
-        _check_lark()
     reader = _Reader(vocabulary, parser, known or {}, suggest)
     included = reader.read(source, (os.path.realpath(source.name),))
     if any(problem.is_error for problem in reader.problems):
         raise MissionError(reader.problems)
     return Reading(included.mission, tuple(reader.problems))
-
-
-def _check_lark() -> None:
-    """The packages of ROS 2 bring an old lark, whose files take the place of the right ones."""
-    version = getattr(import_module("lark"), "__version__", "")
-    if version < "1":
-        raise MissionError([diagnostic("BT082", Span(Source("", "--parser lark"), 0, 0), version=version)])
 
 
 def lexed(source: Source, vocabulary: Vocabulary) -> Lexer:

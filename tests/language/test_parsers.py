@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import runpy
+from pathlib import Path
+
 import pytest
 from hypothesis import example, given, settings
 from hypothesis import strategies as st
@@ -18,6 +21,7 @@ from tests.language.letters import read
 from tests.language.sentences import broken_missions, english, missions
 
 BOTH = ("shunting-yard", "lark")
+GRAMMAR = Path(__file__).parents[2] / "grammar"
 
 
 def reading(text: str, parser: str) -> ast.Mission | tuple[str, ...]:
@@ -158,3 +162,18 @@ def test_groups_as_the_oracle_does(words: str) -> None:
     mission = reading(english(words), "shunting-yard")
     assert isinstance(mission, ast.Mission), mission
     assert ours(mission.body) == expected
+
+
+def test_the_tables_are_those_of_the_grammar() -> None:
+    """They are made strictly: a conflict in the grammar is an error and not resolved silently."""
+    make = runpy.run_path(str(GRAMMAR / "make_tables.py"))
+    made = make["text_of"]((GRAMMAR / "mission.lark").read_text(encoding="utf-8"))
+    assert made == (GRAMMAR / "mission.tables.json").read_text(encoding="utf-8"), "run grammar/make_tables.py"
+
+
+def test_a_grammar_with_a_conflict_is_refused() -> None:
+    from lark.exceptions import GrammarError
+
+    make = runpy.run_path(str(GRAMMAR / "make_tables.py"))
+    with pytest.raises(GrammarError, match="conflict"):
+        make["tables"]("mission: mission A mission | A\n%declare A\n")

@@ -20,7 +20,7 @@ import pytest
 
 from btlang.ros import interfaces
 from tests.ros.domains import free_domain
-from tests.ros.processes import REPOSITORY, ROOM, Command
+from tests.ros.processes import REPOSITORY, ROOM, Command, end_all
 
 if TYPE_CHECKING:
     from tests.ros.client import Client
@@ -46,6 +46,13 @@ def _isolated() -> Iterator[None]:
         patch.setenv("FASTRTPS_DEFAULT_PROFILES_FILE", str(HERE / "fast_discovery.xml"))
         patch.delenv("ROS_STATIC_PEERS", raising=False)
         yield
+
+
+@pytest.fixture(autouse=True)
+def _processes_end() -> Iterator[None]:
+    """Also those of a test that fails."""
+    yield
+    end_all()
 
 
 @pytest.fixture

@@ -22,6 +22,7 @@ from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine
 from btlang.engine.status import RUNNING, SUCCESS
 from tests.ros.domains import free_domain
+from tests.ros.processes import start
 
 ROOT = Path(__file__).parent.parent.parent
 PROFILE = str(Path(__file__).parent / "peers" / "profile.xml")
@@ -40,8 +41,8 @@ class Peer:
 
     def __init__(self, program: str, *arguments: str, domain: int) -> None:
         environment = {**os.environ, "ROS_DOMAIN_ID": str(domain), "PYTHONPATH": str(ROOT)}
-        self.process = subprocess.Popen(
-            [sys.executable, "-W", "ignore", "-m", f"tests.ros.peers.{program}", *arguments],
+        self.process = start(
+            sys.executable, "-W", "ignore", "-m", f"tests.ros.peers.{program}", *arguments,
             stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True, env=environment, cwd=ROOT,
         )  # fmt: skip
         self._lines: queue.Queue[str] = queue.Queue()

@@ -9,6 +9,7 @@ import sys
 import time
 from collections.abc import Callable
 from pathlib import Path
+from typing import Any
 
 REPOSITORY = Path(__file__).parents[2]
 ROOM = Path(__file__).parent / "room.toml"
@@ -24,6 +25,35 @@ def wait_until(condition: Callable[[], object], what: str, seconds: float = LONG
         time.sleep(0.005)
 
 
+_started: list[subprocess.Popen[Any]] = []
+
+
+def start(*command: str, **options: Any) -> subprocess.Popen[Any]:
+    """A process in a group of its own, which `end_all` ends at the end of the test, however that ends."""
+    process: subprocess.Popen[Any] = subprocess.Popen(command, start_new_session=True, **options)
+    _started.append(process)
+    return process
+
+
+def end_all() -> None:
+    """Kills the groups of all processes that were started since the last call."""
+    for process in _started:
+        if group_is_alive(process):
+            os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+    _started.clear()
+
+
+def group_is_alive(process: subprocess.Popen[Any]) -> bool:
+    """Whether a process of its group is left, a zombie that nobody has waited for included."""
+    process.poll()
+    try:
+        os.killpg(process.pid, 0)
+    except ProcessLookupError:
+        return False
+    return True
+
+
 class Command:
     """`btc` with arguments, in a process group of its own, with what it printed so far. `folder` keeps that."""
 
@@ -33,13 +63,14 @@ class Command:
         self._out, self._err = folder / "out.txt", folder / "err.txt"
         changed = {**os.environ, "PYTHONPATH": str(REPOSITORY), "ROS_DOMAIN_ID": str(domain), **environment}
         with self._out.open("w") as out, self._err.open("w") as err:
-            self.process = subprocess.Popen(
-                [sys.executable, *self.program, *arguments],
+            self.process = start(
+                sys.executable,
+                *self.program,
+                *arguments,
                 env={name: value for name, value in changed.items() if value is not None},
                 stdout=out,
                 stderr=err,
                 stdin=subprocess.DEVNULL,
-                start_new_session=True,
             )
 
     @property
@@ -59,19 +90,6 @@ class Command:
         """Sends a signal and waits; returns the exit code. Fails where a process is left over."""
         if self.process.poll() is None:
             self.process.send_signal(number)
-        try:
-            code = self.process.wait(LONG)
-        finally:
-            left = self._group_is_alive()
-            if left:
-                os.killpg(self.process.pid, signal.SIGKILL)
-                self.process.wait()
-        assert not left
+        code = self.process.wait(LONG)
+        assert not group_is_alive(self.process)
         return code
-
-    def _group_is_alive(self) -> bool:
-        try:
-            os.killpg(self.process.pid, 0)
-        except ProcessLookupError:
-            return False
-        return True

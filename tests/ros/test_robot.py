@@ -13,7 +13,7 @@ from pathlib import Path
 
 import pytest
 
-from tests.ros.processes import LONG, REPOSITORY, Command, wait_until
+from tests.ros.processes import LONG, REPOSITORY, Command, start, wait_until
 
 
 class Script:
@@ -23,12 +23,14 @@ class Script:
         self._out = folder / "robot.txt"
         environment = {**os.environ, "PYTHONPATH": str(REPOSITORY), "ROS_DOMAIN_ID": str(domain)}
         with self._out.open("w") as out:
-            self.process = subprocess.Popen(
-                [sys.executable, "-m", "tests.ros.scripted_robot", *parts],
+            self.process = start(
+                sys.executable,
+                "-m",
+                "tests.ros.scripted_robot",
+                *parts,
                 env=environment,
                 stdin=subprocess.PIPE,  # it ends when this is closed
                 stdout=out,
-                start_new_session=True,
             )
         self.wait_for("ready")
 

@@ -2,19 +2,16 @@
 
 from __future__ import annotations
 
-import shutil
 from collections.abc import Callable, Iterator
 
 import pytest
 
-from tests.terminal.tmux import Terminal
+from tests.terminal.emulator import Terminal
 
 
 @pytest.fixture
 def terminal() -> Iterator[Callable[..., Terminal]]:
     """A function that opens a terminal (see Terminal) in which a command runs; all are closed after the test."""
-    if shutil.which("tmux") is None:
-        pytest.skip("tmux is not installed; the terminal tests need it")
     opened: list[Terminal] = []
 
     def open_terminal(*command: str, **options: object) -> Terminal:

@@ -12,7 +12,7 @@ from pathlib import Path
 import pytest
 
 from tests.conftest import matches_golden
-from tests.terminal.tmux import BTC, Terminal
+from tests.terminal.emulator import BTC, Terminal
 from tests.test_readme import BLOCKS
 
 GOLDEN = Path(__file__).parent / "golden"
