@@ -136,3 +136,14 @@ def test_light_start() -> None:
     environment = {**os.environ, "PYTHONPATH": str(ROOT)}
     done = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stderr
+
+
+def test_a_run_that_does_not_scan_imports_no_numpy() -> None:
+    program = (
+        "import sys; from btlang.cli import main; "
+        "code = main(['run', '-c', 'move forward 1 m then wave', '--speed', 'max', '--quiet']); "
+        "sys.exit('imports numpy' if 'numpy' in sys.modules else code)"
+    )
+    environment = {**os.environ, "PYTHONPATH": str(ROOT)}
+    done = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, text=True, check=False)
+    assert done.returncode == 0, done.stderr

@@ -2,9 +2,14 @@
 
 from __future__ import annotations
 
-import numpy as np
+from math import inf, radians
 
 from btlang.robots.robot import Robot, RobotError
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
 
 NEAR_WALL = 0.8
 NEAR_PERSON = 1.5
@@ -13,7 +18,6 @@ LOW_BATTERY = 20.0
 FULL_BATTERY = 99.5
 
 _SIDE_MARGIN = 0.03
-_ANGLES = np.radians(np.arange(360.0))
 
 
 def wall_in_front(robot: Robot) -> bool:
@@ -51,22 +55,24 @@ def is_blocked(robot: Robot, direction: float) -> bool:
         along, across = _points(robot, direction)
     except RobotError:
         return True  # a failed condition would read as "no wall" under `not` and `until`, and the robot drive blind
-    return bool(((along > 0.0) & (along < NEAR_WALL) & (np.abs(across) < robot.radius + _SIDE_MARGIN)).any())
+    return bool(((along > 0.0) & (along < NEAR_WALL) & (abs(across) < robot.radius + _SIDE_MARGIN)).any())
 
 
 def distance_ahead(robot: Robot) -> float:
     """Metres that the robot can drive straight ahead before it touches something; inf beyond the scanner's range."""
     along, across = _points(robot, 0.0)
-    touching = (along > 0.0) & (np.abs(across) < robot.radius)
-    bulge = np.sqrt(np.maximum(0.0, robot.radius**2 - across[touching] ** 2))
-    return max(0.0, float(np.min(along[touching] - bulge, initial=np.inf)))
+    touching = (along > 0.0) & (abs(across) < robot.radius)
+    bulge = (robot.radius**2 - across[touching] ** 2) ** 0.5
+    return max(0.0, float((along[touching] - bulge).min(initial=inf)))
 
 
-def _points(robot: Robot, direction: float) -> tuple[np.ndarray[tuple[int], np.dtype[np.float64]], ...]:
+def _points(robot: Robot, direction: float) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
     """Scan points in metres along and across a direction."""
+    import numpy as np  # takes longer to import than many missions that sense something else
+
     ranges = np.asarray(robot.scan())
     seen = np.isfinite(ranges)
-    angles = _ANGLES[seen] - np.radians(direction)
+    angles = np.radians(np.flatnonzero(seen)) - radians(direction)
     return ranges[seen] * np.cos(angles), ranges[seen] * np.sin(angles)
 
 

@@ -9,8 +9,11 @@ from btlang.robots.base import Base
 from btlang.robots.faults import Faults
 from btlang.robots.geometry import Point, Pose, wrap
 from btlang.robots.obstacles import Obstacles
-from btlang.robots.planning import Planner
 from btlang.robots.world import ROBOT_RADIUS, Place, World, said
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.robots.planning import Planner
 
 SPEED = 0.5
 TURN = 90.0
@@ -69,7 +72,8 @@ class Navigator:
         self._base = base
         self._obstacles = obstacles
         self._faults = faults
-        self._planner = Planner(world, obstacles)
+        self._world = world
+        self._planner: Planner | None = None
         self.journey: Journey | None = None
 
     def add_place(self, place: Place) -> None:
@@ -118,6 +122,10 @@ class Navigator:
     def _plan(self, journey: Journey) -> None:
         journey.version = self._obstacles.version
         goal, reach = self._goal(journey)
+        if self._planner is None:
+            from btlang.robots.planning import Planner  # brings numpy, which takes longer to import than many missions
+
+            self._planner = Planner(self._world, self._obstacles)
         path = self._planner.path((self._base.pose.x, self._base.pose.y), goal, reach)
         if path is None:
             journey.end(f"there is no free way to {said(journey.name)}")

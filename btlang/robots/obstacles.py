@@ -2,32 +2,29 @@
 
 from __future__ import annotations
 
-from math import inf, sqrt
+from math import hypot, inf, sqrt
 
-import numpy as np
-import numpy.typing as npt
-
-from btlang.robots.geometry import Point
-from btlang.robots.world import Thing, World
-
-Array = npt.NDArray[np.float64]
+from btlang.robots.geometry import Point, Segment
+from btlang.robots.world import Box, Thing, World
 
 
 class Obstacles:
-    """The obstacles of one run. `version` changes whenever something moves, so that others may cache."""
+    """The obstacles of one run. `version` changes whenever something moves, so that others may cache.
+
+    `discs` are x, y and radius of each thing that stands on the floor. Plain numbers: numpy costs more to import than
+    most runs take, so that only what scans or plans imports it.
+    """
 
     def __init__(self, world: World) -> None:
         self.version = 0
         self.things: dict[str, Thing] = {thing.name: thing for thing in (*world.objects, *world.people)}
+        self.segments: tuple[Segment, ...] = world.segments()
+        self.boxes: tuple[Box, ...] = world.boxes
+        self.discs: list[tuple[float, float, float]] = []
+        self._walls = world.wall_segments()
+        self._spans = [(ax, ay, bx - ax, by - ay, _length2(bx - ax, by - ay)) for ax, ay, bx, by in self.segments]
         self._carried: set[str] = set()
-        self._boxes = world.boxes
-        self._walls = len(world.wall_segments())
-        segments = np.array(world.segments(), dtype=np.float64).reshape(-1, 4)
-        self.starts: Array = segments[:, :2]
-        self.spans: Array = segments[:, 2:] - segments[:, :2]
-        self._lengths2 = np.maximum((self.spans**2).sum(axis=1), 1e-12)
         self._names: list[str] = []
-        self.discs: Array = np.empty((0, 3))
         self._collect_discs()
 
     def move(self, name: str, x: float, y: float) -> None:
@@ -52,49 +49,43 @@ class Obstacles:
     def nearest(self, x: float, y: float) -> tuple[float, str]:
         """Metres from the point to the nearest surface, and the name of what it is ("a wall" if fixed)."""
         distance, name = inf, "nothing"
-        if len(self.starts):
+        if self._spans:
             distance, name = self._to_segments(x, y), "a wall"
-        if len(self.discs):
-            gaps = np.hypot(self.discs[:, 0] - x, self.discs[:, 1] - y) - self.discs[:, 2]
-            index = int(gaps.argmin())
-            if gaps[index] < distance:
-                distance, name = float(gaps[index]), self._names[index]
+        for (disc_x, disc_y, radius), thing in zip(self.discs, self._names, strict=True):
+            gap = hypot(disc_x - x, disc_y - y) - radius
+            if gap < distance:
+                distance, name = gap, thing
         return distance, name
 
     def wall_between(self, a: Point, b: Point) -> bool:
         """True when a wall (not furniture) crosses the straight line from a to b."""
-        starts, spans = self.starts[: self._walls], self.spans[: self._walls]
-        if not len(starts):
-            return False
         dx, dy = b[0] - a[0], b[1] - a[1]
-        fx, fy = starts[:, 0] - a[0], starts[:, 1] - a[1]
-        cross = dx * spans[:, 1] - dy * spans[:, 0]
-        cross = np.where(np.abs(cross) < 1e-12, np.nan, cross)
-        t = (fx * spans[:, 1] - fy * spans[:, 0]) / cross
-        u = (fx * dy - fy * dx) / cross
-        return bool(((t >= 0) & (t <= 1) & (u >= 0) & (u <= 1)).any())
-
-    def fixed_clearance(self, xs: Array, ys: Array) -> Array:
-        """For many points: metres to the nearest wall or box, 0 inside a box."""
-        nearest2 = np.full(xs.shape, inf)
-        for (ax, ay), (dx, dy), length2 in zip(self.starts, self.spans, self._lengths2, strict=True):
-            t = np.clip(((xs - ax) * dx + (ys - ay) * dy) / length2, 0.0, 1.0)
-            nearest2 = np.minimum(nearest2, (xs - ax - t * dx) ** 2 + (ys - ay - t * dy) ** 2)
-        for box in self._boxes:
-            inside = (np.abs(xs - box.x) <= box.width / 2) & (np.abs(ys - box.y) <= box.height / 2)
-            nearest2[inside] = 0.0
-        clearance: Array = np.sqrt(nearest2)
-        return clearance
+        for start_x, start_y, end_x, end_y in self._walls:
+            span_x, span_y = end_x - start_x, end_y - start_y
+            fx, fy = start_x - a[0], start_y - a[1]
+            cross = dx * span_y - dy * span_x
+            if abs(cross) < 1e-12:
+                continue
+            if 0 <= (fx * span_y - fy * span_x) / cross <= 1 and 0 <= (fx * dy - fy * dx) / cross <= 1:
+                return True
+        return False
 
     def _to_segments(self, x: float, y: float) -> float:
-        fx, fy = x - self.starts[:, 0], y - self.starts[:, 1]
-        dx, dy = self.spans[:, 0], self.spans[:, 1]
-        t = np.minimum(1.0, np.maximum(0.0, (fx * dx + fy * dy) / self._lengths2))
-        gaps2 = (fx - t * dx) ** 2 + (fy - t * dy) ** 2
-        return sqrt(gaps2.min())
+        nearest2 = inf
+        for ax, ay, dx, dy, length2 in self._spans:
+            fx, fy = x - ax, y - ay
+            t = min(1.0, max(0.0, (fx * dx + fy * dy) / length2))
+            gap2 = (fx - t * dx) ** 2 + (fy - t * dy) ** 2
+            if gap2 < nearest2:
+                nearest2 = gap2
+        return sqrt(nearest2)
 
     def _collect_discs(self) -> None:
         self.version += 1
         standing = [thing for thing in self.things.values() if thing.name not in self._carried]
         self._names = [thing.name for thing in standing]
-        self.discs = np.array([(t.x, t.y, t.radius) for t in standing], dtype=np.float64).reshape(-1, 3)
+        self.discs = [(thing.x, thing.y, thing.radius) for thing in standing]
+
+
+def _length2(dx: float, dy: float) -> float:
+    return max(dx * dx + dy * dy, 1e-12)

@@ -10,8 +10,10 @@ import numpy as np
 import numpy.typing as npt
 
 from btlang.robots.geometry import Point
-from btlang.robots.obstacles import Array, Obstacles
+from btlang.robots.obstacles import Obstacles
 from btlang.robots.world import ROBOT_RADIUS, World
+
+Array = npt.NDArray[np.float64]
 
 CELL = 0.1
 _NEEDED = ROBOT_RADIUS + 0.04
@@ -68,7 +70,7 @@ class Planner:
         if self._version == self._obstacles.version:
             return
         if self._fixed is None:
-            self._fixed = self._obstacles.fixed_clearance(self._xs, self._ys)
+            self._fixed = _clearance(self._obstacles, self._xs, self._ys)
         clearance = self._fixed.copy()
         for x, y, radius in self._obstacles.discs:
             np.minimum(clearance, np.hypot(self._xs - x, self._ys - y) - radius, out=clearance)
@@ -140,6 +142,20 @@ class Planner:
         columns = (np.linspace(a[0], b[0], count) - self._origin[0]) / CELL
         rows = (np.linspace(a[1], b[1], count) - self._origin[1]) / CELL
         return bool((self._clearance[rows.astype(int), columns.astype(int)] >= _COMFORTABLE - CELL / 2).all())
+
+
+def _clearance(obstacles: Obstacles, xs: Array, ys: Array) -> Array:
+    """For many points: metres to the nearest wall or box, 0 inside a box."""
+    nearest2 = np.full(xs.shape, np.inf)
+    for ax, ay, bx, by in obstacles.segments:
+        dx, dy = bx - ax, by - ay
+        t = np.clip(((xs - ax) * dx + (ys - ay) * dy) / max(dx**2 + dy**2, 1e-12), 0.0, 1.0)
+        nearest2 = np.minimum(nearest2, (xs - ax - t * dx) ** 2 + (ys - ay - t * dy) ** 2)
+    for box in obstacles.boxes:
+        inside = (np.abs(xs - box.x) <= box.width / 2) & (np.abs(ys - box.y) <= box.height / 2)
+        nearest2[inside] = 0.0
+    clearance: Array = np.sqrt(nearest2)
+    return clearance
 
 
 def _walk_back(came: dict[int, int], cell: int) -> list[int]:

@@ -5,11 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any, Literal, Protocol
 
-import numpy as np
-import numpy.typing as npt
-
 from btlang.engine.leaf import ActionFailed
 from btlang.robots.geometry import Point, Pose
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    import numpy as np
+    import numpy.typing as npt
 
 Hand = Literal["left", "right"]
 OnEvent = Callable[[str, Mapping[str, Any]], None]

@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 import numpy as np
+import numpy.typing as npt
 
 from btlang.robots.geometry import Pose
-from btlang.robots.obstacles import Array, Obstacles
+from btlang.robots.obstacles import Obstacles
+
+Array = npt.NDArray[np.float64]
 
 RANGE = 8.0
 _ANGLES = np.radians(np.arange(360.0))
@@ -16,6 +19,7 @@ class Scanner:
 
     def __init__(self, obstacles: Obstacles) -> None:
         self._obstacles = obstacles
+        self._segments: Array = np.array(obstacles.segments, dtype=np.float64).reshape(-1, 4)
         self._pose: Pose | None = None
         self._version = -1
         self._ranges: Array = np.empty(0)
@@ -23,29 +27,32 @@ class Scanner:
     def read(self, pose: Pose) -> Array:
         """See `scan`."""
         if pose is not self._pose or self._version != self._obstacles.version:
-            self._ranges = scan(self._obstacles, pose)
+            self._ranges = scan(self._segments, np.array(self._obstacles.discs).reshape(-1, 3), pose)
             self._pose, self._version = pose, self._obstacles.version
         return self._ranges
 
 
-def scan(obstacles: Obstacles, pose: Pose) -> Array:
-    """360 distances in metres, index = degrees left of the heading; inf beyond RANGE."""
+def scan(segments: Array, discs: Array, pose: Pose) -> Array:
+    """360 distances in metres, index = degrees left of the heading; inf beyond RANGE.
+
+    A row of `segments` is x, y of one end and of the other, a row of `discs` is x, y and radius.
+    """
     angles = _ANGLES + np.radians(pose.heading)
     beams = np.stack((np.cos(angles), np.sin(angles)))
     ranges = np.full(360, np.inf)
-    if len(obstacles.starts):
-        ranges = np.minimum(ranges, _to_segments(obstacles, pose, beams))
-    if len(obstacles.discs):
-        ranges = np.minimum(ranges, _to_discs(obstacles.discs, pose, beams))
+    if len(segments):
+        ranges = np.minimum(ranges, _to_segments(segments, pose, beams))
+    if len(discs):
+        ranges = np.minimum(ranges, _to_discs(discs, pose, beams))
     ranges[ranges > RANGE] = np.inf
     ranges.flags.writeable = False  # shared by all who read it between two steps
     return ranges
 
 
-def _to_segments(obstacles: Obstacles, pose: Pose, beams: Array) -> Array:
+def _to_segments(segments: Array, pose: Pose, beams: Array) -> Array:
     """Solves centre + t * beam = start + u * span for every span (rows) and beam (columns), with few temporaries."""
-    fx, fy = obstacles.starts[:, 0] - pose.x, obstacles.starts[:, 1] - pose.y
-    dx, dy = obstacles.spans[:, 0], obstacles.spans[:, 1]
+    fx, fy = segments[:, 0] - pose.x, segments[:, 1] - pose.y
+    dx, dy = segments[:, 2] - segments[:, 0], segments[:, 3] - segments[:, 1]
     cross = np.stack((dy, -dx), axis=1) @ beams
     u = np.stack((-fy, fx), axis=1) @ beams
     with np.errstate(all="ignore"):

@@ -14,11 +14,14 @@ from btlang.robots.geometry import Point, Pose
 from btlang.robots.hands import Hands
 from btlang.robots.joints import Joints
 from btlang.robots.navigation import Journey, Navigator
-from btlang.robots.obstacles import Array, Obstacles
+from btlang.robots.obstacles import Obstacles
 from btlang.robots.power import Power
 from btlang.robots.robot import Done, Hand, OnEvent, RobotError
-from btlang.robots.scan import Scanner
 from btlang.robots.world import ROBOT_RADIUS, Place, World, said
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.robots.scan import Array, Scanner
 
 _CONTROL_PERIOD = 0.05
 _SAME_SPOT = 0.01  # metres
@@ -44,7 +47,7 @@ class SimulatedRobot:
         self._faults = Faults(world.faults)
         self._navigator = Navigator(world, self._base, self._obstacles, self._faults)
         self._power = Power(world.battery, world.dock)
-        self._scanner = Scanner(self._obstacles)
+        self._scanner: Scanner | None = None
         self._joints = Joints()
         self._hands = Hands(self._obstacles, world.names.objects)
         self._speech_left = 0.0
@@ -160,6 +163,10 @@ class SimulatedRobot:
         """360 distances, computed when first read after a step. Raises RobotError when the scanner is silent."""
         if self._faults.scanner_silent:
             raise RobotError("the laser scanner is silent")
+        if self._scanner is None:
+            from btlang.robots.scan import Scanner  # brings numpy, which takes longer to import than many missions
+
+            self._scanner = Scanner(self._obstacles)
         return self._scanner.read(self.pose)
 
     def locate(self, name: str) -> Point:
