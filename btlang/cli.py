@@ -173,9 +173,9 @@ def _explain_mission(options: argparse.Namespace) -> int:
 
 def _format(options: argparse.Namespace) -> int:
     """Files in place; standard input and a text of the command line to standard output."""
-    sources = [partial(read_source, path) for path in options.file]
+    sources = [partial(read_source, path, options.include_root) for path in options.file]
     if options.text is not None:
-        sources = [partial(Source, options.text, "<command line>")]
+        sources = [partial(_typed, options)]
     code = SUCCESS
     for read in sources:
         try:
@@ -213,7 +213,13 @@ def _node(options: argparse.Namespace) -> int:
 def _repl(options: argparse.Namespace) -> int:
     from btlang.repl.loop import run_repl
 
-    return run_repl(keywords=options.keywords, world=options.world, parser=options.parser, speed=options.speed)
+    return run_repl(
+        keywords=options.keywords,
+        world=options.world,
+        parser=options.parser,
+        include_root=options.include_root,
+        speed=options.speed,
+    )
 
 
 _NODES = {
@@ -237,9 +243,15 @@ _VERBS: dict[str, Callable[[argparse.Namespace], int]] = {
 }
 
 
+def _typed(options: argparse.Namespace) -> Source:
+    """The text of the option -c, whose folder is the current one."""
+    roots = None if options.include_root is None else ("", options.include_root)
+    return Source(options.text, "<command line>", roots=roots)
+
+
 def _tree(options: argparse.Namespace) -> RunnableTree:
     """Compiles what the options name; warnings go to the report."""
-    source = Source(options.text, "<command line>") if options.text is not None else read_source(options.file)
+    source = _typed(options) if options.text is not None else read_source(options.file, options.include_root)
     tree = parse_tree(source, parser=options.parser, keywords=options.keywords, world=options.world, main=options.main)
     for warning in tree.warnings:
         options.report.add([warning])

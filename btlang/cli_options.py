@@ -37,7 +37,8 @@ def parsed(arguments: Sequence[str] | None) -> argparse.Namespace:
 
 
 _DEFAULTS: dict[str, Any] = {
-    "keywords": [], "world": None, "parser": DEFAULT_PARSER, "speed": "real", "format": "text", "main": ""
+    "keywords": [], "world": None, "parser": DEFAULT_PARSER, "include_root": None, "speed": "real", "format": "text",
+    "main": "",
 }  # fmt: skip
 
 
@@ -55,6 +56,9 @@ def _world_option(parser: argparse.ArgumentParser) -> None:
 def _reading_options(parser: argparse.ArgumentParser) -> None:
     _words_options(parser)
     parser.add_argument("--parser", choices=list(PARSERS), default=DEFAULT_PARSER, help="(default: %(default)s)")
+    parser.add_argument(
+        "--include-root", metavar="DIR", help="a mission may include files below DIR too, not only below its own folder"
+    )
 
 
 def _main_option(parser: argparse.ArgumentParser) -> None:

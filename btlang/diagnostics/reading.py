@@ -2,31 +2,106 @@
 
 from __future__ import annotations
 
+import errno
+import os
+import stat
 import sys
 from codecs import BOM_UTF8
+from collections.abc import Callable
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.text.source import Source, Span
 
+MOST_BYTES = 10_000_000
+"""The size of the largest text that is read: missions, keyword files, worlds, XML, JSON."""
 
-def read_source(path: str) -> Source:
-    """The text of a file, or of standard input for `-`. Raises MissionError (BT001, BT002)."""
+MOST_DEEP = 50
+"""Files that include each other in a row."""
+TOO_DEEP = f"more than {MOST_DEEP} files include each other in a row"
+
+
+def read_source(path: str, include_root: str | None = None) -> Source:
+    """The text of a file that the user names himself, or of standard input for `-`. Raises MissionError (BT001, BT002).
+
+    What it includes lies in its folder, or below `include_root`. It may be a pipe, too.
+    """
+    folder = os.path.dirname(path)
+    roots = (folder,) if include_root is None else (folder, include_root)
+    return _decoded(Source("", path, folder, roots), lambda: read_bytes(path))
+
+
+def read_included(path: str, source: Source) -> Source:
+    """The text of a file that another text names, with the same roots: a regular file below one of them.
+
+    Raises MissionError (BT001, BT002).
+    """
+    where, real = included_path(path, source)
+
+    def read() -> bytes:
+        if not any(is_below(real, root) for root in source.roots):
+            raise OSError(errno.EACCES, _OUTSIDE if source.roots else "nothing may be included here")
+        # a pipe that nobody writes to would block; O_NONBLOCK changes nothing for regular files
+        with open(real, "rb", opener=lambda name, flags: os.open(name, flags | getattr(os, "O_NONBLOCK", 0))) as file:
+            if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+                raise OSError(errno.EINVAL, "it isn't a regular file")
+            return _limited(file.read(MOST_BYTES + 1))
+
+    hides = source.hides_includes
+    return _decoded(Source("", where, os.path.dirname(where), source.roots, hidden=hides, hides_includes=hides), read)
+
+
+def included_path(path: str, source: Source) -> tuple[str, str]:
+    """Where a file that a text names is looked for, and where that really is. Reads nothing."""
+    where = os.path.join(source.folder, path)
+    return where, where if "\0" in where else os.path.realpath(where)
+
+
+_OUTSIDE = "it is outside the folder of the mission; --include-root names another folder that may be included from"
+
+
+def read_bytes(path: str) -> bytes:
+    """The content of a file that the user names himself, or of standard input for `-`. Raises OSError."""
+    if path in _pipes:
+        return _pipes[path]
+    if path == "-":
+        data = sys.stdin.buffer.read(MOST_BYTES + 1) if sys.stdin is not None else b""
+        return _limited(data)
+    with open(path, "rb") as file:
+        data = _limited(file.read(MOST_BYTES + 1))
+        if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
+            _pipes[path] = data
+    return data
+
+
+_pipes: dict[str, bytes] = {}  # what came out of them: a world is read for its names, and again for the run
+
+
+def _limited(data: bytes) -> bytes:
+    if len(data) > MOST_BYTES:
+        raise OSError(errno.EFBIG, f"it has more than {MOST_BYTES:,} bytes")
+    return data
+
+
+def is_below(real: str, root: str) -> bool:
+    """Whether a real path is a folder, or something below it."""
+    return os.path.join(real, "").startswith(os.path.join(os.path.realpath(root or os.curdir), ""))
+
+
+def _decoded(source: Source, read: Callable[[], bytes]) -> Source:
+    """The source with the text that was read."""
     try:
-        if path == "-":
-            data = sys.stdin.buffer.read() if sys.stdin is not None else b""
-        else:
-            with open(path, "rb") as file:
-                data = file.read()
-    except OSError as error:
-        nowhere = Span(Source("", path), 0, 0)
-        raise MissionError([diagnostic("BT001", nowhere, file=path, reason=reason_of(error))]) from None
+        data = read()
+    except (OSError, ValueError) as error:  # ValueError: a path with a NUL
+        reason = reason_of(error) if isinstance(error, OSError) else str(error)
+        raise MissionError([diagnostic("BT001", Span(source, 0, 0), file=source.name, reason=reason)]) from None
     data = data.removeprefix(BOM_UTF8)
     try:
-        return Source(data.decode(), path)
+        source.text = data.decode()
     except UnicodeDecodeError as error:
         readable = data[: error.start].decode("utf-8")
-        source = Source(readable + data[error.start :].decode("latin-1"), path)
+        source.text = readable + data[error.start :].decode("latin-1")
         raise MissionError([diagnostic("BT002", Span(source, len(readable), len(readable) + 1))]) from None
+    return source
 
 
 def unwritable(path: str, reason: str | OSError) -> Diagnostic:
@@ -37,4 +112,5 @@ def unwritable(path: str, reason: str | OSError) -> Diagnostic:
 
 def reason_of(error: OSError) -> str:
     """The reason in the words of the operating system, to stand in a sentence."""
-    return (error.strerror or str(error)).lower()
+    reason = error.strerror or str(error)
+    return reason[:1].lower() + reason[1:]

@@ -27,6 +27,8 @@ def render(diagnostic: Diagnostic, colour: bool = False) -> str:
     """
     severity = diagnostic.kind.severity
     own, noted = (_COLOURS[severity], CYAN) if colour else ("", "")
+    if diagnostic.span.source.hidden:
+        return f"{diagnostic.span.place}: {_painted(f'{severity} {diagnostic.code}', own)} (its text isn't shown here)"
     label = _painted(f"{severity} {diagnostic.code}:", own)
     lines = [f"{diagnostic.span.place}: {label} {diagnostic.message}", *underlined(diagnostic.span, own)]
     lines += [f"  {line}" for line in diagnostic.hint.splitlines()]
@@ -60,7 +62,7 @@ def mended_line(diagnostic: Diagnostic) -> str:
 
 def underlined(span: Span, colour: str = "") -> list[str]:
     """The first line of the span with `^` under its characters; a long line is cut around them."""
-    if not span.source.text:
+    if not span.source.text or span.source.hidden:
         return []
     number, column = span.source.position(span.start)
     line = span.source.line(number)

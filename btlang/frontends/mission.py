@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from importlib import import_module
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
-from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.reading import MOST_DEEP, TOO_DEEP, included_path, read_included
 from btlang.frontends.build import Builder
 from btlang.frontends.includes import Included
 from btlang.frontends.lexer import Lexer
@@ -24,7 +24,6 @@ PARSERS = {
     "lark": "btlang.frontends.lark_parser",  # imported only when asked for
 }
 DEFAULT_PARSER = "shunting-yard"
-_MOST_DEEP = 50  # files that include each other
 
 
 class Reading(Record):
@@ -76,22 +75,23 @@ class _Reader:
         """What reads the files that a text includes; `within` are the files that are being read, the text's last."""
 
         def load(path: str, span: Span) -> Included | None:
-            name = os.path.join(source.folder, path)
-            real = os.path.realpath(name)
-            if real in within or len(within) > _MOST_DEEP:
-                files = (*within[within.index(real) if real in within else 0 :], real)
-                circle = " -> ".join(map(os.path.basename, files))
+            _, real = included_path(path, source)
+            if real in within:
+                circle = " -> ".join(map(os.path.basename, (*within[within.index(real) :], real)))
                 self.problems.append(diagnostic("BT046", span, file=path, circle=circle))
                 return None
+            if len(within) > MOST_DEEP:
+                self.problems.append(diagnostic("BT001", span, file=path, reason=TOO_DEEP))
+                return None
             if real not in self._read:
-                self._read[real] = self._file(name, (*within, real), span)
+                self._read[real] = self._included(path, source, (*within, real), span)
             return self._read[real]
 
         return load
 
-    def _file(self, name: str, within: tuple[str, ...], span: Span) -> Included | None:
+    def _included(self, path: str, source: Source, within: tuple[str, ...], span: Span) -> Included | None:
         try:
-            return self.read(read_source(name), within)
+            return self.read(read_included(path, source), within)
         except MissionError as error:
             for problem in error.diagnostics:
                 here = problem.replace(span=span) if problem.code == "BT001" else problem

@@ -27,10 +27,11 @@ def run_repl(
     keywords: Sequence[str] = (),
     world: str | None = None,
     parser: str = DEFAULT_PARSER,
+    include_root: str | None = None,
     speed: float | str = "real",
 ) -> int:
     """Runs until the user leaves or the input ends; returns the exit code. Raises MissionError for wrong files."""
-    session = Session(keywords, world, parser)
+    session = Session(keywords, world, parser, include_root)
     if not can_draw(sys.stdout) or sys.stdin is None or not sys.stdin.isatty():
         return Repl(session, Store(None), speed).read(sys.stdin or ())
     store = Store(state_folder())

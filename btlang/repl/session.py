@@ -46,9 +46,16 @@ class Compiled(Record):
 class Session:
     """Entries, with undo and redo; the words; the simulated world and the values, which go on from entry to entry."""
 
-    def __init__(self, keywords: Sequence[str] = (), world: str | None = None, parser: str = DEFAULT_PARSER) -> None:
+    def __init__(
+        self,
+        keywords: Sequence[str] = (),
+        world: str | None = None,
+        parser: str = DEFAULT_PARSER,
+        include_root: str | None = None,
+    ) -> None:
         """Raises MissionError where a keyword file or the world cannot be used."""
         self._keywords = keywords
+        self._include_root = include_root
         self._parser = parser
         self._undone: list[tuple[Entry, ...]] = []
         self._before: list[tuple[Entry, ...]] = []
@@ -71,9 +78,10 @@ class Session:
         self.simulation = load_simulation(self.world)
         self._blackboard = Blackboard()
 
-    @property
-    def _folder(self) -> str:
-        return os.path.dirname(self.file or "")
+    def _source(self, text: str, name: str = ENTRY) -> Source:
+        folder = os.path.dirname(self.file or "")
+        roots = (folder,) if self._include_root is None else (folder, self._include_root)
+        return Source(text, name, folder, roots)
 
     @property
     def definitions(self) -> dict[str, str]:
@@ -102,7 +110,7 @@ class Session:
         margin = text[: len(text) - len(text.lstrip())].rpartition("\n")[2]
         above = indent(self.context(text), margin)
         whole = f"{text}\n{above}"  # the entry first, so that places in it are those that were typed
-        source = Source(whole, ENTRY, self._folder)
+        source = self._source(whole)
         reading = read_mission(source, self.vocabulary, self._parser, self._known(), suggest)
         mission = reading.mission
         named: list[Definition | Fact | Include] = [*mission.includes, *mission.definitions, *mission.facts]
@@ -124,12 +132,12 @@ class Session:
     def _known(self) -> Mapping[str, Known]:
         """The values that entries before have set."""
         if self._known_of[0] != self.text:
-            self._known_of = self.text, lexed(Source(self.text, ENTRY, self._folder), self.vocabulary).names.known
+            self._known_of = self.text, lexed(self._source(self.text), self.vocabulary).names.known
         return self._known_of[1]
 
     def compile_all(self) -> RunnableTree:
         """The whole mission. Raises MissionError, also where it holds no command."""
-        reading = read_mission(Source(self.text, self.file or "<session>", self._folder), self.vocabulary, self._parser)
+        reading = read_mission(self._source(self.text, self.file or "<session>"), self.vocabulary, self._parser)
         tree = compile_mission(reading.mission, self.vocabulary)
         return self._runnable(tree, reading.mission, reading.warnings, Blackboard())
 

@@ -6,6 +6,7 @@ import tomllib
 from collections.abc import Mapping
 from os import PathLike, fspath
 
+from btlang.diagnostics.reading import read_bytes
 from btlang.robots import world_lines
 from btlang.robots.geometry import Point, Pose, segment_distance
 from btlang.robots.world import (
@@ -68,8 +69,7 @@ def _read(name: str) -> str:
     if name == DEFAULT_WORLD and read is not None:
         data: bytes = read(name)
         return data.decode("utf-8-sig")
-    with open(name, encoding="utf-8-sig") as file:
-        return file.read()
+    return read_bytes(name).decode("utf-8-sig")
 
 
 def _world(top: Table) -> World:

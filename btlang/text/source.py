@@ -12,15 +12,29 @@ from btlang.record import Record
 class Source:
     """One text to compile. `name` is what messages show: a path, `-` or `<text>`.
 
-    What the text includes is looked for in `folder`, by default that of the path.
+    What the text includes is looked for in `folder`, by default that of the path. It has to lie below one of the
+    folders `roots`, by default `folder`; with () nothing can be included. Messages show nothing of a `hidden` text but
+    places in it; with `hides_includes`, what the text includes is hidden, since its author may not read these files.
     """
 
-    __slots__ = ("_starts", "folder", "name", "text")
+    __slots__ = ("_starts", "folder", "hidden", "hides_includes", "name", "roots", "text")
 
-    def __init__(self, text: str, name: str = "<text>", folder: str | None = None) -> None:
+    def __init__(
+        self,
+        text: str,
+        name: str = "<text>",
+        folder: str | None = None,
+        roots: tuple[str, ...] | None = None,
+        *,
+        hidden: bool = False,
+        hides_includes: bool = False,
+    ) -> None:
         self.text = text
         self.name = name
         self.folder = os.path.dirname(name) if folder is None else folder
+        self.roots = (self.folder,) if roots is None else roots
+        self.hidden = hidden
+        self.hides_includes = hides_includes
         self._starts: list[int] | None = None
 
     def position(self, offset: int) -> tuple[int, int]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import signal
 import sys
 import time
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -150,3 +151,30 @@ def test_wrong_options(options: list[str], capsys: pytest.CaptureFixture[str]):
         main(["ros-node", *options])
     assert caught.value.code == 2
     assert "usage: btc ros-node" in capsys.readouterr().err
+
+
+def test_what_others_send_reads_no_files_and_runs_no_python(
+    start_node, client: Client, run_mission: Any, tmp_path: Path
+):
+    (tmp_path / "hop.py").write_text("def hop():\n    open('hopped', 'w').close()\n")
+    (tmp_path / "hop.toml").write_text('[[action]]\nphrase = "hop"\nid = "Hop"\ncall = "hop:hop"\n')
+    (tmp_path / "secret.txt").write_text("xyzzy\n")
+    words = [str(tmp_path / "hop.toml")]
+    start_node("--speed", "10")
+    included = mission(client, run_mission, f'include "{tmp_path}/secret.txt"\nwave').result().result
+    assert "nothing may be included here" in included.reason
+    assert "--allow-keywords" in mission(client, run_mission, "hop", keywords=words).result().result.reason
+    assert "--allow-keywords" in mission(client, run_mission, "hop", keywords=["/dev/zero"]).result().result.reason
+
+
+def test_what_the_node_allows(start_node, client: Client, run_mission: Any, tmp_path: Path):
+    (tmp_path / "hop.py").write_text("def hop():\n    return True\n")
+    (tmp_path / "hop.toml").write_text('[[action]]\nphrase = "hop"\nid = "Hop"\ncall = "hop:hop"\n')
+    (tmp_path / "secret.txt").write_text("xyzzy\n")
+    (tmp_path / "dances.txt").write_text("dance is nod\n")
+    start_node("--speed", "10", "--allow-keywords", str(tmp_path), "--include-root", str(tmp_path))
+    words = [str(tmp_path / "hop.toml")]
+    assert mission(client, run_mission, 'include "dances.txt"\ndance then hop', keywords=words).result().result.success
+    wrong = mission(client, run_mission, 'include "secret.txt"\nwave').result().result
+    assert "secret.txt:1:1: error BT010" in wrong.reason
+    assert "xyzzy" not in wrong.reason

@@ -6,7 +6,7 @@ import os
 from collections.abc import Collection, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
-from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.reading import MOST_DEEP, TOO_DEEP, included_path, read_included
 from btlang.frontends.btcpp.file import TreeHead, XmlFile
 from btlang.frontends.btcpp.models import MODEL_KINDS, nav2_models, subtree_defaults
 from btlang.frontends.btcpp.origin import XmlOrigin
@@ -21,7 +21,6 @@ from btlang.vocabulary.keyword_file import NODE_IDS
 
 _NO_NODES = NODE_IDS | TO_4.keys() | {"root", "BehaviorTree", MODEL, *MODEL_KINDS}
 """Tags that are no ids of nodes that somebody made."""
-_MOST_FILES = 50  # that include each other in a row
 _MAIN = "main_tree_to_execute"
 _ROS_FOLDERS = "AMENT_PREFIX_PATH"  # where ROS 2 has its packages
 
@@ -88,26 +87,28 @@ class _Reader:
             self._include(attributes, span, within, file.dialect)
 
     def _include(self, attributes: dict[str, str], span: Span, within: tuple[str, ...], dialect: int) -> None:
-        path = os.path.join(span.source.folder, attributes["path"])
-        if "ros_pkg" in attributes:
-            found = _in_package(attributes["ros_pkg"], attributes["path"])
-            if found is None:
-                self._not_included(span, path=attributes["path"], reason=_no_package(attributes["ros_pkg"]))
+        path, source = attributes["path"], span.source
+        if "ros_pkg" in attributes and source.roots:
+            folder = _package_folder(attributes["ros_pkg"])
+            if folder is None:
+                self._not_included(span, path=path, reason=_no_package(attributes["ros_pkg"]))
                 return
-            path = found
-        real = os.path.realpath(path)
-        if real in within or len(within) >= _MOST_FILES:
-            circle = " -> ".join(map(os.path.basename, (*within[within.index(real) if real in within else 0 :], real)))
-            self._not_included(span, path=attributes["path"], reason=f"it includes itself: {circle}")
+            source = Source("", folder=folder)  # an installed package may be included from anywhere
+        _, real = included_path(path, source)
+        if real in within:
+            circle = " -> ".join(map(os.path.basename, (*within[within.index(real) :], real)))
+            self._not_included(span, path=path, reason=f"it includes itself: {circle}")
+        elif len(within) >= MOST_DEEP:
+            self._not_included(span, path=path, reason=TOO_DEEP)
         elif real not in self._read:
             try:
-                included = read_source(path)
+                included = read_included(path, source)
             except MissionError as error:
                 [problem] = error.diagnostics
                 if problem.code != "BT001":
                     self._problems.append(problem)
                     return
-                self._not_included(span, path=attributes["path"], reason=dict(problem.arguments)["reason"])
+                self._not_included(span, path=path, reason=dict(problem.arguments)["reason"])
                 return
             self._add(included, (*within, real), dialect)
 
@@ -165,11 +166,11 @@ def no_tree(span: Span, name: str, trees: Collection[str]) -> Diagnostic:
     return diagnostic("BT126", span, name=name, help=told)
 
 
-def _in_package(package: str, path: str) -> str | None:
-    """A file of a ROS 2 package, None where it is not installed."""
+def _package_folder(package: str) -> str | None:
+    """The folder of a ROS 2 package, None where it is not installed."""
     for prefix in os.environ.get(_ROS_FOLDERS, "").split(os.pathsep):
-        found = os.path.join(prefix, "share", package, path)
-        if prefix and os.path.exists(found):
+        found = os.path.join(prefix, "share", package)
+        if prefix and os.path.isdir(found) and package == os.path.basename(package):
             return found
     return None
 

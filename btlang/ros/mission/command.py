@@ -31,6 +31,13 @@ def add_node_options(parser: argparse.ArgumentParser) -> None:
         default=True,
         help="configure and activate the node at once (default), or leave that to a lifecycle manager",
     )
+    parser.add_argument(
+        "--allow-keywords",
+        action="append",
+        default=[],
+        metavar="NAME|DIR",
+        help="other programs may use this pack, or the keyword files below DIR; they run Python (default: none)",
+    )
     parser.add_argument("--ros-args", nargs=argparse.REMAINDER, help="the rest are arguments of ROS 2")
     parser.set_defaults(refuse=parser.error)
 
@@ -56,7 +63,7 @@ def serve(options: argparse.Namespace) -> int:
 
     setup = Setup(
         options.name, options.robot, options.sim_time, options.namespace, options.speed,
-        options.mission, options.keywords, options.world, options.parser,
+        options.mission, options.keywords, options.world, options.parser, options.include_root, options.allow_keywords,
     )  # fmt: skip
     controls = Controls()
     with ending_signals() as came:

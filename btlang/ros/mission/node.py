@@ -9,7 +9,7 @@ from std_srvs.srv import Trigger
 
 from btlang.api import RunnableTree
 from btlang.diagnostics.diagnostic import MissionError
-from btlang.diagnostics.reading import read_source
+from btlang.diagnostics.reading import read_included, read_source
 from btlang.ros.mission.progress import News, Progress
 from btlang.ros.mission.run import MissionRun, Report, problems
 from btlang.ros.mission.server import MissionServer
@@ -48,7 +48,7 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
         self._active = False
         self.error: MissionError | None = None
         self.declare_parameter("mission", "")
-        self.declare_parameter("mission_file", setup.file)
+        self._first_file: str = self.declare_parameter("mission_file", setup.file).value
         self._topics = Topics(self, show, self._health)
         self.create_service(Trigger, "~/stop", self._stop)
         self._server = MissionServer(self, self._hindrance, self._begin_goal, self._topics.complain)
@@ -142,7 +142,7 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
     def _begin_goal(
         self, request: Any, changed: Callable[[News], object], ended: Callable[[Report], object]
     ) -> MissionRun:
-        return self._begin(Source(request.mission, "mission"), request.keywords, changed, ended)
+        return self._begin(self._setup.sent(request.mission), request.keywords, changed, ended)
 
     def _begin(
         self,
@@ -170,6 +170,7 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
             ended(report)
 
         def compiled() -> RunnableTree:
+            self._setup.check_keywords(keywords)
             return self._setup.compiled(source, keywords)
 
         self._run = MissionRun(self._stage, compiled, watch, over, self._setup.speed)
@@ -177,7 +178,11 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
 
     def _own_mission(self) -> Source | None:
         text, file = (str(self.get_parameter(name).value) for name in ("mission", "mission_file"))
-        return Source(text, "mission") if text else read_source(file) if file else None
+        if text:
+            return self._setup.sent(text)
+        if file == self._first_file:
+            return read_source(file, self._setup.include_root) if file else None
+        return read_included(file, self._setup.sent(""))  # any program may set a parameter
 
     def _health(self) -> tuple[bytes, str, dict[str, str]]:
         values = {"robot": self._setup.robot, "active": str(self._active), "running": self._running}

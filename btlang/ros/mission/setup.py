@@ -2,21 +2,31 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
 from functools import partial
 
 from btlang.api import RunnableTree, parse_tree, read_world
+from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.diagnostics.reading import is_below
 from btlang.record import Record
 from btlang.robots.stages import stage_maker
-from btlang.text.source import Source
+from btlang.text.source import Source, Span
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.run.stage import Stage
 
 
+_NOT_ALLOWED = "other programs may not use it; the node allows it with --allow-keywords and its name or folder"
+
+
 class Setup(Record):
-    """`robot` is a name of ROBOTS; `file` is the mission that the node runs when it is activated, "" for none."""
+    """`robot` is a name of ROBOTS; `file` is the mission that the node runs when it is activated, "" for none.
+
+    What other programs send may include only files below `include_root`, and use only the keyword files of
+    `allowed_keywords`: names of packs, and folders.
+    """
 
     name: str = "btlang"
     robot: str = "simulated"
@@ -27,6 +37,8 @@ class Setup(Record):
     keywords: Sequence[str] = ()
     world: str | None = None
     parser: str = "shunting-yard"
+    include_root: str | None = None
+    allowed_keywords: Sequence[str] = ()
 
     def stage(self) -> Stage:
         """The robot in its world. Raises MissionError."""
@@ -34,6 +46,24 @@ class Setup(Record):
         if self.robot != "simulated":
             make = partial(make, sim_time=self.sim_time, namespace=self.namespace, name=f"{self.name}_robot")
         return make(read_world(self.world))
+
+    def sent(self, text: str) -> Source:
+        """A mission that another program sent."""
+        root = self.include_root
+        return Source(text, "mission", root or "", () if root is None else (root,), hides_includes=True)
+
+    def check_keywords(self, names: Sequence[str]) -> None:
+        """Raises MissionError (BT001) where another program may not use one of these keyword files."""
+        for name in names:
+            if name not in self.allowed_keywords and not self._is_in_allowed_folder(name):
+                where = Span(Source("", "keywords"), 0, 0)
+                raise MissionError([diagnostic("BT001", where, file=name, reason=_NOT_ALLOWED)])
+
+    def _is_in_allowed_folder(self, name: str) -> bool:
+        if "\0" in name or not os.path.isfile(name):
+            return False
+        folders = [name for name in self.allowed_keywords if os.path.isdir(name)]
+        return any(is_below(os.path.realpath(name), folder) for folder in folders)
 
     def compiled(self, source: Source, keywords: Sequence[str] = ()) -> RunnableTree:
         """A mission, with further keyword files. Raises MissionError."""
