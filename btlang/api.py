@@ -12,6 +12,7 @@ from btlang.frontends.mission import DEFAULT_PARSER, read_mission
 from btlang.garbage import no_collection
 from btlang.passes import checked, compile_mission, lower_mission
 from btlang.passes.lint import lint
+from btlang.text.output import show
 from btlang.text.source import NOWHERE, Source, Span
 from btlang.tree.ast import Fact, Mission, all_facts, exact_nodes
 from btlang.tree.node import Node, Tree
@@ -168,7 +169,7 @@ class RunnableTree:
 
     def print(self) -> None:
         """Prints the tree with its branches drawn."""
-        print(self)
+        show(str(self))
 
     def explain(self, width: int = 100) -> str:
         """Each statement as written, in English whose brackets show how it was read, and as a tree.
@@ -246,8 +247,8 @@ class RunnableTree:
 
         Tells the sentence, with `colour` underlined in red, the leaf and its reason, and what had been tried before.
         """
-        from btlang.diagnostics.render import RED
         from btlang.run.report import failure_report
+        from btlang.text.output import RED
 
         failure = self._story.engine.failure if self._story is not None else None
         if failure is None or self._story is None:

@@ -15,6 +15,7 @@ from btlang.cli_options import WIDEST, parsed
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.reading import read_source, reason_of
 from btlang.diagnostics.report import Report
+from btlang.text.output import pass_on, show
 from btlang.text.source import Source
 
 SUCCESS, FAILED, UNFORMATTED, BAD_INPUT, INTERRUPTED = 0, 1, 1, 2, 130
@@ -44,7 +45,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         # the reader of our output has seen enough, or the terminal is gone
         codes = {errno.EPIPE: SUCCESS, errno.EIO: INTERRUPTED}
         if error.errno not in codes:
-            print(f"btc: {reason_of(error)}", file=sys.stderr)
+            show(f"btc: {reason_of(error)}", stream=sys.stderr)
         nowhere = os.open(os.devnull, os.O_WRONLY)
         for stream in (sys.stdout, sys.stderr):
             os.dup2(nowhere, stream.fileno())
@@ -80,7 +81,7 @@ def _run(options: argparse.Namespace) -> int:
 def _check(options: argparse.Namespace) -> int:
     _tree(options).check()
     if not options.report.is_json:
-        print("The mission is fine.")
+        show("The mission is fine.")
     return SUCCESS
 
 
@@ -91,7 +92,7 @@ def _show_tree(options: argparse.Namespace) -> int:
     if options.picture is not None:
         _draw_tree(tree, options.picture, options.apart)
         return SUCCESS
-    print(plain(tree.tree) if options.plain else tree)
+    show(plain(tree.tree) if options.plain else str(tree))
     return SUCCESS
 
 
@@ -101,7 +102,7 @@ def _draw_tree(tree: RunnableTree, path: str, apart: bool) -> None:
 
     check_picture(path)
     draw_tree(tree.tree, tree.label, tree.is_action, path, apart=apart)
-    print(f"The tree is drawn in {path}.")
+    show(f"The tree is drawn in {path}.")
 
 
 def _compile(options: argparse.Namespace) -> int:
@@ -121,7 +122,7 @@ def _compile(options: argparse.Namespace) -> int:
     elif isinstance(made, bytes):
         sys.stdout.buffer.write(made)
     else:
-        sys.stdout.write(made)
+        pass_on(made)
     return SUCCESS
 
 
@@ -129,7 +130,7 @@ def _words(options: argparse.Namespace) -> int:
     from btlang.vocabulary.listing import listing
 
     lines = listing(world_vocabulary(options.keywords, options.world), " ".join(options.search))
-    print("\n".join(lines))
+    show("\n".join(lines))
     return SUCCESS
 
 
@@ -139,11 +140,11 @@ def _examples(options: argparse.Namespace) -> int:
     chosen = examples.found(options.name) if options.name else examples.examples()
     if options.copy is not None:
         written = examples.copied(options.copy, chosen)
-        print("\n".join((*written, f"The command at the top of each mission runs it in the folder {options.copy}.")))
+        show("\n".join((*written, f"The command at the top of each mission runs it in the folder {options.copy}.")))
     elif options.name:
-        print("\n\n".join(example.text.rstrip("\n") for example in chosen))
+        show("\n\n".join(example.text.rstrip("\n") for example in chosen))
     else:
-        print("\n".join(examples.listing()))
+        show("\n".join(examples.listing()))
     return SUCCESS
 
 
@@ -153,7 +154,7 @@ def _explain(options: argparse.Namespace) -> int:
     subject = options.file
     if options.text is not None or (subject is not None and not is_code(subject) and _is_file(subject)):
         return _explain_mission(options)
-    print(all_codes() if subject is None else explain_code(subject))
+    show(all_codes() if subject is None else explain_code(subject))
     return SUCCESS
 
 
@@ -167,7 +168,7 @@ def _explain_mission(options: argparse.Namespace) -> int:
 
     width = get_terminal_size((100, 24)).columns
     tree = _tree(options)
-    print(tree.explain(min(width, WIDEST)))
+    show(tree.explain(min(width, WIDEST)))
     return SUCCESS
 
 
@@ -193,15 +194,15 @@ def _format_one(source: Source, options: argparse.Namespace) -> bool:
     changes = text != source.text
     if options.check:
         if changes:
-            print(f"{source.name} would change.")
+            show(f"{source.name} would change.")
         return changes
     if options.text is not None or source.name == "-":
-        print(text, end="")
+        pass_on(text)
     elif changes:
         from btlang.backends.files import replace_text
 
         replace_text(source.name, text)
-        print(f"{source.name} is laid out anew.")
+        show(f"{source.name} is laid out anew.")
     return False
 
 

@@ -11,6 +11,7 @@ from btlang.api import RATES
 from btlang.arguments import between, duration, picture, speed
 from btlang.diagnostics.report import FORMATS
 from btlang.frontends.mission import DEFAULT_PARSER, PARSERS
+from btlang.text.output import show
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -203,3 +204,6 @@ class _Help(argparse.HelpFormatter):
 class _Parser(argparse.ArgumentParser):
     def __init__(self, prog: str | None = None, **options: Any) -> None:
         super().__init__(prog, formatter_class=_Help, **options)
+
+    def _print_message(self, message: str, file: Any = None) -> None:
+        show(message, sys.stderr if file is None else file, end="")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from btlang.diagnostics.codes import CODES, Code
 from btlang.record import Record
+from btlang.text.output import one_line
 from btlang.text.source import Span
 
 _LONGEST = 160  # characters of an argument in a message
@@ -68,7 +69,7 @@ def _grows_together(span: Span, words: str) -> bool:
 
 def _shown(text: str) -> str:
     short = text if len(text) <= _LONGEST else text[: _LONGEST // 2] + " ... " + text[-_LONGEST // 2 :]
-    return "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in short)
+    return one_line(short)
 
 
 class MissionError(Exception):

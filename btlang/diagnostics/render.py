@@ -5,13 +5,13 @@ from __future__ import annotations
 import os
 
 from btlang.diagnostics.diagnostic import Diagnostic
+from btlang.text.output import CYAN, PLAIN, RED, YELLOW, one_line
 from btlang.text.source import Span
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import TextIO
 
-RED, YELLOW, CYAN, _PLAIN = "\x1b[1;31m", "\x1b[1;33m", "\x1b[36m", "\x1b[0m"
 _COLOURS = {"error": RED, "warning": YELLOW}
 _WIDEST = 120
 
@@ -27,10 +27,11 @@ def render(diagnostic: Diagnostic, colour: bool = False) -> str:
     """
     severity = diagnostic.kind.severity
     own, noted = (_COLOURS[severity], CYAN) if colour else ("", "")
+    place = one_line(diagnostic.span.place)
     if diagnostic.span.source.hidden:
-        return f"{diagnostic.span.place}: {_painted(f'{severity} {diagnostic.code}', own)} (its text isn't shown here)"
+        return f"{place}: {_painted(f'{severity} {diagnostic.code}', own)} (its text isn't shown here)"
     label = _painted(f"{severity} {diagnostic.code}:", own)
-    lines = [f"{diagnostic.span.place}: {label} {diagnostic.message}", *underlined(diagnostic.span, own)]
+    lines = [f"{place}: {label} {diagnostic.message}", *underlined(diagnostic.span, own)]
     lines += [f"  {line}" for line in diagnostic.hint.splitlines()]
     line = mended_line(diagnostic)
     if line:
@@ -38,7 +39,7 @@ def render(diagnostic: Diagnostic, colour: bool = False) -> str:
         elsewhere = number != diagnostic.span.source.position(diagnostic.span.start)[0]
         lines.append(f"  Perhaps{f', in line {number}' if elsewhere else ''}: {line}")
     for span, text in diagnostic.notes:
-        lines += [f"  {span.place}: {text}", *underlined(span, noted)]
+        lines += [f"  {one_line(span.place)}: {text}", *underlined(span, noted)]
     return "\n".join(lines)
 
 
@@ -53,7 +54,7 @@ def mended_line(diagnostic: Diagnostic) -> str:
     if last > len(line) or "\n" in words:
         return ""
     before, after = line[:first], line[last:]
-    mended = _printable(f"{before}{words}{after}".strip())
+    mended = _blanked(f"{before}{words}{after}".strip())
     shown = mended  # a hint that has the words together with the one before them says enough
     if before.strip():
         shown = words if span.start < diagnostic.span.start else f"{before.split()[-1]} {words}"
@@ -74,7 +75,7 @@ def underlined(span: Span, colour: str = "") -> list[str]:
         line = before + line[cut : cut + _WIDEST] + after
         first, last = first - cut + len(before), min(last - cut + len(before), len(line))
     marks = "^" * max(1, last - first)
-    return [f"  {_printable(line)}".rstrip(), "  " + " " * first + _painted(marks, colour)]
+    return [f"  {_blanked(line)}".rstrip(), "  " + " " * first + _painted(marks, colour)]
 
 
 def has_colour(stream: TextIO | None) -> bool:
@@ -92,8 +93,9 @@ def has_colour(stream: TextIO | None) -> bool:
 
 
 def _painted(text: str, colour: str) -> str:
-    return f"{colour}{text}{_PLAIN}" if colour else text
+    return f"{colour}{text}{PLAIN}" if colour else text
 
 
-def _printable(line: str) -> str:
+def _blanked(line: str) -> str:
+    """One character for each, so that what is underlined stays above its marks."""
     return "".join(c if c.isprintable() else " " for c in line)

@@ -10,6 +10,7 @@ import sys
 from collections.abc import Iterable
 
 from btlang.diagnostics.diagnostic import Diagnostic, in_order
+from btlang.text.output import show
 from btlang.text.source import Span
 
 TYPE_CHECKING = False
@@ -38,12 +39,12 @@ class Report:
             from btlang.diagnostics.render import has_colour, render  # most missions have nothing to tell of
 
             colour = has_colour(sys.stderr)
-            print("\n\n".join(render(problem, colour) for problem in problems), file=sys.stderr)
+            show("\n\n".join(render(problem, colour) for problem in problems), stream=sys.stderr)
 
     def close(self) -> None:
         """Prints the document, `[]` where there was nothing to tell."""
         if self.is_json:
-            print(as_json(self._held), file=sys.stdout if self._on_output else sys.stderr)
+            show(as_json(self._held), stream=sys.stdout if self._on_output else sys.stderr)
 
 
 def as_json(problems: Iterable[Diagnostic]) -> str:

@@ -4,6 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from btlang.engine.leaf import ActionFailed
+
+MOST_TEXT = 1_000_000
+"""Characters of the longest text that is kept: a script that doubles one would fill the memory."""
+
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
@@ -63,7 +68,9 @@ class Blackboard:
         return value if isinstance(value, str) else None
 
     def set(self, key: str, value: Any) -> None:
-        """Sets the value in the scope that owns the key."""
+        """Sets the value in the scope that owns the key. Raises ActionFailed for a text longer than MOST_TEXT."""
+        if value.__class__ is str:
+            checked_length(value)
         scope, key = self._owner(key)
         scope._values[key] = value
         if key in scope._writes:
@@ -93,3 +100,10 @@ class Blackboard:
             if scope is not None:
                 found.update(dict.fromkeys(key for key in scope._values if key[:1] != "_"))
         return list(found)
+
+
+def checked_length(text: str) -> str:
+    """The text. Raises ActionFailed where it is longer than MOST_TEXT."""
+    if len(text) > MOST_TEXT:
+        raise ActionFailed(f"a text of more than {MOST_TEXT:,} characters is too long for a value")
+    return text

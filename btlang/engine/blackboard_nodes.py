@@ -38,9 +38,9 @@ def set_blackboard(site: Site, children: Sequence[Compiled]) -> Compiled:
             new: Any = value if key is None else value_of(scope, key)
             if new.__class__ is str:
                 new = _of_kind(new, scope, target, enums)
+            scope.set(target, new)
         except ActionFailed as failed:
             return site.fail(str(failed))
-        scope.set(target, new)
         return SUCCESS
 
     return tick, halt_nothing

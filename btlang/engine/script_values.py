@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from math import copysign, inf, nan
 
+from btlang.engine.blackboard import checked_length
 from btlang.engine.leaf import ActionFailed
 
 TYPE_CHECKING = False
@@ -82,7 +83,8 @@ def complement(value: Any) -> float:
 
 def plus(left: Any, right: Any) -> Any:
     if left.__class__ is right.__class__ and (left.__class__ is float or left.__class__ is str):
-        return left + right
+        total = left + right
+        return checked_length(total) if total.__class__ is str else total
     raise _unfit("+", "two numbers or two texts", left, right)
 
 
@@ -110,11 +112,11 @@ def divide(left: Any, right: Any) -> float:
 def concat(left: Any, right: Any) -> str:
     if left.__class__ is str:
         if right.__class__ is str:
-            return left + right
+            return checked_length(left + right)
         if right.__class__ is float:
-            return left + as_text(right)
+            return checked_length(left + as_text(right))
     elif left.__class__ is float and right.__class__ is str:
-        return as_text(left) + right
+        return checked_length(as_text(left) + right)
     raise _unfit("..", "two texts, or a text and a number", left, right)
 
 

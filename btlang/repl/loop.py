@@ -16,6 +16,7 @@ from btlang.repl.entering import entries
 from btlang.repl.session import Session
 from btlang.repl.store import Kept, Store, state_folder
 from btlang.run.command import ENDING_SIGNALS, can_draw, run_mission
+from btlang.text.output import show
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -50,7 +51,7 @@ class Repl:
     def __init__(self, session: Session, store: Store, speed: float | str) -> None:
         self._session = session
         self._store = store
-        self._commands = Commands(session, print, self._run_all, store)
+        self._commands = Commands(session, show, self._run_all, store)
         self._commands.speed = speed
 
     def talk(self) -> None:
@@ -58,27 +59,27 @@ class Repl:
         from btlang.repl.screen import CONTINUED, PROMPT, Screen
 
         screen = Screen(self._session, self._store)
-        print("btlang: type what the robot is to do. 'help' tells more; Ctrl-D twice leaves.")
+        show("btlang: type what the robot is to do. 'help' tells more; Ctrl-D twice leaves.")
         if self._store.problem:
-            print(f"What you type is not kept: {self._store.problem}")
+            show(f"What you type is not kept: {self._store.problem}")
         left = self._store.left()
         if left is not None:
-            print(f"The last session was left with {_count(left)}: 'restore' brings it back.")
+            show(f"The last session was left with {_count(left)}: 'restore' brings it back.")
         while True:
             try:
                 text = screen.ask(self._commands.draft)
                 self._commands.draft = ""
-                print(PROMPT + text.replace("\n", f"\n{CONTINUED}"))
+                show(PROMPT + text.replace("\n", f"\n{CONTINUED}"))
                 self._do(text)
                 self._keep()
             except (EOFError, Leave):
                 break
             except KeyboardInterrupt:
-                print()
+                show()
         if self._commands.is_saved:
             self._store.forget()
         else:
-            print("This session is kept: after the next start, 'restore' brings it back.")
+            show("This session is kept: after the next start, 'restore' brings it back.")
 
     def read(self, lines: Iterable[str]) -> int:
         """From lines; returns 0, or 1 where a command failed, or 2 where an entry was wrong."""
@@ -103,13 +104,13 @@ class Repl:
             self._session.add(compiled.entry)
             self._keep()  # before it runs: a crash on the way loses nothing
             for warning in compiled.tree.warnings:
-                print(render(warning, has_colour(sys.stdout)))
+                show(render(warning, has_colour(sys.stdout)))
             if compiled.entry.has_command:
                 return self._run(compiled.tree)
-            print("Defined: " + ", ".join(name for name, _ in compiled.entry.definitions))
+            show("Defined: " + ", ".join(name for name, _ in compiled.entry.definitions))
         except MissionError as error:
-            print(
-                "\n\n".join(render(problem, has_colour(sys.stderr)) for problem in error.diagnostics), file=sys.stderr
+            show(
+                "\n\n".join(render(problem, has_colour(sys.stderr)) for problem in error.diagnostics), stream=sys.stderr
             )
             return 2
         return 0

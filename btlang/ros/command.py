@@ -11,6 +11,7 @@ from btlang.arguments import namespace
 from btlang.robots.stages import ROBOTS, stage_maker
 from btlang.ros.available import require_interfaces, require_ros
 from btlang.ros.serving.names import FOLDER
+from btlang.text.output import show
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -97,7 +98,7 @@ def print_preflight(tree: Tree, vocabulary: Vocabulary, world: World, robot: Any
         found = stage.survey(tree, vocabulary)
     for interface, (_, reason) in found.items():
         state = f"missing: {reason}" if reason else "found"
-        print(f"{interface.sort:<7} {interface.name:<20} {interface.type:<36} {state}")
+        show(f"{interface.sort:<7} {interface.name:<20} {interface.type:<36} {state}")
     missing = sum(bool(reason) for _, reason in found.values())
-    print(f"The robot lacks {missing} of {len(found)}." if missing else "The robot has all that the mission needs.")
+    show(f"The robot lacks {missing} of {len(found)}." if missing else "The robot has all that the mission needs.")
     return not missing

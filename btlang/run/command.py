@@ -16,6 +16,7 @@ from btlang.run.emergency import emergency_signal
 from btlang.run.json_log import JsonLog
 from btlang.run.lines import Lines, brief
 from btlang.run.runner import Outcome
+from btlang.text.output import show
 from btlang.tree.node import Node, Tree
 
 TYPE_CHECKING = False
@@ -83,7 +84,7 @@ def run_mission(
     `robot` is as for `RunnableTree.run`.
     """
     view = None if quiet or lines else _live_view(tree, keys, tree_stays)
-    shown: list[Sink] = [view] if view is not None else [] if quiet else [Lines(tree.label, tree.is_action, _print)]
+    shown: list[Sink] = [view] if view is not None else [] if quiet else [Lines(tree.label, tree.is_action, show)]
     sinks = [*shown, *sinks]
     try:
         with (
@@ -103,12 +104,12 @@ def run_mission(
     except OSError as error:
         raise MissionError([unwritable(log or "the output", error)]) from None
     if outcome.worst is not None and not quiet:
-        print(_too_slow(outcome, outcome.worst, tree.label))
+        show(_too_slow(outcome, outcome.worst, tree.label))
     if outcome.status == FAILURE:
-        print(tree.why(colour=has_colour(sys.stderr)), file=sys.stderr)
+        show(tree.why(colour=has_colour(sys.stderr)), stream=sys.stderr)
         return 1
     if not quiet:
-        print(_ending(outcome))
+        show(_ending(outcome))
     return {"interrupted": 130, "emergency stop": EMERGENCY_STOPPED}.get(outcome.stopped, 0)
 
 
@@ -173,7 +174,3 @@ def _ending(outcome: Outcome) -> str:
     if outcome.status == SKIPPED:
         return f"The mission had nothing to do ({seconds}): every command was skipped."
     return f"The mission succeeded in {seconds}."
-
-
-def _print(line: str) -> None:
-    print(line, flush=True)

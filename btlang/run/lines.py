@@ -6,6 +6,7 @@ from collections.abc import Callable
 
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED
 from btlang.run.events import Overrun, RobotEvent, StatusChanged, StatusesChanged
+from btlang.text.output import one_line
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False
@@ -65,7 +66,7 @@ class Lines:
             self._line(event.t, "error", str(event.data.get("text", "")))
 
     def _line(self, t: float, word: str, rest: str) -> None:
-        self._write(f"{t:7.2f}  {word:<6} {rest}".rstrip())
+        self._write(f"{t:7.2f}  {word:<6} {one_line(rest)}".rstrip())
 
 
 def brief(seconds: float) -> str:

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.run.command import run_mission
+from btlang.text.output import show
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -23,7 +24,7 @@ def run_module(tree: Runnable, arguments: Sequence[str] | None = None) -> int:
         factor = speed if speed in ("real", "max") else float(speed)
         return run_mission(tree, speed=factor, rate=20.0, time_limit=None, log=None, quiet=False)
     except MissionError as error:
-        print(error, file=sys.stderr)
+        show(str(error), stream=sys.stderr)
         return 2
     except ValueError as error:
         parser.error(str(error))

@@ -8,6 +8,7 @@ from collections.abc import Callable, Iterator
 from btlang.diagnostics.render import underlined
 from btlang.engine.engine import Failure
 from btlang.run.story import Attempt, Attempts, Story
+from btlang.text.output import printable
 from btlang.tree.node import Node
 
 _LONGEST = 60  # of the words of a sentence beside a reason
@@ -18,7 +19,7 @@ def failure_report(failure: Failure, story: Story, label: Callable[[Node], str],
 
     `label` gives the words for a node.
     """
-    return "\n".join(_Report(failure, story, label).lines(colour))
+    return "\n".join(_one_line(line) for line in _Report(failure, story, label).lines(colour))
 
 
 class _Report:
@@ -108,3 +109,7 @@ def _raised(exception: BaseException | None) -> Iterator[str]:
 
         *_, frame = extract_tb(exception.__traceback__, limit=-1)
         yield f"  raised in {frame.name}, {os.path.basename(frame.filename)}:{frame.lineno}"
+
+
+def _one_line(line: str) -> str:
+    return printable(line).replace("\n", "\\n")

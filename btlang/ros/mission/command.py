@@ -10,6 +10,7 @@ from btlang.arguments import node_name
 from btlang.robots.stages import ROBOTS
 from btlang.ros.available import require_interfaces, require_ros
 from btlang.ros.command import add_namespace
+from btlang.text.output import show
 
 PACKAGES = ("diagnostic_msgs", "lifecycle_msgs", "std_msgs", "std_srvs")
 """The packages of messages that it needs beside rclpy and btlang_interfaces."""
@@ -72,7 +73,7 @@ def serve(options: argparse.Namespace) -> int:
             options.name,
             namespace=options.namespace,
             use_sim_time=options.sim_time,
-            make=partial(MissionNode, setup, _print),
+            make=partial(MissionNode, setup, show),
         )
         node: Any = spun.node
         try:
@@ -83,7 +84,7 @@ def serve(options: argparse.Namespace) -> int:
                 node.trigger_activate()
             with emergency_signal(node.emergency_stop):
                 spun.start()
-                _print(f"btlang ros-node: ready as {node.get_fully_qualified_name()}; Ctrl-C ends it")
+                show(f"btlang ros-node: ready as {node.get_fully_qualified_name()}; Ctrl-C ends it")
                 while not came.numbers:
                     controls.wait(None)
                 node.halt()
@@ -95,7 +96,3 @@ def serve(options: argparse.Namespace) -> int:
             finally:
                 node.release()
     return 128 + came.numbers[0]
-
-
-def _print(line: str) -> None:
-    print(line, flush=True)

@@ -16,6 +16,7 @@ from btlang.ros.command import add_namespace
 from btlang.ros.mission.setup import Setup
 from btlang.ros.serving.choosing import chosen, servable
 from btlang.ros.serving.names import FOLDER
+from btlang.text.output import show
 from btlang.text.source import NOWHERE
 from btlang.tree.node import Node, Tree
 
@@ -78,7 +79,7 @@ def _check(stage: Stage, ids: Sequence[str], vocabulary: Vocabulary) -> None:
     for interface, (node, reason) in survey(everything, vocabulary).items() if survey is not None else ():
         if reason:
             user = f", which {node.id} needs" if node is not None else ""
-            print(f"btlang serve-actions: no {interface.name}{user}: {reason}", file=sys.stderr)
+            show(f"btlang serve-actions: no {interface.name}{user}: {reason}", stream=sys.stderr)
     for node_id in ids:
         try:
             bind_leaf(node_id, vocabulary, stage.bind)
@@ -98,7 +99,7 @@ def _spin(stage: Stage, ids: Sequence[str], vocabulary: Vocabulary, options: arg
     from btlang.run.lines import Lines
     from btlang.run.runner import Runner
 
-    stage.begin([Lines(lambda node: phrase_of(node, vocabulary), lambda node: True, _print)])
+    stage.begin([Lines(lambda node: phrase_of(node, vocabulary), lambda node: True, show)])
     controls = Controls()
     work = Work(stage, vocabulary)
     runner = Runner(
@@ -113,7 +114,7 @@ def _spin(stage: Stage, ids: Sequence[str], vocabulary: Vocabulary, options: arg
             serve_actions(spun.node, ids, vocabulary, work, controls.emergency_stop)
             spun.start()
             where = f"{spun.node.get_namespace().rstrip('/')}/{FOLDER}"
-            _print(f"btlang serve-actions: ready with {len(ids)} actions in {where}; Ctrl-C ends it")
+            show(f"btlang serve-actions: ready with {len(ids)} actions in {where}; Ctrl-C ends it")
             while not came.numbers:
                 runner.run()  # until a signal, or an emergency stop, after which it goes on
                 controls.take_emergency()
@@ -122,7 +123,3 @@ def _spin(stage: Stage, ids: Sequence[str], vocabulary: Vocabulary, options: arg
         finally:
             spun.close()
     return 128 + came.numbers[0]
-
-
-def _print(line: str) -> None:
-    print(line, flush=True)

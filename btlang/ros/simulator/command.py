@@ -12,6 +12,7 @@ from btlang.arguments import between, real_speed
 from btlang.ros.command import add_namespace
 from btlang.ros.ending import ending_signals
 from btlang.run.emergency import emergency_signal
+from btlang.text.output import show
 
 PACKAGES = (
     "builtin_interfaces", "geometry_msgs", "nav_msgs", "rosgraph_msgs",
@@ -45,21 +46,17 @@ def serve(options: argparse.Namespace) -> int:
     from btlang.ros.simulator.simulator import Simulator, can_navigate
 
     with ending_signals() as came:
-        simulator = Simulator(world, namespace=options.namespace, gives_clock=options.clock, show=_print)
+        simulator = Simulator(world, namespace=options.namespace, gives_clock=options.clock, show=show)
         with simulator, emergency_signal(simulator.robot.stop):
             came.on_arrival = simulator.wake
             simulator.step(1 / rate)
             if not can_navigate():
-                print("btlang sim-ros: no /navigate_to_pose: the package nav2_msgs is not installed", file=sys.stderr)
+                show("btlang sim-ros: no /navigate_to_pose: the package nav2_msgs is not installed", stream=sys.stderr)
             where = f"domain {os.environ.get('ROS_DOMAIN_ID') or 0}, namespace /{options.namespace.strip('/')}"
-            _print(f"btlang sim-ros: ready at speed {speed:g} ({where}); Ctrl-C ends it")
+            show(f"btlang sim-ros: ready at speed {speed:g} ({where}); Ctrl-C ends it")
             due = monotonic()
             while not came.numbers:
                 due = max(due + 1 / (rate * speed), monotonic())  # time after a late step is not caught up with
                 simulator.work(due - monotonic())
                 simulator.step(1 / rate)
     return 128 + came.numbers[0]
-
-
-def _print(line: str) -> None:
-    print(line, flush=True)

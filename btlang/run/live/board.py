@@ -12,6 +12,7 @@ from btlang.run.lines import Lines
 from btlang.run.live import frame
 from btlang.run.live.shape import Shape
 from btlang.run.live.state import Reading, State, read_robot
+from btlang.text.output import one_line
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -48,7 +49,7 @@ class Board:
         span = mission.tree.root.span
         self.changes = 0
         self.state = State(Shape(parents), nodes)
-        self._title = frame.printable(os.path.basename(span.source.name)) if span is not None else "mission"
+        self._title = one_line(os.path.basename(span.source.name)) if span is not None else "mission"
         self._signs = signs
         self._words = frame.Words(nodes, mission.label)
         self._above: list[str] = []

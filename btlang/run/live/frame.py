@@ -11,6 +11,7 @@ from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 from btlang.record import Record
 from btlang.run.live.selection import LEAST_HEIGHT, Row, choose_rows
 from btlang.run.live.state import HALTED, SUSPENDED, Reading, State
+from btlang.text.output import one_line
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False
@@ -58,7 +59,7 @@ class Words:
             name = self._label(node)
             if (more and not _heads_a_block(node, first)) or first.lower() == name.lower():
                 first = ""  # the first of many sentences says too little, and a name twice too much
-            found = self._known[index] = printable(name), printable(first)
+            found = self._known[index] = one_line(name), one_line(first)
         return found
 
 
@@ -66,11 +67,6 @@ def _heads_a_block(node: Node, line: str) -> bool:
     """Whether the first line of a node's text is about all of it: `repeat 3 times:`."""
     inner, outer = node.children[0].span, node.span
     return line.endswith(":") and not (inner is not None and outer is not None and inner.start == outer.start)
-
-
-def printable(text: str) -> str:
-    """The text with a mark in place of each character that would do something to a terminal."""
-    return text if text.isprintable() else "".join(c if c.isprintable() else "\N{REPLACEMENT CHARACTER}" for c in text)
 
 
 def header(title: str, state: State, doing: str, signs: Signs) -> Line:
@@ -114,7 +110,7 @@ def robot_line(state: State, signs: Signs) -> Line:
     if held:
         parts.append("holds " + ", ".join(held))
     if state.said:
-        parts.append(f'said "{printable(state.said)}"')
+        parts.append(f'said "{one_line(state.said)}"')
     return (("robot ", "dim"), (signs.apart.join(parts) or "-", ""))
 
 
@@ -156,7 +152,7 @@ def _node(
 def _note(state: State, row: Row, words: Words, status: int) -> tuple[str, str]:
     """What is to be said of the end of a node, with its style."""
     if status == FAILURE:
-        reason = printable(_reason(state, row, words))
+        reason = one_line(_reason(state, row, words))
         return (f"  {reason}" if reason else ""), "red"
     is_leaf = state.shape.ends[row.node] == row.node + 1
     return ("  halted" if status == HALTED and is_leaf else ""), "yellow"

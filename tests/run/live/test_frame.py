@@ -132,7 +132,7 @@ def test_the_robot() -> None:
     state.robot = Reading(Pose(1.0, -0.001, 90.4), 87.4, None, "red cup")
     state.said = "Hello\x1b[2J!"
     assert text(robot_line(state, UNICODE)) == (
-        'robot x 1.00 m  y 0.00 m  heading 90° · battery 87% · holds red cup (right) · said "Hello\ufffd[2J!"'
+        'robot x 1.00 m  y 0.00 m  heading 90° · battery 87% · holds red cup (right) · said "Hello\\x1b[2J!"'
     )
 
 
