@@ -340,8 +340,7 @@ class RunnableTree:
         from btlang.run.runner import Runner, traced_engine
         from btlang.run.story import Story
 
-        for fact in self.facts:
-            stage.robot.add_place(Place(fact.name, fact.x, fact.y, fact.facing))
+        stage.robot.name_places(Place(fact.name, fact.x, fact.y, fact.facing) for fact in self.facts)
         stage.check(self.tree, self.vocabulary)
         stage.begin(sinks)
         try:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from importlib import import_module
+from types import ModuleType
 
 from btlang.backends.comparing import comparing
 from btlang.engine.build import EngineError
@@ -75,13 +76,31 @@ def _converter(slot: SlotSpec, vocabulary: Vocabulary) -> Callable[[str], Any]:
     return as_text
 
 
-def _search_beside(entry: Entry) -> None:
-    """The folder of a keyword file is searched for its modules, last, so that it hides no installed one."""
+_packages: dict[str, str] = {}  # of the modules beside keyword files, by their folders
+
+
+def _module(entry: Entry, name: str) -> ModuleType:
+    """The module beside the keyword file, else an installed one.
+
+    Those of one folder are a package whose name no other has: the modules of two packs may be called the same.
+    """
     if entry.span is None or not os.path.isfile(entry.span.source.name):
-        return
-    folder = os.path.dirname(os.path.abspath(entry.span.source.name))
-    if folder not in sys.path:
-        sys.path.append(folder)
+        return import_module(name)
+    folder = os.path.dirname(os.path.realpath(entry.span.source.name))
+    beside = os.path.join(folder, *name.split("."))
+    if not os.path.isfile(f"{beside}.py") and not os.path.isfile(os.path.join(beside, "__init__.py")):
+        return import_module(name)
+    package = _packages.setdefault(folder, f"btlang_words_{len(_packages)}")
+    if package not in sys.modules:
+        made = ModuleType(package, f"The modules beside the keyword files of {folder}.")
+        made.__path__ = [folder]
+        sys.modules[package] = made
+    try:
+        return import_module(f"{package}.{name}")
+    except ModuleNotFoundError as error:
+        if error.name is not None and os.path.isfile(os.path.join(folder, f"{error.name}.py")):
+            error.msg += f"; it is beside the keyword file: write 'from . import {error.name}'"
+        raise
 
 
 def _imported(entry: Entry) -> Callable[..., Any]:
@@ -91,9 +110,8 @@ def _imported(entry: Entry) -> Callable[..., Any]:
     if not entry.call:
         raise EngineError(f'its keyword entry in {entry.file} has no call = "module:name"', node)
     module, _, name = entry.call.partition(":")
-    _search_beside(entry)
     try:
-        found: Any = import_module(module)
+        found: Any = _module(entry, module)
         for part in name.split("."):
             found = getattr(found, part)
     except Exception as error:  # whatever a user's module raises while it is imported

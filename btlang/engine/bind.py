@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Collection
-from functools import lru_cache, partial
+from functools import partial
+from weakref import WeakKeyDictionary
 
 from btlang.engine.build import Site, blackboard_key
 from btlang.engine.leaf import LeafBinding, described
@@ -16,6 +17,10 @@ if TYPE_CHECKING:
 
     from btlang.engine.build import Compiled
     from btlang.engine.leaves import Stored
+
+
+# A signature costs more than the rest of a leaf. Weak, since a comparison is a function made for one run.
+_signatures: WeakKeyDictionary[Callable[..., Any], tuple[Parameter, ...]] = WeakKeyDictionary()
 
 
 class Plan:
@@ -127,14 +132,12 @@ def _fill(site: Site, call: Callable[..., Any], ports: Collection[str], services
 def _parameters(call: Callable[..., Any]) -> tuple[Parameter, ...]:
     from inspect import isfunction, signature
 
-    return _function_parameters(call) if isfunction(call) else tuple(signature(call).parameters.values())
-
-
-@lru_cache(maxsize=256)  # a signature costs more than the rest of a leaf, and a mission uses few functions
-def _function_parameters(call: Callable[..., Any]) -> tuple[Parameter, ...]:
-    from inspect import signature
-
-    return tuple(signature(call).parameters.values())
+    if not isfunction(call):
+        return tuple(signature(call).parameters.values())
+    found = _signatures.get(call)
+    if found is None:
+        found = _signatures[call] = tuple(signature(call).parameters.values())
+    return found
 
 
 def _known(named: Collection[str], services: Collection[str]) -> str:

@@ -20,7 +20,6 @@ _NONE: Holders = {}  # one for all
 def check_resources(tree: Tree, vocabulary: Vocabulary) -> list[Diagnostic]:
     """BT041 once for each parallel and resource that two of its children need."""
     problems: list[Diagnostic] = []
-    own = {node_id: entries[0].resources for node_id, entries in vocabulary.entries.items() if entries[0].resources}
     held_by_name: dict[str, Holders] = {}
     for name, root in used_first(tree):
         results: list[Holders] = []
@@ -32,8 +31,8 @@ def check_resources(tree: Tree, vocabulary: Vocabulary) -> list[Diagnostic]:
                 if node.id.startswith("Parallel"):
                     problems += _conflicts(inner)
                 results.append(_joined(inner))
-            elif node.id in own:
-                results.append(dict.fromkeys(own[node.id], node))
+            elif node.id in vocabulary.entries:
+                results.append(dict.fromkeys(vocabulary.entries[node.id][0].resources, node))
             elif node.id == "SubTree":
                 results.append(dict.fromkeys(held_by_name.get(node.port("ID"), ()), node))
             else:

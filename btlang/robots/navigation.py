@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from itertools import pairwise
 from math import cos, dist, radians, sqrt
 
@@ -76,10 +77,9 @@ class Navigator:
         self._planner: Planner | None = None
         self.journey: Journey | None = None
 
-    def add_place(self, place: Place) -> None:
-        """Names one more place, in place of one that is called the same."""
-        self._places = {name: known for name, known in self._places.items() if name.lower() != place.name.lower()}
-        self._places[place.name] = place
+    def name_places(self, places: Iterable[Place]) -> None:
+        """These are the named places from now on."""
+        self._places = {place.name: place for place in places}
 
     def start(self, name: str, pose: Pose | None = None) -> Journey:
         """Sets out at once; a journey under way is given up. Without a pose the name is one of the world's."""

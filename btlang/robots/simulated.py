@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from math import ceil
 from typing import Any
 
@@ -38,7 +38,7 @@ class SimulatedRobot:
     normal_turn = navigation.TURN
 
     def __init__(self, world: World, on_event: OnEvent | None = None) -> None:
-        self.world = world
+        self.world = self._given_world = world
         self.on_event = on_event
         self.time = 0.0
         self.stops = 0
@@ -185,10 +185,13 @@ class SimulatedRobot:
         distances = [(self.pose.distance_to(self.locate(name)), name) for name in self.world.names.people]
         return [name for distance, name in sorted(distances) if distance <= within]
 
-    def add_place(self, place: Place) -> None:
-        """Names one more place; one of the same name is replaced. The floor that is planned on does not grow."""
-        self.world = self.world.with_place(place)
-        self._navigator.add_place(place)
+    def name_places(self, places: Iterable[Place]) -> None:
+        """The places of a mission beside those of the world, in place of those of the mission before.
+
+        One of the same name is replaced. The floor that is planned on does not grow.
+        """
+        self.world = self._given_world.with_places(places)
+        self._navigator.name_places(self.world.places)
 
     def move_thing(self, name: str, x: float, y: float) -> None:
         """Puts an object or a person somewhere else, as somebody in the world would. Raises RobotError."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from itertools import pairwise
 
 from btlang.record import Record
@@ -107,8 +108,9 @@ class World(Record):
         """All that is fixed: walls first, then the sides of boxes."""
         return self.wall_segments() + tuple(edge for box in self.boxes for edge in box.edges())
 
-    def with_place(self, place: Place) -> World:
-        """The world with one more named place; it replaces a place of the same name."""
-        others = tuple(known for known in self.places if known.name.lower() != place.name.lower())
-        changed: World = self.replace(places=(*others, place))
+    def with_places(self, places: Iterable[Place]) -> World:
+        """The world with more named places; each replaces a place of the same name."""
+        named = {place.name.lower(): place for place in places}
+        others = tuple(known for known in self.places if known.name.lower() not in named)
+        changed: World = self.replace(places=(*others, *named.values()))
         return changed

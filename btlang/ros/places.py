@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from btlang.robots.geometry import Point, Pose
 from btlang.robots.navigation import ARM_REACH, TALKING_DISTANCE
 from btlang.robots.obstacles import Obstacles
@@ -17,13 +19,13 @@ class Places:
     """Metres on the map, which is that of the world file. Objects move when the robot carries them."""
 
     def __init__(self, world: World) -> None:
-        self.world = world
+        self.world = self._given_world = world
         self._obstacles = Obstacles(world)
         self._planner = Planner(world, self._obstacles)
 
-    def add(self, place: Place) -> None:
-        """Names one more place; one of the same name is replaced."""
-        self.world = self.world.with_place(place)
+    def name_places(self, places: Iterable[Place]) -> None:
+        """The places of a mission beside those of the world, in place of those of the mission before."""
+        self.world = self._given_world.with_places(places)
 
     def known(self, name: str) -> str:
         """The name as the world spells it. Raises RobotError for an unknown one."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from math import radians
 from typing import Any
 
@@ -212,9 +212,9 @@ class RosRobot:
         """Names of the people of the world file within so many metres, nearest first."""
         return self._places.nearby_people(within, self.pose)
 
-    def add_place(self, place: Place) -> None:
-        """Names one more place; one of the same name is replaced."""
-        self._places.add(place)
+    def name_places(self, places: Iterable[Place]) -> None:
+        """The places of a mission beside those of the world, in place of those of the mission before."""
+        self._places.name_places(places)
 
     # Power
     @property

@@ -32,7 +32,7 @@ class Stage(Protocol):
 
     @property
     def robot(self) -> Any:
-        """The robot (btlang.robots.robot.Robot), to which a mission may add places."""
+        """The robot (btlang.robots.robot.Robot), which learns the places of the mission."""
 
     def bind(self, entry: Entry, vocabulary: Vocabulary) -> LeafBinding | None:
         """How the robot itself does what an entry says; None where its `call` does. Raises MissionError."""

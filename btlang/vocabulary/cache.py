@@ -25,9 +25,12 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, TypeVar
 
+    Key = TypeVar("Key")
     Made = TypeVar("Made")
 
 _PROTOCOL = 5
+_MOST_IN_PROCESS = 16
+_in_process: dict[tuple[Any, ...], Any] = {}
 MOST_FILES = 20  # older ones are deleted
 _PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 _CODE = ("", "diagnostics", "robots", "text", "vocabulary")  # whose modules make what is kept; "" holds the version
@@ -38,15 +41,34 @@ def kept(kind: str, files: Sequence[str], make: Callable[[], Made]) -> Made:
     """What `make` gives, from the cache where it was made before of the same files by the same code.
 
     `kind` and `files` tell it from other things that are kept. What `make` raises comes through, and nothing is kept.
+    Within a process it is the same object each time, so it must not be changed.
     """
     identity = (kind, _PACKAGE, sys.version, *files)
     try:
-        folder = _own_folder()
-        state = [*map(_stamp, files), _code()]  # before they are read: a later change makes it another one
+        key = (identity, *map(stamp, files), _code())  # before they are read: a later change makes it another one
     except OSError:
         return make()
-    key = repr((identity, state)).encode(errors="surrogateescape")
-    path = os.path.join(folder, f"{kind}-{crc32(repr(identity).encode(errors='surrogateescape')):08x}")
+    return recent(_in_process, key, lambda: _from_folder(key, make))  # type: ignore[no-any-return]
+
+
+def recent(made: dict[Key, Made], key: Key, make: Callable[[], Made]) -> Made:
+    """What was made for the key before, where it is one of the latest; `made` keeps those."""
+    found = made.pop(key, None)
+    if found is None:
+        found = make()
+    made[key] = found
+    while len(made) > _MOST_IN_PROCESS:
+        made.pop(next(iter(made)), None)
+    return found
+
+
+def _from_folder(state: tuple[Any, ...], make: Callable[[], Made]) -> Made:
+    key, identity = (repr(part).encode(errors="surrogateescape") for part in (state, state[0]))
+    try:
+        folder = _own_folder()
+    except OSError:
+        return make()
+    path = os.path.join(folder, f"{state[0][0]}-{crc32(identity):08x}")
     found = _loaded(path, key)
     if found is not None:
         return found  # type: ignore[no-any-return]
@@ -78,10 +100,10 @@ def _code() -> str:
     for folder in _CODE:
         path = os.path.join(_PACKAGE, folder)
         modules += [os.path.join(path, name) for name in os.listdir(path) if name.endswith(".py")]
-    return repr([_stamp(path) for path in sorted(modules)])
+    return repr([stamp(path) for path in sorted(modules)])
 
 
-def _stamp(path: str) -> tuple[str, int, int, int, int]:
+def stamp(path: str) -> tuple[str, int, int, int, int]:
     """Changes with each change of a file, as the times do (to 4 ms), and costs a tenth of reading it all."""
     status = os.stat(path)
     if not stat.S_ISREG(status.st_mode):

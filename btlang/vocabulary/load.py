@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.diagnostics.reading import read_source
 from btlang.text.source import Source, Span
-from btlang.vocabulary.cache import kept
+from btlang.vocabulary.cache import kept, recent, stamp
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.shipped import keyword_files
 from btlang.vocabulary.vocabulary import Vocabulary
@@ -21,7 +21,7 @@ ENTRY_POINTS = "btlang.keywords"
 
 
 def load_vocabulary(
-    keywords: Sequence[str | Entry | Callable[..., Any]] = (), names: Mapping[str, Iterable[str]] | None = None
+    keywords: Sequence[str | Entry | Callable[..., Any]] = (), names: Mapping[str, Sequence[str]] | None = None
 ) -> Vocabulary:
     """The shipped words and those of `keywords`: paths of keyword files, names of installed packs, entries, or
     functions that carry one (see `btlang.action`). `names` adds values of types, such as the places of a world.
@@ -31,11 +31,22 @@ def load_vocabulary(
     """
     paths = [_path(item) for item in keywords if isinstance(item, str)]
     entries = [_entry(item) for item in keywords if not isinstance(item, str)]
-    files = [*keyword_files(), *paths]
-    vocabulary = _made(files, entries) if entries else kept("words", files, lambda: _made(files, ()))
-    for kind, values in (names or {}).items():
-        vocabulary.add_names(kind, values)
-    return vocabulary
+    vocabulary = _words([*keyword_files(), *paths], entries)
+    return vocabulary.with_names(names) if names else vocabulary
+
+
+_own: dict[tuple[object, ...], tuple[Sequence[Entry], Vocabulary]] = {}  # the entries stay, so that no id is used again
+
+
+def _words(files: Sequence[str], entries: Sequence[Entry]) -> Vocabulary:
+    """Made once in a process for the same files and entries."""
+    if not entries:
+        return kept("words", files, lambda: _made(files, ()))
+    try:
+        key = (*map(stamp, files), *map(id, entries))
+    except OSError:
+        return _made(files, entries)
+    return recent(_own, key, lambda: (entries, _made(files, entries)))[1]
 
 
 def _made(paths: Sequence[str], entries: Iterable[Entry]) -> Vocabulary:

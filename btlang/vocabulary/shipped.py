@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from functools import cache
 
 _PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 
@@ -16,8 +17,9 @@ def shipped(*parts: str) -> str:
     return installed if os.path.exists(installed) else os.path.join(os.path.dirname(_PACKAGE), *parts)
 
 
-def keyword_files() -> list[str]:
+@cache
+def keyword_files() -> tuple[str, ...]:
     """The shipped keyword files: the connective file, then the phrases by name."""
     folder = shipped("keywords")
     names = sorted(os.listdir(folder), key=lambda name: (name != "english.toml", name))
-    return [os.path.join(folder, name) for name in names if name.endswith(".toml")]
+    return tuple(os.path.join(folder, name) for name in names if name.endswith(".toml"))

@@ -135,14 +135,13 @@ class Values:
         insert(self._names[kind], words.lower().split(), name)
         self._openers = None
 
-    def with_names(self, kind: str, names: Iterable[str]) -> Values:
-        """The same with further names of a type."""
-        from copy import deepcopy
-
+    def with_names(self, names: Mapping[str, Iterable[tuple[str, str]]]) -> Values:
+        """The same with further names of types, each with its words."""
         made = self.for_reading()
-        made._names = {**self._names, kind: deepcopy(self._names[kind])}
-        for name in names:
-            made.add_name(kind, name, name)
+        made._names = {**self._names, **{kind: _copied(self._names[kind]) for kind in names}}
+        for kind, pairs in names.items():
+            for words, name in pairs:
+                made.add_name(kind, words, name)
         return made
 
     def for_reading(self) -> Values:
@@ -397,3 +396,8 @@ def key_of(words: Iterable[str]) -> str:
 
 def _too_small(value: float, value_type: ValueType) -> bool:
     return value_type.least is not None and value < value_type.least
+
+
+def _copied(trie: Any) -> Any:
+    """What `copy.deepcopy` does, which takes long to import."""
+    return {word: _copied(below) if isinstance(below, dict) else below for word, below in trie.items()}

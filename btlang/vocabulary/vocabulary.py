@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.text.source import Source, Span
 from btlang.text.words import split
+from btlang.vocabulary.cache import recent
 from btlang.vocabulary.entry import COMPARISONS, About, Entry, Meaning, SlotSpec
 from btlang.vocabulary.language_tables import EXPLAINED
 from btlang.vocabulary.pattern import Form, PatternError, Slot, forms
@@ -47,12 +48,12 @@ class Vocabulary:
         files = list(files)
         language = _merged(files)
         self.articles = frozenset(language["articles"])
-        self._with_places: dict[tuple[str, ...], Vocabulary] = {}
+        self._with_names: dict[tuple[tuple[str, tuple[str, ...]], ...], Vocabulary] = {}
         self.values = Values(self._types_of(files), language)
         for file in files:
             for kind, words, name in file.names:
                 if self.types[kind].kind == "names":
-                    self._add_name(kind, words, name)
+                    self.values.add_name(kind, self._bare(words), name)
         self.roles: dict[str, list[str]] = {**language["roles"], "politeness": language["politeness"]}
         self.counts: dict[str, int] = language["counts"]
         self.nodes: dict[str, str] = language["nodes"]
@@ -81,20 +82,25 @@ class Vocabulary:
         found = self.entries.get(node_id)
         return found[0] if found else None
 
-    def add_names(self, kind: str, names: Iterable[str]) -> None:
-        """Lets slots of a type take further names: the places, people and objects of a world."""
-        for name in names:
-            self._add_name(kind, name, name)
+    def with_names(self, names: Mapping[str, Sequence[str]]) -> Vocabulary:
+        """The same words, whose slots take further names by their types: the places, people and objects of a world.
 
-    def _add_name(self, kind: str, words: str, name: str) -> None:
+        The same object for the same names.
+        """
+
+        def made() -> Vocabulary:
+            pairs = {kind: [(self._bare(name), name) for name in listed] for kind, listed in names.items()}
+            return self._with(self.values.with_names(pairs))
+
+        return recent(self._with_names, tuple((kind, tuple(listed)) for kind, listed in names.items()), made)
+
+    def _bare(self, words: str) -> str:
         """Articles do not matter in names either."""
-        self.values.add_name(kind, " ".join(word for word in words.split() if word.lower() not in self.articles), name)
+        return " ".join(word for word in words.split() if word.lower() not in self.articles)
 
     def with_places(self, names: tuple[str, ...]) -> Vocabulary:
-        """The same words with further places; the same object for the same names."""
-        if names not in self._with_places:
-            self._with_places[names] = self._with(self.values.with_names("place", names))
-        return self._with_places[names]
+        """The same words with further places, as a mission names them."""
+        return self.with_names({"place": names})
 
     def with_references(self) -> Vocabulary:
         """The same words, where any name in braces is read as a value."""
@@ -108,7 +114,7 @@ class Vocabulary:
 
     def _with(self, values: Values) -> Vocabulary:
         made = Vocabulary.__new__(Vocabulary)  # what `copy` does, which takes long to import
-        made.__dict__.update(self.__dict__, values=values)
+        made.__dict__.update(self.__dict__, values=values, _with_names={})
         return made
 
     def value(self, kind: str, written: str) -> str | None:

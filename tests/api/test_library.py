@@ -3,12 +3,18 @@
 from __future__ import annotations
 
 import math
+import os
+import subprocess
+import sys
 from collections.abc import Iterator
+from pathlib import Path
 
 import pytest
 
 import btlang
+from btlang.api import load_simulation, read_world
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
+from btlang.robots.robot import RobotError
 
 
 def test_the_founding_sentence_moves_the_robot(capsys: pytest.CaptureFixture[str]) -> None:
@@ -156,3 +162,45 @@ def test_wrong_options(wrong: dict[str, object]) -> None:
         btlang.parse_tree("wave", parser="earley")
     with pytest.raises(AttributeError):
         btlang.nothing  # type: ignore[attr-defined]  # noqa: B018
+
+
+def test_a_place_of_one_mission_is_not_there_for_the_next() -> None:
+    simulation = load_simulation()
+    first = btlang.parse_tree("the lobby is at (1.5, 2.5)\nbay is at (2, 2)\ngo to the lobby")
+    second = btlang.parse_tree("go to the lobby")
+    for tree in (first, second):
+        tree.stage = simulation
+        assert tree.run(speed="max").status
+    lobby = next(place for place in read_world().places if place.name == "lobby")
+    assert simulation.robot.pose.distance_to((lobby.x, lobby.y)) < 0.3
+    with pytest.raises(RobotError):
+        simulation.robot.locate("bay")
+
+
+def test_words_are_compiled_once_and_shared() -> None:
+    @btlang.action("hop over")
+    def hop() -> None:
+        """An own word."""
+
+    first, second = (btlang.parse_tree("wave then nod").vocabulary for _ in range(2))
+    assert first is second
+    assert btlang.parse_tree("the bay is at (1, 1)\ngo to the bay").vocabulary is first
+    own, again = (btlang.parse_tree("hop over", keywords=[hop]).vocabulary for _ in range(2))
+    assert own is again
+    assert own is not first
+    with pytest.raises(btlang.MissionError):
+        btlang.parse_tree("hop over")
+
+
+@pytest.mark.skipif(sys.platform != "linux", reason="reads the size of the process from /proc")
+def test_a_thousand_trees_are_small() -> None:
+    """They had taken 1.6 MB each, and so had each run."""
+    program = (
+        "import btlang\n"
+        "trees = [btlang.parse_tree(f'if the battery is below {i % 90}%, wave {i + 1} times') for i in range(1000)]\n"
+        "for tree in trees[:100]: tree.run(speed='max', time_limit=0.1)\n"
+        "print(int(open('/proc/self/statm').read().split()[1]) * 4096 // 1_000_000)\n"
+    )
+    environment = {**os.environ, "PYTHONPATH": str(Path(btlang.__file__).parents[1])}
+    done = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, text=True, check=True)
+    assert int(done.stdout) < 100

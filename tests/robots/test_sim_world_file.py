@@ -59,7 +59,7 @@ def test_everything_is_read(tmp_path):
 
 
 def test_a_place_may_be_added_or_moved():
-    world = load_world().with_place(Place("Lab", 1.0, 1.0)).with_place(Place("bay", 2.0, 2.0))
+    world = load_world().with_places([Place("Lab", 1.0, 1.0), Place("bay", 2.0, 2.0)])
     assert world.names.places.count("lab") == 0
     assert world.names.places[-2:] == ("Lab", "bay")
 

@@ -89,11 +89,8 @@ def invented_vocabulary() -> Vocabulary:
         files.append(made)
     vocabulary = Vocabulary(files)
     names_of_world = world_names(None)
-    for kind, listed in (
-        ("place", names_of_world.places), ("person", names_of_world.people), ("object", names_of_world.objects)
-    ):  # fmt: skip
-        vocabulary.add_names(kind, map(invented, listed))
-    return vocabulary
+    by_type = {"place": names_of_world.places, "person": names_of_world.people, "object": names_of_world.objects}
+    return vocabulary.with_names({kind: tuple(map(invented, listed)) for kind, listed in by_type.items()})
 
 
 @pytest.mark.parametrize("sample", SAMPLES, ids=[s.stem for s in SAMPLES])

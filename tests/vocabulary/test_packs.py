@@ -88,12 +88,39 @@ def test_every_example_of_a_phrase_compiles_to_its_node(parser: str) -> None:
             assert parse_tree(text, parser=parser).tree.root.id == entry.id, entry.example
 
 
-def test_a_module_beside_its_keyword_file_is_found(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_module_beside_its_keyword_file_is_found(tmp_path: Path) -> None:
     (tmp_path / "band_moves.py").write_text("def bow(robot):\n    robot.print('bows')\n")
     pack = tmp_path / "band.toml"
     pack.write_text('[[action]]\nphrase = "bow deeply"\nid = "BowDeeply"\ncall = "band_moves:bow"\n')
-    monkeypatch.setattr("sys.path", list(sys.path))
+    before = list(sys.path)
     assert parse_tree("bow deeply", keywords=[str(pack)]).run(speed="max").status == SUCCESS
+    assert sys.path == before
+
+
+def test_packs_may_have_modules_of_the_same_name(tmp_path: Path) -> None:
+    for name in "ab":
+        folder = tmp_path / name
+        (folder / "moves").mkdir(parents=True)
+        (folder / "moves" / "__init__.py").write_text("from .where import PLACE\n")
+        (folder / "moves" / "where.py").write_text(f"PLACE = {name!r}\n")
+        (folder / "hops.py").write_text(
+            "from .moves import PLACE\n\ndef hop(robot):\n    robot.print('hop from ' + PLACE)\n"
+        )
+        text = f'[[action]]\nphrase = "hop {name}"\nid = "Hop{name}"\ncall = "hops:hop"\n'
+        (folder / "hops.toml").write_text(text)
+    said: list[str] = []
+    packs = [str(tmp_path / name / "hops.toml") for name in "ab"]
+    tree = parse_tree("hop a then hop b", keywords=packs)
+    tree.run(speed="max", sinks=[lambda e: said.append(e.data["text"]) if getattr(e, "kind", "") == "print" else None])
+    assert said == ["hop from a", "hop from b"]
+
+
+def test_a_module_that_imports_another_one_beside_it(tmp_path: Path) -> None:
+    (tmp_path / "steps.py").write_text("")
+    (tmp_path / "walk.py").write_text("import steps\n")
+    (tmp_path / "walk.toml").write_text('[[action]]\nphrase = "strut"\nid = "Strut"\ncall = "walk:strut"\n')
+    with pytest.raises(MissionError, match=r"write 'from \. import steps'"):
+        parse_tree("strut", keywords=[str(tmp_path / "walk.toml")]).run(speed="max")
 
 
 def test_an_installed_pack_is_named_by_its_entry_point(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:

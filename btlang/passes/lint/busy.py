@@ -19,13 +19,15 @@ _WAITING = frozenset(("Sleep", "Delay"))
 def busy_loops(subject: Subject) -> list[Diagnostic]:
     """Loops with no leaf that takes time. `wait until C` asks again and again, too, but that is what it is for."""
     busy: list[Node] = []
-    leaves = {node_id: _leaf(entries[0]) for node_id, entries in subject.vocabulary.entries.items()}
+    entries = subject.vocabulary.entries
 
     def combine(node: Node, children: Sequence[int], named: dict[str, int]) -> int:
         if not children:
             if node.id == "SubTree":
                 return named.get(node.port("ID"), TAKES_TIME)
-            return TAKES_TIME if node.id in _WAITING else leaves.get(node.id, INSTANT)
+            if node.id in _WAITING:
+                return TAKES_TIME
+            return _leaf(entries[node.id][0]) if node.id in entries else INSTANT
         if node.id == "Parallel" and node.port("success_count") == "1":
             while busy and any(child is busy[-1] for child in node.children):
                 busy.pop()  # the loop of `for 5 s` has an end

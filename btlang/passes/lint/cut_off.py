@@ -30,13 +30,11 @@ Found: TypeAlias = "Exposed | None"
 
 def cut_off(subject: Subject) -> list[Diagnostic]:
     """The first such action of each form; each action for its innermost form only."""
-    unsafe = {
-        node_id for node_id, entries in subject.vocabulary.entries.items() if any(e.uninterruptible for e in entries)
-    }
+    entries = subject.vocabulary.entries
     found: list[Diagnostic] = []
 
     def combine(node: Node, children: Sequence[Found], named: dict[str, Found]) -> Found:
-        if node.id in unsafe:
+        if any(entry.uninterruptible for entry in entries.get(node.id, ())):
             return Exposed(node, node)
         if not children:
             inner = named.get(node.port("ID")) if node.id == "SubTree" else None
@@ -48,8 +46,7 @@ def cut_off(subject: Subject) -> list[Diagnostic]:
         found.extend(_told(exposed, when, subject))
         return None
 
-    if unsafe:
-        fold_tree(subject.tree, combine)
+    fold_tree(subject.tree, combine)
     return found
 
 
