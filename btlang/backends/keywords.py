@@ -20,6 +20,7 @@ MODULE = "my_robot.leaves"
 
 _NUMBERS = re.compile(r"(?:std::)?(?:u?int(?:8|16|32|64)?(?:_t)?|unsigned(?: int)?|size_t|long|float|double)")
 _ASKING = ("Is", "Has", "Are", "Can")
+_MOST_REQUIRED = 12  # of what people would say
 _MOST_OPTIONAL = 7  # each doubles the ways to say a phrase
 _PREFIXES = ("", "do ", "run node ")  # where an id makes words that mean something already
 
@@ -94,7 +95,9 @@ def _draft(nodes: list[Node], model: NodeModel, vocabulary: Vocabulary, taken: T
     left_out: list[str] = []
     for port in ports.values():
         needed = port.default is None and all(port.name in dict(node.ports) for node in nodes)
-        if not port.name.isidentifier() or (not needed and len(optional) == _MOST_OPTIONAL):
+        if not port.name.isidentifier() or len(required if needed else optional) == (
+            _MOST_REQUIRED if needed else _MOST_OPTIONAL
+        ):
             left_out.append(" ".join(port.name.split()))
         else:
             (required if needed else optional).append(_spec(port, nodes))

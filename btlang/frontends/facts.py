@@ -8,6 +8,7 @@ from btlang.tree.ast import Fact
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.vocabulary import Vocabulary
 
+_FARTHEST = 1e6  # metres, as in a world file
 _OPEN, _COMMA, _CLOSE = "(", ",", ")"
 
 
@@ -69,6 +70,8 @@ def _fact(text: Words, start: int, is_at: int, at: int, last: int, vocabulary: V
             facing, at = angle[0], angle[2]
             break
     if at != last:
+        return None
+    if not all(abs(number) <= _FARTHEST for number in numbers):
         return None
     name = " ".join(text.words[start:is_at])
     return Fact(name, numbers[0], numbers[1], facing, text.span(start, last))

@@ -11,6 +11,7 @@ import numpy.typing as npt
 
 from btlang.robots.geometry import Point
 from btlang.robots.obstacles import Obstacles
+from btlang.robots.robot import RobotError
 from btlang.robots.world import ROBOT_RADIUS, World
 
 Array = npt.NDArray[np.float64]
@@ -19,12 +20,13 @@ CELL = 0.1
 _NEEDED = ROBOT_RADIUS + 0.04
 _COMFORTABLE = ROBOT_RADIUS + 0.2
 _MARGIN = 1.0
+_MOST_AREA = 40_000  # square metres: the grid takes 250 MB
 _START_SEARCH = 0.5
 _GOAL_SEARCH = 0.15
 
 
 class Planner:
-    """Plans for a round robot among the obstacles as they stand now."""
+    """Plans for a round robot among the obstacles as they stand now. Raises RobotError where the world is too large."""
 
     def __init__(self, world: World, obstacles: Obstacles) -> None:
         points = [(x, y) for ax, ay, bx, by in world.segments() for x, y in ((ax, ay), (bx, by))]
@@ -34,6 +36,9 @@ class Planner:
         low_y, high_y = min(p[1] for p in points) - _MARGIN, max(p[1] for p in points) + _MARGIN
         self._obstacles = obstacles
         self._origin = low_x, low_y
+        if (high_x - low_x) * (high_y - low_y) > _MOST_AREA:
+            size = f"{high_x - low_x:.0f} m by {high_y - low_y:.0f} m"
+            raise RobotError(f"the world is too large to plan a way: {size}, and {_MOST_AREA:,} square metres are the most")
         self._columns, self._rows = ceil((high_x - low_x) / CELL), ceil((high_y - low_y) / CELL)
         self._xs, self._ys = np.meshgrid(
             low_x + CELL * (np.arange(self._columns) + 0.5), low_y + CELL * (np.arange(self._rows) + 0.5)
@@ -50,7 +55,8 @@ class Planner:
         The last point is the goal itself, or up to 0.15 m beside one that is too near to an obstacle.
         """
         self._refresh()
-        first = self._free_cell(start, _START_SEARCH)
+        first = self._free_cell(start, _MOST_AREA = 40_000  # square metres: the grid takes 250 MB
+_START_SEARCH)
         if first is None:
             return None
         if reach:

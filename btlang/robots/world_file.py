@@ -22,6 +22,7 @@ from btlang.robots.world import (
     WorldNames,
 )
 from btlang.robots.world_table import Problem, Table
+from btlang.text.toml import parse_toml
 from btlang.vocabulary.shipped import DEFAULT_WORLD
 
 TYPE_CHECKING = False
@@ -51,7 +52,7 @@ def load_world(path: str | PathLike[str] | None = None) -> World:
     except UnicodeDecodeError:
         raise WorldError("a world file is UTF-8 text; save it as such", name) from None
     try:
-        return _world(Table("", tomllib.loads(text)))
+        return _world(Table("", parse_toml(text)))
     except tomllib.TOMLDecodeError as error:
         raise WorldError(f"this is no TOML: {error}", name, world_lines.line_in_message(str(error))) from None
     except Problem as problem:

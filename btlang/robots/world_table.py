@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from math import isfinite
-
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, TypeVar
 
     T = TypeVar("T")
+
+
+_MOST = 1_000_000
 
 
 class Problem(Exception):
@@ -41,15 +42,17 @@ class Table:
     def number(
         self, key: str, default: float | None = None, low: float | None = None, high: float | None = None
     ) -> float:
-        """A finite number within the bounds. Raises Problem."""
+        """A finite number within the bounds, which are a million where there are none. Raises Problem."""
         if not self.has(key) and default is not None:
             return default
         value = self._required(key, "a number")
-        if type(value) not in (int, float) or not isfinite(value):
+        if type(value) not in (int, float) or value != value:
             raise self.problem(key, f'"{key}" is a number; write {key} = 1.5')
         if (low is not None and value < low) or (high is not None and value > high):
             bounds = f"at least {low:g}" if high is None else f"from {low:g} to {high:g}"
-            raise self.problem(key, f'"{key}" is {bounds}, not {value:g}')
+            raise self.problem(key, f'"{key}" is {bounds}')
+        if not -_MOST <= value <= _MOST:
+            raise self.problem(key, f'"{key}" is a number from {-_MOST:,} to {_MOST:,}')
         return float(value)
 
     def text(self, key: str) -> str:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
+from contextlib import suppress
 
 from btlang.robots.geometry import Point, Pose
 from btlang.robots.navigation import ARM_REACH, TALKING_DISTANCE
@@ -21,7 +22,7 @@ class Places:
     def __init__(self, world: World) -> None:
         self.world = self._given_world = world
         self._obstacles = Obstacles(world)
-        self._planner = Planner(world, self._obstacles)
+        self._planner: Planner | None = None
 
     def name_places(self, places: Iterable[Place]) -> None:
         """The places of a mission beside those of the world, in place of those of the mission before."""
@@ -76,9 +77,12 @@ class Places:
         return [name for distance, name in sorted(distances) if distance <= within]
 
     def _stand(self, robot: Pose, point: Point, reach: float) -> Point:
-        path = self._planner.path((robot.x, robot.y), point, reach)
-        if path is not None:
-            return path[-1]
+        with suppress(RobotError):  # a world too large to plan in
+            if self._planner is None:
+                self._planner = Planner(self._given_world, self._obstacles)
+            path = self._planner.path((robot.x, robot.y), point, reach)
+            if path is not None:
+                return path[-1]
         left = robot.distance_to(point)  # no free way on this map: the server of the robot may know better
         share = max(0.0, left - reach) / left if left else 0.0
         return robot.x + share * (point[0] - robot.x), robot.y + share * (point[1] - robot.y)

@@ -12,18 +12,19 @@ RED, YELLOW, CYAN, PLAIN = "\x1b[1;31m", "\x1b[1;33m", "\x1b[36m", "\x1b[0m"
 """The only escape sequences that `printable` lets through."""
 _COLOURS = (RED, YELLOW, CYAN, PLAIN)
 _JOINERS = "\u200c\u200d"  # without which some scripts and emoji fall apart
-_KEPT = "\n\t"
 
 
 def printable(text: str) -> str:
     """The text with `\\x1b` and the like in place of control characters, but for line ends, tabs and own colours."""
-    if text.isprintable():
-        return text
+    return "\n".join(line if line.isprintable() else _printable(line) for line in text.split("\n"))
+
+
+def _printable(text: str) -> str:
     parts = []
     at = 0
     while at < len(text):
         colour = next((colour for colour in _COLOURS if text.startswith(colour, at)), "") if text[at] == "\x1b" else ""
-        parts.append(colour or _shown(text[at], _KEPT))
+        parts.append(colour or _shown(text[at], "\t"))
         at += len(colour) or 1
     return "".join(parts)
 

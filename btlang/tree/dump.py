@@ -6,6 +6,7 @@ from collections.abc import Callable, Iterator
 
 from btlang.tree.node import Node, Tree
 
+_DEEPEST = 100  # levels; below it the level is a number, since the text would grow with the square of the depth
 _ESCAPES = str.maketrans({"\\": "\\\\", '"': '\\"', "\n": "\\n", "\r": "\\r", "\t": "\\t"})
 
 
@@ -15,10 +16,10 @@ def plain(tree: Tree) -> str:
     Nothing in it depends on how the mission was spelled or laid out.
     """
     lines = [f"BehaviorTree ID={_value(tree.name)} main=true"] if tree.name else []
-    lines += [f"{'  ' * depth}{described(node)}" for depth, node in _nodes(tree.root)]
+    lines += [f"{_indented(depth)}{described(node)}" for depth, node in _nodes(tree.root)]
     for name, root in sorted(tree.subtrees):
         lines.append(f"BehaviorTree ID={_value(name)}")
-        lines += [f"{'  ' * (depth + 1)}{described(node)}" for depth, node in _nodes(root)]
+        lines += [f"{_indented(depth + 1)}{described(node)}" for depth, node in _nodes(root)]
     return "\n".join(lines)
 
 
@@ -47,15 +48,22 @@ def _nodes(root: Node) -> Iterator[tuple[int, Node]]:
         stack.extend((depth + 1, child) for child in reversed(node.children))
 
 
+def _indented(depth: int) -> str:
+    return "  " * depth if depth <= _DEEPEST else f"{'  ' * _DEEPEST}[level {depth}] "
+
+
 def _branches(root: Node, label: Callable[[Node], str]) -> Iterator[str]:
-    stack = [(root, "", "")]
+    stack = [(root, 0, "", "")]
     while stack:
-        node, head, below = stack.pop()
+        node, depth, head, below = stack.pop()
         yield head + label(node)
         last = len(node.children) - 1
         for i in range(last, -1, -1):
+            if depth >= _DEEPEST:
+                stack.append((node.children[i], depth + 1, f"{below}[level {depth + 1}] ", below))
+                continue
             fork, line = ("└── ", "    ") if i == last else ("├── ", "│   ")
-            stack.append((node.children[i], below + fork, below + line))
+            stack.append((node.children[i], depth + 1, below + fork, below + line))
 
 
 def _value(text: str) -> str:

@@ -142,7 +142,7 @@ def _write(path: str, key: bytes, made: object) -> None:
             os.unlink(new)
             raise
         _delete_oldest(os.path.dirname(path))
-    except OSError:
+    except (OSError, RecursionError):
         return
 
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import re
 import tomllib
+from math import inf, isfinite
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.record import Record
 from btlang.text.source import Source, Span
+from btlang.text.toml import parse_toml
 from btlang.vocabulary.entry import COMPARISONS, MEASURED, Entry, SlotSpec
 from btlang.vocabulary.language_tables import TABLES, WORD_LISTS, problems
 from btlang.vocabulary.pattern import PatternError, Slot, forms
@@ -180,7 +182,8 @@ class _Reader:
                 made is None
                 or not made.words
                 or isinstance(unit["words"], str)
-                or made.numerator * made.denominator <= 0
+                or not all(0 < abs(part) < inf for part in (made.numerator, made.denominator))
+                or made.numerator / made.denominator <= 0
             ):
                 self.wrong(f'a unit of {name} is {{ words = ["m", "meter"], factor = "1" }}', name)
             else:
@@ -193,7 +196,7 @@ class _Reader:
             values = []
         names = [(name, str(word), str(v["name"])) for v in values for word in v.get("words", [v["name"]])]
         least = table.get("least")
-        if least is not None and (isinstance(least, bool) or not isinstance(least, int | float)):
+        if least is not None and (isinstance(least, bool) or not isinstance(least, int | float) or not isfinite(least)):
             self.wrong(f"least of {name} is a number", name)
             least = None
         whole = bool(table.get("whole", False))
@@ -218,7 +221,7 @@ def read_keyword_file(source: Source) -> KeywordFile:
     """Raises MissionError with everything that is wrong with the file (BT060, BT061)."""
     reader = _Reader(source)
     try:
-        document = tomllib.loads(source.text)
+        document = parse_toml(source.text)
     except tomllib.TOMLDecodeError as error:
         place = re.search(r" \(at (?:line (\d+), column (\d+)|end of document)\)$", str(error))
         start = len(source.text)

@@ -25,6 +25,8 @@ Form = tuple[Part, ...]
 """One way to say a phrase: words in lower case and slots."""
 
 MOST_FORMS = 500
+MOST_WORDS = 50
+"""Of a phrase, slots included: a trie is as deep as its longest phrase."""
 
 
 class PatternError(ValueError):
@@ -75,6 +77,8 @@ def name_form(name: str) -> Form:
 
 def _joined(left: list[Form], right: list[Form], pattern: str) -> list[Form]:
     joined = list(dict.fromkeys(a + b for a, b in product(left, right)))
+    if any(len(form) > MOST_WORDS for form in joined):
+        raise PatternError(f"'{pattern[:60]} ...' has more than {MOST_WORDS} words and slots")
     if len(joined) > MOST_FORMS:
         raise PatternError(f"'{pattern}' can be said in more than {MOST_FORMS} ways; write several phrases")
     return joined

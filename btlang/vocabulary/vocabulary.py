@@ -147,13 +147,19 @@ class Vocabulary:
     def _add_roles(self) -> None:
         for role, phrases in self.roles.items():
             for phrase in phrases if role not in NO_PHRASES else ():
-                self._add_phrase(phrase, Meaning(role, between=self.meanings.get(phrase, "")), {})
+                self._add_words(phrase, Meaning(role, between=self.meanings.get(phrase, "")))
         for words, rounds in self.counts.items():
-            self._add_phrase(words, Meaning("count", value=rounds), {})
+            self._add_words(words, Meaning("count", value=rounds))
         for node_id, words in self.nodes.items():
             for role in NODE_ROLES:
                 for head in self.roles[role]:
-                    self._add_phrase(f"{head} {words}", Meaning(role, node=node_id), {})
+                    self._add_words(f"{head} {words}", Meaning(role, node=node_id))
+
+    def _add_words(self, phrase: str, meaning: Meaning) -> None:
+        try:
+            self._add_phrase(phrase, meaning, {})
+        except PatternError as error:  # all of its words are articles of another file
+            self._problems.append(diagnostic("BT060", Span(Source(phrase, "words"), 0, len(phrase)), reason=str(error)))
 
     def _add_entry(self, entry: Entry) -> None:
         if entry.measures:

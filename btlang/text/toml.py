@@ -1,0 +1,21 @@
+"""TOML as keyword files and worlds are written in: whatever is wrong with a text is one exception."""
+
+from __future__ import annotations
+
+import tomllib
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+
+def parse_toml(text: str) -> dict[str, Any]:
+    """The table of a text. Raises tomllib.TOMLDecodeError, also for what is nested too deep or too long a number."""
+    try:
+        return tomllib.loads(text)
+    except tomllib.TOMLDecodeError:
+        raise
+    except RecursionError:
+        raise tomllib.TOMLDecodeError("it is nested too deep") from None
+    except ValueError:
+        raise tomllib.TOMLDecodeError("a number is too long") from None
