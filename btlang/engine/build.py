@@ -63,8 +63,8 @@ class Shared:
     """What all nodes of one engine share."""
 
     __slots__ = (
-        "background", "bind", "clock", "emergency", "enums", "fault", "halt_faults", "interrupts", "plans",
-        "on_unknown", "service_names", "services", "stopwatch", "unknown", "unknowns", "warned", "watch",
+        "background", "bind", "clock", "emergency", "enums", "fault", "halt_faults", "interrupts", "on_unknown",
+        "plans", "service_names", "services", "stopwatch", "unknown", "unknowns", "warned", "watch",
     )  # fmt: skip
 
     def __init__(

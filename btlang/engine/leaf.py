@@ -20,7 +20,9 @@ What a background leaf uses of these it uses beside the tick. Safe are `wake`, `
 `clock.now`, reading and setting single blackboard entries, and `robot.stop()`. All else of a robot is for the other
 leaves.
 
-A condition that cannot know its answer raises Unknown. A leaf that fails says why: it raises ActionFailed, or returns `Failed(reason)`, which is cheaper and may work out the
+A condition that cannot know its answer raises Unknown.
+
+A leaf that fails says why: it raises ActionFailed, or returns `Failed(reason)`, which is cheaper and may work out the
 reason later. For False the reason is the `refusal` of its binding.
 
 For an output port, whose text is a `{key}`, the parameter gets a function: `store(value)` writes the value to that key.

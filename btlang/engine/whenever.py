@@ -20,8 +20,8 @@ def whenever(site: Site, children: Sequence[Compiled]) -> Compiled:
 
     When it becomes true (true at the start counts too), the work is suspended, and the reaction is ticked until it
     completes. If it fails, the whole fails; else the work goes on. The condition must have been false before it counts
-    again; one that is not known is neither. The whole ends with the status of the work. A condition that is RUNNING counts as false; one that is an
-    action suspends what runs before it starts (see reactive.py).
+    again; one that is not known is neither. The whole ends with the status of the work. A condition that is RUNNING
+    counts as false; one that is an action suspends what runs before it starts (see reactive.py).
     """
     ticks, halts = apart(children)
     shared = site.shared

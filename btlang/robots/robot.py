@@ -8,7 +8,7 @@ from typing import Any, Literal, Protocol
 import numpy as np
 import numpy.typing as npt
 
-from btlang.engine.leaf import ActionFailed
+from btlang.engine.leaf import ActionFailed, Unknown
 from btlang.robots.geometry import Point, Pose
 
 Hand = Literal["left", "right"]
@@ -17,6 +17,10 @@ OnEvent = Callable[[str, Mapping[str, Any]], None]
 
 class RobotError(ActionFailed):
     """Why the robot cannot do what it was told, in plain English: a leaf that lets it pass FAILS with it."""
+
+
+class SensorSilent(RobotError, Unknown):
+    """What was asked for is not known: a sensor says nothing, or nothing that can be true."""
 
 
 class Deed(Protocol):
@@ -76,6 +80,10 @@ class Robot(Protocol):
     def normal_turn(self) -> float:
         """Degrees a second for turning on the spot."""
 
+    @property
+    def time(self) -> float:
+        """Seconds that it was stepped."""
+
     def step(self, dt: float) -> None:
         """Lets `dt` seconds pass. On a real robot time passes by itself and this only reads the sensors."""
 
@@ -128,7 +136,7 @@ class Robot(Protocol):
     def scan(self) -> npt.NDArray[np.float64]:
         """360 distances from the centre, index = degrees left of the heading, inf where nothing is in range.
 
-        Raises RobotError when the scanner is silent.
+        Raises SensorSilent when the scanner is silent.
         """
 
     def locate(self, name: str) -> Point:

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable, Mapping
 
 from btlang.engine.blackboard import Blackboard
@@ -256,13 +255,12 @@ class Runner:
             self._report(failure, f"{_words(failure)} did not end after it was halted")
         if self._robot is None:
             return
-        rest_until = self._clock.now + _REST
+        rest_until, passed = self._clock.now + _REST, self._period
         while True:  # at least once: a robot that was stopped takes no command before its next step
-            self._advance(self._period)
+            self._advance(passed)
             if not getattr(self._robot, "moving", False) or self._clock.now >= rest_until - 1e-9:
                 return
-            if self._pause:
-                time.sleep(self._pause)
+            passed = self._pace.rest(self._period)
 
     def _report_halts(self) -> None:
         for failure in self._engine.take_halt_failures():
