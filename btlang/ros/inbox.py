@@ -16,6 +16,7 @@ from btlang.ros.latest import Latest
 
 _KEPT = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _MOST = 1000  # messages of one topic that wait for a tick; older ones are forgotten
+_NONSENSE = 2.0  # seconds in which only what is refused has come, however slow the topic is
 QOS = {"sensor": qos_profile_sensor_data, "events": QoSProfile(depth=100), "state": _KEPT}
 """How a topic is listened to: a sensor's messages may be lost, each event counts, a state is told to who comes late."""
 
@@ -90,6 +91,8 @@ class Inbox:
         if topic not in self._read:
             raise SensorSilent(f"no {what}: {latest.refused or f'nothing has come on {latest.named}'}")
         # after a tick that took long, newer ones are there but not read yet
-        if limit is not None and latest.silence() > limit:
-            raise SensorSilent(f"no {what} for {limit:g} s: {latest.refused or f'{latest.named} is silent'}")
+        if limit is not None:
+            limit = min(limit, _NONSENSE) if latest.refused else limit
+            if latest.silence() > limit:
+                raise SensorSilent(f"no {what} for {limit:g} s: {latest.refused or f'{latest.named} is silent'}")
         return self._read[topic]
