@@ -22,7 +22,9 @@ def velocity(kind: Any, linear: float, angular: float, stamp: Any, fastest: floa
     if not isfinite(linear) or not isfinite(angular):
         raise RobotError(f"a velocity of {linear:g} m/s and {angular:g} rad/s is not finite")
     if abs(linear) > fastest or abs(angular) > FASTEST_TURN:
-        raise RobotError(f"a velocity of {linear:.3g} m/s and {angular + 0.0:.3g} rad/s is beyond the limits of the robot")
+        raise RobotError(
+            f"a velocity of {linear:.3g} m/s and {angular + 0.0:.3g} rad/s is beyond the limits of the robot"
+        )
     message = twist = kind()
     if hasattr(message, "header"):
         message.header.stamp, message.header.frame_id = stamp, BASE

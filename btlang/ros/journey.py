@@ -125,8 +125,8 @@ class RosJourney:
         if reached and not code:
             self.end(None, withdraw=False)
             return
-        gave_up = f"ended it with error {code}" if reached else "gave up on it"
-        told = _ENDINGS.get(answer.status, f"the navigation server {gave_up}: the way to {{name}}")
+        gave_up = f"reported error {code}" if reached else "gave up"
+        told = _ENDINGS.get(answer.status, f"the navigation server {gave_up} on the way to {{name}}")
         self.end(answer.result.error_msg or told.format(name=said(self.name)), withdraw=False)
 
     # In the thread that spins

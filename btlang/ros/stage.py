@@ -38,6 +38,7 @@ if TYPE_CHECKING:
 
 _DISCOVERY = 7.0  # seconds of a node's life in which it has found all: DDS announces every 3 s, and two may get lost
 _ANNOUNCED = 3.0  # seconds of a node's life in which it has found nearly all
+_UNNAMED = "_NODE_NAME_UNKNOWN_"  # of a node whose topics are found and whose name is not yet
 _AGAIN = 2.0  # seconds that an older node gets
 _LAST_ANSWERS = 2.0  # seconds that goals which were halted get to end
 
@@ -117,8 +118,12 @@ class RosStage:
             ends = self.node.get_publishers_info_by_topic(name)
             return {(end.node_namespace.rstrip("/"), end.node_name) for end in ends} - {own}
 
-        wait_until(others, self._discovers_until - _DISCOVERY + _ANNOUNCED - time.monotonic())
-        return [f"{'/'.join(other)} publishes {name} too, so the robot follows both" for other in sorted(others())]
+        def are_named() -> bool:
+            return bool(others()) and not any(node == _UNNAMED for _, node in others())
+
+        wait_until(are_named, self._discovers_until - _DISCOVERY + _ANNOUNCED - time.monotonic())
+        shown = ["another node" if node == _UNNAMED else f"{place}/{node}" for place, node in sorted(others())]
+        return [f"{node} publishes {name} too, so the robot follows both" for node in shown]
 
     def _spoken(self, wanted: Mapping[Interface, Node | None]) -> dict[Interface, Node | None]:
         """With the type of velocity that the robot listens to."""

@@ -168,7 +168,7 @@ def test_what_is_too_close_is_a_wall_and_what_is_too_far_is_none(lab: Lab, fault
 BATTERY = "no battery state for 2 s: /battery_state gives no percentage from 0 to 1, but nan"
 NEITHER = (
     "move forward 1 m at 0.4 m/s. try check the battery is below 20%, otherwise check the battery is at least 20%, "
-    "otherwise check not the battery is below 20%, otherwise if the battery is below 20%, nod, otherwise shake your head"
+    "otherwise check not the battery is below 20%, otherwise if the battery is below 20%, nod, otherwise look left"
 )
 
 
