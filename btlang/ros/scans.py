@@ -13,12 +13,13 @@ _TOUCHING = 0.01  # metres of an echo that is too close, where a scanner measure
 def echoes(scan: Any) -> npt.NDArray[np.float64]:
     """The metres of each beam by REP 117: inf where nothing is in range, NaN where it says nothing.
 
-    What is too close to be measured, -inf, is as near as the scanner can measure.
+    What is too close to be measured, -inf, is as near as the scanner can measure. One that does not say how far it sees,
+    with a `range_max` of 0, sees as far as its echoes are.
     """
     ranges = np.array(scan.ranges, dtype=np.float64)
-    low, high = scan.range_min, scan.range_max
     close = ranges == -np.inf
-    ranges[ranges > high] = np.inf
-    ranges[~(ranges >= low) | (ranges <= 0.0) | (not high > low)] = np.nan
-    ranges[close] = max(low, _TOUCHING) if high > low else np.nan
+    if scan.range_max > scan.range_min:
+        ranges[ranges > scan.range_max] = np.inf
+    ranges[~(ranges >= scan.range_min) | (ranges <= 0.0)] = np.nan
+    ranges[close] = max(scan.range_min, _TOUCHING)
     return ranges

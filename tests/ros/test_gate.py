@@ -50,8 +50,8 @@ def scan(*ranges: float, step: float = 0.1, low: float = 0.1, high: float = 10.0
         (scan(), "has no valid beam"),
         (scan(NAN, NAN), "has no valid beam"),
         (scan(-1.0, 0.0, 0.05), "has no valid beam"),
-        (scan(1.0, high=0.0), "has no valid beam"),
-        (scan(1.0, high=NAN), "has no valid beam"),
+        (scan(1.0, low=NAN), "has no valid beam"),
+        (scan(1.0, high=0.0), ""),
         (scan(1.0, step=0.0), "does not say where its beams point"),
         (scan(1.0, step=NAN), "does not say where its beams point"),
         (Float64(data=NAN), ""),
@@ -84,3 +84,4 @@ def test_what_a_beam_says() -> None:
     assert [round(echo, 2) for echo in echoes(given)[:4]] == [1.0, INF, INF, 0.1]
     assert all(map(math.isnan, echoes(given)[4:]))
     assert echoes(scan(-INF, low=0.0))[0] > 0.0
+    assert list(echoes(scan(5.0, high=0.0))) == [5.0]
