@@ -15,6 +15,7 @@ from rclpy.node import Node
 
 from btlang.robots.geometry import Pose, wrap
 from btlang.robots.world import said
+from btlang.ros.awake import AWAKE
 from btlang.ros.errands import Errands
 from btlang.ros.gate import pose_fault
 from btlang.ros.poses import MAP, pose_message, pose_of
@@ -54,9 +55,11 @@ class RosJourney:
         self._server = f"navigation server on {server}"
         self._lock = RLock()
         self._where, self._now = where, now
-        self._since = now()  # of what it waits for now
+        self._since = AWAKE.now()  # of what it waits for now
         self._stood = (where(), now())
-        self._sent = self._heard = False
+        self._sent = False
+        self.heard = False
+        """Whether the server has given feedback."""
         self._handle: Any = None
         self._result: Any = None
         self._reported: Pose | None = None
@@ -90,15 +93,15 @@ class RosJourney:
             self._finish(self._result.result())
         elif not self._client.server_is_ready():
             self.end(f"the {self._server} is gone", withdraw=False)
-        elif self._heard and self._waited(_ANSWER):
+        elif self.heard and self._waited(_ANSWER):
             self.end(f"no word from the {self._server} for {_ANSWER:g} s")
-        elif self._stands(_STANDS if self._heard else _MUTE):
-            told = "" if self._heard else f", and the {self._server} gives no word of it"
-            seconds = _STANDS if self._heard else _MUTE
+        elif self._stands(_STANDS if self.heard else _MUTE):
+            told = "" if self.heard else f", and the {self._server} gives no word of it"
+            seconds = _STANDS if self.heard else _MUTE
             self.end(f"the robot has not moved for {seconds:g} s on the way to {said(self.name)}{told}")
 
     def _waited(self, limit: float) -> bool:
-        return self._now() - self._since > limit
+        return AWAKE.now() - self._since > limit
 
     def _stands(self, limit: float) -> bool:
         """Whether the robot, or what the server says of it, has not moved for so long."""
@@ -115,7 +118,7 @@ class RosJourney:
 
     def _set_out(self) -> None:
         if self._client.server_is_ready():
-            self._sent, self._since = True, self._now()
+            self._sent, self._since = True, AWAKE.now()
             self._spin(self._send)
         elif self._waited(_SERVER):
             self.end(f"no {self._server}")
@@ -134,7 +137,7 @@ class RosJourney:
         self._client.send_goal_async(self._goal, feedback_callback=self._hear).add_done_callback(self._answered)
 
     def _hear(self, message: Any) -> None:
-        self._heard, self._since = True, self._now()
+        self.heard, self._since = True, AWAKE.now()
         if not pose_fault(message.feedback.current_pose.pose):
             self._reported = pose_of(message.feedback.current_pose.pose)
 
@@ -144,8 +147,7 @@ class RosJourney:
             self.end(f"the navigation server rejected the way to {said(self.name)}", withdraw=False)
             self.withdrawn.set()
             return
-        self._since = self._now()
-        self._stood = self._stood[0], self._since
+        self._since, self._stood = AWAKE.now(), (self._stood[0], self._now())
         self._handle, self._result = handle, handle.get_result_async()
         if self.done:
             self._withdraw()

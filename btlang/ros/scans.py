@@ -13,8 +13,8 @@ _TOUCHING = 0.01  # metres of an echo that is too close, where a scanner measure
 def echoes(scan: Any) -> npt.NDArray[np.float64]:
     """The metres of each beam by REP 117: inf where nothing is in range, NaN where it says nothing.
 
-    What is too close to be measured, -inf, is as near as the scanner can measure. One that does not say how far it sees,
-    with a `range_max` of 0, sees as far as its echoes are.
+    What is too close to be measured, -inf, is as near as the scanner can measure. One that does not say how far it
+    sees, with a `range_max` of 0, sees as far as its echoes are.
     """
     ranges = np.array(scan.ranges, dtype=np.float64)
     close = ranges == -np.inf

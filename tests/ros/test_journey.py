@@ -11,7 +11,7 @@ from btlang.robots.geometry import Pose
 from btlang.ros.errands import Errands
 from btlang.ros.node import SpunNode
 from tests.ros.declared import Peer
-from tests.ros.processes import LONG, wait_until
+from tests.ros.processes import wait_until
 
 pytest.importorskip("nav2_msgs", reason="nav2_msgs is not installed")
 
@@ -29,7 +29,7 @@ class Trip:
 
     def _now(self) -> float:
         if threading.current_thread() is not threading.main_thread():
-            self._word.set()  # the journey looks at the clock when it has word of the server
+            self._word.set()  # the journey looks at the clock when it is accepted
         return self.seconds
 
     def begin(self) -> RosJourney:
@@ -42,11 +42,6 @@ class Trip:
     def pass_by(self, seconds: float) -> None:
         self.seconds += seconds
         self._navigation.step()
-
-    def hear(self) -> None:
-        """Waits for the next word of the server."""
-        self._word.clear()
-        assert self._word.wait(LONG)
 
 
 @pytest.fixture
@@ -94,11 +89,9 @@ def test_a_server_that_gives_no_word_while_the_robot_stands(trip: Callable[[str]
 def test_a_server_that_talks_while_the_robot_stands(trip: Callable[[str], Trip]) -> None:
     way = trip("still")
     journey = way.begin()
-    for _ in range(15):
-        way.hear()
-        way.pass_by(4.0)
+    wait_until(lambda: journey.heard, "feedback")
+    way.pass_by(59.0)
     assert not journey.done
-    way.hear()
-    way.pass_by(4.0)
+    way.pass_by(2.0)
     assert journey.failure == "the robot has not moved for 60 s on the way to the kitchen"
     way.peer.expect("cancelled")
