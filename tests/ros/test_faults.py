@@ -137,7 +137,7 @@ def test_bad_odometry_is_missing_before_the_run(lab: Lab) -> None:
 
 def test_a_command_that_arrives_late_makes_nobody_stuck(lab: Lab) -> None:
     lab.misbehave("late=2")
-    assert lab.run("move forward 0.2 m", limit=2.5, stopped="time limit") == ""
+    assert lab.run("move forward 2 m", limit=2.5, stopped="time limit") == ""
 
 
 def test_joints_without_positions(lab: Lab) -> None:
