@@ -13,15 +13,16 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.api import RunnableTree, parse_tree
     from btlang.diagnostics.diagnostic import Diagnostic, MissionError
-    from btlang.engine.leaf import ActionFailed
+    from btlang.engine.leaf import ActionFailed, Unknown
     from btlang.own_words import action, condition
 
-__all__ = ["ActionFailed", "Diagnostic", "MissionError", "RunnableTree", "action", "condition", "parse_tree"]
+__all__ = ["ActionFailed", "Diagnostic", "MissionError", "RunnableTree", "Unknown", "action", "condition", "parse_tree"]
 
 _HOMES = {
     "ActionFailed": "btlang.engine.leaf",
     "Diagnostic": "btlang.diagnostics.diagnostic",
     "MissionError": "btlang.diagnostics.diagnostic",
+    "Unknown": "btlang.engine.leaf",
     "action": "btlang.own_words",
     "condition": "btlang.own_words",
 }

@@ -1,4 +1,7 @@
-"""Driving and turning by a distance or an angle. All fail when the robot bumps, gets stuck or is stopped."""
+"""Driving and turning by a distance or an angle.
+
+All fail when the robot bumps, gets stuck, does not get on, goes much too far or is stopped.
+"""
 
 from __future__ import annotations
 
@@ -6,12 +9,13 @@ from collections.abc import Callable, Generator
 from math import copysign, sqrt
 
 from btlang.actions.watch import Watch
-from btlang.engine.leaf import unheard
+from btlang.engine.leaf import ActionFailed, unheard
 from btlang.robots.geometry import wrap
+from btlang.robots.progress import PATIENCE, Progress
 from btlang.robots.robot import Robot
 
 Steps = Generator[None, None, None]
-Progress = Callable[[float], object]
+Tell = Callable[[float], object]
 
 _DECELERATION = 0.6
 _TURN_DECELERATION = 180.0
@@ -20,22 +24,22 @@ _ANGLE_CLOSE_ENOUGH = 0.25
 _STRAIGHTENING = 2.0  # degrees a second for each degree off course
 
 
-def move_forward(robot: Robot, distance: float, speed: float | None = None, progress: Progress = unheard) -> Steps:
+def move_forward(robot: Robot, distance: float, speed: float | None = None, progress: Tell = unheard) -> Steps:
     """Drives straight ahead by `distance` metres, to the centimetre, at `speed` m/s (or the robot's normal speed)."""
     yield from drive_straight(robot, distance, speed, progress)
 
 
-def move_backward(robot: Robot, distance: float, speed: float | None = None, progress: Progress = unheard) -> Steps:
+def move_backward(robot: Robot, distance: float, speed: float | None = None, progress: Tell = unheard) -> Steps:
     """Drives straight back by `distance` metres, to the centimetre, at `speed` m/s (or the robot's normal speed)."""
     yield from drive_straight(robot, -distance, speed, progress)
 
 
-def turn_left(robot: Robot, angle: float, progress: Progress = unheard) -> Steps:
+def turn_left(robot: Robot, angle: float, progress: Tell = unheard) -> Steps:
     """Turns on the spot by `angle` degrees counter-clockwise, to the degree."""
     yield from turn(robot, angle, progress)
 
 
-def turn_right(robot: Robot, angle: float, progress: Progress = unheard) -> Steps:
+def turn_right(robot: Robot, angle: float, progress: Tell = unheard) -> Steps:
     """Turns on the spot by `angle` degrees clockwise, to the degree."""
     yield from turn(robot, -angle, progress)
 
@@ -46,9 +50,12 @@ def turn_around(robot: Robot) -> Steps:
 
 
 def stop(robot: Robot) -> Steps:
-    """Brings the base to rest."""
+    """Brings the base to rest. Fails where it does not come to rest within 5 seconds."""
     robot.drive(0.0, 0.0)
-    while robot.velocity != (0.0, 0.0):
+    until = robot.time + PATIENCE
+    while (velocity := robot.velocity) != (0.0, 0.0):
+        if robot.time > until:
+            raise ActionFailed("the robot does not stop: it moves at {:.2f} m/s and {:.0f} degrees/s".format(*velocity))
         yield
 
 
@@ -67,29 +74,33 @@ def face_object(robot: Robot, object: str) -> Steps:
     yield from turn(robot, robot.pose.bearing_to(robot.locate(object)))
 
 
-def drive_straight(robot: Robot, distance: float, speed: float | None = None, progress: Progress = unheard) -> Steps:
+def drive_straight(robot: Robot, distance: float, speed: float | None = None, progress: Tell = unheard) -> Steps:
     """Drives `distance` metres along the heading (negative: backwards), keeps the course, and brakes."""
     start, watch = robot.pose, Watch(robot)
+    bounds = Progress(distance, _CLOSE_ENOUGH, False, lambda: robot.time)
     limit = min(robot.normal_speed if speed is None else abs(speed), robot.max_speed)
     try:
         while True:
-            gone = start.progress_of(robot.pose)
+            pose = robot.pose
+            gone = start.progress_of(pose)
             watch.check_base(f"{abs(gone):.2f} m")
             left = distance - gone
             if abs(left) <= _CLOSE_ENOUGH:
                 return
+            bounds.check(left, start.distance_to((pose.x, pose.y)))
             progress(gone / distance)
             pace = min(limit, sqrt(2 * _DECELERATION * abs(left)), 3.0 * abs(left))
-            course = wrap(start.heading - robot.pose.heading)
+            course = wrap(start.heading - pose.heading)
             robot.drive(copysign(pace, left), _STRAIGHTENING * course)
             yield
     finally:
         robot.drive(0.0, 0.0)
 
 
-def turn(robot: Robot, angle: float, progress: Progress = unheard) -> Steps:
+def turn(robot: Robot, angle: float, progress: Tell = unheard) -> Steps:
     """Turns on the spot by `angle` degrees (left positive; more than a whole turn is fine) and brakes."""
     heading, turned, watch = robot.pose.heading, 0.0, Watch(robot)
+    bounds = Progress(angle, _ANGLE_CLOSE_ENOUGH, True, lambda: robot.time)
     try:
         while True:
             turned += wrap(robot.pose.heading - heading)
@@ -98,6 +109,7 @@ def turn(robot: Robot, angle: float, progress: Progress = unheard) -> Steps:
             left = angle - turned
             if abs(left) <= _ANGLE_CLOSE_ENOUGH:
                 return
+            bounds.check(left, turned)
             progress(turned / angle)
             pace = min(robot.normal_turn, sqrt(2 * _TURN_DECELERATION * abs(left)), 4.0 * abs(left))
             robot.drive(0.0, copysign(pace, left))

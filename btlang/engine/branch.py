@@ -1,6 +1,6 @@
 """Nodes with a condition and branches: if_then_else_node.cpp and while_do_else_node.cpp of BehaviorTree.CPP 4.10.
 
-Where those raise an exception because the condition was SKIPPED, these fail.
+Where those raise an exception because the condition was SKIPPED, these fail. So they do where it is not known.
 """
 
 from __future__ import annotations
@@ -26,11 +26,13 @@ def if_then_else(site: Site, children: Sequence[Compiled]) -> Compiled:
 
     def tick() -> int:
         nonlocal position
-        fault = shared.fault
+        fault, unknowns = shared.fault, shared.unknowns
         if position == 0:
             status = ticks[0]()
             if status == SUCCESS:
                 position = 1
+            elif status == FAILURE and site.not_known(unknowns):
+                return FAILURE
             elif status == FAILURE and len(ticks) == 3:
                 position = 2
             elif status == SKIPPED:
@@ -73,7 +75,7 @@ def while_do_else(site: Site, children: Sequence[Compiled]) -> Compiled:
 
     def tick() -> int:
         nonlocal branch
-        fault = shared.fault
+        fault, unknowns = shared.fault, shared.unknowns
         if branch:
             interrupts.append(interrupt)
         status = ticks[0]()
@@ -81,9 +83,12 @@ def while_do_else(site: Site, children: Sequence[Compiled]) -> Compiled:
             interrupts.pop()
         if status == RUNNING:
             return RUNNING
+        not_known = status == FAILURE and site.not_known(unknowns)
         chosen = 1 if status == SUCCESS else 2
-        if branch and (branch != chosen or status == SKIPPED):
+        if branch and (branch != chosen or status == SKIPPED or not_known):
             interrupt()
+        if not_known:
+            return FAILURE
         if status == SKIPPED:
             halts[0](False)
             return site.fail(_NO_ANSWER)

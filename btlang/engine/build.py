@@ -63,8 +63,8 @@ class Shared:
     """What all nodes of one engine share."""
 
     __slots__ = (
-        "background", "bind", "clock", "emergency", "enums", "fault", "halt_faults", "interrupts", "plans",
-        "service_names", "services", "stopwatch", "watch",
+        "background", "bind", "clock", "emergency", "enums", "fault", "halt_faults", "interrupts", "on_unknown",
+        "plans", "service_names", "services", "stopwatch", "unknown", "unknowns", "warned", "watch",
     )  # fmt: skip
 
     def __init__(
@@ -84,6 +84,10 @@ class Shared:
         self.enums = {name: float(value) for name, value in enums.items()}  # names that scripts and Switch nodes know
         self.background: Background | None = None  # where a leaf works beside the tick
         self.fault: Fault | Site | None = None  # the latest failure
+        self.unknown: Fault | Site | None = None  # the latest condition that could not know
+        self.unknowns = 0  # how many there have been
+        self.warned: set[int] = set()  # which of them `on_unknown` knows of
+        self.on_unknown: Callable[[Fault | Site], object] | None = None
         # exceptions that leaves raised while they were halted; only the latest, should nobody ask for them
         self.halt_faults: deque[Fault] = deque(maxlen=1000)
         self.emergency = False  # whether the halt in progress is an emergency stop, which starts nothing
@@ -136,6 +140,26 @@ class Site:
                 self._usual = fault
         self.shared.fault = fault
         return FAILURE
+
+    def cannot_know(self, reason: Reason) -> int:
+        """Records that this condition failed because it does not know; returns FAILURE."""
+        self.fail(reason)
+        shared = self.shared
+        shared.unknown = shared.fault
+        shared.unknowns += 1
+        if self.index not in shared.warned and shared.fault is not None:
+            shared.warned.add(self.index)
+            if shared.on_unknown is not None:
+                shared.on_unknown(shared.fault)
+        return FAILURE
+
+    def not_known(self, before: int) -> bool:
+        """Whether a condition below could not know, since `unknowns` was `before`; then that is the latest failure."""
+        shared = self.shared
+        if shared.unknowns == before:
+            return False
+        shared.fault = shared.unknown
+        return True
 
     def pass_on(self, reason: Reason) -> int:
         """Adds why this node fails as well to the failure below it, which stays the cause; returns FAILURE."""

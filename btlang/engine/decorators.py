@@ -13,14 +13,16 @@ if TYPE_CHECKING:
 
 
 def inverter(site: Site, children: Sequence[Compiled]) -> Compiled:
-    """SUCCESS for FAILURE and the other way round (inverter_node.cpp)."""
+    """SUCCESS for FAILURE and the other way round (inverter_node.cpp); what is not known stays a FAILURE."""
     [(child, halt)] = children
+    shared = site.shared
 
     def tick() -> int:
+        unknowns = shared.unknowns
         status = child()
         if status == SUCCESS:
             return site.fail("it is true")
-        return SUCCESS if status == FAILURE else status
+        return SUCCESS if status == FAILURE and not site.not_known(unknowns) else status
 
     return tick, halt
 

@@ -57,7 +57,8 @@ class Engine:
     `enums` are names of numbers that scripts and the cases of Switch nodes may use. A `stopwatch` times the leaves.
 
     Raises EngineError where the tree cannot be compiled. `listener` gets lists of status changes, children before
-    parents; see watch.py for what counts as one and when they are told.
+    parents; see watch.py for what counts as one and when they are told. `on_unknown` is called during a tick where a
+    condition does not know (Unknown), once for each until the tree is halted.
     """
 
     def __init__(
@@ -71,12 +72,15 @@ class Engine:
         listener: Listener | None = None,
         enums: Mapping[str, float] = {},
         stopwatch: Stopwatch | None = None,
+        on_unknown: Callable[[Failure], object] | None = None,
     ) -> None:
         self.blackboard = Blackboard() if blackboard is None else blackboard
         self.stopwatch = stopwatch
         self.on_wake: Callable[[], object] | None = None
         """What the service `wake` calls, in the thread of whoever asks for it: "tick again now"."""
         self._shared = Shared(bind, clock, {"wake": self._wake, "progress": unheard, **services}, enums, stopwatch)
+        if on_unknown is not None:
+            self._shared.on_unknown = lambda fault: on_unknown(self._failure(fault))
         with no_collection:
             self._sites = expand(tree, self.blackboard, self._shared)
             self._trace = None if listener is None else Trace(self._shared, listener)
@@ -272,6 +276,7 @@ class Engine:
         if not keep:
             self._failed = self.failure
             self.status = IDLE
+            self._shared.warned.clear()
         if self._trace is not None:
             self._trace.tell()
         if interrupted is not None:

@@ -20,6 +20,8 @@ What a background leaf uses of these it uses beside the tick. Safe are `wake`, `
 `clock.now`, reading and setting single blackboard entries, and `robot.stop()`. All else of a robot is for the other
 leaves.
 
+A condition that cannot know its answer raises Unknown.
+
 A leaf that fails says why: it raises ActionFailed, or returns `Failed(reason)`, which is cheaper and may work out the
 reason later. For False the reason is the `refusal` of its binding.
 
@@ -49,6 +51,13 @@ def unheard(share: float, state: str = "") -> None:
 
 class ActionFailed(Exception):
     """A leaf raises it to FAIL with a reason for people: `raise ActionFailed("nothing within reach")`."""
+
+
+class Unknown(ActionFailed):
+    """A condition raises it where it cannot know: `raise Unknown("the scanner is silent")`.
+
+    It FAILS, and so do an Inverter, an IfThenElse and a WhileDoElse that ask it: what is not known is not false.
+    """
 
 
 class Failed(Record):

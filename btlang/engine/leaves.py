@@ -10,7 +10,7 @@ from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
 from btlang.engine.build import Fault, Site, halt_nothing
-from btlang.engine.leaf import ActionFailed, Failed, described
+from btlang.engine.leaf import ActionFailed, Failed, Unknown, described
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
 
 TYPE_CHECKING = False
@@ -57,7 +57,7 @@ class FunctionLeaf:
         try:
             result = self.call()
         except Exception as problem:
-            return failed(self.site, problem)
+            return unanswered(self.site, problem)
         return SUCCESS if result is True else status_of(self.site, result)
 
 
@@ -76,7 +76,7 @@ def function_leaf(site: Site, call: Callable[..., Any], stored: Stored) -> Compi
         try:
             result = call(**stored())
         except Exception as problem:
-            return failed(site, problem)
+            return unanswered(site, problem)
         return status_of(site, result)
 
     return tick, halt_nothing
@@ -181,6 +181,11 @@ def failed(site: Site, problem: Exception) -> int:
     if isinstance(problem, ActionFailed):
         return site.fail(str(problem))
     return site.fail(described(problem), problem)
+
+
+def unanswered(site: Site, problem: Exception) -> int:
+    """As `failed`, for a function, which may be a condition that does not know."""
+    return site.cannot_know(str(problem)) if isinstance(problem, Unknown) else failed(site, problem)
 
 
 def status_of(site: Site, result: object) -> int:

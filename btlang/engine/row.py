@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from btlang.engine.leaves import as_function, failed, status_of
+from btlang.engine.leaves import as_function, status_of, unanswered
 from btlang.engine.status import FAILURE
 
 TYPE_CHECKING = False
@@ -42,4 +42,4 @@ def settle(site: Site | None, answer: object) -> int:
         return answer
     if answer is FAILURE:
         return site.refuse()
-    return failed(site, answer) if isinstance(answer, Exception) else status_of(site, answer)
+    return unanswered(site, answer) if isinstance(answer, Exception) else status_of(site, answer)

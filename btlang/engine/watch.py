@@ -5,7 +5,7 @@ from __future__ import annotations
 from _thread import get_ident  # `threading` takes longer to import
 from collections.abc import Callable, Iterator
 
-from btlang.engine.leaves import FunctionLeaf, as_function, failed, status_of
+from btlang.engine.leaves import FunctionLeaf, as_function, status_of, unanswered
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SUCCESS
 
 TYPE_CHECKING = False
@@ -159,7 +159,7 @@ class Watch:
             try:
                 status = call()
             except Exception as problem:
-                status = failed(leaf.site, problem)
+                status = unanswered(leaf.site, problem)
             else:
                 if status is None:
                     status = SUCCESS

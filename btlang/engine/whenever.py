@@ -20,8 +20,8 @@ def whenever(site: Site, children: Sequence[Compiled]) -> Compiled:
 
     When it becomes true (true at the start counts too), the work is suspended, and the reaction is ticked until it
     completes. If it fails, the whole fails; else the work goes on. The condition must have been false before it counts
-    again. The whole ends with the status of the work. A condition that is RUNNING counts as false; one that is an
-    action suspends what runs before it starts (see reactive.py).
+    again; one that is not known is neither. The whole ends with the status of the work. A condition that is RUNNING
+    counts as false; one that is an action suspends what runs before it starts (see reactive.py).
     """
     ticks, halts = apart(children)
     shared = site.shared
@@ -52,9 +52,9 @@ def whenever(site: Site, children: Sequence[Compiled]) -> Compiled:
 
     def tick() -> int:
         nonlocal armed, reacting, running
-        fault = shared.fault
+        fault, unknowns = shared.fault, shared.unknowns
         if not holds():
-            armed = True
+            armed = armed or shared.unknowns == unknowns
         elif armed and not reacting:
             armed, reacting = False, True
             if running:

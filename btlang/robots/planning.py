@@ -38,7 +38,8 @@ class Planner:
         self._origin = low_x, low_y
         if (high_x - low_x) * (high_y - low_y) > _MOST_AREA:
             size = f"{high_x - low_x:.0f} m by {high_y - low_y:.0f} m"
-            raise RobotError(f"the world is too large to plan a way: {size}, and {_MOST_AREA:,} square metres are the most")
+            most = f"{_MOST_AREA:,} square metres are the most"
+            raise RobotError(f"the world is too large to plan a way: {size}, and {most}")
         self._columns, self._rows = ceil((high_x - low_x) / CELL), ceil((high_y - low_y) / CELL)
         self._xs, self._ys = np.meshgrid(
             low_x + CELL * (np.arange(self._columns) + 0.5), low_y + CELL * (np.arange(self._rows) + 0.5)
@@ -55,8 +56,7 @@ class Planner:
         The last point is the goal itself, or up to 0.15 m beside one that is too near to an obstacle.
         """
         self._refresh()
-        first = self._free_cell(start, _MOST_AREA = 40_000  # square metres: the grid takes 250 MB
-_START_SEARCH)
+        first = self._free_cell(start, _START_SEARCH)
         if first is None:
             return None
         if reach:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any, Literal, Protocol
 
-from btlang.engine.leaf import ActionFailed
+from btlang.engine.leaf import ActionFailed, Unknown
 from btlang.robots.geometry import Point, Pose
 
 TYPE_CHECKING = False
@@ -19,6 +19,10 @@ OnEvent = Callable[[str, Mapping[str, Any]], None]
 
 class RobotError(ActionFailed):
     """Why the robot cannot do what it was told, in plain English: a leaf that lets it pass FAILS with it."""
+
+
+class SensorSilent(RobotError, Unknown):
+    """What was asked for is not known: a sensor says nothing, or nothing that can be true."""
 
 
 class Deed(Protocol):
@@ -78,6 +82,10 @@ class Robot(Protocol):
     def normal_turn(self) -> float:
         """Degrees a second for turning on the spot."""
 
+    @property
+    def time(self) -> float:
+        """Seconds that it was stepped."""
+
     def step(self, dt: float) -> None:
         """Lets `dt` seconds pass. On a real robot time passes by itself and this only reads the sensors."""
 
@@ -130,7 +138,7 @@ class Robot(Protocol):
     def scan(self) -> npt.NDArray[np.float64]:
         """360 distances from the centre, index = degrees left of the heading, inf where nothing is in range.
 
-        Raises RobotError when the scanner is silent.
+        Raises SensorSilent when the scanner is silent.
         """
 
     def locate(self, name: str) -> Point:

@@ -16,7 +16,7 @@ from btlang.robots.joints import Joints
 from btlang.robots.navigation import Journey, Navigator
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.power import Power
-from btlang.robots.robot import Done, Hand, OnEvent, RobotError
+from btlang.robots.robot import Done, Hand, OnEvent, RobotError, SensorSilent
 from btlang.robots.world import ROBOT_RADIUS, Place, World, said
 
 TYPE_CHECKING = False
@@ -162,7 +162,7 @@ class SimulatedRobot:
     def scan(self) -> Array:
         """360 distances, computed when first read after a step. Raises RobotError when the scanner is silent."""
         if self._faults.scanner_silent:
-            raise RobotError("the laser scanner is silent")
+            raise SensorSilent("the laser scanner is silent")
         if self._scanner is None:
             from btlang.robots.scan import Scanner  # brings numpy, which takes longer to import than many missions
 

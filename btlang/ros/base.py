@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import deque
-from math import cos, degrees, radians, sin
+from math import cos, degrees, hypot, isfinite, radians, sin
 from threading import RLock
 from typing import Any
 
@@ -14,8 +14,9 @@ from rclpy.node import Node
 
 from btlang.robots.geometry import Pose, wrap
 from btlang.robots.robot import RobotError
+from btlang.ros.commands import velocity
 from btlang.ros.inbox import Inbox
-from btlang.ros.poses import BASE, pose_of
+from btlang.ros.poses import pose_of
 from btlang.ros.times import seconds_of
 from btlang.ros.wire import VELOCITY
 from btlang.ros.word import type_name
@@ -28,24 +29,29 @@ _FRESH = 0.5  # seconds for which odometry can say that the robot does not move
 _REMEMBERED = 200  # odometry that a late localization is matched with
 _REST, _TURN_REST = 0.01, 1.0  # metres and degrees a second that odometry reports of a robot that stands
 _STUCK_AFTER, _STUCK_SHARE = 1.0, 0.05
+_BEGINS = 3.0  # seconds that it gets to set off, from the time when somebody listens
 _STEP = 0.25  # seconds that a step counts at most: robots brake by themselves before one that comes late
 _ACKNOWLEDGED = Duration(seconds=0.5)
 
 
 class RosBase:
-    """Wanted velocity is told at each step while it is not zero, since robots brake when they hear no more of it.
+    """Wanted velocity is told once between two steps while it is not zero, since robots brake when they hear no more
+    of it. None is told that is not finite, or faster than `fastest`: metres and degrees a second.
 
     The pose is the latest one of the localization, moved on by the odometry since; where nothing localizes the robot,
     the odometry alone. `halt` may be called from any thread. Nothing is told before somebody listens, who decides
     whether it is a Twist or a TwistStamped: a node can use a topic with one type.
     """
 
-    def __init__(self, node: Node, inbox: Inbox, radius: float) -> None:
+    def __init__(self, node: Node, inbox: Inbox, radius: float, fastest: tuple[float, float]) -> None:
         self._node, self._inbox = node, inbox
-        self._radius = radius
+        self._radius, self._fastest = radius, fastest
         self._lock = RLock()  # a signal handler may halt while this thread drives
         self._wanted = (0.0, 0.0)
-        self._idle = 0.0
+        self._told = False  # since the latest step
+        self._idle = self._passed = 0.0
+        self._under_way = False
+        self._seen: tuple[Any, Pose] | None = None  # the odometry that was looked at last
         self._track: deque[tuple[float, Pose]] = deque(maxlen=_REMEMBERED)
         self._fix: tuple[Pose, Pose] | None = None
         self._early: Any = None  # a localization that is newer than the odometry
@@ -66,12 +72,19 @@ class RosBase:
             return self._type
 
     def drive(self, linear: float, angular: float) -> None:
-        """Metres and degrees a second."""
+        """Metres and degrees a second, at most as fast as it can. Raises RobotError for what is no velocity."""
         with self._lock:
-            if (linear, angular) == (0.0, 0.0):
-                self._idle = 0.0
-            self._wanted = linear, angular
-            self._tell()
+            wanted = _at_most(linear, self._fastest[0]), _at_most(angular, self._fastest[1])
+            if wanted == (0.0, 0.0):
+                self._idle, self._under_way, self._seen = 0.0, False, None
+            elif self._told and wanted == self._wanted:
+                return
+            self._wanted = wanted
+            try:
+                self._tell()
+            except RobotError:
+                self.halt()
+                raise
 
     def halt(self) -> None:
         """Zero velocity, from any thread."""
@@ -84,11 +97,13 @@ class RosBase:
             self._publisher.wait_for_all_acked(_ACKNOWLEDGED)
 
     def step(self, dt: float) -> None:
-        """Tells the wanted velocity again; `dt` seconds have passed."""
+        """Tells the wanted velocity again, unless that was done since the last step; `dt` seconds have passed."""
         with self._lock:
             if self._wanted != (0.0, 0.0):
-                self._idle = self._idle + min(dt, _STEP) if self._pushes() else 0.0
-                self._tell()
+                self._watch(min(dt, _STEP))
+                if not self._told:
+                    self._tell()
+            self._told = False
 
     @property
     def driving(self) -> bool:
@@ -97,13 +112,14 @@ class RosBase:
 
     @property
     def stuck(self) -> bool:
-        """True when it has been told to move for a second and does not."""
-        return self._idle >= _STUCK_AFTER
+        """True when it has been told to move for a second (to set off: for three) and does not."""
+        return self._idle >= (_STUCK_AFTER if self._under_way else _BEGINS)
 
     @property
     def velocity(self) -> tuple[float, float]:
         """Metres and degrees a second. Raises RobotError where the odometry is silent."""
-        linear, angular = self._measured(_SILENT)
+        twist = self._inbox.get(ODOMETRY, _SILENT).twist.twist
+        linear, angular = float(twist.linear.x), degrees(twist.angular.z)
         return (linear if abs(linear) > _REST else 0.0), (angular if abs(angular) > _TURN_REST else 0.0)
 
     @property
@@ -122,27 +138,40 @@ class RosBase:
     def _tell(self) -> None:
         if self._publisher is None:
             self.adapt()
-        if self._publisher is None:
-            return
-        message = twist = _TYPES[self._type]()
-        if self._type == STAMPED:
-            message.header.stamp, message.header.frame_id = self._node.get_clock().now().to_msg(), BASE
-            twist = message.twist
-        twist.linear.x, twist.angular.z = self._wanted[0], radians(self._wanted[1])
-        self._publisher.publish(message)
+        stamp, (linear, angular) = self._node.get_clock().now().to_msg(), self._wanted
+        message = velocity(_TYPES[self._type], linear, radians(angular), stamp, self._fastest[0])
+        if self._publisher is not None:
+            self._publisher.publish(message)
+            self._told = True
 
-    def _measured(self, limit: float) -> tuple[float, float]:
-        twist = self._inbox.get(ODOMETRY, limit).twist.twist
-        return float(twist.linear.x), degrees(twist.angular.z)
-
-    def _pushes(self) -> bool:
-        """Whether it does not move as it is told to."""
+    def _watch(self, dt: float) -> None:
+        """Counts the time in which it does not move as it is told to, by its pose. A command has to arrive first."""
         try:
-            linear, angular = self._measured(_FRESH)
+            message = self._inbox.get(ODOMETRY, _FRESH)
         except RobotError:
-            return False  # what asks for the velocity is told
-        wanted = abs(self._wanted[0]) + self._radius * radians(abs(self._wanted[1]))
-        return abs(linear) + self._radius * radians(abs(angular)) < _STUCK_SHARE * wanted
+            self._seen = None
+            return  # what asks for the pose is told
+        if self._publisher is None or not self._publisher.get_subscription_count():
+            return
+        before, self._passed = self._seen, self._passed + dt
+        if before is not None and before[0] is message:
+            return
+        pose, twist = pose_of(message.pose.pose), message.twist.twist
+        self._seen = message, pose
+        passed, self._passed = self._passed, 0.0
+        if before is None:
+            return
+        least = _STUCK_SHARE * self._arc(*self._wanted)
+        turned = wrap(pose.heading - before[1].heading)
+        if self._arc(before[1].distance_to((pose.x, pose.y)), turned) >= least * passed:
+            self._idle, self._under_way = 0.0, True
+        else:
+            self._idle += passed
+            self._under_way |= self._arc(hypot(twist.linear.x, twist.linear.y), degrees(twist.angular.z)) >= least
+
+    def _arc(self, way: float, angle: float) -> float:
+        """Metres that the rim of the robot moves, of metres and degrees."""
+        return abs(way) + self._radius * radians(abs(angle))
 
     def _moved(self, message: Any) -> None:
         self._track.append((seconds_of(message.header.stamp), pose_of(message.pose.pose)))
@@ -161,6 +190,11 @@ class RosBase:
         at = seconds_of(message.header.stamp)
         odometry = min(self._track, key=lambda entry: abs(entry[0] - at))[1]
         self._fix = pose_of(message.pose.pose), odometry
+
+
+def _at_most(speed: float, most: float) -> float:
+    """What is not finite stays so, and is refused."""
+    return max(-most, min(most, speed)) if isfinite(speed) else speed
 
 
 def _carried(located: Pose, before: Pose, now: Pose) -> Pose:

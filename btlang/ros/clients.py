@@ -16,6 +16,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
 from btlang.record import Record
 from btlang.ros.errands import Errands
+from btlang.ros.gate import Gate
 from btlang.ros.graph import full_name, is_ready, no_listener, no_publisher, no_server
 from btlang.ros.latest import Latest, NodeClock
 from btlang.ros.waiting import wait_until
@@ -97,7 +98,7 @@ class Clients:
         name = self._claim("publisher", cls, name)
 
         def make() -> tuple[Latest, Missing]:
-            made = Latest(name, self.clock.now, lambda: no_publisher(self.node, cls, name))
+            made = Latest(name, self.clock.now, lambda: no_publisher(self.node, cls, name), Gate(cls).refuses)
             qos = _qos(True) if latched else QoSProfile(depth=1, reliability=ReliabilityPolicy.BEST_EFFORT)
             self.node.create_subscription(cls, name, made.store, qos)
             return made, made.why_not

@@ -96,9 +96,12 @@ def print_preflight(tree: Tree, vocabulary: Vocabulary, world: World, robot: Any
     """
     with closing(robot(world)) as stage:
         found = stage.survey(tree, vocabulary)
+        warnings = stage.warnings(found)
     for interface, (_, reason) in found.items():
         state = f"missing: {reason}" if reason else "found"
         show(f"{interface.sort:<7} {interface.name:<20} {interface.type:<36} {state}")
+    for warning in warnings:
+        show(f"warning: {warning}")
     missing = sum(bool(reason) for _, reason in found.values())
     show(f"The robot lacks {missing} of {len(found)}." if missing else "The robot has all that the mission needs.")
     return not missing

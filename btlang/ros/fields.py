@@ -6,6 +6,7 @@ import math
 import re
 from collections.abc import Callable
 
+from btlang.ros.scans import echoes
 from btlang.ros.times import seconds_of
 from btlang.ros.word import Word
 
@@ -114,13 +115,12 @@ def _reduced(
     scan = {"range_min", "range_max"} <= field_types(cls).keys() and path == "ranges"
 
     def read(message: Any) -> Any:
-        values = list(follow(message))
+        values = echoes(message).tolist() if scan else list(follow(message))
         if indexes is not None:
             values = values[int(indexes[0]) : int(indexes[1]) + 1]
         if degrees is not None:
             values = [v for at, v in enumerate(values) if _within(message, at, *degrees)]
-        # of a scan, what is nearer than it can measure is no reading
-        valid = [v for v in values if v == v and not (scan and v < message.range_min)]
+        valid = [v for v in values if v == v]
         if not valid:
             raise ValueError(f"{path} has no value there")
         return reduce(valid)

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import time
 from collections import deque
 from collections.abc import Callable
 from typing import Any
@@ -10,48 +9,64 @@ from typing import Any
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, qos_profile_sensor_data
 
-from btlang.robots.robot import RobotError
+from btlang.robots.robot import SensorSilent
+from btlang.ros.awake import AWAKE
+from btlang.ros.gate import Gate
+from btlang.ros.latest import Latest
 
 _KEPT = QoSProfile(depth=10, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 _MOST = 1000  # messages of one topic that wait for a tick; older ones are forgotten
+_NONSENSE = 2.0  # seconds in which only what is refused has come, however slow the topic is
 QOS = {"sensor": qos_profile_sensor_data, "events": QoSProfile(depth=100), "state": _KEPT}
 """How a topic is listened to: a sensor's messages may be lost, each event counts, a state is told to who comes late."""
 
 
 class Inbox:
-    """Ages are counted from arrival, by the system's clock, so that a robot whose own clock stands still is silent too.
+    """Ages are counted from arrival, in the seconds of `now`. What the gate refuses counts as silence."""
 
-    They are counted by `now` as well, the seconds of a simulator that may be faster than real time.
-    """
-
-    def __init__(self, node: Node, now: Callable[[], float] = time.monotonic) -> None:
+    def __init__(self, node: Node, now: Callable[[], float] = AWAKE.now) -> None:
         self._node = node
         self._now = now
-        self._latest: dict[str, tuple[Any, float, float]] = {}
+        self._latest: dict[str, Latest] = {}
         self._events: dict[str, deque[Any]] = {}
         self._read: dict[str, Any] = {}
-        self._called: dict[str, tuple[str, str]] = {}
+        self._what: dict[str, str] = {}
 
     def listen(
-        self, topic: str, kind: type, what: str, qos: str = "sensor", also: Callable[[Any], object] | None = None
+        self,
+        topic: str,
+        kind: type,
+        what: str,
+        qos: str = "sensor",
+        also: Callable[[Any], object] | None = None,
+        refuses: Callable[[Any], str] | None = None,
+        key: str = "",
     ) -> None:
-        """Subscribes; `what` names the messages for people. `also` is called with each, in the thread that spins."""
-        self._called[topic] = what, self._node.resolve_topic_name(topic)
+        """Subscribes; `what` names the messages for people. `also` is called with each, in the thread that spins.
+
+        `refuses` is a gate in place of the one that messages of this kind have, `key` the name in place of the topic by
+        which they are asked for.
+        """
+        key = key or topic
+        self._what[key] = what
+        latest = Latest(self._node.resolve_topic_name(topic), self._now, refuses=refuses or Gate(kind).refuses)
+        self._latest[key] = latest
         if qos != "sensor":
-            self._events[topic] = deque(maxlen=_MOST)
+            self._events[key] = deque(maxlen=_MOST)
 
         def arrived(message: Any) -> None:
+            if not latest.store(message):
+                return
             if also is not None:
                 also(message)
             if qos != "sensor":
-                self._events[topic].append(message)
-            self._latest[topic] = message, time.monotonic(), self._now()
+                self._events[key].append(message)
 
         self._node.create_subscription(kind, topic, arrived, QOS[qos])
 
     def read(self) -> None:
         """From now on `get` gives what has arrived until now, so that all leaves of a tick see the same."""
-        self._read = {topic: message for topic, (message, *_) in self._latest.copy().items()}
+        self._read = {topic: latest.message for topic, latest in self._latest.items() if latest.has_come}
 
     def events(self, topic: str) -> list[Any]:
         """The messages since the last call, oldest first."""
@@ -60,18 +75,24 @@ class Inbox:
 
     def has(self, topic: str) -> bool:
         """Whether a message has ever come, also since the latest `read`."""
-        return topic in self._latest
+        return self._latest[topic].has_come
+
+    def why_not(self, topic: str) -> str:
+        """Why there is no message to believe, "" where the latest one is."""
+        return self._latest[topic].refused or self._latest[topic].why_not()
 
     def shown(self, topic: str) -> str:
         """The name of a topic that is listened to, with the namespace."""
-        return self._called[topic][1]
+        return self._latest[topic].named
 
     def get(self, topic: str, limit: float | None = None) -> Any:
-        """The latest message. Raises RobotError where there is none, or none for `limit` seconds."""
-        what, shown = self._called[topic]
+        """The latest message. Raises SensorSilent where there is none, or none for `limit` seconds."""
+        what, latest = self._what[topic], self._latest[topic]
         if topic not in self._read:
-            raise RobotError(f"no {what}: nothing has come on {shown}")
-        _, *arrived = self._latest[topic]  # after a tick that took long, newer ones are there but not read yet
-        if limit is not None and max(time.monotonic() - arrived[0], self._now() - arrived[1]) > limit:
-            raise RobotError(f"no {what} for {limit:g} s: {shown} is silent")
+            raise SensorSilent(f"no {what}: {latest.refused or f'nothing has come on {latest.named}'}")
+        # after a tick that took long, newer ones are there but not read yet
+        if limit is not None:
+            limit = min(limit, _NONSENSE) if latest.refused else limit
+            if latest.silence() > limit:
+                raise SensorSilent(f"no {what} for {limit:g} s: {latest.refused or f'{latest.named} is silent'}")
         return self._read[topic]

@@ -2,17 +2,17 @@
 
 from __future__ import annotations
 
-import time
 from collections.abc import Mapping
-from math import ceil, degrees, radians
-from typing import Any
+from math import ceil, degrees, isfinite, radians
 
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
-from trajectory_msgs.msg import JointTrajectory, JointTrajectoryPoint
+from trajectory_msgs.msg import JointTrajectory
 
 from btlang.robots.joints import LIMITS, RATE
-from btlang.robots.robot import RobotError
+from btlang.robots.robot import RobotError, SensorSilent
+from btlang.ros.awake import AWAKE
+from btlang.ros.commands import trajectory
 from btlang.ros.inbox import Inbox
 
 STATES, TRAJECTORY = "joint_states", "joint_trajectory"
@@ -43,18 +43,19 @@ class RosJoints:
             raise RobotError(f'the robot has no joint "{name}"')
         states = self._inbox.get(STATES, _SILENT)
         wire = _on_wire(name)
-        if wire not in states.name:
-            raise RobotError(f'{self._inbox.shown(STATES)} tells nothing of the joint "{wire}"')
-        return degrees(states.position[list(states.name).index(wire)])
+        position = positions(states).get(wire)
+        if position is None:
+            raise SensorSilent(f'{self._inbox.shown(STATES)} tells nothing of the joint "{wire}"')
+        return degrees(position)
 
     def move(self, targets: Mapping[str, float]) -> None:
         """Sets off towards the targets, clipped to the limits. Raises RobotError as `angle` does."""
         clipped = {name: min(max(target, LIMITS[name][0]), LIMITS[name][1]) for name, target in targets.items()}
         angles = {name: self.angle(name) for name in targets}
         furthest = max((abs(clipped[name] - angle) for name, angle in angles.items()), default=0.0)
-        self._targets.update(clipped)
-        self._nearest.update(dict.fromkeys(clipped, (float("inf"), time.monotonic())))
         self._tell(clipped, furthest / RATE)
+        self._targets.update(clipped)
+        self._nearest.update(dict.fromkeys(clipped, (float("inf"), AWAKE.now())))
 
     def at_target(self, names: tuple[str, ...]) -> bool:
         """True when none of them is on its way. Raises RobotError where one of them is stuck."""
@@ -76,7 +77,7 @@ class RosJoints:
         if left <= _CLOSE_ENOUGH:
             return True
         nearest, since = self._nearest[name]
-        now = time.monotonic()
+        now = AWAKE.now()
         if left < nearest - _PROGRESS:
             self._nearest[name] = left, now
         elif now - since > _STALLED:
@@ -86,13 +87,13 @@ class RosJoints:
     def _tell(self, targets: Mapping[str, float], seconds: float) -> None:
         if not targets:
             return
-        point: Any = JointTrajectoryPoint()
-        point.positions = [radians(target) for target in targets.values()]
-        point.time_from_start.sec = ceil(seconds)
-        message = JointTrajectory()
-        message.joint_names = [_on_wire(name) for name in targets]
-        message.points = [point]
-        self._publisher.publish(message)
+        angles = {_on_wire(name): radians(target) for name, target in targets.items()}
+        self._publisher.publish(trajectory(angles, ceil(seconds)))
+
+
+def positions(states: JointState) -> dict[str, float]:
+    """The joints that it says a position of, which is finite, in radians or metres."""
+    return {name: at for name, at in zip(states.name, states.position, strict=False) if isfinite(at)}
 
 
 def _on_wire(name: str) -> str:

@@ -13,14 +13,18 @@ from nav2_msgs.action import NavigateToPose
 from rclpy.action import ActionClient
 from rclpy.node import Node
 
-from btlang.robots.geometry import Pose
+from btlang.robots.geometry import Pose, wrap
 from btlang.robots.world import said
+from btlang.ros.awake import AWAKE
 from btlang.ros.errands import Errands
-from btlang.ros.poses import MAP, pose_message
+from btlang.ros.gate import pose_fault
+from btlang.ros.poses import MAP, pose_message, pose_of
 
 ACTION = "navigate_to_pose"
 _SERVER = 2.0  # seconds that a server gets to be there
 _ANSWER = 5.0  # seconds that it gets to accept or reject, and between two of its feedbacks
+_MUTE, _STANDS = 15.0, 60.0  # seconds without any feedback, and with it, in which the robot does not move
+_MOVED, _TURNED = 0.05, 5.0  # metres and degrees that it has to move
 _ENDINGS = {GoalStatus.STATUS_CANCELED: "somebody cancelled the way to {name}"}
 
 
@@ -29,7 +33,7 @@ class RosJourney:
 
     Nothing waits: `step` looks at what has come, so that a server that never answers costs the tick nothing. `spin` has
     a function called in the thread that spins, where alone the client of an action may be used: elsewhere it could
-    meet an answer before it has noted the question.
+    meet an answer before it has noted the question. `where` gives the pose of the robot, None where nobody knows it.
     """
 
     def __init__(
@@ -39,6 +43,8 @@ class RosJourney:
         server: str,
         goal: NavigateToPose.Goal,
         spin: Callable[[Callable[[], None]], object],
+        where: Callable[[], Pose | None],
+        now: Callable[[], float],
     ) -> None:
         self.name = name
         self.done = False
@@ -48,10 +54,15 @@ class RosJourney:
         self._client, self._goal, self._spin = client, goal, spin
         self._server = f"navigation server on {server}"
         self._lock = RLock()
-        self._since = time.monotonic()  # of what it waits for now
-        self._sent = self._heard = False
+        self._where, self._now = where, now
+        self._since = AWAKE.now()  # of what it waits for now
+        self._stood = (where(), now())
+        self._sent = False
+        self.heard = False
+        """Whether the server has given feedback."""
         self._handle: Any = None
         self._result: Any = None
+        self._reported: Pose | None = None
 
     def cancel(self) -> None:
         """Gives up: the goal is withdrawn, as soon as it is accepted where it is not yet."""
@@ -82,32 +93,53 @@ class RosJourney:
             self._finish(self._result.result())
         elif not self._client.server_is_ready():
             self.end(f"the {self._server} is gone", withdraw=False)
-        elif self._heard and self._waited(_ANSWER):
+        elif self.heard and self._waited(_ANSWER):
             self.end(f"no word from the {self._server} for {_ANSWER:g} s")
+        elif self._stands(_STANDS if self.heard else _MUTE):
+            told = "" if self.heard else f", and the {self._server} gives no word of it"
+            seconds = _STANDS if self.heard else _MUTE
+            self.end(f"the robot has not moved for {seconds:g} s on the way to {said(self.name)}{told}")
 
     def _waited(self, limit: float) -> bool:
-        return time.monotonic() - self._since > limit
+        return AWAKE.now() - self._since > limit
+
+    def _stands(self, limit: float) -> bool:
+        """Whether the robot, or what the server says of it, has not moved for so long."""
+        before, since = self._stood
+        now = self._where() or self._reported
+        if now is not None and (
+            before is None
+            or before.distance_to((now.x, now.y)) > _MOVED
+            or abs(wrap(now.heading - before.heading)) > _TURNED
+        ):
+            self._stood = now, self._now()
+            return False
+        return self._now() - since > limit
 
     def _set_out(self) -> None:
         if self._client.server_is_ready():
-            self._sent, self._since = True, time.monotonic()
+            self._sent, self._since = True, AWAKE.now()
             self._spin(self._send)
         elif self._waited(_SERVER):
             self.end(f"no {self._server}")
 
     def _finish(self, answer: Any) -> None:
-        if answer.status == GoalStatus.STATUS_SUCCEEDED:
+        code, reached = answer.result.error_code, answer.status == GoalStatus.STATUS_SUCCEEDED
+        if reached and not code:
             self.end(None, withdraw=False)
             return
-        told = _ENDINGS.get(answer.status, "the navigation server gave up on the way to {name}")
+        gave_up = f"reported error {code}" if reached else "gave up"
+        told = _ENDINGS.get(answer.status, f"the navigation server {gave_up} on the way to {{name}}")
         self.end(answer.result.error_msg or told.format(name=said(self.name)), withdraw=False)
 
     # In the thread that spins
     def _send(self) -> None:
         self._client.send_goal_async(self._goal, feedback_callback=self._hear).add_done_callback(self._answered)
 
-    def _hear(self, _: Any) -> None:
-        self._heard, self._since = True, time.monotonic()
+    def _hear(self, message: Any) -> None:
+        self.heard, self._since = True, AWAKE.now()
+        if not pose_fault(message.feedback.current_pose.pose):
+            self._reported = pose_of(message.feedback.current_pose.pose)
 
     def _answered(self, answer: Any) -> None:
         handle = answer.result()
@@ -115,7 +147,7 @@ class RosJourney:
             self.end(f"the navigation server rejected the way to {said(self.name)}", withdraw=False)
             self.withdrawn.set()
             return
-        self._since = time.monotonic()
+        self._since, self._stood = AWAKE.now(), (self._stood[0], self._now())
         self._handle, self._result = handle, handle.get_result_async()
         if self.done:
             self._withdraw()
@@ -129,8 +161,11 @@ class RosJourney:
 class RosNavigation:
     """The client of the navigation server, and the journey under way. `stop` may be called from any thread."""
 
-    def __init__(self, node: Node, errands: Errands) -> None:
+    def __init__(
+        self, node: Node, errands: Errands, where: Callable[[], Pose | None], now: Callable[[], float]
+    ) -> None:
         self._node, self._errands = node, errands
+        self._where, self._now = where, now
         self._client = ActionClient(node, NavigateToPose, ACTION)
         self._server = node.resolve_service_name(ACTION)
         self._journey: RosJourney | None = None
@@ -142,7 +177,7 @@ class RosNavigation:
         goal = NavigateToPose.Goal()
         goal.pose = _stamped(pose)
         goal.pose.header.stamp = self._node.get_clock().now().to_msg()
-        self._journey = RosJourney(name, self._client, self._server, goal, self._errands.post)
+        self._journey = RosJourney(name, self._client, self._server, goal, self._errands.post, self._where, self._now)
         self._journey.step()
         return self._journey
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable
 
-from btlang.engine.leaf import ActionFailed
+from btlang.engine.leaf import Unknown
+from btlang.ros.awake import AWAKE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -19,15 +21,19 @@ _STANDING = 1.0  # real seconds for which the clock of a simulation may stand st
 class NodeClock:
     """The clock of a node in seconds, from any thread.
 
-    Where simulated time stands still because nobody gives it, real time counts on, so that a limit is always reached.
+    Without simulated time those are real ones in which this process is awake. Where simulated time stands still because
+    nobody gives it, real time counts on, so that a limit is always reached.
     """
 
     def __init__(self, node: Any) -> None:
         self._clock = node.get_clock()
+        self._simulated = getattr(self._clock, "ros_time_is_active", True)
         self._seen = (-1.0, 0.0)  # what the clock said, and when it said so first; replaced as one
 
     def now(self) -> float:
         """Seconds of the node's clock."""
+        if not self._simulated:
+            return AWAKE.now()
         said = self._clock.now().nanoseconds * 1e-9
         if said != self._seen[0]:
             self._seen = (said, time.monotonic())
@@ -42,12 +48,22 @@ class Latest:
     """What came last. `store` is for the thread of the callbacks, all else for any one.
 
     `named` is what it is called, such as "/scan"; `absence` tells why nothing may have come, "" for no known reason.
+    What `refuses` finds a reason against counts as silence (see `btlang.ros.gate`).
     """
 
-    def __init__(self, named: str, now: Callable[[], float], absence: Callable[[], str]) -> None:
+    def __init__(
+        self,
+        named: str,
+        now: Callable[[], float],
+        absence: Callable[[], str] = str,
+        refuses: Callable[[Any], str] = lambda message: "",
+    ) -> None:
         self.named = named
+        self.refused = ""
+        """Why the latest one was refused, in words; "" where it was not."""
         self._now = now
         self._absence = absence
+        self._refuses = refuses
         self._last: tuple[Any, float] | None = None  # with its time of arrival
 
     @property
@@ -55,22 +71,36 @@ class Latest:
         """Whether there is any message."""
         return self._last is not None
 
-    def store(self, message: Any) -> None:
-        """Keeps a message in place of the one before."""
-        self._last = message, self._now()
+    @property
+    def message(self) -> Any:
+        """The message, however old; None where there is none."""
+        return None if self._last is None else self._last[0]
+
+    def store(self, message: Any) -> bool:
+        """Keeps a message in place of the one before, unless it is refused."""
+        reason = self._refuses(message)
+        self.refused = f"{self.named} {reason}" if reason else ""
+        if not reason:
+            self._last = message, self._now()
+        return not reason
+
+    def silence(self) -> float:
+        """Seconds since it came. While this process was asleep nothing could come."""
+        return math.inf if self._last is None else min(self._now() - self._last[1], AWAKE.since_woke())
 
     def take(self, age: float | None = AGE) -> Any:
-        """The message, not older than so many seconds; None for any age. Raises ActionFailed with the reason."""
+        """The message, not older than so many seconds; None for any age. Raises Unknown with the reason."""
         last = self._last
         if last is None:
-            raise ActionFailed(self.why_not())
-        silence = self._now() - last[1]
+            raise Unknown(self.why_not())
+        silence = self.silence()
         if age is not None and silence > age:
-            raise ActionFailed(self._absence() or f"nothing has come on {self.named} for {silence:.1f} s")
+            reason = self.refused or self._absence()
+            raise Unknown(reason or f"nothing has come on {self.named} for {silence:.1f} s")
         return last[0]
 
     def why_not(self) -> str:
         """Why nothing has come, "" where something has."""
         if self.has_come:
             return ""
-        return self._absence() or f"nothing has come on {self.named} yet"
+        return self.refused or self._absence() or f"nothing has come on {self.named} yet"

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from threading import Thread
 
 import rclpy
+from rclpy.clock import Clock, ClockType
 from rclpy.context import Context
 from rclpy.executors import ExternalShutdownException, SingleThreadedExecutor
 from rclpy.node import Node
@@ -15,6 +16,7 @@ from rclpy.qos import DurabilityPolicy, QoSProfile
 from rclpy.signals import SignalHandlerOptions
 
 from btlang.ros.available import unusable
+from btlang.ros.awake import AWAKE, HEARTBEAT
 from btlang.ros.waiting import wait_until
 
 TYPE_CHECKING = False
@@ -57,10 +59,11 @@ class SpunNode:
         self._executor = SingleThreadedExecutor(context=self.context)
         self._executor.add_node(self.node)
         self._closing = False
-        self._thread = Thread(target=self._spin, name=f"ros {name}", daemon=True)
+        self._thread = Thread(target=self._watch, name=f"ros {name}", daemon=True)
 
     def start(self) -> None:
         """Begins to call callbacks; to be called once all publishers and subscriptions are there."""
+        self.node.create_timer(HEARTBEAT, AWAKE.now, clock=Clock(clock_type=ClockType.STEADY_TIME))
         self._thread.start()
 
     def settle(self, seconds: float) -> None:
@@ -100,6 +103,13 @@ class SpunNode:
         if number > _LAST_DOMAIN:
             rclpy.shutdown(context=self.context)
             raise RuntimeError(f"there is no domain {number}, they are 0 to {_LAST_DOMAIN} (ROS_DOMAIN_ID)")
+
+    def _watch(self) -> None:
+        AWAKE.watch()
+        try:
+            self._spin()
+        finally:
+            AWAKE.unwatch()
 
     def _spin(self) -> None:
         """A callback that raises is told in the log, and the others go on."""

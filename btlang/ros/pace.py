@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable
-from time import monotonic
+from time import monotonic, sleep
 
 from btlang.run.controls import Controls
 from btlang.run.pace import Pace
@@ -47,6 +47,14 @@ class RosPace(Pace):
         self._due = min(self._due, now)
         passed, self._last = now - self._last, now
         return passed
+
+    def rest(self, seconds: float) -> float:
+        """As `sleep`, whatever is asked for meanwhile."""
+        begin = now = self._time()
+        while now < begin + seconds:
+            sleep(min(begin + seconds - now, self._look))
+            now = self._time()
+        return now - begin
 
     def _time(self) -> float:
         """Never goes back, also where a simulator begins anew."""

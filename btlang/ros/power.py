@@ -9,11 +9,12 @@ from sensor_msgs.msg import BatteryState
 from std_msgs.msg import Bool
 from std_srvs.srv import Trigger
 
-from btlang.robots.robot import RobotError
 from btlang.ros.inbox import Inbox
 from btlang.ros.services import Call, Services
 
 BATTERY, DOCKED, DOCK, UNDOCK = "battery_state", "docked", "dock", "undock"
+STATUS = "status of the battery"
+"""The key of what the battery tells besides its percentage, which a robot may leave out."""
 _SILENT = 30.0  # seconds without word of the battery
 
 
@@ -23,7 +24,8 @@ class RosPower:
     def __init__(self, node: Node, inbox: Inbox, services: Services, emit: Callable[..., object]) -> None:
         self._inbox, self._services, self._emit = inbox, services, emit
         self._docked: bool | None = None
-        inbox.listen(BATTERY, BatteryState, "battery state")
+        inbox.listen(BATTERY, BatteryState, "battery state", refuses=_no_percentage)
+        inbox.listen(BATTERY, BatteryState, "battery state", key=STATUS)
         inbox.listen(DOCKED, Bool, "word of the dock", qos="state")
         services.add(DOCK, Trigger)
         services.add(UNDOCK, Trigger)
@@ -31,15 +33,12 @@ class RosPower:
     @property
     def battery(self) -> float:
         """Percent left."""
-        share = float(self._inbox.get(BATTERY, _SILENT).percentage)
-        if not 0.0 <= share <= 1.0:
-            raise RobotError(f"{self._inbox.shown(BATTERY)} tells no percentage")
-        return 100.0 * share
+        return 100.0 * float(self._inbox.get(BATTERY, _SILENT).percentage)
 
     @property
     def charging(self) -> bool:
         """True while the battery is being charged."""
-        state = self._inbox.get(BATTERY, _SILENT)
+        state = self._inbox.get(STATUS, _SILENT)
         return bool(state.power_supply_status == BatteryState.POWER_SUPPLY_STATUS_CHARGING)
 
     @property
@@ -63,3 +62,7 @@ class RosPower:
     def _connected(self, docked: bool) -> None:
         self._docked = docked  # before the topic tells so
         self._emit("dock" if docked else "undock")
+
+
+def _no_percentage(state: BatteryState) -> str:
+    return "" if 0.0 <= state.percentage <= 1.0 else f"gives no percentage from 0 to 1, but {state.percentage:g}"

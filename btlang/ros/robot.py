@@ -15,6 +15,7 @@ from std_srvs.srv import Trigger
 from btlang.robots.geometry import Point, Pose
 from btlang.robots.robot import Deed, Done, Hand, OnEvent, RobotError
 from btlang.robots.world import ROBOT_RADIUS, Place, World
+from btlang.ros.awake import AWAKE
 from btlang.ros.base import RosBase
 from btlang.ros.errands import Errands
 from btlang.ros.hands import RosHands
@@ -39,8 +40,7 @@ class RosRobot:
     """Implements `btlang.robots.robot.Robot`; the pose is on the map of the world file.
 
     A sensor that is silent is a RobotError for who asks for it, never a wait. The node has to be spun in a thread of
-    its own; its namespace is that of the robot. Sensors get old by the seconds of `now`, and by those of the system's
-    clock.
+    its own; its namespace is that of the robot. Sensors get old by the seconds of `now`.
     """
 
     moves_by_itself = True
@@ -48,21 +48,24 @@ class RosRobot:
     normal_speed = 0.5
     max_speed = 1.0
     normal_turn = 90.0
+    max_turn = 180.0
 
     def __init__(
         self,
         node: Node,
         world: World,
         on_event: OnEvent | None = None,
-        now: Callable[[], float] = time.monotonic,
+        now: Callable[[], float] = AWAKE.now,
     ) -> None:
         self.on_event = on_event
         self.stops = 0
+        self.time = 0.0
         self.inbox = inbox = Inbox(node, now)
-        self._node = node
+        self._node, self._now = node, now
+        self._naps = AWAKE.naps
         self._errands = Errands(node)
         self._places = Places(world)
-        self._base = RosBase(node, inbox, self.radius)
+        self._base = RosBase(node, inbox, self.radius, (self.max_speed, self.max_turn))
         self._joints = RosJoints(node, inbox)
         self._voice = RosVoice(node, inbox)
         self._services = Services(node, self._errands)
@@ -78,11 +81,15 @@ class RosRobot:
         if self._navigation is None:
             from btlang.ros.journey import RosNavigation
 
-            self._navigation = RosNavigation(self._node, self._errands)
+            self._navigation = RosNavigation(self._node, self._errands, self._base.where, self._now)
 
     def step(self, dt: float) -> None:
         """`dt` seconds have passed: reads what has come, and tells the wanted velocity again."""
+        self.time += dt
         self.inbox.read()
+        if self._naps != AWAKE.naps:
+            self._naps = AWAKE.naps
+            self._emit("warning", text=f"this computer was asleep for {AWAKE.nap:.0f} s, or btlang was suspended")
         if self._stopping:
             self._rest()  # again: what was under way in this thread may have overwritten what `stop` did in another
             self._stopping = False
@@ -152,12 +159,12 @@ class RosRobot:
         return self._base.adapt()
 
     def drive(self, linear: float, angular: float) -> None:
-        """Sets the wanted metres and degrees a second; ends a journey under way."""
+        """Sets the wanted metres and degrees a second; ends a journey under way. Raises RobotError for no numbers."""
         if self._stopping:
             return
         if self._navigation is not None:
             self._navigation.stop("the robot was told to drive elsewhere")
-        self._base.drive(max(-self.max_speed, min(self.max_speed, linear)), angular)
+        self._base.drive(linear, angular)
         if self._stopping:
             self._base.halt()  # `stop` came in between from another thread
 

@@ -12,8 +12,10 @@ from sensor_msgs.msg import LaserScan
 from std_msgs.msg import String
 
 from btlang.robots.geometry import Pose
+from btlang.robots.robot import SensorSilent
 from btlang.ros.base import RosBase
 from btlang.ros.inbox import Inbox
+from btlang.ros.scans import echoes
 
 SCAN, BUMP = "scan", "bump"
 _SILENT = 2.0  # seconds without a scan
@@ -21,19 +23,29 @@ _FREE_AGAIN = 0.03  # metres from where it bumped
 
 
 class RosSenses:
-    """`bumps` counts contacts; `emit` is told of them, and of a base that does not move as it is told to."""
+    """`bumps` counts contacts; `emit` is told of them, of a base that does not move as it is told to, and once of a
+    scanner that somebody asks and that is silent.
+    """
 
     def __init__(self, inbox: Inbox, base: RosBase, emit: Callable[..., object]) -> None:
         self._inbox, self._base, self._emit = inbox, base, emit
         self._contact: Pose | None = None
-        self._stuck_told = False
+        self._stuck_told = self._silence_told = False
         self.bumps = 0
         inbox.listen(SCAN, LaserScan, "laser scan")
         inbox.listen(BUMP, String, "bumps", qos="events")
 
     def scan(self) -> npt.NDArray[np.float64]:
         """The nearest echo in each degree. Raises RobotError when the scanner is silent."""
-        return _degrees(self._inbox.get(SCAN, _SILENT))
+        try:
+            scan = self._inbox.get(SCAN, _SILENT)
+        except SensorSilent as silent:
+            if not self._silence_told:
+                self._silence_told = True
+                self._emit("warning", text=str(silent))
+            raise
+        self._silence_told = False
+        return _degrees(scan)
 
     @property
     def bumped(self) -> bool:
@@ -56,9 +68,9 @@ class RosSenses:
 
 def _degrees(scan: Any) -> npt.NDArray[np.float64]:
     """360 distances, index = degrees left of the heading; inf where no beam came back."""
-    ranges = np.asarray(scan.ranges, dtype=np.float64)
+    ranges = echoes(scan)
     angles = scan.angle_min + scan.angle_increment * np.arange(len(ranges))
-    seen = np.isfinite(ranges) & (ranges >= scan.range_min) & (ranges <= scan.range_max)
+    seen = np.isfinite(ranges)
     found = np.full(360, inf)
     np.minimum.at(found, np.rint(angles[seen] / radians(1.0)).astype(int) % 360, ranges[seen])
     return found

@@ -11,6 +11,7 @@ from typing import Any
 from rclpy.node import Node
 
 from btlang.robots.robot import RobotError
+from btlang.ros.awake import AWAKE
 from btlang.ros.errands import Errands
 
 _ANSWER = 3.0  # seconds of real time
@@ -26,7 +27,7 @@ class Call:
         self.done = False
         self.failure: str | None = None
         self._name, self._accomplished = name, accomplished
-        self._since = time.monotonic()
+        self._since = AWAKE.now()
         self._lock = Lock()
         self._answer: Any = None
 
@@ -50,7 +51,7 @@ class Call:
         if self.done:
             return
         if answer is None:
-            if time.monotonic() - self._since > _ANSWER:
+            if AWAKE.now() - self._since > _ANSWER:
                 self.end(f"no answer from {self._name} for {_ANSWER:g} s")
         elif not answer.success:
             self.end(answer.message or f"{self._name} refused")

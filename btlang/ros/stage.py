@@ -16,6 +16,7 @@ from btlang.ros.binding import bind_ros
 from btlang.ros.clients import Clients
 from btlang.ros.connected import is_connected
 from btlang.ros.graph import absent, full_name
+from btlang.ros.latest import NodeClock
 from btlang.ros.node import SpunNode
 from btlang.ros.pace import RosPace
 from btlang.ros.robot import RosRobot
@@ -36,6 +37,8 @@ if TYPE_CHECKING:
     from btlang.vocabulary.vocabulary import Vocabulary
 
 _DISCOVERY = 7.0  # seconds of a node's life in which it has found all: DDS announces every 3 s, and two may get lost
+_ANNOUNCED = 3.0  # seconds of a node's life in which it has found nearly all
+_UNNAMED = "_NODE_NAME_UNKNOWN_"  # of a node whose topics are found and whose name is not yet
 _AGAIN = 2.0  # seconds that an older node gets
 _LAST_ANSWERS = 2.0  # seconds that goals which were halted get to end
 
@@ -60,8 +63,9 @@ class RosStage:
         self._spun = SpunNode(name, namespace=namespace, use_sim_time=sim_time)
         self.node = self._spun.node
         self._now = self._ros_time if sim_time else time.monotonic
+        now = NodeClock(self._spun.node).now
         try:
-            self.robot = RosRobot(self._spun.node, world, on_event=self._publish, now=self._now)
+            self.robot = RosRobot(self._spun.node, world, on_event=self._publish, now=now)
             if sim_time:
                 self.robot.inbox.listen(CLOCK.name, ClockMessage, "simulated time")
             self._clients = Clients(self._spun.node)
@@ -103,6 +107,24 @@ class RosStage:
         wait_until(has_all, max(self._discovers_until - time.monotonic(), _AGAIN))
         return {self._named(interface): lack for interface, lack in found.items()}
 
+    def warnings(self, needs: Iterable[Interface]) -> list[str]:
+        """What is there and may yet do harm: others who tell the robot how to move. Gives DDS a moment to find them."""
+        if VELOCITY not in (need.name.rpartition("/")[2] for need in needs):
+            return []
+        name = full_name(self.node, "listener", VELOCITY)
+        own = self.node.get_namespace().rstrip("/"), self.node.get_name()
+
+        def others() -> set[tuple[str, str]]:
+            ends = self.node.get_publishers_info_by_topic(name)
+            return {(end.node_namespace.rstrip("/"), end.node_name) for end in ends} - {own}
+
+        def are_named() -> bool:
+            return bool(others()) and not any(node == _UNNAMED for _, node in others())
+
+        wait_until(are_named, self._discovers_until - _DISCOVERY + _ANNOUNCED - time.monotonic())
+        shown = ["another node" if node == _UNNAMED else f"{place}/{node}" for place, node in sorted(others())]
+        return [f"{node} publishes {name} too, so the robot follows both" for node in shown]
+
     def _spoken(self, wanted: Mapping[Interface, Node | None]) -> dict[Interface, Node | None]:
         """With the type of velocity that the robot listens to."""
         types = {VELOCITY: self.robot.velocity_type()}
@@ -112,8 +134,8 @@ class RosStage:
         """What is wrong with an interface that shipped leaves need, "" for nothing."""
         node, name = self._spun.node, self._named(wanted).name
         reason = absent(node, wanted.kind, name, wanted.type)
-        if not reason and wanted.flows and not self.robot.inbox.has(wanted.name):
-            return f"nothing has come on {name} yet"
+        if not reason and wanted.flows:
+            reason = self.robot.inbox.why_not(wanted.name)
         return reason if reason or is_connected(node, name) else f"{name} is not connected yet"
 
     def _named(self, interface: Interface) -> Interface:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import time
-
 from rclpy.node import Node
 from std_msgs.msg import Bool, String
 
 from btlang.robots.robot import RobotError
+from btlang.ros.awake import AWAKE
 from btlang.ros.inbox import Inbox
 
 SPEECH, SPEAKING, PRINT = "speech", "speaking", "print"
@@ -31,7 +30,7 @@ class RosVoice:
         """Starts to speak. Raises RobotError where nobody listens."""
         if not self._speech.get_subscription_count():
             raise RobotError(f"nobody listens on {self._speech.topic_name}")
-        self._asked, self._heard, self._age, self._since = True, False, 0.0, time.monotonic()
+        self._asked, self._heard, self._age, self._since = True, False, 0.0, AWAKE.now()
         self._expected = 0.35 + 0.06 * len(text)
         self._speech.publish(String(data=text))
 
@@ -55,7 +54,7 @@ class RosVoice:
                 self._asked = False
             self._told = bool(message.data)
             self._heard = self._heard or self._told
-        if self._asked and time.monotonic() - self._since > _BEGINS:
+        if self._asked and AWAKE.now() - self._since > _BEGINS:
             self._asked = self._told if self._inbox.has(SPEAKING) else self._age < self._expected
 
     @property

@@ -42,6 +42,7 @@ CAPABILITIES: dict[str, tuple[Interface, ...]] = {
     "scan": (Interface("publisher", "scan", "sensor_msgs/msg/LaserScan", flows=True),),
     "bump": (Interface("publisher", "bump", "std_msgs/msg/String"),),
     "battery": (Interface("publisher", "battery_state", "sensor_msgs/msg/BatteryState", flows=True),),
+    "charging": (Interface("publisher", "battery_state", "sensor_msgs/msg/BatteryState"),),
     "docked": (Interface("publisher", "docked", "std_msgs/msg/Bool", flows=True),),
     "docking": (
         Interface("service", "dock", "std_srvs/srv/Trigger"),
@@ -78,7 +79,8 @@ _DOES = {
     ("print",): "Print",
     ("scan",): "WallInFront WallOnLeft WallOnRight WallBehind PathClear DistanceAhead",
     ("bump",): "Bumped",
-    ("battery",): "BatteryLow BatteryFull Battery Charging",
+    ("battery",): "BatteryLow BatteryFull Battery",
+    ("charging",): "Charging",
     ("docked",): "Docked",
     ("pose",): (
         "AtPlace PersonNear SomeoneNear PeopleNear DistanceToPlace DistanceToPerson DistanceToObject"

@@ -62,8 +62,8 @@ class Lines:
             self._line(event.t, "stuck", "")
         elif event.kind == "fault":
             self._line(event.t, "fault", str(event.data.get("text", "")))
-        elif event.kind == "error":
-            self._line(event.t, "error", str(event.data.get("text", "")))
+        elif event.kind in ("error", "warning"):
+            self._line(event.t, event.kind, str(event.data.get("text", "")))
 
     def _line(self, t: float, word: str, rest: str) -> None:
         self._write(f"{t:7.2f}  {word:<6} {one_line(rest)}".rstrip())

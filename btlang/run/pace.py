@@ -34,6 +34,12 @@ class Pace:
         self._woken = True
         self._controls.wake()
 
+    def rest(self, seconds: float) -> float:
+        """As `sleep`, whatever is asked for meanwhile: for the time after a run, in which the robot comes to rest."""
+        if self._speed < math.inf:
+            time.sleep(seconds / self._speed)
+        return seconds
+
     def sleep(self, seconds: float) -> float:
         """Sleeps through a period of so many seconds of the mission; returns how many have passed.
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-import time
 from collections.abc import Callable, Mapping
 
 from btlang.engine.blackboard import Blackboard
@@ -76,13 +75,24 @@ def traced_engine(
     blackboard: Blackboard | None = None,
     stopwatch: Stopwatch | None = None,
 ) -> Engine:
-    """An engine whose status changes go into the stream."""
+    """An engine whose status changes go into the stream, and once in a run each condition that is not known."""
 
     def changed(changes: Changes) -> None:
         events.publish(StatusesChanged(clock.now, changes, engine, engine.valued(changes.indices)))
 
+    def unknown(failure: Failure) -> None:
+        text = f"'{_words(failure)}' is not known: {failure.reason}"
+        events.publish(_trouble(clock.now, "warning", failure, text))
+
     engine = Engine(
-        tree, bind, clock=clock, services=services, blackboard=blackboard, listener=changed, stopwatch=stopwatch
+        tree,
+        bind,
+        clock=clock,
+        services=services,
+        blackboard=blackboard,
+        listener=changed,
+        stopwatch=stopwatch,
+        on_unknown=unknown,
     )
     events.before = engine.tell
     return engine
@@ -245,22 +255,24 @@ class Runner:
             self._report(failure, f"{_words(failure)} did not end after it was halted")
         if self._robot is None:
             return
-        rest_until = self._clock.now + _REST
+        rest_until, passed = self._clock.now + _REST, self._period
         while True:  # at least once: a robot that was stopped takes no command before its next step
-            self._advance(self._period)
+            self._advance(passed)
             if not getattr(self._robot, "moving", False) or self._clock.now >= rest_until - 1e-9:
                 return
-            if self._pause:
-                time.sleep(self._pause)
+            passed = self._pace.rest(self._period)
 
     def _report_halts(self) -> None:
         for failure in self._engine.take_halt_failures():
             self._report(failure, f"{failure.node.id} did not halt: {failure.reason}")
 
     def _report(self, failure: Failure, text: str) -> None:
-        data = {"text": text, "path": failure.path}
-        place = {"place": failure.span.place} if failure.span is not None else {}
-        self._events.publish(RobotEvent(self._clock.now, "error", {**data, **place}))
+        self._events.publish(_trouble(self._clock.now, "error", failure, text))
+
+
+def _trouble(t: float, kind: str, failure: Failure, text: str) -> RobotEvent:
+    place = {"place": failure.span.place} if failure.span is not None else {}
+    return RobotEvent(t, kind, {"text": text, "path": failure.path, **place})
 
 
 def _words(failure: Failure) -> str:

@@ -50,6 +50,11 @@ class LockStep(RosPace):
         passed, self._last = max(0.0, now - self._last), max(now, self._last)
         return passed
 
+    def rest(self, seconds: float) -> float:
+        """The robot steps unasked when it has waited for long enough."""
+        self._allowed.publish(Float64(data=self._done + seconds))
+        return super().rest(seconds)
+
 
 def in_lock_step(patch: pytest.MonkeyPatch) -> None:
     """From now on missions with `--robot ros --sim-time` in this process go in lock step with such a robot."""

@@ -125,3 +125,11 @@ def test_there_is_no_server(robot: Robot) -> None:
     text = WORDS.replace("goal = {", "wait = 0.5, goal = {")
     assert robot.run(MISSION, text) == "there is no action server /navigate_to_pose"
     assert robot.clients.missing() == ["there is no action server /navigate_to_pose"]
+
+
+def test_a_server_that_never_answers_the_goal(robot: Robot, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("btlang.ros.leaves.actions.ANSWER", 0.5)
+    navigator = robot.peer("navigator", "slow", "1.5")
+    assert robot.run(MISSION, WORDS) == "/navigate_to_pose does not answer the goal"
+    navigator.expect("executing")  # it accepts at last, and is cancelled at once
+    navigator.expect("cancelled")

@@ -12,7 +12,9 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 
 import pytest
+from geometry_msgs.msg import Twist
 
+from tests.ros.client import Client
 from tests.ros.processes import LONG, REPOSITORY, Command, start, wait_until
 
 
@@ -163,7 +165,7 @@ def test_a_navigation_server_that_is_killed(
     server.wait_for("accepted")
     server.kill()
     assert code_of(command, 40) == 1
-    assert re.search(r"GoTo: (no word from )?the navigation server on /navigate_to_pose (is gone|for 5 s)", command.err)
+    assert re.search(r"GoTo: .*the navigation server on /navigate_to_pose (is gone|for 5 s|gives no word)", command.err)
 
 
 def test_a_base_that_is_killed(robot: Callable[..., Script], btc: Callable[..., Command]) -> None:
@@ -203,6 +205,23 @@ def test_a_signal_leaves_the_robot_at_rest(
     assert script.place < 3.0
 
 
+def test_a_client_that_was_asleep_says_so_and_blames_nobody(
+    robot: Callable[..., Script], btc: Callable[..., Command]
+) -> None:
+    script = robot("base")
+    command = btc("move forward 99 m")
+    script.wait_for("drive 0.5")
+    command.process.send_signal(signal.SIGSTOP)
+    time.sleep(3.0)  # longer than odometry may be silent
+    command.process.send_signal(signal.SIGCONT)
+    command.wait_for("warning this computer was asleep for 3 s, or btlang was suspended")
+    began = time.monotonic()
+    wait_until(lambda: time.monotonic() > began + 0.5 or command.process.poll() is not None, "some more ticks")
+    command.process.send_signal(signal.SIGINT)
+    assert code_of(command) == 130, command.err
+    assert script.drives[-1].startswith("drive 0.000 0.000")
+
+
 def test_a_time_limit_leaves_the_robot_at_rest(robot: Callable[..., Script], btc: Callable[..., Command]) -> None:
     script = robot("base")
     assert code_of(btc("move forward 9 m", "--for", "1s")) == 0
@@ -223,13 +242,18 @@ def test_what_is_missing_is_told_before_the_run(btc: Callable[..., Command], nav
     )
 
 
-def test_preflight(robot: Callable[..., Script], btc: Callable[..., Command]) -> None:
+def test_preflight(robot: Callable[..., Script], btc: Callable[..., Command], client: Client) -> None:
     script = robot("base", "speech")
-    ready = btc("move forward then say done", "--preflight")
-    assert code_of(ready) == 0, ready.err
-    assert ready.out.splitlines()[-1] == "The robot has all that the mission needs."
     lacking = btc("move forward until there is a wall in front", "--preflight")
     assert code_of(lacking) == 1
     assert re.search(r"^topic   /scan +sensor_msgs/msg/LaserScan +missing: nobody publishes /scan$", lacking.out, re.M)
     assert lacking.out.splitlines()[-1] == "The robot lacks 1 of 3."
+    assert "warning" not in lacking.out
+    client.publisher(Twist, "/cmd_vel")
+    ready = btc("move forward then say done", "--preflight")
+    assert code_of(ready) == 0, ready.err
+    assert ready.out.splitlines()[-2:] == [
+        "warning: /client publishes /cmd_vel too, so the robot follows both",
+        "The robot has all that the mission needs.",
+    ]
     assert script.drives == []

@@ -4,9 +4,13 @@ from __future__ import annotations
 
 import pytest
 
+from btlang.engine.clock import Clock
+from btlang.engine.engine import Engine
 from btlang.ros import pace as module
 from btlang.ros.pace import RosPace
 from btlang.run.controls import Controls
+from btlang.run.runner import Runner
+from btlang.tree.node import Node, Tree
 
 
 class Times:
@@ -16,6 +20,7 @@ class Times:
         self.real, self.simulated, self.factor = 100.0, 5.0, factor
         self.controls = Controls()
         monkeypatch.setattr(module, "monotonic", lambda: self.real)
+        monkeypatch.setattr(module, "sleep", self.pass_by)
         monkeypatch.setattr(self.controls, "wait", lambda seconds: self.pass_by(seconds))
 
     def pass_by(self, seconds: float) -> None:
@@ -66,3 +71,28 @@ def test_time_does_not_go_back_where_a_simulator_begins_anew(monkeypatch: pytest
     pace = times.pace()
     times.simulated = 0.0
     assert 0.0 <= pace.sleep(0.05) <= 0.06
+
+
+class Rolling:
+    """A robot that does not come to rest."""
+
+    moving = True
+
+    def step(self, dt: float) -> None:
+        pass
+
+    def stop(self) -> None:
+        pass
+
+
+def test_a_robot_gets_its_time_to_come_to_rest_by_the_clock_of_the_run(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Also where the simulator is slow, and the run was stopped."""
+    times, clock = Times(monkeypatch, factor=0.2), Clock()
+    engine = Engine(Tree(Node("Sleep", (), (("msec", "5000"),))), lambda id: None, clock=clock)
+    controls = times.controls
+    runner = Runner(engine, clock=clock, robot=Rolling(), controls=controls, pace=lambda speed, given: times.pace())
+    controls.stop()
+    assert runner.run().stopped == "interrupted"
+    assert clock.now == pytest.approx(2.0, abs=0.1)
+    assert times.simulated - 5.0 == pytest.approx(2.0, abs=0.1)
+    assert times.real - 100.0 == pytest.approx(10.0, abs=0.5)

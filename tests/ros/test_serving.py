@@ -14,6 +14,7 @@ from action_msgs.msg import GoalStatus
 from nav_msgs.msg import Odometry
 from std_srvs.srv import Trigger
 
+import btlang
 from btlang.api import world_vocabulary
 from btlang.cli import main
 from btlang.vocabulary.shipped import DEFAULT_WORLD
@@ -203,6 +204,23 @@ def test_a_server_is_missing_halted_and_killed(serve, tmp_path: Path, domain: in
     assert going.process.wait(LONG) == 0, going.err
     assert "the server of /actions/move_forward is gone" in going.out
     assert "done   say sorry" in going.out
+
+
+def test_a_server_that_freezes(serve, domain: int, monkeypatch: pytest.MonkeyPatch):
+    """It is alive for DDS, and says nothing more."""
+    monkeypatch.setattr("btlang.ros.leaves.phrases.SILENCE", 3.0)
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
+    mover = serve("--only", "motion")
+
+    def freeze(event: object) -> None:
+        if "start  move forward" in mover.out:
+            mover.process.send_signal(signal.SIGSTOP)
+
+    try:
+        outcome = btlang.parse_tree(LONG_WAY).run(robot="actions", sinks=[freeze])
+    finally:
+        mover.process.send_signal(signal.SIGCONT)
+    assert outcome.failure.reason == "/actions/move_forward gives no word of the goal"
 
 
 def test_without_its_interfaces(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):

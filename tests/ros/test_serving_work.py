@@ -130,6 +130,15 @@ def test_goals_of_different_resources_run_side_by_side():
     assert shares[-1] > 0.8
 
 
+def test_a_caller_hears_again_and_again_that_it_goes_on(monkeypatch: pytest.MonkeyPatch):
+    monkeypatch.setattr("btlang.ros.serving.job.WORD", 0.0)
+    server = Server()
+    say, _ = server.begin("Say", text="hello there")
+    server.tick(0.5)
+    assert len(say.told) >= 9
+    assert len(set(say.told)) == 1
+
+
 def test_the_later_of_two_goals_that_need_the_same_fails():
     server = Server()
     first, _ = server.begin("MoveForward", distance="0.6 m")

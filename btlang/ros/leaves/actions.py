@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Generator, Mapping
+from math import inf
 
 from action_msgs.msg import GoalStatus
 from action_msgs.srv import CancelGoal
 
-from btlang.engine.leaf import Failed, described
+from btlang.engine.leaf import ActionFailed, Failed, described
+from btlang.ros.awake import AWAKE
 from btlang.ros.clients import Clients
 from btlang.ros.filling import filler
-from btlang.ros.leaves.server import WAIT, Judge, Presence, awaited, nothing
+from btlang.ros.leaves.server import ANSWER, WAIT, Judge, Presence, awaited, nothing
 from btlang.ros.word import Word
 
 TYPE_CHECKING = False
@@ -26,6 +28,9 @@ class Goal:
 
     def __init__(self, clients: Clients, client: Any, name: str, message: Any, wake: Callable[[], object]) -> None:
         self.answer: Any = None
+        self.accepted = False
+        self.heard = 0.0
+        """When it last had word of the server, in seconds of AWAKE; 0 for never."""
         self._clients = clients
         self._client = client
         self._name = name
@@ -56,16 +61,20 @@ class Goal:
             self._end("it was halted before it was sent")
             return
         try:
-            self._client.send_goal_async(self._message).add_done_callback(self._answered)
+            self._client.send_goal_async(self._message, self._hear).add_done_callback(self._answered)
         except Exception as problem:
             self._end(f"the goal could not be sent to {self._name}: {described(problem)}")
+
+    def _hear(self, _: object = None) -> None:
+        self.heard = AWAKE.now()
 
     def _answered(self, future: Any) -> None:
         handle = future.result()
         if handle is None or not handle.accepted:
             self._end(f"{self._name} rejected the goal")
             return
-        self._handle = handle
+        self._handle, self.accepted = handle, True
+        self._hear()
         handle.get_result_async().add_done_callback(lambda ended: self._end(ended.result()))
         if self._cancelled:
             self._cancel()
@@ -90,10 +99,13 @@ def action_leaf(word: Word, clients: Clients) -> Callable[..., Any]:
     return goal_leaf(word, clients, cls, filler(word, cls.Goal, word.ros.get("goal"), clients.clock.message))
 
 
-def goal_leaf(word: Word, clients: Clients, cls: Any, make: Callable[[Mapping[str, Any]], Any]) -> Callable[..., Any]:
+def goal_leaf(
+    word: Word, clients: Clients, cls: Any, make: Callable[[Mapping[str, Any]], Any], silence: float = inf
+) -> Callable[..., Any]:
     """A generator leaf; `make` gives the goal for the values of the slots.
 
-    FAILURE with a reason where there is no server, or where it rejects, aborts or is lost.
+    FAILURE with a reason where there is no server, or where it rejects, aborts, is lost or does not answer, or gives no
+    word of an accepted goal for as long as `silence`.
     """
     name = word.ros.name
     judge = Judge(word, cls.Result)
@@ -109,7 +121,11 @@ def goal_leaf(word: Word, clients: Clients, cls: Any, make: Callable[[Mapping[st
         presence = Presence(servers)
         try:
             goal.send()
+            goal.heard = AWAKE.now()
             while goal.answer is None:
+                quiet = AWAKE.now() - goal.heard
+                if quiet > (silence if goal.accepted else ANSWER):
+                    raise ActionFailed(f"{name} {'gives no word of' if goal.accepted else 'does not answer'} the goal")
                 yield
                 if goal.answer is None and presence.is_lost():
                     goal.answer = f"the server of {name} is gone"

@@ -7,11 +7,13 @@ from collections.abc import Callable, Generator
 
 from nav_msgs.msg import Odometry
 
-from btlang.engine.leaf import ActionFailed, Failed
+from btlang.engine.leaf import ActionFailed
+from btlang.robots.progress import PATIENCE, Progress
 from btlang.ros.clients import Clients
+from btlang.ros.commands import velocity
 from btlang.ros.graph import no_listener
 from btlang.ros.latest import Latest
-from btlang.ros.poses import BASE, yaw_of
+from btlang.ros.poses import yaw_of
 from btlang.ros.word import Word, type_name
 
 TYPE_CHECKING = False
@@ -24,8 +26,6 @@ _GAIN = 3.0  # speed per way that is left; twice as much would swing where odome
 _SLOWEST = (0.03, 0.08)  # metres and radians a second that still move a robot
 _CLOSE = (0.01, math.radians(1.0))
 _ODOMETRY_AGE = 1.0  # seconds; a robot that does not know where it is should not drive on
-_PATIENCE = 5.0
-_STEP = 0.2  # of the way to what counts as being close: less is no progress
 
 
 def drive_leaf(word: Word, clients: Clients) -> Callable[..., Any]:
@@ -37,30 +37,22 @@ def drive_leaf(word: Word, clients: Clients) -> Callable[..., Any]:
     turns, sign = way in ("left", "right"), -1.0 if way in ("backward", "right") else 1.0
     amount, speed = word.amount(way, 0.0), word.amount("speed", TURN if turns else SPEED)
     close = word.ros.get("tolerance", _CLOSE[turns])
-    patience = word.ros.get("patience", _PATIENCE)
+    patience = word.ros.get("patience", PATIENCE)
     publisher = clients.publisher(cls, name)
     odometry = clients.latest(Odometry, word.ros.get("odometry", "odom"))
-    now = clients.clock.now
 
-    def send(velocity: float, turning: float = 0.0) -> None:
-        message = cls()
-        twist = message
-        if hasattr(message, "header"):
-            message.header.stamp, message.header.frame_id = clients.clock.message(), BASE
-            twist = message.twist
-        if turns:
-            twist.angular.z = velocity
-        else:
-            twist.linear.x, twist.angular.z = velocity, turning
-        publisher.publish(message)
+    def send(speed: float, turning: float = 0.0) -> None:
+        speeds = (0.0, speed) if turns else (speed, turning)
+        publisher.publish(velocity(cls, *speeds, clients.clock.message()))
 
-    def drive(**values: Any) -> Generator[None, None, bool | Failed]:
+    def drive(**values: Any) -> Generator[None, None, bool]:
         way_to_go, fastest = sign * amount(values), abs(speed(values))
         if not publisher.get_subscription_count() or not odometry.has_come:
             yield from _ready(clients, cls, name, publisher, odometry, patience)
         travelled = _turned if turns else _driven
         start = pose = _pose(odometry.take(_ODOMETRY_AGE))
-        done, best, since = 0.0, math.inf, now()
+        done, shown = 0.0, math.degrees if turns else float
+        bounds = Progress(shown(way_to_go), shown(close), turns, clients.clock.now, patience)
         try:
             while True:
                 before, pose = pose, _pose(odometry.take(_ODOMETRY_AGE))
@@ -68,12 +60,9 @@ def drive_leaf(word: Word, clients: Clients) -> Callable[..., Any]:
                 left = way_to_go - done
                 if abs(left) <= close:
                     return True
-                if abs(left) < best - _STEP * close:
-                    best, since = abs(left), now()
-                elif now() - since > patience:
-                    return Failed(_stuck(done, way_to_go, turns))
-                velocity = math.copysign(min(fastest, max(_SLOWEST[turns], abs(left) * _GAIN)), left)
-                send(velocity, 0.0 if turns else -_GAIN * _turned(start, pose))
+                bounds.check(shown(left), shown(done) if turns else math.dist(start[:2], pose[:2]))
+                pace = math.copysign(min(fastest, max(_SLOWEST[turns], abs(left) * _GAIN)), left)
+                send(pace, 0.0 if turns else -_GAIN * _turned(start, pose))
                 yield
         finally:
             send(0.0)
@@ -104,11 +93,3 @@ def _driven(start: tuple[float, float, float], pose: tuple[float, float, float])
 def _turned(start: tuple[float, float, float], pose: tuple[float, float, float]) -> float:
     """Radians to the left, less than half a turn."""
     return math.remainder(pose[2] - start[2], math.tau)
-
-
-def _stuck(done: float, wanted: float, turns: bool) -> str:
-    if turns:
-        return (
-            f"the robot does not turn on: {abs(math.degrees(done)):.0f} of {abs(math.degrees(wanted)):.0f} degrees done"
-        )
-    return f"the robot does not get on: {abs(done):.2f} of {abs(wanted):.2f} m done"

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Callable, Generator, Mapping
 
 from sensor_msgs.msg import JointState
-from trajectory_msgs.msg import JointTrajectoryPoint
 
 from btlang.engine.leaf import ActionFailed, Failed
 from btlang.ros.clients import Clients
+from btlang.ros.commands import trajectory
 from btlang.ros.graph import no_listener
+from btlang.ros.joints import positions
 from btlang.ros.latest import AGE
-from btlang.ros.times import duration
 from btlang.ros.word import Word, type_name
 from btlang.vocabulary.ros_table import SLOT
 
@@ -35,9 +35,8 @@ def joints_leaf(word: Word, clients: Clients) -> Callable[..., Any]:
     seconds, close = word.amount("duration", _DURATION), word.ros.get("tolerance", _CLOSE)
     patience, now = word.ros.get("patience", _PATIENCE), clients.clock.now
 
-    def send(positions: Mapping[str, float], time_from_start: float) -> None:
-        point = JointTrajectoryPoint(positions=list(positions.values()), time_from_start=duration(time_from_start))
-        publisher.publish(cls(joint_names=list(positions), points=[point]))
+    def send(wanted: Mapping[str, float], time_from_start: float) -> None:
+        publisher.publish(trajectory(wanted, time_from_start))
 
     def move(**values: Any) -> Generator[None, None, bool | Failed]:
         wanted, length = {joint: target(values) for joint, target in targets.items()}, seconds(values)
@@ -88,7 +87,7 @@ def _target(word: Word, joint: str, given: Any) -> Callable[[Mapping[str, Any]],
 
 def _positions(message: Any, joints: Mapping[str, float], topic: str) -> dict[str, float]:
     """Where some joints are. Raises ActionFailed."""
-    found = dict(zip(message.name, message.position, strict=False))
+    found = positions(message)
     missing = [joint for joint in joints if joint not in found]
     if missing:
         raise ActionFailed(f"{topic} tells nothing of the joint {missing[0]}")

@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 from btlang.engine.script_values import as_text
 from btlang.ros.clients import Clients
 from btlang.ros.leaves.actions import goal_leaf
-from btlang.ros.serving.names import RUN_PHRASE
+from btlang.ros.serving.names import RUN_PHRASE, SILENCE
 from btlang.ros.word import Word
 from btlang.vocabulary.values import format_number
 
@@ -23,7 +23,7 @@ def phrase_leaf(word: Word, clients: Clients) -> Callable[..., Any]:
     def make(values: Mapping[str, Any]) -> Any:
         return cls.Goal(phrase=word.ros.interface, names=list(values), values=[_text(v) for v in values.values()])
 
-    return goal_leaf(word, clients, cls, make)
+    return goal_leaf(word, clients, cls, make, SILENCE)
 
 
 def _text(value: Any) -> str:

@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
 WAIT = 5.0
 """Real seconds that a server gets to appear, where a table says nothing else."""
+ANSWER = 5.0
+"""Seconds that the server of an action gets to accept a goal or to reject it."""
 _REASONS = ("message", "error_msg", "error_string", "reason", "status_message")
 _PAUSE = 0.5  # real seconds between two looks at a server
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import operator
 from collections.abc import Callable, Mapping
 
-from btlang.engine.leaf import ActionFailed, Failed
+from btlang.engine.leaf import ActionFailed, Failed, Unknown
 from btlang.ros.clients import Clients
 from btlang.ros.fields import reader
 from btlang.ros.latest import AGE
@@ -35,10 +35,16 @@ def topic_leaf(word: Word, clients: Clients) -> Callable[..., Any]:
         try:
             return read(message) if read is not None else True
         except ValueError as problem:
-            raise ActionFailed(f"{problem} in what came on {word.ros.name}") from None
+            raise Unknown(f"{problem} in what came on {word.ros.name}") from None
 
     shown = word.ros.get("field", "") and f"{word.ros.get('field')} of {word.ros.name}"
     return measuring(word, value, shown) if word.measured is not None else comparing(word, cls, value, shown)
+
+
+def _known(value: Any, shown: str) -> Any:
+    if value != value:
+        raise Unknown(f"{shown} is not known: it is not a number")
+    return value
 
 
 def measuring(word: Word, value: Callable[[], Any], shown: str) -> Callable[..., Any]:
@@ -46,11 +52,9 @@ def measuring(word: Word, value: Callable[[], Any], shown: str) -> Callable[...,
     scale = word.scale
 
     def measure(**values: Any) -> float:
-        found = value()
+        found = _known(value(), shown)
         if not isinstance(found, _NUMBERS):
             raise ActionFailed(f"{shown} is {found!r}, which is no number")
-        if found != found:
-            raise ActionFailed(f"{shown} is not known")
         return float(found) * scale
 
     return measure
@@ -64,7 +68,7 @@ def comparing(word: Word, cls: Any, value: Callable[[], Any], shown: str) -> Cal
     scale = float(word.ros.get("scale", 1.0))
 
     def hold(**values: Any) -> bool | Failed:
-        found = value()
+        found = _known(value(), shown)
         if scale != 1.0 and isinstance(found, _NUMBERS):
             found *= scale
         try:

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import time
+
 from btlang.backends.engine import bind_leaf
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.engine.engine import Engine, EngineError
 from btlang.engine.status import RUNNING, SUCCESS
 from btlang.english.phrase import phrase_of
+from btlang.ros.serving.names import WORD
 from btlang.run.runner import traced_engine
 from btlang.tree.node import Node, Tree
 
@@ -51,6 +54,7 @@ class Job:
         self._news = (0.0, self.words)
         self._told: tuple[float, str] | None = None
         self._told_at = stage.clock.now
+        self._repeats_at = 0.0
 
     @property
     def running(self) -> bool:
@@ -101,10 +105,11 @@ class Job:
         self.reason, self.ended = reason, self._stage.clock.now
 
     def tell(self, waits_for: str = "") -> None:
-        """Tells the caller what is new."""
+        """Tells the caller what is new, and now and then that it still goes on."""
         news, now = (0.0, waits_for) if waits_for else self._news, self._stage.clock.now
-        if news != self._told and (self._told is None or now - self._told_at >= _PAUSE):
-            self._told, self._told_at = news, now
+        is_new = news != self._told and (self._told is None or now - self._told_at >= _PAUSE)
+        if is_new or time.monotonic() >= self._repeats_at:
+            self._told, self._told_at, self._repeats_at = news, now, time.monotonic() + WORD
             self._caller.tell(*news)
 
     def answer(self) -> None:

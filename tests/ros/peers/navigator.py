@@ -1,7 +1,8 @@
 """An action server of nav2_msgs/action/NavigateToPose. `navigator.py MODE [SECONDS]`
 
 MODE is `arrive` (after SECONDS), `hang` (until it is cancelled), `slow` (accepts after SECONDS, then hangs), `reject`,
-`abort` (for a reason), `blame` (succeeds with an error code) or `meddle` (cancels its goals after SECONDS).
+`abort` (for a reason), `blame` (succeeds with an error code), `code` (the same without a word), `meddle` (cancels its
+goals after SECONDS) or `still` (gives feedback and goes nowhere, until it is cancelled).
 """
 
 from __future__ import annotations
@@ -40,17 +41,20 @@ async def _execute(handle: Any) -> NavigateToPose.Result:
     tell("executing")
     result = NavigateToPose.Result()
     until = time.monotonic() + SECONDS
-    while MODE in ("hang", "slow", "meddle") or time.monotonic() < until:
+    while MODE in ("hang", "slow", "meddle", "still") or time.monotonic() < until:
         if handle.is_cancel_requested:
             handle.canceled()
             tell("cancelled")
             return result
+        if MODE == "still":
+            handle.publish_feedback(NavigateToPose.Feedback())
+            await pause(0.05)
         await a_moment()
     if MODE == "abort":
         result.error_code, result.error_msg = 7, "the way is blocked by a box"
         handle.abort()
-    elif MODE == "blame":
-        result.error_code, result.error_msg = 9, "the map is too old"
+    elif MODE in ("blame", "code"):
+        result.error_code, result.error_msg = 9, "the map is too old" if MODE == "blame" else ""
         handle.succeed()
     else:
         handle.succeed()

@@ -1,0 +1,42 @@
+"""Bounds of a drive or a turn: one that does not get on, or goes much too far, must not go on without end."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from btlang.engine.leaf import ActionFailed
+
+PATIENCE = 5.0
+"""Seconds in which a drive or a turn has to get nearer."""
+_STEP = 0.2  # of the way to what counts as being close: less is no progress
+_TOO_FAR, _ROOM = 1.5, (1.0, 90.0)  # times the way, and metres or degrees beyond
+_LOOK = 1.0  # seconds that one look counts at most: a look that comes late says nothing of the time before
+
+
+class Progress:
+    """Metres, or degrees where it `turns`. `close` is how near is near enough, `now` gives seconds."""
+
+    def __init__(
+        self, wanted: float, close: float, turns: bool, now: Callable[[], float], patience: float = PATIENCE
+    ) -> None:
+        self._wanted, self._close, self._turns = abs(wanted), close, turns
+        self._now, self._patience = now, patience
+        self._nearest = float("inf")
+        self._looked, self._waited = now(), 0.0
+
+    def check(self, left: float, gone: float) -> None:
+        """Raises ActionFailed with the reason. `gone` is how far it is from the start, in whatever direction."""
+        now = self._now()
+        self._waited += min(now - self._looked, _LOOK)
+        self._looked = now
+        gone = abs(gone)
+        if gone > _TOO_FAR * self._wanted + _ROOM[self._turns]:
+            raise ActionFailed(f"the robot {'turned' if self._turns else 'went'} too far: {self._of(gone)}")
+        if abs(left) < self._nearest - _STEP * self._close:
+            self._nearest, self._waited = abs(left), 0.0
+        elif self._waited > self._patience:
+            raise ActionFailed(f"the robot does not {'turn' if self._turns else 'get'} on: {self._of(gone)} done")
+
+    def _of(self, gone: float) -> str:
+        digits, unit = (0, "degrees") if self._turns else (2, "m")
+        return f"{gone:.{digits}f} of {self._wanted:.{digits}f} {unit}"

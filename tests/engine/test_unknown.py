@@ -1,0 +1,102 @@
+"""Conditions that do not know: what is not known is neither true nor false."""
+
+from __future__ import annotations
+
+import pytest
+
+from btlang.engine.clock import Clock
+from btlang.engine.engine import Engine, Failure
+from btlang.engine.leaf import LeafBinding, Unknown
+from btlang.engine.status import FAILURE, RUNNING, SUCCESS
+from btlang.tree.node import Node, Tree
+
+
+class World:
+    """A sensor that knows or not, and what was done."""
+
+    def __init__(self) -> None:
+        self.knows: bool | None = None
+        self.done: list[str] = []
+        self.told: list[Failure] = []
+
+    def sense(self) -> bool:
+        if self.knows is None:
+            raise Unknown("the sensor is silent")
+        return self.knows
+
+    def bind(self, node_id: str) -> LeafBinding:
+        return LeafBinding(self.sense if node_id == "Sense" else lambda: self.done.append(node_id))
+
+    def engine(self, root: Node, *, watched: bool = False) -> Engine:
+        listener = (lambda changes: None) if watched else None
+        return Engine(Tree(root), self.bind, clock=Clock(), listener=listener, on_unknown=self.told.append)
+
+
+SENSE, ACT, OTHER = Node("Sense"), Node("Act"), Node("Other")
+NOT = Node("Inverter", (SENSE,))
+FALSE, TRUE = Node("AlwaysFailure"), Node("AlwaysSuccess")
+SLEEP = Node("Sleep", (), (("msec", "1000"),))
+
+
+@pytest.mark.parametrize("watched", [False, True])
+@pytest.mark.parametrize(
+    "root",
+    [
+        SENSE,
+        NOT,
+        Node("Inverter", (NOT,)),
+        Node("Inverter", (Node("Fallback", (SENSE, FALSE)),)),
+        Node("Inverter", (Node("Sequence", (TRUE, SENSE)),)),
+        Node("IfThenElse", (SENSE, ACT, OTHER)),
+        Node("IfThenElse", (NOT, ACT, OTHER)),
+        Node("IfThenElse", (SENSE, ACT)),
+        Node("WhileDoElse", (SENSE, ACT, OTHER)),
+        Node("WhileDoElse", (NOT, ACT, OTHER)),
+        Node("ReactiveSequence", (NOT, ACT)),
+    ],
+    ids=str,
+)
+def test_what_asks_it_fails_with_its_reason(root: Node, watched: bool) -> None:
+    world = World()
+    engine = world.engine(root, watched=watched)
+    assert engine.tick() == FAILURE
+    assert engine.failure is not None
+    assert (engine.failure.node, engine.failure.reason) == (SENSE, "the sensor is silent")
+    assert world.done == []
+
+
+def test_an_alternative_that_is_true_decides() -> None:
+    world = World()
+    engine = world.engine(Node("IfThenElse", (Node("Fallback", (SENSE, TRUE)), ACT, OTHER)))
+    assert (engine.tick(), world.done) == (SUCCESS, ["Act"])
+
+
+def test_a_loop_is_halted_when_its_condition_is_lost() -> None:
+    world = World()
+    engine = world.engine(Node("WhileDoElse", (SENSE, SLEEP, OTHER)))
+    world.knows = True
+    assert engine.tick() == RUNNING
+    world.knows = None
+    assert (engine.tick(), world.done) == (FAILURE, [])
+
+
+def test_a_standing_rule_waits_and_tells_of_it_once() -> None:
+    world = World()
+    engine = world.engine(Node("Whenever", (SENSE, ACT, SLEEP)))
+    for knows in (None, None, True, None, True):
+        world.knows = knows
+        assert engine.tick() == RUNNING
+    assert world.done == ["Act"]  # it was not false in between
+    assert [(failure.node, failure.reason) for failure in world.told] == [(SENSE, "the sensor is silent")]
+    engine.halt()
+    world.knows = None
+    engine.tick()
+    assert len(world.told) == 2  # of a new run
+
+
+def test_an_unknown_answer_of_another_tick_does_not_count() -> None:
+    world = World()
+    engine = world.engine(NOT)
+    assert engine.tick() == FAILURE
+    world.knows = False
+    assert engine.tick() == SUCCESS

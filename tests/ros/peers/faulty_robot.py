@@ -1,0 +1,140 @@
+"""A plain robot without a watchdog, whose sensors misbehave as they are told. `faulty_robot.py [NAMESPACE]`
+
+It drives at the velocity that it heard last, for ever. A text on /misbehave is a list of faults, which take the place
+of those before and put the robot back to where it began:
+
+- `odom=FAULT`: nan, inf, zero (the quaternion), far (1e9 m away), jump (50 m, once), frozen (the pose, not the twist),
+  spin (the heading turns 40 degrees with each message), silent; with `@moving` from the first velocity on
+- `scan=FAULT`: nan, negative, zero, empty, flat (no angle between the beams), close (-inf), free (+inf), silent
+- `battery=FAULT`: nan, high (a percentage of 80), silent
+- `joint=FAULT`: nan
+- `late=SECONDS`: a velocity takes effect so much later
+
+It prints `faults ...` when it has heard of them, `drive LINEAR ANGULAR` for each other velocity, and `not finite`.
+"""
+
+from __future__ import annotations
+
+import math
+import time
+
+from geometry_msgs.msg import Twist
+from nav_msgs.msg import Odometry
+from rclpy.node import Node
+from rclpy.qos import qos_profile_sensor_data
+from sensor_msgs.msg import BatteryState, JointState, LaserScan
+from std_msgs.msg import String
+from trajectory_msgs.msg import JointTrajectory
+
+from tests.ros.peers.peer import serve, tell
+
+PERIOD = 0.02
+JOINTS = ("left_arm_lift", "left_arm_swing", "left_arm_bend", "head_turn", "head_tilt")
+BEAMS = {
+    "nan": [math.nan] * 360,
+    "negative": [-1.0] * 360,
+    "zero": [0.0] * 360,
+    "empty": [],
+    "close": [-math.inf] * 20 + [math.inf] * 340,
+    "free": [math.inf] * 360,
+}
+
+
+class FaultyRobot:
+    """Integrates velocities and publishes what it senses, right or wrong."""
+
+    def __init__(self, node: Node) -> None:
+        self.node = node
+        self.faults: dict[str, str] = {}
+        self.joints = dict.fromkeys(JOINTS, 0.0)
+        self.begin("")
+        node.create_subscription(Twist, "cmd_vel", self.drive, 10)
+        node.create_subscription(JointTrajectory, "joint_trajectory", self.move, 10)
+        node.create_subscription(String, "misbehave", lambda message: self.begin(message.data), 10)
+        self.odometry = node.create_publisher(Odometry, "odom", 10)
+        self.scans = node.create_publisher(LaserScan, "scan", qos_profile_sensor_data)
+        self.batteries = node.create_publisher(BatteryState, "battery_state", 10)
+        self.states = node.create_publisher(JointState, "joint_states", 10)
+        node.create_timer(PERIOD, self.step)
+
+    def begin(self, faults: str) -> None:
+        self.faults = dict(fault.split("=") for fault in faults.split())
+        self.x = self.y = self.yaw = 0.0
+        self.linear = self.angular = 0.0
+        self.last = (0.0, 0.0)
+        self.has_moved = False
+        self.waiting: list[tuple[float, float, float]] = []
+        self.then = time.monotonic()
+        tell("faults", faults)
+
+    def drive(self, twist: Twist) -> None:
+        wanted = twist.linear.x, twist.angular.z
+        if not all(map(math.isfinite, wanted)):
+            tell("not finite", *wanted)
+            return
+        if wanted != self.last:
+            tell("drive", f"{wanted[0]:.3f}", f"{wanted[1]:.3f}")
+        self.last = wanted
+        self.has_moved |= wanted != (0.0, 0.0)
+        self.waiting.append((time.monotonic() + float(self.faults.get("late", "0")), *wanted))
+
+    def move(self, trajectory: JointTrajectory) -> None:
+        for name, position in zip(trajectory.joint_names, trajectory.points[-1].positions, strict=True):
+            if not math.isfinite(position):
+                tell("not finite", name)
+            self.joints[name] = position
+
+    def has(self, sensor: str) -> str:
+        fault, _, when = self.faults.get(sensor, "").partition("@")
+        return fault if self.has_moved or not when else ""
+
+    def step(self) -> None:
+        passed, self.then = time.monotonic() - self.then, time.monotonic()
+        while self.waiting and self.waiting[0][0] <= self.then:
+            _, self.linear, self.angular = self.waiting.pop(0)
+        self.yaw += self.angular * passed
+        self.x += self.linear * math.cos(self.yaw) * passed
+        self.y += self.linear * math.sin(self.yaw) * passed
+        self.publish_odometry(self.has("odom"))
+        self.publish_scan(self.has("scan"))
+        if self.has("battery") != "silent":
+            share = {"nan": math.nan, "high": 80.0}.get(self.has("battery"), 0.5)
+            self.batteries.publish(BatteryState(percentage=share))
+        positions = [math.nan if self.has("joint") else at for at in self.joints.values()]
+        self.states.publish(JointState(name=list(self.joints), position=positions))
+
+    def publish_odometry(self, fault: str) -> None:
+        if fault == "silent":
+            return
+        message = Odometry()
+        message.header.stamp = self.node.get_clock().now().to_msg()
+        pose, twist = message.pose.pose, message.twist.twist
+        if fault == "spin":
+            self.yaw += math.radians(40)
+        pose.position.x, pose.position.y = self.x, self.y
+        pose.orientation.z, pose.orientation.w = math.sin(self.yaw / 2), math.cos(self.yaw / 2)
+        twist.linear.x, twist.angular.z = self.linear, self.angular
+        if fault in ("nan", "inf"):
+            pose.position.x = twist.linear.x = twist.angular.z = float(fault)
+        elif fault == "zero":
+            pose.orientation.z = pose.orientation.w = 0.0
+        elif fault in ("far", "jump"):
+            pose.position.x += 1e9 if fault == "far" else 50.0
+        elif fault == "frozen":
+            pose.position.x = pose.position.y = pose.orientation.z = 0.0
+            pose.orientation.w = 1.0
+            twist.linear.x = 0.5
+        self.odometry.publish(message)
+
+    def publish_scan(self, fault: str) -> None:
+        if fault == "silent":
+            return
+        scan = LaserScan(angle_min=0.0, angle_increment=math.tau / 360, range_min=0.05, range_max=10.0)
+        scan.ranges = BEAMS.get(fault, [2.0] * 360)
+        if fault == "flat":
+            scan.angle_increment = 0.0
+        self.scans.publish(scan)
+
+
+if __name__ == "__main__":
+    serve("faulty_robot", FaultyRobot)
