@@ -18,13 +18,14 @@ from btlang.diagnostics.report import Report
 from btlang.text.output import pass_on, show
 from btlang.text.source import Source
 
-SUCCESS, FAILED, UNFORMATTED, BAD_INPUT, INTERRUPTED = 0, 1, 1, 2, 130
+SUCCESS, FAILED, UNFORMATTED, BAD_INPUT, CRASHED, INTERRUPTED = 0, 1, 1, 2, 70, 130
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs one verb; returns the exit code.
 
-    0 success or skipped, 1 mission failed, 2 bad input, 130 interrupted, 131 emergency stop, 143 terminated.
+    0 success or skipped, 1 mission failed, 2 bad input, 70 a bug in btlang, 130 interrupted, 131 emergency stop, 143
+    terminated. With BTC_DEBUG set, what a bug raises comes through.
     """
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):
@@ -52,6 +53,13 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return codes.get(error.errno or 0, BAD_INPUT)
     except KeyboardInterrupt:
         return INTERRUPTED
+    except Exception as error:
+        if os.environ.get("BTC_DEBUG"):
+            raise
+        from btlang.diagnostics.crash import crashed
+
+        show(crashed(error), sys.stderr)
+        return CRASHED
 
 
 def _run(options: argparse.Namespace) -> int:

@@ -26,8 +26,15 @@ def matches_golden(actual: str, path: Path) -> None:
     assert actual == path.read_text(encoding="utf-8"), f"{path.name} differs"
 
 
+os.environ["BTC_DEBUG"] = "1"  # a bug fails the test with its traceback
+
+
 def take_away_what_is_missed(code: str, patch: pytest.MonkeyPatch) -> None:
     """So that a message about what is missed can be shown: matplotlib, ROS 2, or a robot that speaks it."""
+    if code == "BT099":
+        patch.delenv("BTC_DEBUG")
+        patch.setenv("XDG_STATE_HOME", "/dev/null")  # where nothing can be written
+        patch.setattr("btlang.vocabulary.listing.listing", _buggy)
     patch.setitem(sys.modules, "matplotlib", None)  # BT081
     patch.setitem(sys.modules, "btlang_interfaces", None)  # BT110
     if code != "BT101":
@@ -35,3 +42,7 @@ def take_away_what_is_missed(code: str, patch: pytest.MonkeyPatch) -> None:
         return
     pytest.importorskip("rclpy", reason="ROS 2 is not installed")
     patch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF")
+
+
+def _buggy(*_: object) -> list[str]:
+    raise ZeroDivisionError("division by zero")

@@ -186,7 +186,12 @@ def _read_model(item: Any, where: str) -> NodeModel:
 def _of(value: Any, kind: type, what: str) -> Any:
     if not isinstance(value, kind):
         raise _Wrong(f"{what} is no {_KINDS[kind]}")
+    if isinstance(value, str) and (unfit := _UNFIT.search(value)) is not None:
+        raise _Wrong(f"{what} has a character that no text can hold: {ascii(unfit[0])}")
     return value
+
+
+_UNFIT = re.compile("[\0\ud800-\udfff]")  # NUL and lone surrogates, which XML and UTF-8 do not have either
 
 
 _KINDS: dict[type, str] = {dict: "object", list: "array", str: "text"}

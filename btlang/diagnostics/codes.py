@@ -100,6 +100,7 @@ _ALL = (
     Code("BT080", "The command '{id}' cannot run: {reason}."),
     Code("BT081", "Pictures are drawn by matplotlib, which is not installed.", "Install it: pip install 'btlang[pictures]'"),
     Code("BT090", "There is no code '{name}'.", "All of them: btc explain"),
+    Code("BT099", "btlang has a bug: {error}.", "{advice}"),
     Code("BT100", "ROS 2 cannot be used: {reason}.", "{advice}"),
     Code("BT101", "'{words}' needs the {sort} {name}, but {reason}.", "All that the mission needs of the robot: the same command with --preflight"),
     Code("BT102", "The ros table of '{phrase}' cannot be used: {reason}.", "All its keys are in docs/ros.md."),

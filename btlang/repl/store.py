@@ -50,6 +50,8 @@ class Store:
         try:
             self._own.parent.mkdir(parents=True, exist_ok=True)
             self.history.touch()
+            self._folder.chmod(0o700)  # what people tell their robots is theirs
+            self.history.chmod(0o600)
             self._held = _lock(self._own)
             self.save([], "")
         except OSError as error:
@@ -71,6 +73,7 @@ class Store:
         state = {"entries": entries, "draft": draft, "world": world and os.path.abspath(world)}
         try:
             new = self._own.with_suffix(".new")
+            new.touch(mode=0o600)
             new.write_text(json.dumps(state), encoding="ascii")
             os.replace(new, self._own)
         except OSError as error:

@@ -1,0 +1,92 @@
+"""Files made to break what reads them: each gets a message and no traceback, in time and memory that fit it."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+import btlang
+from btlang.cli import main
+
+WORLD = (Path(btlang.__file__).parent / "robots" / "worlds" / "default.toml").read_text(encoding="utf-8")
+XML = '<root BTCPP_format="4"><BehaviorTree ID="M">{}</BehaviorTree></root>'
+DIGITS = "9" * 100_000
+LONG_PHRASE = " ".join(f"w{number}" for number in range(500))
+UNIT = '[[type]]\nname = "glug"\nunits = [{{ words = ["glug"], factor = "{}" }}]\n'
+
+KEYWORDS = {
+    "articles that are words": 'articles = ["wave", "then"]\n',
+    "nested": "x = " + "[" * 5000,
+    "a phrase of 500 words": f'[[action]]\nphrase = "{LONG_PHRASE}"\nid = "Long"\n',
+    "no number": UNIT.format("nan"),
+    "infinite": UNIT.format("inf"),
+    "nothing below": UNIT.format("1/0"),
+    "a long number": f"x = {DIGITS}",
+    "least": '[[type]]\nname = "glug"\nleast = nan\nunits = [{ words = ["glug"], factor = "1" }]\n',
+}
+WORLDS = {
+    "far": WORLD.replace("x = 3.0, y = 1.5", "x = 1e300, y = 1.5"),
+    "not a number": WORLD.replace("x = 3.0, y = 1.5", "x = nan, y = 1.5"),
+    "endless": WORLD.replace("x = 3.0, y = 1.5", "x = inf, y = 1.5"),
+    "many digits": WORLD.replace("x = 3.0, y = 1.5", f"x = {'9' * 400}, y = 1.5"),
+    "nested": "x = " + "[" * 5000,
+}
+TEXTS = {
+    "digits": f"move forward {DIGITS} m",
+    "rounds": f"wave {DIGITS} times",
+    "a far place": "the far is at (1" + "0" * 400 + ", 2); go to the far",
+    "rounds in XML": XML.format(f'<Repeat num_cycles="{DIGITS}"><AlwaysSuccess/></Repeat>'),
+    "a script": XML.format(f'<Sequence><Script code="a:={DIGITS}"/><Sleep msec="{DIGITS}"/></Sequence>'),
+    "JSON nested": '{"format":1,"trees":' + '{"a":[' * 20_000,
+    "JSON digits": f'{{"format": {DIGITS}, "trees": []}}',
+    "NUL": json.dumps({"format": 1, "trees": [{"nodes": [{"id": "Say", "ports": {"text": "a\0b"}}]}]}),
+    "a lone surrogate": json.dumps({"format": 1, "trees": [{"nodes": [{"id": "Say", "ports": {"text": "\ud800"}}]}]}),
+    "many ports": XML.format("<Foo " + " ".join(f'p{number}="1"' for number in range(3000)) + "/>"),
+}
+
+
+@pytest.mark.parametrize("text", KEYWORDS.values(), ids=KEYWORDS)
+def test_keyword_files(text: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "words.toml").write_text(text, encoding="utf-8")
+    assert main(["check", "-c", "wave then nod", "--keywords", str(tmp_path / "words.toml")]) == 2
+    assert "error BT06" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("text", WORLDS.values(), ids=WORLDS)
+def test_worlds(text: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "world.toml").write_text(text, encoding="utf-8")
+    assert main(["check", "-c", "wave", "--world", str(tmp_path / "world.toml")]) == 2
+    assert "error BT070" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("text", TEXTS.values(), ids=TEXTS)
+def test_missions_and_trees(text: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "mission.txt").write_text(text, encoding="utf-8")
+    assert main(["check", str(tmp_path / "mission.txt")]) == 2
+    said = capsys.readouterr().err
+    assert "error BT" in said
+    assert len(said) < 100_000
+
+
+def test_a_world_too_large_to_plan_in(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "world.toml").write_text(WORLD.replace("x = 3.0, y = 1.5", "x = 1e5, y = 1.5"), encoding="utf-8")
+    command = ["run", "--speed", "max", "--quiet", "--world", str(tmp_path / "world.toml")]
+    assert main([*command, "-c", "move forward 0.5 m"]) == 0
+    assert main([*command, "-c", "go to the lobby"]) == 1
+    assert "too large to plan a way" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize("verb", [["check"], ["tree"], ["tree", "--plain"], ["compile", "--to", "xml"]])
+def test_what_is_said_of_a_deep_tree_grows_with_it_and_not_with_its_square(
+    verb: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    def length(depth: int) -> int:
+        nodes: list[dict[str, object]] = [{"id": "Inverter", "children": [at + 1]} for at in range(depth)]
+        tree = {"format": 1, "trees": [{"nodes": [*nodes, {"id": "AlwaysSuccess"}]}]}
+        (tmp_path / "deep.json").write_text(json.dumps(tree))
+        assert main([verb[0], str(tmp_path / "deep.json"), *verb[1:]]) == 0
+        return len(capsys.readouterr().out)
+
+    assert length(10_000) < 6 * length(2_000)
