@@ -35,13 +35,3 @@ def test_each_line_has_its_own_story(capsys: pytest.CaptureFixture[str]) -> None
     lines = told(capsys, "grasp the cup or else check battery is low", "check battery is low")
     assert [line for line in lines if "tried before" in line or "grasp cup:" in line] == lines[5:7]
     assert lines[7].startswith("The mission failed after 0.0 s.")
-
-
-def test_what_is_typed_is_readable_by_the_user_only(tmp_path: Path) -> None:
-    (tmp_path / "state").mkdir(mode=0o755)
-    (tmp_path / "state" / "history").write_text("+wave\n")
-    store = Store(tmp_path / "state")
-    store.save(["say secret"], "")
-    kept = [path for path in (tmp_path / "state").rglob("*") if path.is_file()]
-    assert len(kept) >= 2
-    assert not any(path.stat().st_mode & 0o077 for path in (*kept, tmp_path / "state"))
