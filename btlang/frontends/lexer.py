@@ -256,13 +256,17 @@ class Lexer:
         return end
 
     def _unknown_end(self, at: int, last: int) -> int:
-        """Unknown words reach to the next mark or connective, or to a phrase that is more than one word."""
-        text = self.text
+        """Unknown words reach to the next mark or connective, or to a phrase that is more than one word.
+
+        A value that nothing has the name of, and a pronoun, are read as values there: they may be another mistake.
+        """
+        text, values = self.text, self.values.with_references()
+        values.latest = dict.fromkeys(values.types, "")
         while True:
             at += 1
             if at >= last or text.words[at] in _MARKS:
                 return at
-            match = longest(self.vocabulary.trie, text, at, self.vocabulary.values)
+            match = longest(self.vocabulary.trie, text, at, values)
             if match is not None and match.meaning.role in NODE_ROLES:
                 continue
             if match is not None and (match.meaning.entry is None or match.last > at + 1):

@@ -14,6 +14,7 @@ from btlang.frontends import lark_parser, shunting_yard
 from btlang.frontends.build import Builder
 from btlang.frontends.parse_error import ParseError
 from btlang.frontends.token import Token
+from btlang.record import Record
 from btlang.text.source import Source
 from btlang.tree import ast
 from tests.language import grouping_oracle
@@ -43,6 +44,29 @@ def test_parsers_agree(words: str) -> None:
     if isinstance(shunted, ast.Mission):
         assert _spans(shunted) == _spans(larked)  # type: ignore[arg-type]
         assert all(span[0] < span[1] for span in _spans(shunted))
+
+
+@settings(max_examples=500)
+@given(missions, st.sampled_from([".", ";", "!", " ."]))
+@example("a NL otherwise b NL", ".")
+@example("if p : NL IN a NL DE NL otherwise : NL IN b NL DE NL", ".")
+def test_a_stop_at_the_end_of_a_line_says_nothing(words: str, stop: str) -> None:
+    text = english(words)
+    stopped = "\n".join(line if not line.strip() or line.endswith(":") else line + stop for line in text.split("\n"))
+    for parser in BOTH:
+        read, plain = reading(stopped, parser), reading(text, parser)
+        if isinstance(plain, ast.Mission):
+            assert isinstance(read, ast.Mission)
+            assert _shape(read) == _shape(plain)
+
+
+def _shape(value: object) -> object:
+    """A syntax tree without the places of its parts."""
+    if isinstance(value, tuple):
+        return tuple(map(_shape, value))
+    if not isinstance(value, Record):
+        return value
+    return type(value), [(name, _shape(getattr(value, name))) for name in value.fields if not name.endswith("span")]
 
 
 def _spans(mission: ast.Mission) -> list[tuple[int, int]]:
