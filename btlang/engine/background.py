@@ -54,7 +54,7 @@ class Background:
         def run() -> None:
             try:
                 work.result = call(work.halted)
-            except BaseException as problem:  # also SystemExit: it ends the mission, not the thread alone
+            except BaseException as problem:
                 work.problem = problem
             self.over(work)
 
@@ -82,12 +82,12 @@ class Background:
         self._halted.append((index, work))
 
     def take_faults(self) -> list[Fault]:
-        """What works that were halted have raised since; ActionFailed and CancelledError are ways to end."""
+        """What works that were halted have raised since; ActionFailed is a way to end."""
         faults, going = [], []
         for index, work in self._halted:
             if not work.ended.is_set():
                 going.append((index, work))
-            elif isinstance(work.problem, Exception) and not isinstance(work.problem, ActionFailed):
+            elif work.problem is not None and not isinstance(work.problem, ActionFailed):
                 faults.append(Fault(index, described(work.problem), work.problem))
         self._halted = going
         return faults
@@ -129,11 +129,8 @@ class BackgroundLeaf:
         if work.halted.is_set() or not work.ended.is_set():
             return None
         self._work = None
-        problem = work.problem
-        if isinstance(problem, Exception | SystemExit | KeyboardInterrupt):
-            raise problem
-        if problem is not None:  # such as the CancelledError of another task
-            raise ActionFailed(type(problem).__name__) from problem
+        if work.problem is not None:
+            raise work.problem
         return True if work.result is None else work.result
 
     def halt(self) -> None:

@@ -102,7 +102,9 @@ def _make(site: Site, plan: Plan) -> Any:
         plan.made_with = _fill(site, cls, (), site.shared.service_names)
     try:
         return cls(**{name: site.service(name) for name in plan.made_with})
-    except Exception as problem:
+    except KeyboardInterrupt:
+        raise
+    except BaseException as problem:
         raise site.error(f"{cls.__name__} cannot be made: {described(problem)}") from problem
 
 

@@ -92,7 +92,7 @@ class Engine:
     def tick(self) -> int:
         """Ticks the tree once; returns its status.
 
-        An exception that is no error of a leaf (KeyboardInterrupt, SystemExit) halts the tree and comes through.
+        KeyboardInterrupt halts the tree and comes through; any other exception of a leaf is its failure.
         Raises RuntimeError where a leaf or another thread ticks, halts or suspends the tree during a tick.
         """
         if self._deep:

@@ -66,13 +66,16 @@ def told(reason: Reason) -> str:
         return reason
     try:
         return reason()
-    except Exception as problem:
+    except KeyboardInterrupt:
+        raise
+    except BaseException as problem:
         return described(problem)
 
 
 def described(problem: BaseException) -> str:
     """An exception as the reason of a failure."""
-    return f"{type(problem).__name__}: {problem}"
+    name, text = type(problem).__name__, str(problem)
+    return f"{name}: {text}" if text else name
 
 
 class LeafBinding(Record):
