@@ -63,7 +63,7 @@ class Shared:
     """What all nodes of one engine share."""
 
     __slots__ = (
-        "background", "bind", "clock", "emergency", "enums", "fault", "halt_faults", "interrupts", "plans",
+        "background", "bind", "clock", "emergency", "enums", "fault", "halt_faults", "interrupts", "plans", "proxies",
         "service_names", "services", "stopwatch", "watch",
     )  # fmt: skip
 
@@ -74,8 +74,10 @@ class Shared:
         services: Mapping[str, Any],
         enums: Mapping[str, float],
         stopwatch: Stopwatch | None,
+        proxies: Mapping[str, Callable[..., Any]] = {},
     ) -> None:
         self.bind = bind
+        self.proxies = proxies  # what background leaves get in place of services, see Engine
         self.stopwatch = stopwatch
         self.clock = clock
         self.services = {"clock": clock, **services}

@@ -55,6 +55,8 @@ class Engine:
     """A compiled tree. `bind` gives the Python side of a leaf id, `services` what leaves may ask for by name.
 
     `enums` are names of numbers that scripts and the cases of Switch nodes may use. A `stopwatch` times the leaves.
+    `proxies` are for services that are not safe beside the tick: by their names, what makes of the service, and of
+    `Work.in_tick`, what background leaves get; its `let_go` is called when such a leaf was halted or has failed.
 
     Raises EngineError where the tree cannot be compiled. `listener` gets lists of status changes, children before
     parents; see watch.py for what counts as one and when they are told.
@@ -71,12 +73,14 @@ class Engine:
         listener: Listener | None = None,
         enums: Mapping[str, float] = {},
         stopwatch: Stopwatch | None = None,
+        proxies: Mapping[str, Callable[..., Any]] = {},
     ) -> None:
         self.blackboard = Blackboard() if blackboard is None else blackboard
         self.stopwatch = stopwatch
         self.on_wake: Callable[[], object] | None = None
         """What the service `wake` calls, in the thread of whoever asks for it: "tick again now"."""
-        self._shared = Shared(bind, clock, {"wake": self._wake, "progress": unheard, **services}, enums, stopwatch)
+        own = {"wake": self._wake, "progress": unheard}
+        self._shared = Shared(bind, clock, {**own, **services}, enums, stopwatch, proxies)
         with no_collection:
             self._sites = expand(tree, self.blackboard, self._shared)
             self._trace = None if listener is None else Trace(self._shared, listener)

@@ -17,8 +17,8 @@ thread has `halted` too, a threading.Event. `progress(share, state)` tells from 
 1, and in words what it does now; in most runs nobody listens.
 
 What a background leaf uses of these it uses beside the tick. Safe are `wake`, `progress`, `halted`, reading
-`clock.now`, reading and setting single blackboard entries, and `robot.stop()`. All else of a robot is for the other
-leaves.
+`clock.now`, and reading and setting single blackboard entries. Other services may be proxies (see Engine): they hand
+over what is asked of them to the thread that ticks, and refuse it once the leaf was halted.
 
 A leaf that fails says why: it raises ActionFailed, or returns `Failed(reason)`, which is cheaper and may work out the
 reason later. For False the reason is the `refusal` of its binding.

@@ -13,6 +13,7 @@ from rclpy.duration import Duration
 from rclpy.node import Node
 
 from btlang.robots.geometry import Pose, wrap
+from btlang.robots.latch import Latch
 from btlang.robots.robot import RobotError
 from btlang.ros.inbox import Inbox
 from btlang.ros.poses import BASE, pose_of
@@ -40,8 +41,9 @@ class RosBase:
     whether it is a Twist or a TwistStamped: a node can use a topic with one type.
     """
 
-    def __init__(self, node: Node, inbox: Inbox, radius: float) -> None:
+    def __init__(self, node: Node, inbox: Inbox, radius: float, latch: Latch | None = None) -> None:
         self._node, self._inbox = node, inbox
+        self._latch = latch or Latch()
         self._radius = radius
         self._lock = RLock()  # a signal handler may halt while this thread drives
         self._wanted = (0.0, 0.0)
@@ -66,8 +68,13 @@ class RosBase:
             return self._type
 
     def drive(self, linear: float, angular: float) -> None:
-        """Metres and degrees a second."""
+        """Metres and degrees a second. Nothing but zero while the latch refuses commands.
+
+        It looks within the lock, so that what a stop tells comes after all that was let through before it.
+        """
         with self._lock:
+            if self._latch.refuses and (linear, angular) != (0.0, 0.0):
+                return
             if (linear, angular) == (0.0, 0.0):
                 self._idle = 0.0
             self._wanted = linear, angular

@@ -28,7 +28,8 @@ if TYPE_CHECKING:
         def reason(self, index: int, fault: Fault | Site | None) -> str: ...
 
     class Robot(Protocol):
-        """What a run asks of a robot. `moving` may be missing; so may `moves_by_itself`, which is then taken for true.
+        """What a run asks of a robot. `moving`, `disable` and `enable` (see btlang.robots.robot.Robot) may be missing;
+        so may `moves_by_itself`, which is then taken for true.
 
         `moves_by_itself` is False for a simulated robot, whose world stands still between two steps.
         """

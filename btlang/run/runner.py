@@ -12,7 +12,7 @@ from btlang.engine.engine import Engine, Failure
 from btlang.engine.leaf import LeafBinding
 from btlang.engine.status import IDLE, NAMES, RUNNING
 from btlang.record import Record
-from btlang.run.controls import Controls
+from btlang.run.controls import Controls, disable
 from btlang.run.events import EventStream, Overrun, PeriodPassed, RobotEvent, StatusesChanged
 from btlang.run.overruns import Overruns
 from btlang.run.pace import Pace
@@ -27,7 +27,9 @@ if TYPE_CHECKING:
     from btlang.run.events import Robot
 
     class Ticked(Protocol):
-        """What a run ticks: an Engine, or several that count as one."""
+        """What a run ticks: an Engine, or several that count as one. `idle` may be missing: whether there is nothing to
+        tick now, so that the robot need not be enabled yet.
+        """
 
         on_wake: Callable[[], object] | None
 
@@ -75,6 +77,7 @@ def traced_engine(
     services: Mapping[str, Any] = {},
     blackboard: Blackboard | None = None,
     stopwatch: Stopwatch | None = None,
+    proxies: Mapping[str, Callable[..., Any]] = {},
 ) -> Engine:
     """An engine whose status changes go into the stream."""
 
@@ -82,8 +85,9 @@ def traced_engine(
         events.publish(StatusesChanged(clock.now, changes, engine, engine.valued(changes.indices)))
 
     engine = Engine(
-        tree, bind, clock=clock, services=services, blackboard=blackboard, listener=changed, stopwatch=stopwatch
-    )
+        tree, bind, clock=clock, services=services, blackboard=blackboard, listener=changed, stopwatch=stopwatch,
+        proxies=proxies,
+    )  # fmt: skip
     events.before = engine.tell
     return engine
 
@@ -122,6 +126,7 @@ class Runner:
         self._events = EventStream() if events is None else events
         self.controls = Controls() if controls is None else controls
         self._suspended = False
+        self._disabled = True  # whether the robot has to be enabled before the next tick
         self._began = clock.now
         self._pace = pace(speed, self.controls)
         self._overruns: Overruns | None = None
@@ -193,6 +198,8 @@ class Runner:
 
     def _tick(self, ticking: Ticked | Overruns) -> int:
         self._suspended = False
+        if self._disabled and not getattr(self._engine, "idle", False):
+            self._enable()
         self._pace.tick_begins()
         status = ticking.tick()
         self.ticks += 1
@@ -208,7 +215,7 @@ class Runner:
             self._engine.suspend()
             self._report_halts()
             if robot is not None:
-                robot.stop()
+                self._disable(robot)
                 robot.step(self._period)
         elif robot is not None and (not frozen or (self._suspended and getattr(robot, "moving", False))):
             robot.step(self._period)
@@ -238,7 +245,7 @@ class Runner:
             self._engine.halt(emergency=self.controls.emergency)
         finally:
             if self._robot is not None:
-                self._robot.stop()
+                self._disable(self._robot)
         unended = self._engine.close(_PATIENCE)
         self._report_halts()
         for failure in unended:
@@ -253,6 +260,18 @@ class Runner:
             if self._pause:
                 time.sleep(self._pause)
 
+    def _enable(self) -> None:
+        """A run begins, or goes on after a pause: the one place where a robot that was stopped gets to move again."""
+        self._disabled = False
+        if self._robot is not None:
+            getattr(self._robot, "enable", _nothing)()
+            if self.controls.emergency:  # it came meanwhile
+                self._disable(self._robot)
+
+    def _disable(self, robot: Robot) -> None:
+        self._disabled = True
+        disable(robot)
+
     def _report_halts(self) -> None:
         for failure in self._engine.take_halt_failures():
             self._report(failure, f"{failure.node.id} did not halt: {failure.reason}")
@@ -261,6 +280,10 @@ class Runner:
         data = {"text": text, "path": failure.path}
         place = {"place": failure.span.place} if failure.span is not None else {}
         self._events.publish(RobotEvent(self._clock.now, "error", {**data, **place}))
+
+
+def _nothing() -> None:
+    """In place of what a robot does not have."""
 
 
 def _words(failure: Failure) -> str:

@@ -7,6 +7,7 @@ from btlang.diagnostics.diagnostic import MissionError
 from btlang.engine.engine import Engine, EngineError
 from btlang.engine.status import RUNNING, SUCCESS
 from btlang.english.phrase import phrase_of
+from btlang.robots.proxy import RobotProxy
 from btlang.run.runner import traced_engine
 from btlang.tree.node import Node, Tree
 
@@ -67,6 +68,7 @@ class Job:
                 clock=stage.clock,
                 events=stage.events,
                 services={"robot": stage.robot, "progress": self._progress},
+                proxies={"robot": RobotProxy},
             )
             self.engine.on_wake = wake
         except EngineError as error:

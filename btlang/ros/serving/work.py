@@ -52,6 +52,11 @@ class Work:
 
         return cancel
 
+    @property
+    def idle(self) -> bool:
+        """Whether there are no goals."""
+        return not (self._new or self._jobs)
+
     def tick(self) -> int:
         """Goes on with all goals. RUNNING, also where there are none."""
         while self._new:
