@@ -23,7 +23,8 @@ SUCCESS, FAILED, UNFORMATTED, BAD_INPUT, INTERRUPTED = 0, 1, 1, 2, 130
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs one verb; returns the exit code.
 
-    0 success or skipped, 1 mission failed, 2 bad input, 130 interrupted, 131 emergency stop, 143 terminated.
+    0 success or skipped, 1 mission failed, 2 bad input, 3 the robot still moves at the end, 130 interrupted,
+    131 emergency stop, 143 terminated.
     """
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):

@@ -10,6 +10,7 @@ import numpy.typing as npt
 
 from btlang.engine.leaf import ActionFailed
 from btlang.robots.geometry import Point, Pose
+from btlang.run.standstill import Standstill
 
 Hand = Literal["left", "right"]
 OnEvent = Callable[[str, Mapping[str, Any]], None]
@@ -101,6 +102,10 @@ class Robot(Protocol):
     @property
     def moving(self) -> bool:
         """True while the base still rolls or a joint moves."""
+
+    @property
+    def standstill(self) -> Standstill:
+        """What is known of whether it stands still, and will."""
 
     # Base
     @property

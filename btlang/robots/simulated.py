@@ -20,6 +20,7 @@ from btlang.robots.power import Power
 from btlang.robots.robot import Done, Hand, OnEvent, RobotError
 from btlang.robots.scan import Scanner
 from btlang.robots.world import ROBOT_RADIUS, Place, World, said
+from btlang.run.standstill import Standstill
 
 _CONTROL_PERIOD = 0.05
 _SAME_SPOT = 0.01  # metres
@@ -106,6 +107,11 @@ class SimulatedRobot:
     def moving(self) -> bool:
         """True while the base still rolls or a joint moves."""
         return self._base.rolling or self._joints.moving
+
+    @property
+    def standstill(self) -> Standstill:
+        """Nothing else moves it."""
+        return Standstill(self.moving)
 
     # Base
     @property

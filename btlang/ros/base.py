@@ -26,6 +26,7 @@ TWIST, STAMPED = type_name(Twist), type_name(TwistStamped)
 _TYPES: dict[str, Any] = {TWIST: Twist, STAMPED: TwistStamped}
 _SILENT = 2.0  # seconds without odometry
 _FRESH = 0.5  # seconds for which odometry can say that the robot does not move
+_JUST = 1.0  # seconds for which odometry can say that the robot stands still
 _REMEMBERED = 200  # odometry that a late localization is matched with
 _REST, _TURN_REST = 0.01, 1.0  # metres and degrees a second that odometry reports of a robot that stands
 _STUCK_AFTER, _STUCK_SHARE = 1.0, 0.05
@@ -111,6 +112,15 @@ class RosBase:
     def velocity(self) -> tuple[float, float]:
         """Metres and degrees a second. Raises RobotError where the odometry is silent."""
         linear, angular = self._measured(_SILENT)
+        return (linear if abs(linear) > _REST else 0.0), (angular if abs(angular) > _TURN_REST else 0.0)
+
+    @property
+    def motion(self) -> tuple[float, float] | None:
+        """Metres and degrees a second by what was measured a moment ago; None where nothing was."""
+        try:
+            linear, angular = self._measured(_JUST)
+        except RobotError:
+            return None
         return (linear if abs(linear) > _REST else 0.0), (angular if abs(angular) > _TURN_REST else 0.0)
 
     @property

@@ -143,22 +143,18 @@ class Clients:
         wait_until(lambda: not self.missing(), limit)
         return self.missing()
 
-    def close(self, limit: float) -> list[str]:
-        """Waits until all that was halted has ended and who listens has heard it, for so many real seconds at most.
-
-        Says what has not ended.
-        """
+    def close(self, limit: float) -> None:
+        """Waits until all that was halted has ended and who listens has heard it, for so many real seconds at most."""
         until = time.monotonic() + limit
-        wait_until(lambda: not (self._left() or self.errands.left), limit)
-        left = self._left()
+        wait_until(lambda: not (self.left() or self.errands.left), limit)
         for publisher in self._publishers:
             publisher.wait_for_all_acked(Duration(seconds=max(0.0, min(_HEARD, until - time.monotonic()))))
         self.endings.clear()
-        return left
 
-    def _left(self) -> list[str]:
+    def left(self) -> list[str]:
         """What goals that were halted wait for."""
-        return [reason for ending in self.endings if (reason := ending.waits_for())]
+        self.endings = [ending for ending in self.endings if ending.waits_for()]
+        return [ending.waits_for() for ending in self.endings]
 
     def _client(self, kind: str, cls: Any, name: str, create: Callable[[], Any]) -> Any:
         name = self._claim(kind, cls, name)

@@ -8,6 +8,7 @@ from threading import Event, RLock
 from typing import Any
 
 from action_msgs.msg import GoalStatus
+from action_msgs.srv import CancelGoal
 from geometry_msgs.msg import PoseStamped
 from nav2_msgs.action import NavigateToPose
 from rclpy.action import ActionClient
@@ -21,6 +22,7 @@ from btlang.ros.poses import MAP, pose_message
 ACTION = "navigate_to_pose"
 _SERVER = 2.0  # seconds that a server gets to be there
 _ANSWER = 5.0  # seconds that it gets to accept or reject, and between two of its feedbacks
+_ENDED = (CancelGoal.Response.ERROR_UNKNOWN_GOAL_ID, CancelGoal.Response.ERROR_GOAL_TERMINATED)
 _ENDINGS = {GoalStatus.STATUS_CANCELED: "somebody cancelled the way to {name}"}
 
 
@@ -44,7 +46,9 @@ class RosJourney:
         self.done = False
         self.failure: str | None = None
         self.withdrawn = Event()
-        """Set when there is nothing left that the server still has to give up."""
+        """Set when the server has given it up, or says that it will not."""
+        self.pending = ""
+        """Why the server may still drive the robot, though it was told not to; "" where it does not."""
         self._client, self._goal, self._spin = client, goal, spin
         self._server = f"navigation server on {server}"
         self._lock = RLock()
@@ -65,6 +69,7 @@ class RosJourney:
             self.failure = failure
             self.done = True
         if withdraw and self._sent:
+            self.pending = "the navigation server did not answer the cancel"
             self._spin(self._withdraw)
         else:
             self.withdrawn.set()
@@ -113,17 +118,33 @@ class RosJourney:
         handle = answer.result()
         if not handle.accepted:
             self.end(f"the navigation server rejected the way to {said(self.name)}", withdraw=False)
-            self.withdrawn.set()
+            self._over()
             return
         self._since = time.monotonic()
         self._handle, self._result = handle, handle.get_result_async()
+        self._result.add_done_callback(lambda _: self._over())
         if self.done:
             self._withdraw()
 
     def _withdraw(self) -> None:
         """A goal that is not accepted yet is withdrawn when it is."""
         if self._handle is not None:
-            self._handle.cancel_goal_async().add_done_callback(lambda _: self.withdrawn.set())
+            self._handle.cancel_goal_async().add_done_callback(self._cancelled)
+
+    def _cancelled(self, answer: Any) -> None:
+        response = answer.result()
+        if self._result.done() or response.return_code in _ENDED:
+            self._over()
+        elif response.goals_canceling:
+            self.pending = "the navigation server did not end the goal that was cancelled"
+        else:
+            self.pending = "the navigation server refused to cancel its goal"
+            self.withdrawn.set()
+
+    def _over(self) -> None:
+        """The server does nothing more for it."""
+        self.pending = ""
+        self.withdrawn.set()
 
 
 class RosNavigation:
@@ -151,6 +172,7 @@ class RosNavigation:
         journey = self._journey
         if journey is not None and not journey.done:
             journey.end(reason)
+            self._given_up.append(journey)
 
     def step(self) -> RosJourney | None:
         """Goes on; returns the journey when it has ended since the last call."""
@@ -161,11 +183,15 @@ class RosNavigation:
         if not journey.done:
             return None
         self._journey = None
-        self._given_up = [earlier for earlier in (*self._given_up, journey) if not earlier.withdrawn.is_set()]
+        self._given_up = [earlier for earlier in dict.fromkeys((*self._given_up, journey)) if earlier.pending]
         return journey
 
+    def pending(self) -> list[str]:
+        """Why the server may still drive the robot, for goals that were given up."""
+        return [journey.pending for journey in self._given_up if journey.pending]
+
     def confirm_stop(self, seconds: float) -> None:
-        """Waits so long at most until the server has answered that it gave up all goals that were withdrawn."""
+        """Waits so long at most until the server has given up all goals that were withdrawn."""
         until = time.monotonic() + seconds
         for journey in (*self._given_up, *((self._journey,) if self._journey is not None else ())):
             journey.withdrawn.wait(max(0.0, until - time.monotonic()))

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from math import radians
 from typing import Any
 
@@ -26,6 +26,7 @@ from btlang.ros.power import RosPower
 from btlang.ros.senses import RosSenses
 from btlang.ros.services import Services
 from btlang.ros.voice import RosVoice
+from btlang.run.standstill import Standstill
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -74,6 +75,8 @@ class RosRobot:
         self._power = RosPower(node, inbox, self._services, self._emit)
         self._hands = RosHands(node, inbox, self._services, self._places, self._base.where, self._emit)
         self._navigation: RosNavigation | None = None
+        self.pending: Callable[[], Iterable[str]] = tuple
+        """Further reasons why it may be moved on, beside its journeys."""
         self._stops_for = 0.0
         self._closed = False
 
@@ -151,6 +154,17 @@ class RosRobot:
             return self._joints.moving or self._base.velocity != (0.0, 0.0)
         except RobotError:
             return False
+
+    @property
+    def standstill(self) -> Standstill:
+        """By the odometry, and by what servers answered to the cancelling of their goals."""
+        motion = self._base.motion
+        pending = [*self.pending(), *(self._navigation.pending() if self._navigation is not None else ())]
+        if motion is None:
+            return Standstill(None, "", tuple(pending))
+        linear, angular = motion
+        told = f"at {abs(linear):.1g} m/s" if linear else f"at {abs(angular):.0f} degrees a second" if angular else ""
+        return Standstill(bool(told) or self._joints.moving, told, tuple(pending))
 
     # Base
     @property

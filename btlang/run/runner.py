@@ -16,6 +16,7 @@ from btlang.run.controls import Controls, disable
 from btlang.run.events import EventStream, Overrun, PeriodPassed, RobotEvent, StatusesChanged
 from btlang.run.overruns import Overruns
 from btlang.run.pace import Pace
+from btlang.run.standstill import Standstill, standstill_of
 from btlang.tree.node import Tree
 
 TYPE_CHECKING = False
@@ -57,6 +58,7 @@ class Outcome(Record):
     `stopped` is "" where the tree completed, else (status IDLE) "time limit", "interrupted" or "emergency stop".
     `seconds` are those of the mission, without the time in which the robot came to rest. `overruns` are the ticks that
     took too long, `worst` the one of them with the slowest leaf; None where no leaf was to blame, or nobody looked.
+    `standstill` says whether the robot came to rest.
     """
 
     status: int
@@ -66,6 +68,7 @@ class Outcome(Record):
     stopped: str = ""
     overruns: int = 0
     worst: Overrun | None = None
+    standstill: Standstill = Standstill()
 
 
 def traced_engine(
@@ -170,12 +173,12 @@ class Runner:
             status, stopped = IDLE, "interrupted"
         finally:
             seconds = self._clock.now - self._began
-            self._end()
+            standstill = self._end()
         if self.controls.emergency:
             status, stopped = IDLE, "emergency stop"
         failure = None if stopped else self._engine.failure
         count, worst = (self._overruns.count, self._overruns.worst) if self._overruns is not None else (0, None)
-        outcome = Outcome(status, seconds, self.ticks, failure, stopped, count, worst)
+        outcome = Outcome(status, seconds, self.ticks, failure, stopped, count, worst, standstill)
         self._events.publish(RobotEvent(self._clock.now, "end", _ending(outcome)))
         return outcome
 
@@ -239,7 +242,7 @@ class Runner:
     def _publish_period(self) -> None:
         self._events.publish(PeriodPassed(self._clock.now, self.ticks, self._pace.late, self._robot))
 
-    def _end(self) -> None:
+    def _end(self) -> Standstill:
         """Another Ctrl-C cuts short only the wait for the robot, not the halting."""
         try:
             self._engine.halt(emergency=self.controls.emergency)
@@ -251,12 +254,13 @@ class Runner:
         for failure in unended:
             self._report(failure, f"{_words(failure)} did not end after it was halted")
         if self._robot is None:
-            return
+            return Standstill()
         rest_until = self._clock.now + _REST
-        while True:  # at least once: a robot that was stopped takes no command before its next step
+        while True:  # at least once: a robot that was stopped brakes with its next step
             self._advance(self._period)
-            if not getattr(self._robot, "moving", False) or self._clock.now >= rest_until - 1e-9:
-                return
+            standstill = standstill_of(self._robot)
+            if not standstill.alarming or self._clock.now >= rest_until - 1e-9:
+                return standstill
             if self._pause:
                 time.sleep(self._pause)
 
@@ -294,7 +298,14 @@ def _words(failure: Failure) -> str:
 
 def _ending(outcome: Outcome) -> Mapping[str, Any]:
     """How a run ended, for programs."""
-    data = {"outcome": NAMES[outcome.status], "stopped": outcome.stopped, "seconds": round(outcome.seconds, 6)}
+    data: dict[str, Any] = {
+        "outcome": NAMES[outcome.status],
+        "stopped": outcome.stopped,
+        "seconds": round(outcome.seconds, 6),
+    }
+    data["still"] = outcome.standstill.still
+    if not outcome.standstill.still:
+        data["motion"] = str(outcome.standstill)
     failure = outcome.failure
     if failure is None:
         return data

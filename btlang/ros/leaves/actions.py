@@ -17,6 +17,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+_REFUSED = (CancelGoal.Response.ERROR_REJECTED, CancelGoal.Response.ERROR_NONE)  # rclpy says the latter
+
 
 class Goal:
     """One goal. Methods with an underscore are for the thread that spins, the others for the one that ticks.
@@ -76,7 +78,8 @@ class Goal:
             self._handle.cancel_goal_async().add_done_callback(self._cancel_answered)
 
     def _cancel_answered(self, future: Any) -> None:
-        if future.result().return_code == CancelGoal.Response.ERROR_REJECTED:
+        response = future.result()
+        if response.return_code in _REFUSED and not response.goals_canceling:
             self._waits_for = f"{self._name} refused to cancel its goal"
 
     def _end(self, answer: Any) -> None:

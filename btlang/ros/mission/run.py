@@ -109,7 +109,8 @@ def problems(error: MissionError) -> str:
 
 
 def _report(tree: RunnableTree, outcome: Outcome) -> Report:
-    if outcome.stopped:
-        return Report("stopped", outcome.stopped, outcome.seconds)
-    reason = tree.why() if outcome.status == FAILURE else ""
-    return Report(NAMES[outcome.status].lower(), reason, outcome.seconds)
+    ended = "stopped" if outcome.stopped else NAMES[outcome.status].lower()
+    reason = outcome.stopped or (tree.why() if outcome.status == FAILURE else "")
+    if outcome.standstill.alarming:
+        reason = f"{reason}\nWARNING: {outcome.standstill}".lstrip()
+    return Report(ended, reason, outcome.seconds)

@@ -8,6 +8,7 @@ from collections.abc import Callable
 
 from btlang.engine.status import RUNNING
 from btlang.ros.serving.job import Job
+from btlang.run.standstill import standstill_of
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False
@@ -122,8 +123,15 @@ class Work:
         if not job.cancelled or job.engine is None or job.reason == "":
             return True
         taken_over = any(other.running and other.resources & job.resources for other in self._jobs)
-        late = self._stage.clock.now - job.ended >= REST
-        return taken_over or late or not getattr(self._stage.robot, "moving", False)
+        if taken_over:
+            return True
+        standstill = standstill_of(self._stage.robot)
+        if not standstill.alarming:
+            return True
+        if self._stage.clock.now - job.ended < REST:
+            return False
+        job.reason = f"{job.reason}; {standstill}"
+        return True
 
     def _answer(self, may: Callable[[Job], bool]) -> None:
         for job in [job for job in self._jobs if job.reason is not None and may(job)]:
