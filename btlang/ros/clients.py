@@ -18,6 +18,7 @@ from btlang.record import Record
 from btlang.ros.errands import Errands
 from btlang.ros.graph import full_name, is_ready, no_listener, no_publisher, no_server
 from btlang.ros.latest import Latest, NodeClock
+from btlang.ros.lease import Lease
 from btlang.ros.waiting import wait_until
 from btlang.ros.word import type_name
 
@@ -66,6 +67,8 @@ class Clients:
         self.errands = Errands(node)
         self.endings: list[Ending] = []
         """What was halted and may not have ended yet."""
+        self.lease: Lease | None = None
+        """That of the goals, once there is an action."""
         self._publishers: list[Any] = []
         self._types: dict[tuple[str, str], Any] = {}
         self._made: dict[Key, tuple[Any, Missing]] = {}  # each with what tells why it is of no use yet
@@ -106,6 +109,7 @@ class Clients:
 
     def action(self, cls: Any, name: str) -> Any:
         """An rclpy ActionClient; its requests are for `post`."""
+        self.lease = self.lease or Lease(self.node)  # before the client
         return self._client("action", cls, name, lambda: ActionClient(self.node, cls, name))
 
     def service(self, cls: Any, name: str) -> Any:

@@ -13,10 +13,12 @@ from geometry_msgs.msg import PoseStamped
 from nav2_msgs.action import NavigateToPose
 from rclpy.action import ActionClient
 from rclpy.node import Node
+from unique_identifier_msgs.msg import UUID
 
 from btlang.robots.geometry import Pose
 from btlang.robots.world import said
 from btlang.ros.errands import Errands
+from btlang.ros.lease import Lease
 from btlang.ros.poses import MAP, pose_message
 
 ACTION = "navigate_to_pose"
@@ -40,6 +42,7 @@ class RosJourney:
         client: Any,
         server: str,
         goal: NavigateToPose.Goal,
+        goal_id: UUID,
         spin: Callable[[Callable[[], None]], object],
     ) -> None:
         self.name = name
@@ -49,7 +52,7 @@ class RosJourney:
         """Set when the server has given it up, or says that it will not."""
         self.pending = ""
         """Why the server may still drive the robot, though it was told not to; "" where it does not."""
-        self._client, self._goal, self._spin = client, goal, spin
+        self._client, self._goal, self._goal_id, self._spin = client, goal, goal_id, spin
         self._server = f"navigation server on {server}"
         self._lock = RLock()
         self._since = time.monotonic()  # of what it waits for now
@@ -109,7 +112,8 @@ class RosJourney:
 
     # In the thread that spins
     def _send(self) -> None:
-        self._client.send_goal_async(self._goal, feedback_callback=self._hear).add_done_callback(self._answered)
+        sent = self._client.send_goal_async(self._goal, feedback_callback=self._hear, goal_uuid=self._goal_id)
+        sent.add_done_callback(self._answered)
 
     def _hear(self, _: Any) -> None:
         self._heard, self._since = True, time.monotonic()
@@ -152,6 +156,7 @@ class RosNavigation:
 
     def __init__(self, node: Node, errands: Errands) -> None:
         self._node, self._errands = node, errands
+        self._lease = Lease(node)
         self._client = ActionClient(node, NavigateToPose, ACTION)
         self._server = node.resolve_service_name(ACTION)
         self._journey: RosJourney | None = None
@@ -163,7 +168,7 @@ class RosNavigation:
         goal = NavigateToPose.Goal()
         goal.pose = _stamped(pose)
         goal.pose.header.stamp = self._node.get_clock().now().to_msg()
-        self._journey = RosJourney(name, self._client, self._server, goal, self._errands.post)
+        self._journey = RosJourney(name, self._client, self._server, goal, self._lease.goal_id(), self._errands.post)
         self._journey.step()
         return self._journey
 

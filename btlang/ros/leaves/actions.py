@@ -58,7 +58,8 @@ class Goal:
             self._end("it was halted before it was sent")
             return
         try:
-            self._client.send_goal_async(self._message).add_done_callback(self._answered)
+            goal_id = self._clients.lease.goal_id() if self._clients.lease is not None else None
+            self._client.send_goal_async(self._message, goal_uuid=goal_id).add_done_callback(self._answered)
         except Exception as problem:
             self._end(f"the goal could not be sent to {self._name}: {described(problem)}")
 

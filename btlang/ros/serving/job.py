@@ -34,13 +34,13 @@ _PATIENCE = 0.2  # real seconds that background leaves get to end after a halt, 
 
 
 class Job:
-    """`cancelled` may be set by any thread; all else is for the one that ticks.
+    """`cancelled`, why it is, may be set by any thread; all else is for the one that ticks.
 
     `reason` is None as long as it is not over, then "" or why it failed.
     """
 
     def __init__(self, node: Node, caller: Caller, stage: Stage, vocabulary: Vocabulary, patient_until: float) -> None:
-        self.cancelled = False
+        self.cancelled = ""
         self.reason: str | None = None
         self.engine: Engine | None = None
         self.patient_until = patient_until

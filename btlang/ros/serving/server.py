@@ -51,16 +51,16 @@ def serve_actions(
         GoalServer(node, RunPhrase, f"{FOLDER}/{action_name(node_id)}", _beginner(node_id, vocabulary, work))
 
 
-def _beginner(node_id: str, vocabulary: Vocabulary, work: Work) -> Callable[[HeldGoal], Callable[[], object]]:
+def _beginner(node_id: str, vocabulary: Vocabulary, work: Work) -> Callable[[HeldGoal], Callable[[str], object]]:
     entries = vocabulary.entries[node_id]
 
-    def begin(goal: HeldGoal) -> Callable[[], object]:
+    def begin(goal: HeldGoal) -> Callable[[str], object]:
         caller, asked = _Caller(goal), goal.request
         try:
             leaf = asked_leaf(asked.phrase, asked.names, asked.values, entries, vocabulary)
         except ActionFailed as problem:
             caller.end(False, str(problem))
-            return lambda: None
+            return lambda reason: None
         return work.begin(leaf, caller)
 
     return begin

@@ -41,14 +41,14 @@ class Work:
         self._jobs: list[Job] = []
         self._halt_failures: list[Failure] = []
 
-    def begin(self, node: Node, caller: Caller) -> Callable[[], None]:
-        """Takes on a goal; returns what cancels it."""
+    def begin(self, node: Node, caller: Caller) -> Callable[[str], None]:
+        """Takes on a goal; returns what cancels it, for a reason."""
         job = Job(node, caller, self._stage, self._vocabulary, self._now() + BUSY)
         self._new.append(job)
         self._wake()
 
-        def cancel() -> None:
-            job.cancelled = True
+        def cancel(reason: str) -> None:
+            job.cancelled = reason
             self._wake()
 
         return cancel
@@ -64,7 +64,7 @@ class Work:
             self._jobs.append(self._new.popleft())
         for job in self._jobs:  # all of them before one begins that needs what they used
             if job.cancelled:
-                self._halt(job, "it was cancelled")
+                self._halt(job, job.cancelled)
         for job in self._jobs:
             if job.reason is None and (job.running or self._starts(job)):
                 job.tick()
