@@ -50,11 +50,12 @@ class GoalServer:
         action: Any,
         name: str,
         begin: Callable[[HeldGoal], Callable[[str], object]],
+        leases: Leases,
         accepts: Callable[[], bool] = lambda: True,
     ) -> None:
         self._begin = begin
         self._cancels: dict[bytes, Callable[[str], object]] = {}
-        self._leases = Leases(node)
+        self._leases = leases
         self._server = ActionServer(
             node,
             action,

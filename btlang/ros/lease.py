@@ -25,8 +25,9 @@ if TYPE_CHECKING:
 _MARK = b"btc\x01"
 _CLIENT, _GOAL = 6, 6  # bytes of a goal id, after the mark
 _ASSERTED = 0.25  # seconds within which a client asserts that it lives: a few of them may get lost
-_SILENCE, _DOUBT = 0.7, 0.3  # seconds without a word, and those in which one may still come
-_FIRST = 1.5  # seconds for the first word
+_SILENCE = 0.7  # seconds without a word after which DDS tells of it
+_ROUND = 0.1  # seconds
+_SILENT, _FIRST = 3, 15  # rounds in which a word may still come, and those in which the first one has to
 
 
 class Lease:
@@ -43,73 +44,72 @@ class Lease:
 
 
 class Leases:
-    """What a server knows of its clients. To be used in the thread that spins the node."""
+    """What the servers of a node know of their clients. To be used in the thread that spins the node."""
 
     def __init__(self, node: Node) -> None:
         self._node = node
         self._clock = Clock(clock_type=ClockType.STEADY_TIME)
-        self._watched: dict[bytes, _Client] = {}
+        self._clients: dict[bytes, _Client] = {}
 
     def watch(self, goal_id: bytes, lost: Callable[[], object]) -> None:
         """Calls `lost` once when the client of a goal has been silent for a second, unless the goal is forgotten."""
-        if not goal_id.startswith(_MARK):
+        name = _client_of(goal_id)
+        if name is None:
             return
-        name = goal_id[len(_MARK) : len(_MARK) + _CLIENT]
-        if name not in self._watched:
-            self._watched[name] = _Client(self._node, name, self._clock)
-        self._watched[name].goals[goal_id] = lost
+        if name not in self._clients:
+            self._clients[name] = _Client(self._node, name, self._clock, lambda: self._clients.pop(name))
+        self._clients[name].goals[goal_id] = lost
 
     def forget(self, goal_id: bytes) -> None:
         """The goal is over."""
-        name = goal_id[len(_MARK) : len(_MARK) + _CLIENT]
-        client = self._watched.get(name) if goal_id.startswith(_MARK) else None
-        if client is not None:
-            client.goals.pop(goal_id, None)
-            if not client.goals:
-                del self._watched[name]
-                client.close()
+        name = _client_of(goal_id)
+        if name in self._clients:
+            self._clients[name].goals.pop(goal_id, None)
 
 
 class _Client:
-    """One that has goals; `goals` has what to call when it is lost."""
+    """One that has sent goals, watched until it is gone: a second subscription would hear nothing of it in Fast DDS.
 
-    def __init__(self, node: Node, name: bytes, clock: Clock) -> None:
+    `goals` has what to call when it is lost, `gone` is called then.
+    """
+
+    def __init__(self, node: Node, name: bytes, clock: Clock, gone: Callable[[], object]) -> None:
         self.goals: dict[bytes, Callable[[], object]] = {}
-        self._node, self._clock, self._topic = node, clock, _topic(name)
-        self._timer: Any = node.create_timer(_FIRST, self._never_heard, clock=clock)
+        self._node, self._topic, self._gone = node, _topic(name), gone
+        self._heard = False
+        self._rounds = _FIRST
+        self._timer = node.create_timer(_ROUND, self._doubt, clock=clock)
         self._subscription = node.create_subscription(
             Empty, self._topic, lambda _: None, _qos(_SILENCE),
             event_callbacks=SubscriptionEventCallbacks(liveliness=self._changed),
         )  # fmt: skip
 
-    def close(self) -> None:
-        """Nobody asks any more."""
-        self._trust()
-        self._node.destroy_subscription(self._subscription)
-
     def _changed(self, info: Any) -> None:
         """Silence may be that of this process, which was held up: what has come meanwhile is then heard in a moment."""
         if info.alive_count:
-            self._trust()
-        elif self._timer is None:
-            self._timer = self._node.create_timer(_DOUBT, self._lost, clock=self._clock)
+            self._heard = True
+            self._timer.cancel()
+        elif self._heard:
+            self._rounds = _SILENT
+            self._timer.reset()
 
-    def _never_heard(self) -> None:
-        """It died as soon as it had sent its goal; where it never had a lease, something else passed the goal on."""
-        if self._node.count_publishers(self._topic):
-            self._lost()
-        else:
-            self._trust()
+    def _doubt(self) -> None:
+        """Rounds are counted, and not seconds: in each of them this process was there to hear something."""
+        self._rounds -= 1
+        if self._rounds > 0:
+            return
+        # where it was never heard: it died as soon as it had sent its goal, or has no lease and something passed it on
+        lost = tuple(self.goals.values()) if self._heard or self._node.count_publishers(self._topic) else ()
+        self._node.destroy_timer(self._timer)
+        self._node.destroy_subscription(self._subscription)
+        self._gone()
+        for tell in lost:
+            tell()
 
-    def _trust(self) -> None:
-        if self._timer is not None:
-            self._node.destroy_timer(self._timer)
-            self._timer = None
 
-    def _lost(self) -> None:
-        self._trust()
-        for lost in tuple(self.goals.values()):
-            lost()
+def _client_of(goal_id: bytes) -> bytes | None:
+    """None for a goal without a lease."""
+    return goal_id[len(_MARK) : len(_MARK) + _CLIENT] if goal_id.startswith(_MARK) else None
 
 
 def _topic(client: bytes) -> str:

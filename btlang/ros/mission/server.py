@@ -8,6 +8,7 @@ from btlang_interfaces.action import RunMission
 from rclpy.node import Node
 
 from btlang.ros.goals import GONE, GoalServer, HeldGoal
+from btlang.ros.lease import Leases
 from btlang.ros.mission.run import MissionRun, Report
 from btlang.ros.mission.topics import filled
 
@@ -32,7 +33,7 @@ class MissionServer:
         rejected: Callable[[str], object],
     ) -> None:
         self._hindrance, self._begin, self._rejected = hindrance, begin, rejected
-        GoalServer(node, RunMission, "~/run_mission", self._run, self._accepts)
+        GoalServer(node, RunMission, "~/run_mission", self._run, Leases(node), self._accepts)
 
     def _accepts(self) -> bool:
         reason = self._hindrance()
