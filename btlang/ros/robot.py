@@ -163,7 +163,7 @@ class RosRobot:
         if motion is None:
             return Standstill(None, "", tuple(pending))
         linear, angular = motion
-        told = f"at {abs(linear):.1g} m/s" if linear else f"at {abs(angular):.0f} degrees a second" if angular else ""
+        told = f"at {abs(linear):.2g} m/s" if linear else f"at {abs(angular):.0f} degrees a second" if angular else ""
         return Standstill(bool(told) or self._joints.moving, told, tuple(pending))
 
     # Base
