@@ -147,13 +147,18 @@ class Clients:
         wait_until(lambda: not self.missing(), limit)
         return self.missing()
 
-    def close(self, limit: float) -> None:
-        """Waits until all that was halted has ended and who listens has heard it, for so many real seconds at most."""
+    def close(self, limit: float) -> list[str]:
+        """Waits until all that was halted has ended and who listens has heard it, for so many real seconds at most.
+
+        Says what has not ended.
+        """
         until = time.monotonic() + limit
         wait_until(lambda: not (self.left() or self.errands.left), limit)
+        left = self.left()
         for publisher in self._publishers:
             publisher.wait_for_all_acked(Duration(seconds=max(0.0, min(_HEARD, until - time.monotonic()))))
         self.endings.clear()
+        return left
 
     def left(self) -> list[str]:
         """What goals that were halted wait for."""

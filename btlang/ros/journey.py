@@ -24,7 +24,6 @@ from btlang.ros.poses import MAP, pose_message
 ACTION = "navigate_to_pose"
 _SERVER = 2.0  # seconds that a server gets to be there
 _ANSWER = 5.0  # seconds that it gets to accept or reject, and between two of its feedbacks
-_ENDED = (CancelGoal.Response.ERROR_UNKNOWN_GOAL_ID, CancelGoal.Response.ERROR_GOAL_TERMINATED)
 _ENDINGS = {GoalStatus.STATUS_CANCELED: "somebody cancelled the way to {name}"}
 
 
@@ -56,7 +55,7 @@ class RosJourney:
         self._server = f"navigation server on {server}"
         self._lock = RLock()
         self._since = time.monotonic()  # of what it waits for now
-        self._sent = self._heard = False
+        self._sent = self._heard = self._withdrawing = False
         self._handle: Any = None
         self._result: Any = None
 
@@ -132,14 +131,16 @@ class RosJourney:
 
     def _withdraw(self) -> None:
         """A goal that is not accepted yet is withdrawn when it is."""
-        if self._handle is not None:
+        if self._handle is not None and not self._withdrawing:  # the second answer would call it terminated
+            self._withdrawing = True
             self._handle.cancel_goal_async().add_done_callback(self._cancelled)
 
     def _cancelled(self, answer: Any) -> None:
         response = answer.result()
-        if self._result.done() or response.return_code in _ENDED:
+        code = response.return_code
+        if self._result.done() or code == CancelGoal.Response.ERROR_UNKNOWN_GOAL_ID:
             self._over()
-        elif response.goals_canceling:
+        elif response.goals_canceling or code == CancelGoal.Response.ERROR_GOAL_TERMINATED:  # its result comes, or not
             self.pending = "the navigation server did not end the goal that was cancelled"
         else:
             self.pending = "the navigation server refused to cancel its goal"
