@@ -336,6 +336,7 @@ class RunnableTree:
         from btlang.backends.engine import bind_leaf
         from btlang.engine.engine import EngineError
         from btlang.engine.timing import Stopwatch
+        from btlang.robots.proxy import RobotProxy
         from btlang.robots.world import Place
         from btlang.run.runner import Runner, traced_engine
         from btlang.run.story import Story
@@ -350,6 +351,7 @@ class RunnableTree:
                 clock=stage.clock,
                 events=stage.events,
                 services={"robot": stage.robot},
+                proxies={"robot": RobotProxy},
                 blackboard=self._blackboard,
                 stopwatch=Stopwatch() if speed < math.inf else None,
             )

@@ -24,8 +24,8 @@ SUCCESS, FAILED, UNFORMATTED, BAD_INPUT, CRASHED, INTERRUPTED = 0, 1, 1, 2, 70, 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Runs one verb; returns the exit code.
 
-    0 success or skipped, 1 mission failed, 2 bad input, 70 a bug in btlang, 130 interrupted, 131 emergency stop, 143
-    terminated. With BTC_DEBUG set, what a bug raises comes through.
+    0 success or skipped, 1 mission failed, 2 bad input, 3 the robot still moves at the end, 70 a bug in btlang,
+    130 interrupted, 131 emergency stop, 143 terminated. With BTC_DEBUG set, what a bug raises comes through.
     """
     for stream in (sys.stdout, sys.stderr):
         if hasattr(stream, "reconfigure"):

@@ -68,7 +68,7 @@ def test_the_log_ends_with_what_failed(btc: Screen, tmp_path: Path) -> None:
     end = json.loads(log.read_text(encoding="utf-8").splitlines()[-1])
     assert end.pop("t") >= end.pop("seconds") > 1
     told = {"path": "/1", "id": "Battery", "reason": "battery is 100%", "place": "<command line>:1:17"}
-    assert end == {"event": "end", "outcome": "FAILURE", "stopped": "", **told}
+    assert end == {"event": "end", "outcome": "FAILURE", "stopped": "", "still": True, **told}
 
 
 def test_exit_codes(btc: Screen) -> None:

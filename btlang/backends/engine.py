@@ -9,7 +9,7 @@ from types import ModuleType
 
 from btlang.backends.comparing import comparing
 from btlang.engine.build import EngineError
-from btlang.engine.leaf import LeafBinding
+from btlang.engine.leaf import LeafBinding, described
 from btlang.engine.script_values import as_text
 from btlang.english.phrase import leaf_words
 from btlang.tree.node import Node
@@ -114,8 +114,10 @@ def _imported(entry: Entry) -> Callable[..., Any]:
         found: Any = _module(entry, module)
         for part in name.split("."):
             found = getattr(found, part)
-    except Exception as error:  # whatever a user's module raises while it is imported
-        raise EngineError(f"{entry.call} cannot be loaded ({type(error).__name__}: {error})", node) from error
+    except KeyboardInterrupt:
+        raise
+    except BaseException as error:  # whatever a user's module raises while it is imported
+        raise EngineError(f"{entry.call} cannot be loaded ({described(error)})", node) from error
     if not callable(found):
         raise EngineError(f"{entry.call} is no function or class", node)
     return found  # type: ignore[no-any-return]

@@ -187,7 +187,7 @@ def _of(value: Any, kind: type, what: str) -> Any:
     if not isinstance(value, kind):
         raise _Wrong(f"{what} is no {_KINDS[kind]}")
     if isinstance(value, str) and (unfit := _UNFIT.search(value)) is not None:
-        raise _Wrong(f"{what} has a character that no text can hold: {ascii(unfit[0])}")
+        raise _Wrong(f"{what} has a character that no text can hold: {unfit[0]!a}")
     return value
 
 

@@ -27,11 +27,9 @@ def crashed(error: Exception) -> str:
 def _written(error: Exception) -> str:
     from traceback import format_exception
 
-    import btlang
-
     path = os.path.join(user_folder("state"), "crash.txt")
     os.makedirs(os.path.dirname(path), 0o700, exist_ok=True)
-    head = f"btlang {btlang.__version__}, Python {sys.version}, {platform.platform()}\n{sys.argv}\n"
+    head = f"btlang {sys.modules['btlang'].__version__}, Python {sys.version}, {platform.platform()}\n{sys.argv}\n"
     descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
     with open(descriptor, "w", encoding="utf-8", errors="backslashreplace") as file:
         file.write(head + "".join(format_exception(error)))

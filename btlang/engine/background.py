@@ -8,7 +8,8 @@ starts nothing. Threads are daemons: one that does not end does not keep the pro
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
+from collections import deque
+from collections.abc import Callable, Mapping
 from threading import Event, Thread
 
 from btlang.engine.build import Fault, Shared, Site
@@ -25,12 +26,30 @@ HALTED = "halted"
 _CLOSING = 0.5  # seconds that an event loop gets to end when nothing works on it
 
 
+class Request:
+    """A call that the thread of a work hands over to the one that ticks."""
+
+    __slots__ = ("call", "done", "problem", "result")
+
+    def __init__(self, call: Callable[[], object]) -> None:
+        self.call = call
+        self.done = Event()
+        self.result: object = None
+        self.problem: BaseException | None = None
+
+
 class Work:
-    """One run of a background leaf. `ended` is set when it is over; its `result` or its `problem` is there by then."""
+    """One run of a background leaf. `ended` is set when it is over; its `result` or its `problem` is there by then.
 
-    __slots__ = ("cancel", "ended", "halted", "problem", "result")
+    `proxies` are what it got in place of services that are not safe beside the tick.
+    """
 
-    def __init__(self) -> None:
+    __slots__ = ("_requests", "_wake", "cancel", "ended", "halted", "problem", "proxies", "result")
+
+    def __init__(self, wake: Callable[[], object]) -> None:
+        self._wake = wake
+        self._requests: deque[Request] = deque()
+        self.proxies: dict[str, Any] = {}
         self.halted = Event()
         self.ended = Event()
         self.result: object = None
@@ -38,56 +57,105 @@ class Work:
         self.cancel: Callable[[], object] = self.halted.set
         """Asks it to end, from the thread that ticks."""
 
+    def in_tick(self, call: Callable[[], Any]) -> Any:
+        """What `call` gives or raises in the thread that ticks, which the next tick of the leaf calls at once.
+
+        For the threads of the work. Raises ActionFailed once the work was halted or is over.
+        """
+        request = Request(call)
+        self._requests.append(request)
+        self._wake()
+        if self.halted.is_set() or self.ended.is_set():
+            self.refuse()
+        request.done.wait()
+        if request.problem is not None:
+            raise request.problem
+        return request.result
+
+    def serve(self) -> None:
+        """Does what was handed over before now."""
+        for _ in range(len(self._requests)):
+            request = self._requests.popleft()
+            try:
+                request.result = request.call()
+            except KeyboardInterrupt:
+                self._requests.appendleft(request)
+                raise
+            except BaseException as problem:
+                request.problem = problem
+            request.done.set()
+
+    def refuse(self) -> None:
+        """Does nothing of what was handed over, from any thread."""
+        while True:
+            try:
+                request = self._requests.popleft()
+            except IndexError:
+                return
+            request.problem = ActionFailed("it was halted")
+            request.done.set()
+
+    def let_go(self) -> None:
+        """Ends what it has set about with its services."""
+        for proxy in self.proxies.values():
+            proxy.let_go()
+
 
 class Background:
     """What the background leaves of one engine share. All of it is for the thread that ticks, but `over`."""
 
     def __init__(self, shared: Shared) -> None:
         self._wake: Callable[[], object] = shared.services["wake"]
+        self._proxies = shared.proxies
         self._loop: EventLoop | None = None
         self._halted: list[tuple[int, Work]] = []  # with the index of its leaf
 
-    def start_thread(self, call: Callable[[Event], object]) -> Work:
-        """Calls a function in a thread of its own; it gets the event that is set when it is halted."""
-        work = Work()
+    def work(self, services: Mapping[str, Any]) -> Work:
+        """What is about to begin, with proxies of services that have one."""
+        work, made = Work(self._wake), self._proxies
+        work.proxies = {name: made[name](service, work.in_tick) for name, service in services.items()}
+        return work
+
+    def start_thread(self, work: Work, call: Callable[[], object]) -> None:
+        """Calls a function in a thread of its own."""
 
         def run() -> None:
             try:
-                work.result = call(work.halted)
-            except BaseException as problem:  # also SystemExit: it ends the mission, not the thread alone
+                work.result = call()
+            except BaseException as problem:
                 work.problem = problem
             self.over(work)
 
         Thread(target=run, name="btlang leaf", daemon=True).start()
-        return work
 
-    def start_async(self, call: Callable[[], Any]) -> Work:
+    def start_async(self, work: Work, call: Callable[[], Any]) -> None:
         """Awaits what an `async def` function gives, on the event loop of this engine."""
         from btlang.engine.event_loop import EventLoop
 
         if self._loop is None:
             self._loop = EventLoop()
-        work = Work()
         self._loop.start(call, work, self.over)
-        return work
 
     def over(self, work: Work) -> None:
         """The work has ended; from any thread."""
         work.ended.set()
+        work.refuse()
         self._wake()
 
     def halt(self, index: int, work: Work) -> None:
-        """Asks the work of a leaf to end."""
-        work.cancel()
+        """Asks the work of a leaf to end, and ends what it has set about."""
         self._halted.append((index, work))
+        work.cancel()
+        work.refuse()
+        work.let_go()
 
     def take_faults(self) -> list[Fault]:
-        """What works that were halted have raised since; ActionFailed and CancelledError are ways to end."""
+        """What works that were halted have raised since; ActionFailed is a way to end."""
         faults, going = [], []
         for index, work in self._halted:
             if not work.ended.is_set():
                 going.append((index, work))
-            elif isinstance(work.problem, Exception) and not isinstance(work.problem, ActionFailed):
+            elif work.problem is not None and not isinstance(work.problem, ActionFailed):
                 faults.append(Fault(index, described(work.problem), work.problem))
         self._halted = going
         return faults
@@ -126,14 +194,15 @@ class BackgroundLeaf:
         if work is None or (work.halted.is_set() and work.ended.is_set()):
             self._work = self._launch(self._values)
             return None
-        if work.halted.is_set() or not work.ended.is_set():
+        if work.halted.is_set():
+            return None
+        if not work.ended.is_set():
+            work.serve()
             return None
         self._work = None
-        problem = work.problem
-        if isinstance(problem, Exception | SystemExit | KeyboardInterrupt):
-            raise problem
-        if problem is not None:  # such as the CancelledError of another task
-            raise ActionFailed(type(problem).__name__) from problem
+        if work.problem is not None:
+            work.let_go()
+            raise work.problem
         return True if work.result is None else work.result
 
     def halt(self) -> None:
@@ -142,18 +211,19 @@ class BackgroundLeaf:
             self._background.halt(self._index, self._work)
 
 
-def background_leaf(site: Site, call: Callable[..., Any], in_thread: bool, takes_halted: bool) -> BackgroundLeaf:
-    """`call` takes the values of the ports that are read at each start, and the event `halted` where it asks for it."""
+def background_leaf(
+    site: Site, call: Callable[..., Any], in_thread: bool, takes_halted: bool, services: Mapping[str, Any]
+) -> BackgroundLeaf:
+    """`call` takes the values of the ports that are read at each start, the event `halted` where it asks for it, and
+    proxies of the services."""
     background = site.shared.background
     if background is None:
         background = site.shared.background = Background(site.shared)
 
-    def thread(values: dict[str, Any]) -> Work:
-        if takes_halted:
-            return background.start_thread(lambda halted: call(**values, **{HALTED: halted}))
-        return background.start_thread(lambda halted: call(**values))
+    def launch(values: dict[str, Any]) -> Work:
+        work = background.work(services)
+        given = {**values, **work.proxies, **({HALTED: work.halted} if takes_halted else {})}
+        (background.start_thread if in_thread else background.start_async)(work, lambda: call(**given))
+        return work
 
-    def awaited(values: dict[str, Any]) -> Work:
-        return background.start_async(lambda: call(**values))
-
-    return BackgroundLeaf(site.index, background, thread if in_thread else awaited)
+    return BackgroundLeaf(site.index, background, launch)

@@ -69,15 +69,17 @@ def bound_leaf(site: Site, plan: Plan) -> Compiled:
         services = site.shared.service_names
         given = plan.given[names] = _fill(site, call, names, services | {"halted"} if binding.thread else services)
     constants, stored = _arguments(site, ports, binding) if ports else ({}, None)
+    beside = site.shared.proxies if plan.kind in ("async", "thread") else ()
     for name in given:
-        if name != "halted" or not binding.thread:
+        if name not in beside and (name != "halted" or not binding.thread):
             constants[name] = site.service(name)
     if constants:
         call = partial(call, **constants)
     if plan.kind in ("async", "thread"):
         from btlang.engine.background import background_leaf
 
-        background = background_leaf(site, call, binding.thread, "halted" in given)
+        proxied = {name: site.service(name) for name in given if name in beside}
+        background = background_leaf(site, call, binding.thread, "halted" in given, proxied)
         return class_leaf(site, background, background.start, stored)
     return generator_leaf(site, call, stored) if plan.kind == "generator" else function_leaf(site, call, stored)
 
@@ -107,7 +109,9 @@ def _make(site: Site, plan: Plan) -> Any:
         plan.made_with = _fill(site, cls, (), site.shared.service_names)
     try:
         return cls(**{name: site.service(name) for name in plan.made_with})
-    except Exception as problem:
+    except KeyboardInterrupt:
+        raise
+    except BaseException as problem:
         raise site.error(f"{cls.__name__} cannot be made: {described(problem)}") from problem
 
 

@@ -64,7 +64,7 @@ class Shared:
 
     __slots__ = (
         "background", "bind", "clock", "emergency", "enums", "fault", "halt_faults", "interrupts", "on_unknown",
-        "plans", "service_names", "services", "stopwatch", "unknown", "unknowns", "warned", "watch",
+        "plans", "proxies", "service_names", "services", "stopwatch", "unknown", "unknowns", "warned", "watch",
     )  # fmt: skip
 
     def __init__(
@@ -74,8 +74,10 @@ class Shared:
         services: Mapping[str, Any],
         enums: Mapping[str, float],
         stopwatch: Stopwatch | None,
+        proxies: Mapping[str, Callable[..., Any]] = {},
     ) -> None:
         self.bind = bind
+        self.proxies = proxies  # what background leaves get in place of services, see Engine
         self.stopwatch = stopwatch
         self.clock = clock
         self.services = {"clock": clock, **services}

@@ -69,7 +69,9 @@ def _in_order(children: Sequence[Compiled], passes: int, remember: bool = False)
                     continue
                 if status == RUNNING:
                     return RUNNING
-            except Exception as problem:
+            except KeyboardInterrupt:
+                raise
+            except BaseException as problem:
                 status = problem
             if status == SKIPPED:
                 halts[index](False)
@@ -174,7 +176,9 @@ def parallel(site: Site, children: Sequence[Compiled]) -> Compiled:
                     status = child()
                     if status == RUNNING and undecided:
                         continue
-                except Exception as problem:
+                except KeyboardInterrupt:
+                    raise
+                except BaseException as problem:
                     status = problem
                 if status is SUCCESS or (
                     status != RUNNING and status != SKIPPED and (status := settle(sites[index], status)) is SUCCESS
@@ -235,7 +239,9 @@ def parallel_all(site: Site, children: Sequence[Compiled]) -> Compiled:
                     status = child()
                     if status == RUNNING:
                         continue
-                except Exception as problem:
+                except KeyboardInterrupt:
+                    raise
+                except BaseException as problem:
                     status = problem
                 if status == SKIPPED:
                     skipped += 1

@@ -55,6 +55,8 @@ class Engine:
     """A compiled tree. `bind` gives the Python side of a leaf id, `services` what leaves may ask for by name.
 
     `enums` are names of numbers that scripts and the cases of Switch nodes may use. A `stopwatch` times the leaves.
+    `proxies` are for services that are not safe beside the tick: by their names, what makes of the service, and of
+    `Work.in_tick`, what background leaves get; its `let_go` is called when such a leaf was halted or has failed.
 
     Raises EngineError where the tree cannot be compiled. `listener` gets lists of status changes, children before
     parents; see watch.py for what counts as one and when they are told. `on_unknown` is called during a tick where a
@@ -73,12 +75,14 @@ class Engine:
         enums: Mapping[str, float] = {},
         stopwatch: Stopwatch | None = None,
         on_unknown: Callable[[Failure], object] | None = None,
+        proxies: Mapping[str, Callable[..., Any]] = {},
     ) -> None:
         self.blackboard = Blackboard() if blackboard is None else blackboard
         self.stopwatch = stopwatch
         self.on_wake: Callable[[], object] | None = None
         """What the service `wake` calls, in the thread of whoever asks for it: "tick again now"."""
-        self._shared = Shared(bind, clock, {"wake": self._wake, "progress": unheard, **services}, enums, stopwatch)
+        own = {"wake": self._wake, "progress": unheard}
+        self._shared = Shared(bind, clock, {**own, **services}, enums, stopwatch, proxies)
         if on_unknown is not None:
             self._shared.on_unknown = lambda fault: on_unknown(self._failure(fault))
         with no_collection:
@@ -96,7 +100,7 @@ class Engine:
     def tick(self) -> int:
         """Ticks the tree once; returns its status.
 
-        An exception that is no error of a leaf (KeyboardInterrupt, SystemExit) halts the tree and comes through.
+        KeyboardInterrupt halts the tree and comes through; any other exception of a leaf is its failure.
         Raises RuntimeError where a leaf or another thread ticks, halts or suspends the tree during a tick.
         """
         if self._deep:

@@ -6,7 +6,10 @@ import asyncio
 import logging
 from collections.abc import Callable
 from concurrent.futures import Future, ThreadPoolExecutor
+from contextlib import suppress
 from threading import Thread
+
+from btlang.engine.leaf import ActionFailed, described
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -49,8 +52,10 @@ class EventLoop:
         self._thread.join(patience)
 
     def _run(self) -> None:
-        with asyncio.Runner(loop_factory=lambda: self._loop) as runner:
-            runner.run(self._closed())
+        with suppress(SystemExit), asyncio.Runner(loop_factory=lambda: self._loop) as runner:
+            while not self._closing.is_set():
+                with suppress(SystemExit):  # of a task that a leaf began: asyncio lets it end the loop
+                    runner.run(self._closed())
 
     async def _closed(self) -> None:
         await self._closing.wait()
@@ -77,7 +82,9 @@ class _Daemons(ThreadPoolExecutor):
 async def _awaited(call: Callable[[], Any], work: Work) -> None:
     try:
         work.result = await call()
-    except BaseException as problem:  # SystemExit would end the loop
+    except asyncio.CancelledError as problem:  # a way to end
+        work.problem = ActionFailed(described(problem))
+    except BaseException as problem:
         work.problem = problem
 
 

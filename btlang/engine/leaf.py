@@ -17,8 +17,8 @@ thread has `halted` too, a threading.Event. `progress(share, state)` tells from 
 1, and in words what it does now; in most runs nobody listens.
 
 What a background leaf uses of these it uses beside the tick. Safe are `wake`, `progress`, `halted`, reading
-`clock.now`, reading and setting single blackboard entries, and `robot.stop()`. All else of a robot is for the other
-leaves.
+`clock.now`, and reading and setting single blackboard entries. Other services may be proxies (see Engine): they hand
+over what is asked of them to the thread that ticks, and refuse it once the leaf was halted.
 
 A condition that cannot know its answer raises Unknown.
 
@@ -75,13 +75,16 @@ def told(reason: Reason) -> str:
         return reason
     try:
         return reason()
-    except Exception as problem:
+    except KeyboardInterrupt:
+        raise
+    except BaseException as problem:
         return described(problem)
 
 
 def described(problem: BaseException) -> str:
     """An exception as the reason of a failure."""
-    return f"{type(problem).__name__}: {problem}"
+    name, text = type(problem).__name__, str(problem)
+    return f"{name}: {text}" if text else name
 
 
 class LeafBinding(Record):

@@ -1,7 +1,8 @@
 """Leaves: constants, and the functions, generators and classes described in leaf.py.
 
-An exception becomes a FAILURE with its reason. A class that raises anything but ActionFailed is halted as well: it had
-no chance to stop what it moves. What `halt` itself raises is kept in the engine's `take_halt_failures`.
+An exception, any but KeyboardInterrupt, becomes a FAILURE with its reason. A class that raises anything but
+ActionFailed is halted as well: it had no chance to stop what it moves. What `halt` itself raises is kept in the
+engine's `take_halt_failures`.
 """
 
 from __future__ import annotations
@@ -56,7 +57,9 @@ class FunctionLeaf:
     def tick(self) -> int:
         try:
             result = self.call()
-        except Exception as problem:
+        except KeyboardInterrupt:
+            raise
+        except BaseException as problem:
             return unanswered(self.site, problem)
         return SUCCESS if result is True else status_of(self.site, result)
 
@@ -75,7 +78,9 @@ def function_leaf(site: Site, call: Callable[..., Any], stored: Stored) -> Compi
     def tick() -> int:
         try:
             result = call(**stored())
-        except Exception as problem:
+        except KeyboardInterrupt:
+            raise
+        except BaseException as problem:
             return unanswered(site, problem)
         return status_of(site, result)
 
@@ -100,7 +105,9 @@ def generator_leaf(site: Site, call: Callable[..., Any], stored: Stored) -> Comp
         except StopIteration as stop:
             generator = None
             status = status_of(site, stop.value)
-        except Exception as problem:
+        except KeyboardInterrupt:
+            raise
+        except BaseException as problem:
             generator = None
             status = failed(site, problem)
         return status if watch is None else watch.ended(status)
@@ -138,7 +145,9 @@ def class_leaf(site: Site, leaf: Any, start: Callable[..., Any], stored: Stored)
         except ActionFailed as problem:
             running = False
             status = failed(site, problem)
-        except Exception as problem:
+        except KeyboardInterrupt:
+            raise
+        except BaseException as problem:
             halt(False)
             status = failed(site, problem)
         return status if watch is None else watch.ended(status)
@@ -172,18 +181,20 @@ def _begin(interrupts: list[Callable[[], None]], watch: Watch | None) -> None:
 def _stop(site: Site, halt: Callable[[], object]) -> None:
     try:
         halt()
-    except Exception as problem:
+    except KeyboardInterrupt:
+        raise
+    except BaseException as problem:
         site.shared.halt_faults.append(Fault(site.index, described(problem), problem))
 
 
-def failed(site: Site, problem: Exception) -> int:
+def failed(site: Site, problem: BaseException) -> int:
     """FAILURE, for the reason that the leaf gave, or with the exception that it should not have raised."""
     if isinstance(problem, ActionFailed):
         return site.fail(str(problem))
     return site.fail(described(problem), problem)
 
 
-def unanswered(site: Site, problem: Exception) -> int:
+def unanswered(site: Site, problem: BaseException) -> int:
     """As `failed`, for a function, which may be a condition that does not know."""
     return site.cannot_know(str(problem)) if isinstance(problem, Unknown) else failed(site, problem)
 

@@ -58,7 +58,9 @@ def _reactive(site: Site, children: Sequence[Compiled], passes: int) -> Compiled
                     continue
                 if status != RUNNING and status != SKIPPED:
                     status = settle(sites[asked], status)
-            except Exception as problem:
+            except KeyboardInterrupt:
+                raise
+            except BaseException as problem:
                 status = settle(sites[asked], problem)
             if status is passes:
                 plain = -1

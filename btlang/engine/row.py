@@ -24,8 +24,8 @@ if TYPE_CHECKING:
 def row(children: Sequence[Compiled]) -> Row:
     """What to call for a tick of each child, the halts, and the sites of function leaves, None for another child.
 
-    Whoever calls the ticks catches Exception, and settles what he caught, all answers that are no status, and each
-    FAILURE because of which he fails, so that the failure is that of the leaf.
+    Whoever calls the ticks catches all but KeyboardInterrupt, and settles what he caught, all answers that are no
+    status, and each FAILURE because of which he fails, so that the failure is that of the leaf.
     """
     functions = [as_function(tick) for tick, _ in children]
     ticks = [tick if leaf is None else leaf.call for (tick, _), leaf in zip(children, functions, strict=True)]
@@ -36,10 +36,10 @@ def row(children: Sequence[Compiled]) -> Row:
 def settle(site: Site | None, answer: object) -> int:
     """The status that an answer, or an exception that was raised instead, stands for; that of a node is its own."""
     if site is None:
-        if isinstance(answer, Exception):
+        if isinstance(answer, BaseException):
             raise answer
         assert isinstance(answer, int)
         return answer
     if answer is FAILURE:
         return site.refuse()
-    return unanswered(site, answer) if isinstance(answer, Exception) else status_of(site, answer)
+    return unanswered(site, answer) if isinstance(answer, BaseException) else status_of(site, answer)

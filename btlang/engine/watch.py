@@ -158,7 +158,9 @@ class Watch:
         def watched_tick(self: Watch = self, call: Call = leaf.call, trace: Trace = self.trace) -> int:
             try:
                 status = call()
-            except Exception as problem:
+            except KeyboardInterrupt:
+                raise
+            except BaseException as problem:
                 status = unanswered(leaf.site, problem)
             else:
                 if status is None:

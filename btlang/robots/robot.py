@@ -7,6 +7,7 @@ from typing import Any, Literal, Protocol
 
 from btlang.engine.leaf import ActionFailed, Unknown
 from btlang.robots.geometry import Point, Pose
+from btlang.run.standstill import Standstill
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -51,7 +52,9 @@ class Done:
 
 
 class Robot(Protocol):
-    """Metres, degrees (counter-clockwise positive), seconds, percent. Only `stop` may be called from other threads.
+    """Metres, degrees (counter-clockwise positive), seconds, percent.
+
+    Only `stop` and `disable` may be called from other threads.
 
     Joints are "left arm lift", "left arm swing", "left arm bend", the same three of the right arm, "head turn" and
     "head tilt". An arm's lift is 0 hanging, 90 level and 180 straight up; swing and turn are 0 straight ahead.
@@ -90,11 +93,17 @@ class Robot(Protocol):
         """Lets `dt` seconds pass. On a real robot time passes by itself and this only reads the sensors."""
 
     def stop(self) -> None:
-        """Emergency stop, from any thread: brakes hard, cancels the journey, freezes joints, ends speech.
+        """Brakes hard, cancels the journey, freezes joints, ends speech; from any thread.
 
         Commands given before the next `step` are ignored, so that a tick in flight cannot undo it; `stops` counts it,
         so that an action under way knows afterwards.
         """
+
+    def disable(self) -> None:
+        """Emergency stop, from any thread: `stop`, and ignores all commands until `enable`."""
+
+    def enable(self) -> None:
+        """Takes commands again. For a run that begins or goes on: nothing else may undo an emergency stop."""
 
     @property
     def stops(self) -> int:
@@ -103,6 +112,10 @@ class Robot(Protocol):
     @property
     def moving(self) -> bool:
         """True while the base still rolls or a joint moves."""
+
+    @property
+    def standstill(self) -> Standstill:
+        """What is known of whether it stands still, and will."""
 
     # Base
     @property

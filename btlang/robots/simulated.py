@@ -13,11 +13,13 @@ from btlang.robots.faults import Faults, describe
 from btlang.robots.geometry import Point, Pose
 from btlang.robots.hands import Hands
 from btlang.robots.joints import Joints
+from btlang.robots.latch import Latch
 from btlang.robots.navigation import Journey, Navigator
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.power import Power
 from btlang.robots.robot import Done, Hand, OnEvent, RobotError, SensorSilent
 from btlang.robots.world import ROBOT_RADIUS, Place, World, said
+from btlang.run.standstill import Standstill
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -51,19 +53,18 @@ class SimulatedRobot:
         self._joints = Joints()
         self._hands = Hands(self._obstacles, world.names.objects)
         self._speech_left = 0.0
-        self._stopping = False
+        self._latch = Latch()
         self._bumps_told = 0
         self._stuck_told = False
         self._begin_faults()
 
     def step(self, dt: float) -> None:
         """Lets `dt` (> 0) seconds pass; the scan, the events and all sensors follow."""
-        stopped = self._stopping
-        if stopped:
-            self._stopping = False
+        stopped = self._latch.refuses
+        self._latch.step()
         pieces = max(1, ceil(dt / _CONTROL_PERIOD - 1e-9))
         for _ in range(pieces):
-            if stopped or self._stopping:
+            if stopped or self._latch.refuses:
                 self._rest()  # again: what was under way in this thread may have overwritten what `stop` did in another
             self._move_on(dt / pieces)
 
@@ -83,10 +84,21 @@ class SimulatedRobot:
 
     def stop(self) -> None:
         """Brakes hard, cancels the journey, freezes joints and ends speech. Safe from any thread."""
-        self._stopping = True
+        self._latch.stop()
         self.stops += 1
         self._rest()
         self._emit("stop")
+
+    def disable(self) -> None:
+        """Stops, and takes no command until it is enabled. Safe from any thread."""
+        self._latch.shut()
+        self.stop()
+
+    def enable(self) -> None:
+        """Takes commands again."""
+        if self._latch.refuses:
+            self._rest()  # again, as in `step`
+        self._latch.open()
 
     def _rest(self) -> None:
         self._navigator.cancel("the robot was told to stop")
@@ -98,6 +110,11 @@ class SimulatedRobot:
     def moving(self) -> bool:
         """True while the base still rolls or a joint moves."""
         return self._base.rolling or self._joints.moving
+
+    @property
+    def standstill(self) -> Standstill:
+        """Nothing else moves it."""
+        return Standstill(self.moving)
 
     # Base
     @property
@@ -112,7 +129,7 @@ class SimulatedRobot:
 
     def drive(self, linear: float, angular: float) -> None:
         """Sets the wanted metres and degrees a second; ends a journey under way."""
-        if self._stopping or self._power.empty:
+        if self._latch.refuses or self._power.empty:
             return
         self._navigator.cancel("the robot was told to drive elsewhere")
         self._base.drive(linear, angular)
@@ -151,7 +168,7 @@ class SimulatedRobot:
 
     def _set_out(self, name: str, pose: Pose | None = None) -> Journey:
         journey = self._navigator.start(name, pose)
-        if self._stopping:
+        if self._latch.refuses:
             journey.end("the robot was told to stop")
         if self._power.empty:
             journey.end("the battery is empty")
@@ -248,7 +265,7 @@ class SimulatedRobot:
 
     def move_joints(self, targets: Mapping[str, float]) -> None:
         """Sets off joints towards angles, clipped to their limits. Raises RobotError for an unknown name."""
-        if not self._stopping:
+        if not self._latch.refuses:
             self._joints.move(targets)
             self._emit("joint", targets=dict(targets))
 
@@ -262,7 +279,7 @@ class SimulatedRobot:
 
     def grasp(self, hand: Hand, name: str | None = None) -> Done:
         """Closes a hand at once on the named or the nearest object. Raises RobotError."""
-        if self._stopping:
+        if self._latch.refuses:
             raise RobotError("the robot was told to stop")
         found = self._hands.grasp(hand, None if name is None else self._known(name), self.pose, self.time)
         self._emit("grasp", hand=hand, name=found)
@@ -270,7 +287,7 @@ class SimulatedRobot:
 
     def release(self, hand: Hand) -> Done:
         """Opens a hand at once and puts down what it held."""
-        if not self._stopping:
+        if not self._latch.refuses:
             self._emit("release", hand=hand, name=self._hands.release(hand, self.pose))
         return Done()
 
@@ -281,7 +298,7 @@ class SimulatedRobot:
     # Voice
     def say(self, text: str) -> None:
         """Starts to speak: 0.35 s and 0.06 s a character."""
-        if not self._stopping:
+        if not self._latch.refuses:
             self._speech_left = 0.35 + 0.06 * len(text)
             self._emit("say", text=text)
 

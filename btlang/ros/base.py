@@ -13,6 +13,7 @@ from rclpy.duration import Duration
 from rclpy.node import Node
 
 from btlang.robots.geometry import Pose, wrap
+from btlang.robots.latch import Latch
 from btlang.robots.robot import RobotError
 from btlang.ros.commands import velocity
 from btlang.ros.inbox import Inbox
@@ -26,6 +27,7 @@ TWIST, STAMPED = type_name(Twist), type_name(TwistStamped)
 _TYPES: dict[str, Any] = {TWIST: Twist, STAMPED: TwistStamped}
 _SILENT = 2.0  # seconds without odometry
 _FRESH = 0.5  # seconds for which odometry can say that the robot does not move
+_JUST = 1.0  # seconds for which odometry can say that the robot stands still
 _REMEMBERED = 200  # odometry that a late localization is matched with
 _REST, _TURN_REST = 0.01, 1.0  # metres and degrees a second that odometry reports of a robot that stands
 _STUCK_AFTER, _STUCK_SHARE = 1.0, 0.05
@@ -43,9 +45,12 @@ class RosBase:
     whether it is a Twist or a TwistStamped: a node can use a topic with one type.
     """
 
-    def __init__(self, node: Node, inbox: Inbox, radius: float, fastest: tuple[float, float]) -> None:
+    def __init__(
+        self, node: Node, inbox: Inbox, radius: float, fastest: tuple[float, float], latch: Latch | None = None
+    ) -> None:
         self._node, self._inbox = node, inbox
         self._radius, self._fastest = radius, fastest
+        self._latch = latch or Latch()
         self._lock = RLock()  # a signal handler may halt while this thread drives
         self._wanted = (0.0, 0.0)
         self._told = False  # since the latest step
@@ -72,9 +77,15 @@ class RosBase:
             return self._type
 
     def drive(self, linear: float, angular: float) -> None:
-        """Metres and degrees a second, at most as fast as it can. Raises RobotError for what is no velocity."""
+        """Metres and degrees a second, at most as fast as it can. Raises RobotError for what is no velocity.
+
+        Nothing but zero while the latch refuses commands. It looks within the lock, so that what a stop tells comes
+        after all that was let through before it.
+        """
         with self._lock:
             wanted = _at_most(linear, self._fastest[0]), _at_most(angular, self._fastest[1])
+            if self._latch.refuses and wanted != (0.0, 0.0):
+                return
             if wanted == (0.0, 0.0):
                 self._idle, self._under_way, self._seen = 0.0, False, None
             elif self._told and wanted == self._wanted:
@@ -118,7 +129,18 @@ class RosBase:
     @property
     def velocity(self) -> tuple[float, float]:
         """Metres and degrees a second. Raises RobotError where the odometry is silent."""
-        twist = self._inbox.get(ODOMETRY, _SILENT).twist.twist
+        return self._measured(_SILENT)
+
+    @property
+    def motion(self) -> tuple[float, float] | None:
+        """Metres and degrees a second by what was measured a moment ago; None where nothing was."""
+        try:
+            return self._measured(_JUST)
+        except RobotError:
+            return None
+
+    def _measured(self, age: float) -> tuple[float, float]:
+        twist = self._inbox.get(ODOMETRY, age).twist.twist
         linear, angular = float(twist.linear.x), degrees(twist.angular.z)
         return (linear if abs(linear) > _REST else 0.0), (angular if abs(angular) > _TURN_REST else 0.0)
 

@@ -19,6 +19,7 @@ from btlang.ros.errands import Errands
 from btlang.ros.gate import Gate
 from btlang.ros.graph import full_name, is_ready, no_listener, no_publisher, no_server
 from btlang.ros.latest import Latest, NodeClock
+from btlang.ros.lease import Lease
 from btlang.ros.waiting import wait_until
 from btlang.ros.word import type_name
 
@@ -67,6 +68,8 @@ class Clients:
         self.errands = Errands(node)
         self.endings: list[Ending] = []
         """What was halted and may not have ended yet."""
+        self.lease: Lease | None = None
+        """That of the goals, once there is an action."""
         self._publishers: list[Any] = []
         self._types: dict[tuple[str, str], Any] = {}
         self._made: dict[Key, tuple[Any, Missing]] = {}  # each with what tells why it is of no use yet
@@ -107,6 +110,7 @@ class Clients:
 
     def action(self, cls: Any, name: str) -> Any:
         """An rclpy ActionClient; its requests are for `post`."""
+        self.lease = self.lease or Lease(self.node)  # before the client
         return self._client("action", cls, name, lambda: ActionClient(self.node, cls, name))
 
     def service(self, cls: Any, name: str) -> Any:
@@ -150,16 +154,17 @@ class Clients:
         Says what has not ended.
         """
         until = time.monotonic() + limit
-        wait_until(lambda: not (self._left() or self.errands.left), limit)
-        left = self._left()
+        wait_until(lambda: not (self.left() or self.errands.left), limit)
+        left = self.left()
         for publisher in self._publishers:
             publisher.wait_for_all_acked(Duration(seconds=max(0.0, min(_HEARD, until - time.monotonic()))))
         self.endings.clear()
         return left
 
-    def _left(self) -> list[str]:
+    def left(self) -> list[str]:
         """What goals that were halted wait for."""
-        return [reason for ending in self.endings if (reason := ending.waits_for())]
+        self.endings = [ending for ending in self.endings if ending.waits_for()]
+        return [ending.waits_for() for ending in self.endings]
 
     def _client(self, kind: str, cls: Any, name: str, create: Callable[[], Any]) -> Any:
         name = self._claim(kind, cls, name)

@@ -9,9 +9,14 @@ from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.action.server import GoalEvent, ServerGoalHandle
 from rclpy.node import Node
 
+from btlang.ros.lease import Leases
+
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
+
+GONE = "its client is gone"
+"""Why a goal is cancelled whose client has died."""
 
 
 class HeldGoal:
@@ -34,8 +39,9 @@ class HeldGoal:
 class GoalServer:
     """Any number of goals of one action, as far as `accepts` takes them.
 
-    `begin` starts the work of a goal that was accepted and returns what cancels it; the work calls `HeldGoal.end` once,
-    also after that. Both functions, and what cancels, are called in the thread of the executor and must not wait.
+    `begin` starts the work of a goal that was accepted and returns what cancels it, for a reason; the work calls
+    `HeldGoal.end` once, also after that. A goal whose client has died is cancelled too (see lease.py). Both functions,
+    and what cancels, are called in the thread of the executor and must not wait.
     """
 
     def __init__(
@@ -43,11 +49,13 @@ class GoalServer:
         node: Node,
         action: Any,
         name: str,
-        begin: Callable[[HeldGoal], Callable[[], object]],
+        begin: Callable[[HeldGoal], Callable[[str], object]],
+        leases: Leases,
         accepts: Callable[[], bool] = lambda: True,
     ) -> None:
         self._begin = begin
-        self._cancels: dict[bytes, Callable[[], object]] = {}
+        self._cancels: dict[bytes, Callable[[str], object]] = {}
+        self._leases = leases
         self._server = ActionServer(
             node,
             action,
@@ -65,17 +73,21 @@ class GoalServer:
         def end(success: bool, result: Any) -> None:
             self._server.notify_execute(handle, partial(self._finish, success, result))
 
-        self._cancels[bytes(handle.goal_id.uuid)] = self._begin(HeldGoal(handle, end))
+        goal_id = bytes(handle.goal_id.uuid)
+        cancel = self._cancels[goal_id] = self._begin(HeldGoal(handle, end))
+        self._leases.watch(goal_id, lambda: cancel(GONE))
 
     def _cancel(self, handle: ServerGoalHandle) -> CancelResponse:
         cancel = self._cancels.get(bytes(handle.goal_id.uuid))
         if cancel is not None:
-            cancel()
+            cancel("it was cancelled")
         return CancelResponse.ACCEPT
 
     def _finish(self, success: bool, result: Any, handle: ServerGoalHandle) -> Any:
         """In the thread of the executor, after the cancelling of the goal was answered."""
-        self._cancels.pop(bytes(handle.goal_id.uuid), None)
+        goal_id = bytes(handle.goal_id.uuid)
+        self._cancels.pop(goal_id, None)
+        self._leases.forget(goal_id)
         if success:
             handle.succeed()
         elif handle.is_cancel_requested:

@@ -8,16 +8,19 @@ from threading import Event, RLock
 from typing import Any
 
 from action_msgs.msg import GoalStatus
+from action_msgs.srv import CancelGoal
 from geometry_msgs.msg import PoseStamped
 from nav2_msgs.action import NavigateToPose
 from rclpy.action import ActionClient
 from rclpy.node import Node
+from unique_identifier_msgs.msg import UUID
 
 from btlang.robots.geometry import Pose, wrap
 from btlang.robots.world import said
 from btlang.ros.awake import AWAKE
 from btlang.ros.errands import Errands
 from btlang.ros.gate import pose_fault
+from btlang.ros.lease import Lease
 from btlang.ros.poses import MAP, pose_message, pose_of
 
 ACTION = "navigate_to_pose"
@@ -42,6 +45,7 @@ class RosJourney:
         client: Any,
         server: str,
         goal: NavigateToPose.Goal,
+        goal_id: UUID,
         spin: Callable[[Callable[[], None]], object],
         where: Callable[[], Pose | None],
         now: Callable[[], float],
@@ -50,14 +54,16 @@ class RosJourney:
         self.done = False
         self.failure: str | None = None
         self.withdrawn = Event()
-        """Set when there is nothing left that the server still has to give up."""
-        self._client, self._goal, self._spin = client, goal, spin
+        """Set when the server has given it up, or says that it will not."""
+        self.pending = ""
+        """Why the server may still drive the robot, though it was told not to; "" where it does not."""
+        self._client, self._goal, self._goal_id, self._spin = client, goal, goal_id, spin
         self._server = f"navigation server on {server}"
         self._lock = RLock()
         self._where, self._now = where, now
         self._since = AWAKE.now()  # of what it waits for now
         self._stood = (where(), now())
-        self._sent = False
+        self._sent = self._withdrawing = False
         self.heard = False
         """Whether the server has given feedback."""
         self._handle: Any = None
@@ -76,6 +82,7 @@ class RosJourney:
             self.failure = failure
             self.done = True
         if withdraw and self._sent:
+            self.pending = "the navigation server did not answer the cancel"
             self._spin(self._withdraw)
         else:
             self.withdrawn.set()
@@ -134,7 +141,8 @@ class RosJourney:
 
     # In the thread that spins
     def _send(self) -> None:
-        self._client.send_goal_async(self._goal, feedback_callback=self._hear).add_done_callback(self._answered)
+        sent = self._client.send_goal_async(self._goal, feedback_callback=self._hear, goal_uuid=self._goal_id)
+        sent.add_done_callback(self._answered)
 
     def _hear(self, message: Any) -> None:
         self.heard, self._since = True, AWAKE.now()
@@ -145,17 +153,35 @@ class RosJourney:
         handle = answer.result()
         if not handle.accepted:
             self.end(f"the navigation server rejected the way to {said(self.name)}", withdraw=False)
-            self.withdrawn.set()
+            self._over()
             return
         self._since, self._stood = AWAKE.now(), (self._stood[0], self._now())
         self._handle, self._result = handle, handle.get_result_async()
+        self._result.add_done_callback(lambda _: self._over())
         if self.done:
             self._withdraw()
 
     def _withdraw(self) -> None:
         """A goal that is not accepted yet is withdrawn when it is."""
-        if self._handle is not None:
-            self._handle.cancel_goal_async().add_done_callback(lambda _: self.withdrawn.set())
+        if self._handle is not None and not self._withdrawing:  # the second answer would call it terminated
+            self._withdrawing = True
+            self._handle.cancel_goal_async().add_done_callback(self._cancelled)
+
+    def _cancelled(self, answer: Any) -> None:
+        response = answer.result()
+        code = response.return_code
+        if self._result.done() or code == CancelGoal.Response.ERROR_UNKNOWN_GOAL_ID:
+            self._over()
+        elif response.goals_canceling or code == CancelGoal.Response.ERROR_GOAL_TERMINATED:  # its result comes, or not
+            self.pending = "the navigation server did not end the goal that was cancelled"
+        else:
+            self.pending = "the navigation server refused to cancel its goal"
+            self.withdrawn.set()
+
+    def _over(self) -> None:
+        """The server does nothing more for it."""
+        self.pending = ""
+        self.withdrawn.set()
 
 
 class RosNavigation:
@@ -166,6 +192,7 @@ class RosNavigation:
     ) -> None:
         self._node, self._errands = node, errands
         self._where, self._now = where, now
+        self._lease = Lease(node)
         self._client = ActionClient(node, NavigateToPose, ACTION)
         self._server = node.resolve_service_name(ACTION)
         self._journey: RosJourney | None = None
@@ -177,7 +204,9 @@ class RosNavigation:
         goal = NavigateToPose.Goal()
         goal.pose = _stamped(pose)
         goal.pose.header.stamp = self._node.get_clock().now().to_msg()
-        self._journey = RosJourney(name, self._client, self._server, goal, self._errands.post, self._where, self._now)
+        self._journey = RosJourney(
+            name, self._client, self._server, goal, self._lease.goal_id(), self._errands.post, self._where, self._now
+        )
         self._journey.step()
         return self._journey
 
@@ -186,6 +215,7 @@ class RosNavigation:
         journey = self._journey
         if journey is not None and not journey.done:
             journey.end(reason)
+            self._given_up.append(journey)
 
     def step(self) -> RosJourney | None:
         """Goes on; returns the journey when it has ended since the last call."""
@@ -196,11 +226,15 @@ class RosNavigation:
         if not journey.done:
             return None
         self._journey = None
-        self._given_up = [earlier for earlier in (*self._given_up, journey) if not earlier.withdrawn.is_set()]
+        self._given_up = [earlier for earlier in dict.fromkeys((*self._given_up, journey)) if earlier.pending]
         return journey
 
+    def pending(self) -> list[str]:
+        """Why the server may still drive the robot, for goals that were given up."""
+        return [journey.pending for journey in self._given_up if journey.pending]
+
     def confirm_stop(self, seconds: float) -> None:
-        """Waits so long at most until the server has answered that it gave up all goals that were withdrawn."""
+        """Waits so long at most until the server has given up all goals that were withdrawn."""
         until = time.monotonic() + seconds
         for journey in (*self._given_up, *((self._journey,) if self._journey is not None else ())):
             journey.withdrawn.wait(max(0.0, until - time.monotonic()))

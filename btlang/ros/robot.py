@@ -13,6 +13,7 @@ from rclpy.node import Node
 from std_srvs.srv import Trigger
 
 from btlang.robots.geometry import Point, Pose
+from btlang.robots.latch import Latch
 from btlang.robots.robot import Deed, Done, Hand, OnEvent, RobotError
 from btlang.robots.world import ROBOT_RADIUS, Place, World
 from btlang.ros.awake import AWAKE
@@ -26,6 +27,7 @@ from btlang.ros.power import RosPower
 from btlang.ros.senses import RosSenses
 from btlang.ros.services import Services
 from btlang.ros.voice import RosVoice
+from btlang.run.standstill import Standstill
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -33,6 +35,7 @@ if TYPE_CHECKING:
 
 _STOP = "stop"
 _TOLD_TO_STOP = "the robot was told to stop"
+_STOPPING = 5.0  # seconds for which a robot that was stopped is told zero velocity
 _LAST_WORDS = 2.0  # seconds that servers get to answer at the end
 
 
@@ -65,7 +68,8 @@ class RosRobot:
         self._naps = AWAKE.naps
         self._errands = Errands(node)
         self._places = Places(world)
-        self._base = RosBase(node, inbox, self.radius, (self.max_speed, self.max_turn))
+        self._latch = Latch()
+        self._base = RosBase(node, inbox, self.radius, (self.max_speed, self.max_turn), self._latch)
         self._joints = RosJoints(node, inbox)
         self._voice = RosVoice(node, inbox)
         self._services = Services(node, self._errands)
@@ -74,7 +78,10 @@ class RosRobot:
         self._power = RosPower(node, inbox, self._services, self._emit)
         self._hands = RosHands(node, inbox, self._services, self._places, self._base.where, self._emit)
         self._navigation: RosNavigation | None = None
-        self._stopping = self._closed = False
+        self.pending: Callable[[], Iterable[str]] = tuple
+        """Further reasons why it may be moved on, beside its journeys."""
+        self._stops_for = 0.0
+        self._closed = False
 
     def prepare_navigation(self) -> None:
         """Makes the client of the navigation server, which finds it in a moment. Needs nav2_msgs."""
@@ -90,9 +97,10 @@ class RosRobot:
         if self._naps != AWAKE.naps:
             self._naps = AWAKE.naps
             self._emit("warning", text=f"this computer was asleep for {AWAKE.nap:.0f} s, or btlang was suspended")
-        if self._stopping:
-            self._rest()  # again: what was under way in this thread may have overwritten what `stop` did in another
-            self._stopping = False
+        if self._latch.refuses and self._stops_for > 0.0:
+            self._stops_for -= dt
+            self._rest()  # again: something else may drive the robot on, such as a server that ignores a cancel
+        self._latch.step()
         self._base.step(dt)
         self._voice.step(dt)
         arrived = self._navigation.step() if self._navigation is not None else None
@@ -108,17 +116,28 @@ class RosRobot:
 
         From any thread; waits for nothing.
         """
-        self._stopping = True
+        self._stops_for = _STOPPING
+        self._latch.stop()
         self.stops += 1
         if not self._closed:
             self._rest()
             self._services.fire(_STOP)
             self._emit("stop")
 
+    def disable(self) -> None:
+        """Stops, and takes no command until it is enabled; from any thread."""
+        self._latch.shut()
+        self.stop()
+
+    def enable(self) -> None:
+        """Takes commands again."""
+        self._latch.open()
+
     def close(self) -> None:
         """The end: at rest, and waits two seconds or so at most until all who have to know of it do."""
         if self._closed:
             return
+        self._latch.shut()
         self._rest()
         self._base.confirm_halt()
         until = time.monotonic() + _LAST_WORDS
@@ -143,6 +162,17 @@ class RosRobot:
         except RobotError:
             return False
 
+    @property
+    def standstill(self) -> Standstill:
+        """By the odometry, and by what servers answered to the cancelling of their goals."""
+        motion = self._base.motion
+        pending = [*self.pending(), *(self._navigation.pending() if self._navigation is not None else ())]
+        if motion is None:
+            return Standstill(None, "", tuple(pending))
+        linear, angular = motion
+        told = f"at {abs(linear):.2g} m/s" if linear else f"at {abs(angular):.0f} degrees a second" if angular else ""
+        return Standstill(bool(told) or self._joints.moving, told, tuple(pending))
+
     # Base
     @property
     def pose(self) -> Pose:
@@ -160,13 +190,11 @@ class RosRobot:
 
     def drive(self, linear: float, angular: float) -> None:
         """Sets the wanted metres and degrees a second; ends a journey under way. Raises RobotError for no numbers."""
-        if self._stopping:
+        if self._latch.refuses:
             return
         if self._navigation is not None:
             self._navigation.stop("the robot was told to drive elsewhere")
         self._base.drive(linear, angular)
-        if self._stopping:
-            self._base.halt()  # `stop` came in between from another thread
 
     @property
     def bumps(self) -> int:
@@ -201,7 +229,7 @@ class RosRobot:
         if self._base.driving:
             self._base.halt()
         journey = self._navigation.start(known, goal)
-        if self._stopping:
+        if self._latch.refuses:
             journey.end(_TOLD_TO_STOP)
         self._emit("navigate", name=known)
         return journey
@@ -264,8 +292,10 @@ class RosRobot:
 
     def move_joints(self, targets: Mapping[str, float]) -> None:
         """Sets off joints towards angles. Raises RobotError as `joint` does."""
-        if not self._stopping:
+        if not self._latch.refuses:
             self._joints.move(targets)
+            if self._latch.refuses:
+                self._joints.freeze()  # `stop` came in between from another thread
             self._emit("joint", targets=dict(targets))
 
     def joints_at_target(self, *names: str) -> bool:
@@ -286,7 +316,7 @@ class RosRobot:
 
     def release(self, hand: Hand) -> Deed:
         """Opens a hand, or fails with the robot's reason. Raises RobotError where nothing serves it."""
-        return Done() if self._stopping else self._hands.release(hand)
+        return Done() if self._latch.refuses else self._hands.release(hand)
 
     def holding(self, hand: Hand) -> str | None:
         """The name of what the hand holds. Raises RobotError where nothing tells of it."""
@@ -295,7 +325,7 @@ class RosRobot:
     # Voice
     def say(self, text: str) -> None:
         """Starts to speak. Raises RobotError where nobody listens."""
-        if not self._stopping:
+        if not self._latch.refuses:
             self._voice.say(text)
             self._emit("say", text=text)
 
@@ -314,7 +344,7 @@ class RosRobot:
         self._emit("print", text=text)
 
     def _check_stop(self) -> None:
-        if self._stopping:
+        if self._latch.refuses:
             raise RobotError(_TOLD_TO_STOP)
 
     def _emit(self, event: str, **data: Any) -> None:

@@ -69,6 +69,7 @@ class RosStage:
             if sim_time:
                 self.robot.inbox.listen(CLOCK.name, ClockMessage, "simulated time")
             self._clients = Clients(self._spun.node)
+            self.robot.pending = self._clients.left
             self._spun.start()
         except BaseException:
             self._spun.close()

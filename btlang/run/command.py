@@ -16,6 +16,7 @@ from btlang.run.emergency import emergency_signal
 from btlang.run.json_log import JsonLog
 from btlang.run.lines import Lines, brief
 from btlang.run.runner import Outcome
+from btlang.run.standstill import Standstill
 from btlang.text.output import show
 from btlang.tree.node import Node, Tree
 
@@ -60,6 +61,8 @@ ENDING_SIGNALS = [getattr(signal, name) for name in ("SIGTERM", "SIGHUP") if has
 """A signal to end, and that the terminal is gone, as far as the system has them."""
 EMERGENCY_STOPPED = 131
 """The exit code after an emergency stop, as 130 is that after Ctrl-C: 128 and the signal of the keys."""
+STILL_MOVING = 3
+"""The exit code where the robot goes on moving at the end, whatever the mission came to."""
 _LEAST_SIZE = os.terminal_size((30, 10))  # of a terminal in which the live view is of use
 
 
@@ -107,10 +110,19 @@ def run_mission(
         show(_too_slow(outcome, outcome.worst, tree.label))
     if outcome.status == FAILURE:
         show(tree.why(colour=has_colour(sys.stderr)), stream=sys.stderr)
-        return 1
-    if not quiet:
+    elif not quiet:
         show(_ending(outcome))
-    return {"interrupted": 130, "emergency stop": EMERGENCY_STOPPED}.get(outcome.stopped, 0)
+    if warn_of_motion(outcome.standstill):
+        return STILL_MOVING
+    stopped = {"interrupted": 130, "emergency stop": EMERGENCY_STOPPED}.get(outcome.stopped, 0)
+    return 1 if outcome.status == FAILURE else stopped
+
+
+def warn_of_motion(standstill: Standstill) -> bool:
+    """Warns on standard error where the robot does not stand still for good; returns whether it moves."""
+    if standstill.alarming:
+        show(f"WARNING: {standstill}.", sys.stderr)
+    return bool(standstill.moving)
 
 
 @contextmanager
@@ -165,12 +177,13 @@ def _too_slow(outcome: Outcome, worst: Overrun, label: Callable[[Node], str]) ->
 
 def _ending(outcome: Outcome) -> str:
     seconds = f"{outcome.seconds:.1f} s"
+    rest = "" if outcome.standstill.alarming else f"; {outcome.standstill}"
     if outcome.stopped == "interrupted":
-        return f"Interrupted after {seconds}; the robot stands still."
+        return f"Interrupted after {seconds}{rest}."
     if outcome.stopped == "emergency stop":
-        return f"Emergency stop after {seconds}; the robot stands still."
+        return f"Emergency stop after {seconds}{rest}."
     if outcome.stopped:
-        return f"Stopped after {seconds}, as asked; the robot stands still."
+        return f"Stopped after {seconds}, as asked{rest}."
     if outcome.status == SKIPPED:
         return f"The mission had nothing to do ({seconds}): every command was skipped."
     return f"The mission succeeded in {seconds}."

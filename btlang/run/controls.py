@@ -15,6 +15,11 @@ if TYPE_CHECKING:
         def stop(self) -> object: ...
 
 
+def disable(robot: Stoppable) -> None:
+    """Stops a robot, which then takes no command until it is enabled; one that cannot be disabled is just stopped."""
+    getattr(robot, "disable", robot.stop)()
+
+
 class Controls:
     """May be used from any thread, from keys and from signal handlers; the run takes notice before its next tick.
 
@@ -64,12 +69,12 @@ class Controls:
     def emergency_stop(self) -> None:
         """Stops the robot at once, in this thread, whatever a leaf is doing; then ends the run.
 
-        The robot ignores what a leaf still commands in the tick under way, and the tree is not ticked again.
+        The robot takes no command until the next run begins, and the tree is not ticked again.
         """
         self.emergency = self.stopped = True  # first, so that no tick begins once the robot has been told
         try:
             if self.robot is not None:
-                self.robot.stop()
+                disable(self.robot)
         finally:
             self.wake()
 

@@ -28,7 +28,8 @@ if TYPE_CHECKING:
         def reason(self, index: int, fault: Fault | Site | None) -> str: ...
 
     class Robot(Protocol):
-        """What a run asks of a robot. `moving` may be missing; so may `moves_by_itself`, which is then taken for true.
+        """What a run asks of a robot; see btlang.robots.robot.Robot. `moving`, `standstill`, `disable` and `enable` may
+        be missing; so may `moves_by_itself`, which is then taken for true.
 
         `moves_by_itself` is False for a simulated robot, whose world stands still between two steps.
         """
@@ -75,8 +76,9 @@ class StatusesChanged(Record):
 class RobotEvent(Record):
     """Something that the robot did or met: kind `say`, `print`, `bump`, ... with its data.
 
-    The last event of a run is of the kind `end`: `outcome` (a status), `stopped` and `seconds` as in its Outcome, and
-    where it failed `path`, `id` and `reason` of the failure, and the `place` of its sentence in the mission.
+    The last event of a run is of the kind `end`: `outcome` (a status), `stopped` and `seconds` as in its Outcome,
+    `still` (None where that is not known, and unless it is True `motion` in words) as in its `standstill`, and where it
+    failed `path`, `id` and `reason` of the failure, and the `place` of its sentence in the mission.
     """
 
     t: float

@@ -11,10 +11,11 @@ from btlang.engine.engine import Engine, Failure
 from btlang.engine.leaf import LeafBinding
 from btlang.engine.status import IDLE, NAMES, RUNNING
 from btlang.record import Record
-from btlang.run.controls import Controls
+from btlang.run.controls import Controls, disable
 from btlang.run.events import EventStream, Overrun, PeriodPassed, RobotEvent, StatusesChanged
 from btlang.run.overruns import Overruns
 from btlang.run.pace import Pace
+from btlang.run.standstill import Standstill, standstill_of
 from btlang.tree.node import Tree
 
 TYPE_CHECKING = False
@@ -26,7 +27,9 @@ if TYPE_CHECKING:
     from btlang.run.events import Robot
 
     class Ticked(Protocol):
-        """What a run ticks: an Engine, or several that count as one."""
+        """What a run ticks: an Engine, or several that count as one. `idle` may be missing: whether there is nothing to
+        tick now, so that the robot need not be enabled yet.
+        """
 
         on_wake: Callable[[], object] | None
 
@@ -54,6 +57,7 @@ class Outcome(Record):
     `stopped` is "" where the tree completed, else (status IDLE) "time limit", "interrupted" or "emergency stop".
     `seconds` are those of the mission, without the time in which the robot came to rest. `overruns` are the ticks that
     took too long, `worst` the one of them with the slowest leaf; None where no leaf was to blame, or nobody looked.
+    `standstill` says whether the robot came to rest.
     """
 
     status: int
@@ -63,6 +67,7 @@ class Outcome(Record):
     stopped: str = ""
     overruns: int = 0
     worst: Overrun | None = None
+    standstill: Standstill = Standstill()
 
 
 def traced_engine(
@@ -74,6 +79,7 @@ def traced_engine(
     services: Mapping[str, Any] = {},
     blackboard: Blackboard | None = None,
     stopwatch: Stopwatch | None = None,
+    proxies: Mapping[str, Callable[..., Any]] = {},
 ) -> Engine:
     """An engine whose status changes go into the stream, and once in a run each condition that is not known."""
 
@@ -93,6 +99,7 @@ def traced_engine(
         listener=changed,
         stopwatch=stopwatch,
         on_unknown=unknown,
+        proxies=proxies,
     )
     events.before = engine.tell
     return engine
@@ -132,6 +139,7 @@ class Runner:
         self._events = EventStream() if events is None else events
         self.controls = Controls() if controls is None else controls
         self._suspended = False
+        self._disabled = True  # whether the robot has to be enabled before the next tick
         self._began = clock.now
         self._pace = pace(speed, self.controls)
         self._overruns: Overruns | None = None
@@ -175,12 +183,12 @@ class Runner:
             status, stopped = IDLE, "interrupted"
         finally:
             seconds = self._clock.now - self._began
-            self._end()
+            standstill = self._end()
         if self.controls.emergency:
             status, stopped = IDLE, "emergency stop"
         failure = None if stopped else self._engine.failure
         count, worst = (self._overruns.count, self._overruns.worst) if self._overruns is not None else (0, None)
-        outcome = Outcome(status, seconds, self.ticks, failure, stopped, count, worst)
+        outcome = Outcome(status, seconds, self.ticks, failure, stopped, count, worst, standstill)
         self._events.publish(RobotEvent(self._clock.now, "end", _ending(outcome)))
         return outcome
 
@@ -203,6 +211,8 @@ class Runner:
 
     def _tick(self, ticking: Ticked | Overruns) -> int:
         self._suspended = False
+        if self._disabled and not getattr(self._engine, "idle", False):
+            self._enable()
         self._pace.tick_begins()
         status = ticking.tick()
         self.ticks += 1
@@ -218,7 +228,7 @@ class Runner:
             self._engine.suspend()
             self._report_halts()
             if robot is not None:
-                robot.stop()
+                self._disable(robot)
                 robot.step(self._period)
         elif robot is not None and (not frozen or (self._suspended and getattr(robot, "moving", False))):
             robot.step(self._period)
@@ -242,25 +252,38 @@ class Runner:
     def _publish_period(self) -> None:
         self._events.publish(PeriodPassed(self._clock.now, self.ticks, self._pace.late, self._robot))
 
-    def _end(self) -> None:
+    def _end(self) -> Standstill:
         """Another Ctrl-C cuts short only the wait for the robot, not the halting."""
         try:
             self._engine.halt(emergency=self.controls.emergency)
         finally:
             if self._robot is not None:
-                self._robot.stop()
+                self._disable(self._robot)
         unended = self._engine.close(_PATIENCE)
         self._report_halts()
         for failure in unended:
             self._report(failure, f"{_words(failure)} did not end after it was halted")
         if self._robot is None:
-            return
+            return Standstill()
         rest_until, passed = self._clock.now + _REST, self._period
-        while True:  # at least once: a robot that was stopped takes no command before its next step
+        while True:  # at least once: a robot that was stopped brakes with its next step
             self._advance(passed)
-            if not getattr(self._robot, "moving", False) or self._clock.now >= rest_until - 1e-9:
-                return
+            standstill = standstill_of(self._robot)
+            if not standstill.alarming or self._clock.now >= rest_until - 1e-9:
+                return standstill
             passed = self._pace.rest(self._period)
+
+    def _enable(self) -> None:
+        """A run begins, or goes on after a pause: the one place where a robot that was stopped gets to move again."""
+        self._disabled = False
+        if self._robot is not None:
+            getattr(self._robot, "enable", _nothing)()
+            if self.controls.emergency:  # it came meanwhile
+                self._disable(self._robot)
+
+    def _disable(self, robot: Robot) -> None:
+        self._disabled = True
+        disable(robot)
 
     def _report_halts(self) -> None:
         for failure in self._engine.take_halt_failures():
@@ -275,6 +298,10 @@ def _trouble(t: float, kind: str, failure: Failure, text: str) -> RobotEvent:
     return RobotEvent(t, kind, {"text": text, "path": failure.path, **place})
 
 
+def _nothing() -> None:
+    """In place of what a robot does not have."""
+
+
 def _words(failure: Failure) -> str:
     """The words of a command where it came from some."""
     span = failure.node.span
@@ -283,7 +310,14 @@ def _words(failure: Failure) -> str:
 
 def _ending(outcome: Outcome) -> Mapping[str, Any]:
     """How a run ended, for programs."""
-    data = {"outcome": NAMES[outcome.status], "stopped": outcome.stopped, "seconds": round(outcome.seconds, 6)}
+    data: dict[str, Any] = {
+        "outcome": NAMES[outcome.status],
+        "stopped": outcome.stopped,
+        "seconds": round(outcome.seconds, 6),
+    }
+    data["still"] = outcome.standstill.still
+    if not outcome.standstill.still:
+        data["motion"] = str(outcome.standstill)
     failure = outcome.failure
     if failure is None:
         return data

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -13,7 +14,7 @@ import pytest
 
 from btlang.engine.build import EngineError
 from btlang.engine.engine import Engine
-from btlang.engine.leaf import ActionFailed, Failed
+from btlang.engine.leaf import ActionFailed, Failed, described
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
 from btlang.tree.node import Node
 
@@ -121,6 +122,9 @@ def world() -> World:
         (ActionFailed("nothing within reach"), FAILURE, "nothing within reach"),
         (ValueError("seven"), FAILURE, "ValueError: seven"),
         (asyncio.CancelledError(), FAILURE, "CancelledError"),
+        (SystemExit(3), FAILURE, "SystemExit: 3"),
+        (SystemExit(), FAILURE, "SystemExit"),
+        (GeneratorExit(), FAILURE, "GeneratorExit"),
     ],
 )
 def test_what_it_returns_or_raises(world: World, kind: str, result: object, status: int, reason: str) -> None:
@@ -148,12 +152,18 @@ def test_an_exception_is_kept_with_its_place(world: World, kind: str) -> None:
     engine.close()
 
 
-def test_system_exit_comes_through_as_from_any_leaf(world: World, kind: str) -> None:
-    job = Job(kind, SystemExit(3))
-    job.released.set()
-    engine = world.engine(job.bind(world))
-    with pytest.raises(SystemExit):
-        tick_to_end(engine)
+def test_a_task_that_exits_fails_its_leaf_and_the_loop_goes_on(world: World) -> None:
+    async def part() -> None:
+        sys.exit(3)
+
+    async def whole() -> None:
+        await asyncio.gather(part(), asyncio.sleep(0))
+
+    async def other() -> None:
+        await asyncio.sleep(LOOK_AGAIN)
+
+    engine = world.engine(n("Sequence", n("Inverter", world.bind("A", whole)), world.bind("B", other)))
+    assert tick_to_end(engine) == SUCCESS
     engine.close()
 
 
@@ -242,15 +252,16 @@ def test_one_that_ignores_a_halt_is_not_started_twice_and_is_told(world: World, 
     assert engine.close(PATIENCE) == []
 
 
-def test_what_it_raises_when_it_is_halted_is_told(world: World, kind: str) -> None:
-    job = Job(kind, ValueError("stuck"))
+@pytest.mark.parametrize("problem", [ValueError("stuck"), SystemExit("stuck")])
+def test_what_it_raises_when_it_is_halted_is_told(world: World, kind: str, problem: BaseException) -> None:
+    job = Job(kind, problem)
     engine = world.engine(n("Sequence", n("AlwaysSuccess"), job.bind(world)))
     engine.tick()
     wait_for(lambda: job.log == ["begins"])
     engine.halt()
     assert engine.close(PATIENCE) == []
     [failure] = engine.take_halt_failures()
-    assert (failure.path, failure.reason, failure.exception) == ("/1", "ValueError: stuck", job.result)
+    assert (failure.path, failure.reason, failure.exception) == ("/1", described(problem), problem)
     assert engine.take_halt_failures() == []
 
 

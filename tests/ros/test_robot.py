@@ -257,3 +257,38 @@ def test_preflight(robot: Callable[..., Script], btc: Callable[..., Command], cl
         "The robot has all that the mission needs.",
     ]
     assert script.drives == []
+
+
+WORDS = '[[action]]\nphrase = "run away"\nid = "RunAway"\ncall = "running_away:run_away"\n'
+RUN_AWAY = """
+import threading, time
+
+def run_away(robot):
+    def drive():
+        while True:
+            robot.drive(0.4, 0.0)
+            time.sleep(0.0005)
+
+    for _ in range(4):
+        threading.Thread(target=drive, daemon=True).start()
+    while True:
+        yield
+"""
+
+
+@pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGQUIT, 131)])
+def test_threads_that_drive_on_do_not_have_the_last_word(
+    number: signal.Signals, code: int, robot: Callable[..., Script], btc: Callable[..., Command], tmp_path: Path
+) -> None:
+    (tmp_path / "words.toml").write_text(WORDS)
+    (tmp_path / "running_away.py").write_text(RUN_AWAY)
+    script = robot("base")
+    command = btc("move forward 10 cm then run away", "--keywords", str(tmp_path / "words.toml"))
+    script.wait_for("drive 0.4")
+    command.process.send_signal(number)
+    assert code_of(command) == code
+    assert "the robot stands still." in command.out
+    wait_until(lambda: script.drives[-1].startswith("drive 0.000 0.000"), "zero velocity", 1.0)
+    count = len(script.drives)
+    zero = max(at for at, line in enumerate(script.drives) if line.startswith("drive 0.4"))
+    assert count == zero + 2  # one zero after the last drive, and nothing since

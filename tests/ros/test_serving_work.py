@@ -156,7 +156,7 @@ def test_the_word_that_cancels_comes_after_the_next_goal():
     server.tick(1)
     second, _ = server.begin("TurnLeft", angle="90 degrees")
     server.tick(0.1)
-    cancel()
+    cancel("it was cancelled")
     server.tick(5)
     assert first.ended == [(False, "it was cancelled")]
     assert second.ended == [(True, "")]
@@ -166,7 +166,7 @@ def test_a_cancelled_goal_ends_when_the_robot_stands():
     server = Server()
     drive, cancel = server.begin("MoveForward", distance="1 m")
     server.tick(1)
-    cancel()
+    cancel("it was cancelled")
     server.tick()
     assert (drive.ended, server.stage.robot.moving) == ([], True)
     server.tick(REST)
@@ -177,7 +177,7 @@ def test_a_cancelled_goal_ends_when_the_robot_stands():
 def test_cancelled_before_it_begins():
     server = Server()
     drive, cancel = server.begin("MoveForward", distance="1 m")
-    cancel()
+    cancel("it was cancelled")
     server.tick()
     assert drive.ended == [(False, "it was cancelled")]
     assert not server.stage.robot.moving
@@ -207,7 +207,7 @@ def test_an_async_function_is_cancelled(keywords: str):
     server = Server(keywords)
     ask, cancel = server.begin("AskCloud")
     server.tick(0.2)
-    cancel()
+    cancel("it was cancelled")
     server.tick(0.1)
     assert ask.ended == [(False, "it was cancelled")]
     again, _ = server.begin("AskCloud")

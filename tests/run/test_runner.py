@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 import threading
 import time
 from collections.abc import Callable, Iterator
@@ -133,14 +134,14 @@ def test_interrupt_within_a_leaf() -> None:
     assert not robot.moving
 
 
-def test_another_exception_also_stops_the_robot_and_comes_through() -> None:
+def test_an_exit_in_a_leaf_fails_it_and_stops_the_robot() -> None:
     def leave() -> None:
-        raise SystemExit(3)
+        sys.exit(3)
 
     robot = Robot(0.2)
     runner, _, _ = make(Node("Leave"), {"Leave": leave}, robot=robot)
-    with pytest.raises(SystemExit):
-        runner.run()
+    outcome = runner.run()
+    assert (outcome.status, outcome.failure and outcome.failure.reason) == (FAILURE, "SystemExit: 3")
     assert robot.stopped == 1
     assert not robot.moving
 

@@ -19,6 +19,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+_REFUSED = (CancelGoal.Response.ERROR_REJECTED, CancelGoal.Response.ERROR_NONE)  # rclpy says the latter
+
 
 class Goal:
     """One goal. Methods with an underscore are for the thread that spins, the others for the one that ticks.
@@ -61,7 +63,9 @@ class Goal:
             self._end("it was halted before it was sent")
             return
         try:
-            self._client.send_goal_async(self._message, self._hear).add_done_callback(self._answered)
+            goal_id = self._clients.lease.goal_id() if self._clients.lease is not None else None
+            sent = self._client.send_goal_async(self._message, self._hear, goal_uuid=goal_id)
+            sent.add_done_callback(self._answered)
         except Exception as problem:
             self._end(f"the goal could not be sent to {self._name}: {described(problem)}")
 
@@ -85,7 +89,8 @@ class Goal:
             self._handle.cancel_goal_async().add_done_callback(self._cancel_answered)
 
     def _cancel_answered(self, future: Any) -> None:
-        if future.result().return_code == CancelGoal.Response.ERROR_REJECTED:
+        response = future.result()
+        if response.return_code in _REFUSED and not response.goals_canceling:
             self._waits_for = f"{self._name} refused to cancel its goal"
 
     def _end(self, answer: Any) -> None:

@@ -15,6 +15,7 @@ from btlang.ros.mission.run import MissionRun, Report, problems
 from btlang.ros.mission.server import MissionServer
 from btlang.ros.mission.setup import Setup
 from btlang.ros.mission.topics import ERROR, OK, WARN, Topics
+from btlang.run.controls import disable
 from btlang.run.lines import Lines
 from btlang.text.source import Source
 
@@ -27,7 +28,6 @@ if TYPE_CHECKING:
 
 _SUCCESS, _FAILURE = TransitionCallbackReturn.SUCCESS, TransitionCallbackReturn.FAILURE
 _END = 8.0  # seconds of real time that a mission gets to halt and to bring the robot to rest
-_PERIOD = 0.05  # seconds in which a robot that stood still anyway takes note that it was stopped
 
 
 class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as untyped
@@ -119,14 +119,12 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
         if run is not None and not run.over:
             run.emergency_stop()
         else:
-            stage.robot.stop()
+            disable(stage.robot)
         return True
 
     def _stop(self, request: Any, response: Any) -> Any:
         response.success = self.emergency_stop()
         response.message = "" if response.success else "there is no robot: the node is not configured"
-        if self._stage is not None and not self._busy:
-            self._stage.robot.step(_PERIOD)
         return response
 
     @property

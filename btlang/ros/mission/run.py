@@ -10,6 +10,7 @@ from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.render import render
 from btlang.engine.status import FAILURE, NAMES
 from btlang.record import Record
+from btlang.run.controls import disable
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -74,7 +75,7 @@ class MissionRun:
         if self._tree is not None:
             self._tree.emergency_stop()
         else:
-            self._stage.robot.stop()
+            disable(self._stage.robot)
 
     def join(self, seconds: float) -> bool:
         """Whether the run is over, `ended` included, within so many seconds."""
@@ -108,7 +109,8 @@ def problems(error: MissionError) -> str:
 
 
 def _report(tree: RunnableTree, outcome: Outcome) -> Report:
-    if outcome.stopped:
-        return Report("stopped", outcome.stopped, outcome.seconds)
-    reason = tree.why() if outcome.status == FAILURE else ""
-    return Report(NAMES[outcome.status].lower(), reason, outcome.seconds)
+    ended = "stopped" if outcome.stopped else NAMES[outcome.status].lower()
+    reason = outcome.stopped or (tree.why() if outcome.status == FAILURE else "")
+    if outcome.standstill.alarming:
+        reason = f"{reason}\nWARNING: {outcome.standstill}".lstrip()
+    return Report(ended, reason, outcome.seconds)

@@ -7,7 +7,8 @@ from collections.abc import Callable
 from btlang_interfaces.action import RunMission
 from rclpy.node import Node
 
-from btlang.ros.goals import GoalServer, HeldGoal
+from btlang.ros.goals import GONE, GoalServer, HeldGoal
+from btlang.ros.lease import Leases
 from btlang.ros.mission.run import MissionRun, Report
 from btlang.ros.mission.topics import filled
 
@@ -32,7 +33,7 @@ class MissionServer:
         rejected: Callable[[str], object],
     ) -> None:
         self._hindrance, self._begin, self._rejected = hindrance, begin, rejected
-        GoalServer(node, RunMission, "~/run_mission", self._run, self._accepts)
+        GoalServer(node, RunMission, "~/run_mission", self._run, Leases(node), self._accepts)
 
     def _accepts(self) -> bool:
         reason = self._hindrance()
@@ -40,7 +41,7 @@ class MissionServer:
             self._rejected(f"a mission is rejected: {reason}")
         return not reason
 
-    def _run(self, goal: HeldGoal) -> Callable[[], object]:
+    def _run(self, goal: HeldGoal) -> Callable[[str], object]:
         def changed(news: News) -> None:
             goal.tell(filled(RunMission.Feedback(), news))
 
@@ -50,4 +51,11 @@ class MissionServer:
             )
             goal.end(report.success, result)
 
-        return self._begin(goal.request, changed, ended).stop
+        run = self._begin(goal.request, changed, ended)
+
+        def cancel(reason: str) -> None:
+            if reason == GONE:
+                self._rejected(f"the mission is halted: {reason}")
+            run.stop()
+
+        return cancel

@@ -94,6 +94,7 @@ def _spin(stage: Stage, ids: Sequence[str], vocabulary: Vocabulary, options: arg
     from btlang.ros.node import SpunNode
     from btlang.ros.serving.server import serve_actions
     from btlang.ros.serving.work import Work
+    from btlang.run.command import STILL_MOVING, warn_of_motion
     from btlang.run.controls import Controls
     from btlang.run.emergency import emergency_signal
     from btlang.run.lines import Lines
@@ -102,6 +103,7 @@ def _spin(stage: Stage, ids: Sequence[str], vocabulary: Vocabulary, options: arg
     stage.begin([Lines(lambda node: phrase_of(node, vocabulary), lambda node: True, show)])
     controls = Controls()
     work = Work(stage, vocabulary)
+    moves = False
     runner = Runner(
         work, clock=stage.clock, robot=stage.robot, rate=options.rate,
         speed=1.0 if options.speed == "real" else options.speed,
@@ -116,10 +118,11 @@ def _spin(stage: Stage, ids: Sequence[str], vocabulary: Vocabulary, options: arg
             where = f"{spun.node.get_namespace().rstrip('/')}/{FOLDER}"
             show(f"btlang serve-actions: ready with {len(ids)} actions in {where}; Ctrl-C ends it")
             while not came.numbers:
-                runner.run()  # until a signal, or an emergency stop, after which it goes on
+                outcome = runner.run()  # until a signal, or an emergency stop, after which it goes on
+                moves = warn_of_motion(outcome.standstill)
                 controls.take_emergency()
                 work.answer_all()
             spun.settle(_ANSWERS)
         finally:
             spun.close()
-    return 128 + came.numbers[0]
+    return STILL_MOVING if moves else 128 + came.numbers[0]

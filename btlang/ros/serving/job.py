@@ -9,6 +9,7 @@ from btlang.diagnostics.diagnostic import MissionError
 from btlang.engine.engine import Engine, EngineError
 from btlang.engine.status import RUNNING, SUCCESS
 from btlang.english.phrase import phrase_of
+from btlang.robots.proxy import RobotProxy
 from btlang.ros.serving.names import WORD
 from btlang.run.runner import traced_engine
 from btlang.tree.node import Node, Tree
@@ -36,13 +37,13 @@ _PATIENCE = 0.2  # real seconds that background leaves get to end after a halt, 
 
 
 class Job:
-    """`cancelled` may be set by any thread; all else is for the one that ticks.
+    """`cancelled`, why it is, may be set by any thread; all else is for the one that ticks.
 
     `reason` is None as long as it is not over, then "" or why it failed.
     """
 
     def __init__(self, node: Node, caller: Caller, stage: Stage, vocabulary: Vocabulary, patient_until: float) -> None:
-        self.cancelled = False
+        self.cancelled = ""
         self.reason: str | None = None
         self.engine: Engine | None = None
         self.patient_until = patient_until
@@ -71,6 +72,7 @@ class Job:
                 clock=stage.clock,
                 events=stage.events,
                 services={"robot": stage.robot, "progress": self._progress},
+                proxies={"robot": RobotProxy},
             )
             self.engine.on_wake = wake
         except EngineError as error:

@@ -10,6 +10,7 @@ from std_srvs.srv import Trigger
 
 from btlang.engine.leaf import ActionFailed
 from btlang.ros.goals import GoalServer, HeldGoal
+from btlang.ros.lease import Leases
 from btlang.ros.serving.asked import asked_leaf
 from btlang.ros.serving.names import FOLDER, action_name
 from btlang.ros.serving.work import Work
@@ -46,21 +47,22 @@ def serve_actions(
         response.success = True
         return response
 
+    leases = Leases(node)
     node.create_service(Trigger, "~/stop", stopped)
     for node_id in ids:
-        GoalServer(node, RunPhrase, f"{FOLDER}/{action_name(node_id)}", _beginner(node_id, vocabulary, work))
+        GoalServer(node, RunPhrase, f"{FOLDER}/{action_name(node_id)}", _beginner(node_id, vocabulary, work), leases)
 
 
-def _beginner(node_id: str, vocabulary: Vocabulary, work: Work) -> Callable[[HeldGoal], Callable[[], object]]:
+def _beginner(node_id: str, vocabulary: Vocabulary, work: Work) -> Callable[[HeldGoal], Callable[[str], object]]:
     entries = vocabulary.entries[node_id]
 
-    def begin(goal: HeldGoal) -> Callable[[], object]:
+    def begin(goal: HeldGoal) -> Callable[[str], object]:
         caller, asked = _Caller(goal), goal.request
         try:
             leaf = asked_leaf(asked.phrase, asked.names, asked.values, entries, vocabulary)
         except ActionFailed as problem:
             caller.end(False, str(problem))
-            return lambda: None
+            return lambda reason: None
         return work.begin(leaf, caller)
 
     return begin

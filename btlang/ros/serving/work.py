@@ -8,6 +8,7 @@ from collections.abc import Callable
 
 from btlang.engine.status import RUNNING
 from btlang.ros.serving.job import Job
+from btlang.run.standstill import standstill_of
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False
@@ -40,17 +41,22 @@ class Work:
         self._jobs: list[Job] = []
         self._halt_failures: list[Failure] = []
 
-    def begin(self, node: Node, caller: Caller) -> Callable[[], None]:
-        """Takes on a goal; returns what cancels it."""
+    def begin(self, node: Node, caller: Caller) -> Callable[[str], None]:
+        """Takes on a goal; returns what cancels it, for a reason."""
         job = Job(node, caller, self._stage, self._vocabulary, self._now() + BUSY)
         self._new.append(job)
         self._wake()
 
-        def cancel() -> None:
-            job.cancelled = True
+        def cancel(reason: str) -> None:
+            job.cancelled = reason
             self._wake()
 
         return cancel
+
+    @property
+    def idle(self) -> bool:
+        """Whether there are no goals."""
+        return not (self._new or self._jobs)
 
     def tick(self) -> int:
         """Goes on with all goals. RUNNING, also where there are none."""
@@ -58,7 +64,7 @@ class Work:
             self._jobs.append(self._new.popleft())
         for job in self._jobs:  # all of them before one begins that needs what they used
             if job.cancelled:
-                self._halt(job, "it was cancelled")
+                self._halt(job, job.cancelled)
         for job in self._jobs:
             if job.reason is None and (job.running or self._starts(job)):
                 job.tick()
@@ -117,8 +123,15 @@ class Work:
         if not job.cancelled or job.engine is None or job.reason == "":
             return True
         taken_over = any(other.running and other.resources & job.resources for other in self._jobs)
-        late = self._stage.clock.now - job.ended >= REST
-        return taken_over or late or not getattr(self._stage.robot, "moving", False)
+        if taken_over:
+            return True
+        standstill = standstill_of(self._stage.robot)
+        if not standstill.alarming:
+            return True
+        if self._stage.clock.now - job.ended < REST:
+            return False
+        job.reason = f"{job.reason}; {standstill}"
+        return True
 
     def _answer(self, may: Callable[[Job], bool]) -> None:
         for job in [job for job in self._jobs if job.reason is not None and may(job)]:

@@ -13,6 +13,7 @@ from rclpy.task import Future
 from btlang.robots.geometry import Pose
 from btlang.robots.navigation import SPEED, Journey
 from btlang.robots.simulated import SimulatedRobot
+from btlang.ros.lease import Leases
 from btlang.ros.poses import MAP, ODOM, pose_message, pose_of
 from btlang.ros.simulator.inbox import Inbox
 from btlang.ros.simulator.publishing import Every, Moment
@@ -34,7 +35,13 @@ class Ride:
         self.journey: Journey | None = None
         self.began = 0.0
         self.cancelled: float | None = None
+        self.abandoned = False
+        """Whether its client has died."""
         self.ended = Future()
+
+    def abandon(self) -> None:
+        """Its client has died."""
+        self.abandoned = True
 
     @property
     def failure(self) -> str | None:
@@ -52,6 +59,7 @@ class Navigation:
         self._wheels = wheels
         self._ride: Ride | None = None
         self._feedback_due = Every(5)
+        self._leases = Leases(node)
         ActionServer(
             node,
             NavigateToPose,
@@ -65,7 +73,7 @@ class Navigation:
         ride = self._ride
         if ride is None or ride.journey is None:
             return
-        if ride.cancelled is None and ride.goal.is_cancel_requested:
+        if ride.cancelled is None and (ride.goal.is_cancel_requested or ride.abandoned):
             ride.cancelled = now.seconds
             ride.journey.cancel()
         if ride.journey.done and not self._brakes(ride, now.seconds):
@@ -78,7 +86,10 @@ class Navigation:
         """Runs in the thread of the executor."""
         ride = Ride(goal)
         self._inbox.post(lambda: self._begin(ride))
+        goal_id = bytes(goal.goal_id.uuid)
+        self._leases.watch(goal_id, ride.abandon)
         await ride.ended
+        self._leases.forget(goal_id)
         if ride.failure is None:
             goal.succeed()
             return NavigateToPose.Result()

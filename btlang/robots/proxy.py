@@ -1,0 +1,52 @@
+"""A robot as leaves beside the tick get it."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+_UNDO: dict[str, Callable[..., object]] = {
+    "drive": lambda robot, *velocity: robot.drive(0.0, 0.0) if any(velocity) else None,
+    "move_joints": lambda robot, targets: robot.freeze_joints(*targets),
+    "say": lambda robot, text: robot.silence(),
+}
+"""How what a command has set about is ended; a deed that it returned is cancelled."""
+
+
+class RobotProxy:
+    """Hands over what it is asked for with `in_tick`, and so gets it, or its exception, from the thread that ticks.
+
+    `stop` alone reaches the robot at once. See `btlang.engine.background.Work.in_tick`.
+    """
+
+    __slots__ = ("_in_tick", "_robot", "_undo")
+
+    def __init__(self, robot: Any, in_tick: Callable[[Callable[[], Any]], Any]) -> None:
+        self._robot, self._in_tick = robot, in_tick
+        self._undo: dict[str, Callable[[], object]] = {}
+
+    def stop(self) -> None:
+        """Stops the robot, from any thread."""
+        self._robot.stop()
+
+    def __getattr__(self, name: str) -> Any:
+        if not callable(getattr(type(self._robot), name, None)):
+            return self._in_tick(lambda: getattr(self._robot, name))
+        return lambda *args, **named: self._in_tick(lambda: self._do(name, args, named))
+
+    def let_go(self) -> None:
+        """Ends what the leaf has set about; for the thread that ticks, once the leaf was halted or has failed."""
+        undo, self._undo = self._undo, {}
+        for end in undo.values():
+            end()
+
+    def _do(self, name: str, args: tuple[Any, ...], named: dict[str, Any]) -> Any:
+        result = getattr(self._robot, name)(*args, **named)
+        if name in _UNDO:
+            self._undo[name] = lambda: _UNDO[name](self._robot, *args, *named.values())
+        elif hasattr(result, "cancel"):
+            self._undo[name] = result.cancel
+        return result

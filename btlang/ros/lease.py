@@ -1,0 +1,122 @@
+"""Leases: who sends goals shows that it lives, so that a server halts the goals of one that has died.
+
+A client holds a publisher that never publishes, on a topic that its goal ids name. DDS itself asserts its liveliness,
+in a thread that no Python holds up. A goal id that names no such topic is that of another program: it is not watched.
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from itertools import count
+
+from rclpy.clock import Clock, ClockType
+from rclpy.duration import Duration
+from rclpy.event_handler import SubscriptionEventCallbacks
+from rclpy.node import Node
+from rclpy.qos import LivelinessPolicy, QoSProfile
+from std_msgs.msg import Empty
+from unique_identifier_msgs.msg import UUID
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+_MARK = b"btc\x01"
+_CLIENT, _GOAL = 6, 6  # bytes of a goal id, after the mark
+_ASSERTED = 0.25  # seconds within which a client asserts that it lives: a few of them may get lost
+_SILENCE = 0.7  # seconds without a word after which DDS tells of it
+_ROUND = 0.1  # seconds
+_SILENT, _FIRST = 3, 15  # rounds in which a word may still come, and those in which the first one has to
+
+
+class Lease:
+    """Of a client, for as long as its node lives. Make it before the clients of actions, whose servers then know it."""
+
+    def __init__(self, node: Node) -> None:
+        self._client = os.urandom(_CLIENT)
+        self._numbers = count(1)
+        self._publisher = node.create_publisher(Empty, _topic(self._client), _qos(_ASSERTED))
+
+    def goal_id(self) -> UUID:
+        """The `goal_uuid` for send_goal_async of a goal that is to be halted when this process dies."""
+        return UUID(uuid=list(_MARK + self._client + next(self._numbers).to_bytes(_GOAL, "big")))
+
+
+class Leases:
+    """What the servers of a node know of their clients. To be used in the thread that spins the node."""
+
+    def __init__(self, node: Node) -> None:
+        self._node = node
+        self._clock = Clock(clock_type=ClockType.STEADY_TIME)
+        self._clients: dict[bytes, _Client] = {}
+
+    def watch(self, goal_id: bytes, lost: Callable[[], object]) -> None:
+        """Calls `lost` once when the client of a goal has been silent for a second, unless the goal is forgotten."""
+        name = _client_of(goal_id)
+        if name is None:
+            return
+        if name not in self._clients:
+            self._clients[name] = _Client(self._node, name, self._clock, lambda: self._clients.pop(name))
+        self._clients[name].goals[goal_id] = lost
+
+    def forget(self, goal_id: bytes) -> None:
+        """The goal is over."""
+        name = _client_of(goal_id)
+        if name in self._clients:
+            self._clients[name].goals.pop(goal_id, None)
+
+
+class _Client:
+    """One that has sent goals, watched until it is gone: a second subscription would hear nothing of it in Fast DDS.
+
+    `goals` has what to call when it is lost, `gone` is called then.
+    """
+
+    def __init__(self, node: Node, name: bytes, clock: Clock, gone: Callable[[], object]) -> None:
+        self.goals: dict[bytes, Callable[[], object]] = {}
+        self._node, self._topic, self._gone = node, _topic(name), gone
+        self._heard = False
+        self._rounds = _FIRST
+        self._timer = node.create_timer(_ROUND, self._doubt, clock=clock)
+        self._subscription = node.create_subscription(
+            Empty, self._topic, lambda _: None, _qos(_SILENCE),
+            event_callbacks=SubscriptionEventCallbacks(liveliness=self._changed),
+        )  # fmt: skip
+
+    def _changed(self, info: Any) -> None:
+        """Silence may be that of this process, which was held up: what has come meanwhile is then heard in a moment."""
+        if info.alive_count:
+            self._heard = True
+            self._timer.cancel()
+        elif self._heard:
+            self._rounds = _SILENT
+            self._timer.reset()
+
+    def _doubt(self) -> None:
+        """Rounds are counted, and not seconds: in each of them this process was there to hear something."""
+        self._rounds -= 1
+        if self._rounds > 0:
+            return
+        # where it was never heard: it died as soon as it had sent its goal, or has no lease and something passed it on
+        lost = tuple(self.goals.values()) if self._heard or self._node.count_publishers(self._topic) else ()
+        self._node.destroy_timer(self._timer)
+        self._node.destroy_subscription(self._subscription)
+        self._gone()
+        for tell in lost:
+            tell()
+
+
+def _client_of(goal_id: bytes) -> bytes | None:
+    """None for a goal without a lease."""
+    return goal_id[len(_MARK) : len(_MARK) + _CLIENT] if goal_id.startswith(_MARK) else None
+
+
+def _topic(client: bytes) -> str:
+    return f"/_btlang/lease_{client.hex()}"
+
+
+def _qos(seconds: float) -> QoSProfile:
+    return QoSProfile(
+        depth=1, liveliness=LivelinessPolicy.AUTOMATIC, liveliness_lease_duration=Duration(seconds=seconds)
+    )

@@ -1,0 +1,117 @@
+"""What is said of a robot at the end of a run is true: it was looked at."""
+
+from __future__ import annotations
+
+import json
+import re
+import signal
+from collections.abc import Callable, Iterator
+from pathlib import Path
+
+import pytest
+
+from tests.ros.declared import Peer
+from tests.ros.processes import LONG, Command
+
+UNANSWERED = "the navigation server did not answer the cancel"
+REFUSED = "the navigation server refused to cancel its goal"
+UNENDED = "the navigation server did not end the goal that was cancelled"
+
+
+@pytest.fixture
+def peer(domain: int, nav2: object) -> Iterator[Callable[..., Peer]]:
+    """Starts a program of tests/ros/peers."""
+    started: list[Peer] = []
+
+    def start(program: str, *arguments: str) -> Peer:
+        started.append(Peer(program, *arguments, domain=domain))
+        started[-1].expect("ready")
+        return started[-1]
+
+    yield start
+    for each in started:
+        each.close()
+
+
+@pytest.fixture
+def run(tmp_path: Path, domain: int) -> Iterator[Callable[..., Command]]:
+    """Starts `btc run` with a mission."""
+    started: list[Command] = []
+
+    def start(mission: str, *options: str) -> Command:
+        log = ("--log", str(tmp_path / "log.jsonl"))
+        started.append(Command(tmp_path, domain, "run", "--robot", "ros", "-c", mission, *log, *options))
+        return started[-1]
+
+    yield start
+    for each in started:
+        each.process.kill()
+        each.process.wait()
+
+
+@pytest.mark.parametrize(
+    ("mode", "number", "reason"),
+    [
+        ("reject", signal.SIGINT, f": {REFUSED}"),
+        ("ignore", signal.SIGQUIT, f": {UNANSWERED}"),
+        ("linger", signal.SIGTERM, f": {UNENDED}"),
+        ("lie", signal.SIGINT, ""),
+    ],
+)
+def test_a_robot_that_is_driven_on(
+    mode: str,
+    number: signal.Signals,
+    reason: str,
+    peer: Callable[..., Peer],
+    run: Callable[..., Command],
+    tmp_path: Path,
+) -> None:
+    robot = peer("faulty_navigator", mode)
+    mission = run("go to the kitchen")
+    robot.expect("going")
+    mission.process.send_signal(number)
+    assert mission.process.wait(LONG) == 3
+    told = f"the robot is still moving at 0.3 m/s{reason}"
+    assert mission.err == f"WARNING: {told}.\n"
+    assert "stands still" not in mission.out
+    end = json.loads((tmp_path / "log.jsonl").read_text().splitlines()[-1])
+    assert (end["event"], end["still"], end["motion"]) == ("end", False, told)
+    robot.expect("cancel")
+    for _ in range(10):  # zero velocity was kept up
+        robot.expect("zero")
+
+
+def test_a_server_of_actions_that_goes_on(
+    peer: Callable[..., Peer], run: Callable[..., Command], run_mission: object
+) -> None:
+    robot = peer("faulty_navigator", "reject", "phrase")
+    mission = run("move forward 9 m", "--robot", "actions")
+    robot.expect("going")
+    mission.process.send_signal(signal.SIGINT)
+    assert mission.process.wait(LONG) == 3
+    reason = "/actions/move_forward refused to cancel its goal"
+    assert mission.err == f"WARNING: the robot is still moving at 0.3 m/s: {reason}.\n"
+
+
+def test_a_robot_that_obeys(peer: Callable[..., Peer], run: Callable[..., Command], tmp_path: Path) -> None:
+    robot = peer("faulty_navigator", "obey")
+    mission = run("go to the kitchen")
+    robot.expect("going")
+    mission.process.send_signal(signal.SIGINT)
+    assert mission.process.wait(LONG) == 130
+    assert re.search(r"^Interrupted after [\d.]+ s; the robot stands still\.$", mission.out, re.M)
+    assert mission.err == ""
+    assert json.loads((tmp_path / "log.jsonl").read_text().splitlines()[-1])["still"] is True
+
+
+def test_a_robot_of_which_nothing_is_known(
+    peer: Callable[..., Peer], run: Callable[..., Command], tmp_path: Path
+) -> None:
+    peer("robot", "speech")
+    mission = run("say hello then wait 1 minute")
+    mission.wait_for("done   say")
+    mission.process.send_signal(signal.SIGINT)
+    assert mission.process.wait(LONG) == 130
+    assert "; nothing reports whether the robot moves." in mission.out
+    assert mission.err == ""
+    assert json.loads((tmp_path / "log.jsonl").read_text().splitlines()[-1])["still"] is None
