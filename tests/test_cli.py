@@ -171,7 +171,7 @@ def started(*arguments: str) -> subprocess.Popen[str]:
 
 
 @pytest.mark.parametrize("number", [signal.SIGINT, signal.SIGTERM])
-def test_an_interrupted_run_stops_the_robot_and_exits_with_130(number: signal.Signals, tmp_path: Path) -> None:
+def test_an_interrupted_run_stops_the_robot_and_exits_with_the_signal(number: signal.Signals, tmp_path: Path) -> None:
     log = tmp_path / "log.jsonl"
     with started("run", "-c", "move forward 3 m", "--log", str(log)) as process:
         while not log.exists() or "RUNNING" not in log.read_text(encoding="utf-8"):
@@ -179,7 +179,7 @@ def test_an_interrupted_run_stops_the_robot_and_exits_with_130(number: signal.Si
         time.sleep(0.3)
         process.send_signal(number)
         out, err = process.communicate(timeout=20)
-    assert process.returncode == 130, err
+    assert process.returncode == 128 + number, err
     assert "the robot stands still" in out
     assert err == ""
     *events, end = [json.loads(line) for line in log.read_text(encoding="utf-8").splitlines()]
@@ -270,3 +270,13 @@ def test_without_a_verb_it_is_the_prompt(monkeypatch: pytest.MonkeyPatch) -> Non
     assert main([]) == 0
     assert main(["repl"]) == 0
     assert [vars(options) | {"report": None} for options in asked] == [vars(asked[0]) | {"report": None}] * 2
+
+
+@pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no /dev/full")
+@pytest.mark.parametrize(("mission", "code", "told"), [("wave", 2, "succeeded"), ("fail", 1, "failed")])
+def test_a_log_on_a_full_disk_does_not_hide_how_the_mission_ended(
+    mission: str, code: int, told: str, btc: Screen
+) -> None:
+    assert btc("run", "-c", mission, "--speed", "max", "--log", "/dev/full") == code
+    assert f"The mission {told}" in btc.out + btc.err
+    assert "error BT009: I cannot write /dev/full: no space left on device" in btc.err

@@ -103,7 +103,7 @@ _ALL = (
     Code("BT099", "btlang has a bug: {error}.", "{advice}"),
     Code("BT100", "ROS 2 cannot be used: {reason}.", "{advice}"),
     Code("BT101", "'{words}' needs the {sort} {name}, but {reason}.", "All that the mission needs of the robot: the same command with --preflight"),
-    Code("BT102", "The ros table of '{phrase}' cannot be used: {reason}.", "All its keys are in docs/ros.md."),
+    Code("BT102", "The ros table of '{phrase}' cannot be used: {reason}.", "All its keys are in docs/ros_words.md."),
     Code("BT103", "The ros table of '{phrase}' uses a slot {{{slot}}}, and the phrase has none of that name."),
     Code("BT104", "'{phrase}' needs the ROS 2 interface {type}, which is not installed here.", "{advice}"),
     Code("BT105", "{type} has no field '{field}', which the ros table of '{phrase}' names.", "{advice}"),

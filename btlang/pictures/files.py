@@ -35,15 +35,6 @@ def check_picture(path: str) -> None:
         raise MissionError([unwritable(path, error)]) from None
 
 
-def write_picture(path: str, data: bytes) -> None:
-    """Writes the file. Raises MissionError (BT009)."""
-    try:
-        with open(path, "wb") as file:
-            file.write(data)
-    except OSError as error:
-        raise MissionError([unwritable(path, error)]) from None
-
-
 def missing(path: str) -> MissionError:
     """What to raise where matplotlib is not there."""
     return MissionError([diagnostic("BT081", Span(Source("", path), 0, 0))])

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
+from btlang.backends.files import write_file
 from btlang.engine.status import FAILURE
 from btlang.pictures import letters
 from btlang.pictures.canvas import Canvas, drawing
-from btlang.pictures.files import MOVING, STILL, ending, write_picture
+from btlang.pictures.files import MOVING, STILL, ending
 from btlang.pictures.placing import Area, Placer, along
 from btlang.pictures.run_legend import WIDTH, Legend, listed
 from btlang.pictures.run_record import Command, Mark, RunRecord
@@ -56,7 +57,7 @@ class RunPicture:
                 data = animated(self._world, self.record)
             else:
                 data = _Still(self._world, self.record).canvas.encoded(kind)
-        write_picture(path, data)
+        write_file(path, data)
 
 
 class _Still:

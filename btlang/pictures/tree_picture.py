@@ -5,9 +5,10 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from math import sqrt
 
+from btlang.backends.files import write_file
 from btlang.pictures import letters
 from btlang.pictures.canvas import Canvas, drawing
-from btlang.pictures.files import STILL, ending, write_picture
+from btlang.pictures.files import STILL, ending
 from btlang.pictures.style import INK, LINE, LOOKS, NEVER, PAPER, SMALL, SOFT, TEXT, TITLE, Look
 from btlang.pictures.tree_block import FRAME_TITLE, LINE_HEIGHT, SIGN, SYMBOL, side
 from btlang.pictures.tree_boxes import Maker, Sheet
@@ -52,7 +53,7 @@ def draw_tree(
     Raises ValueError for another ending, MissionError (BT009, BT081).
     """
     kind = ending(path, STILL)
-    write_picture(path, picture_of(tree, label, is_action, kind, path, apart=apart, statuses=statuses))
+    write_file(path, picture_of(tree, label, is_action, kind, path, apart=apart, statuses=statuses))
 
 
 def picture_of(

@@ -6,11 +6,11 @@ import os
 import signal
 import sys
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import AbstractContextManager, contextmanager, nullcontext
+from contextlib import contextmanager, nullcontext, suppress
 
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.reading import unwritable
-from btlang.diagnostics.render import has_colour
+from btlang.diagnostics.render import has_colour, render
 from btlang.engine.status import FAILURE, SKIPPED
 from btlang.run.emergency import emergency_signal
 from btlang.run.json_log import JsonLog
@@ -80,10 +80,11 @@ def run_mission(
     sinks: Iterable[Sink] = (),
     robot: str | Callable[[Any], Stage] = "simulated",
 ) -> int:
-    """Runs and reports; returns the exit code. Raises MissionError where the log cannot be written (BT009).
+    """Runs and reports; returns the exit code. Raises MissionError where the log cannot be opened (BT009).
 
-    On a terminal it shows the live view, with keys or not, whose tree stays at the end or not; elsewhere and where
-    `lines` is true plain lines; and nothing when `quiet`. `sinks` get all events too;
+    A log that cannot be written to the end does not change the mission: it is said after it, and a mission that
+    succeeded has the exit code 2. On a terminal it shows the live view, with keys or not, whose tree stays at the end
+    or not; elsewhere and where `lines` is true plain lines; and nothing when `quiet`. `sinks` get all events too;
     `robot` is as for `RunnableTree.run`.
     """
     view = None if quiet or lines else _live_view(tree, keys, tree_stays)
@@ -91,7 +92,7 @@ def run_mission(
     sinks = [*shown, *sinks]
     try:
         with (
-            _interrupted_by_signals(),
+            _interrupted_by_signals() as came,
             emergency_signal(tree.controls.emergency_stop),
             _opened(log) as file,
             view if view is not None else nullcontext(),
@@ -99,9 +100,6 @@ def run_mission(
             if file is not None:
                 sinks.append(JsonLog(file, tree.label))
             outcome = tree.run(speed=speed, rate=rate, time_limit=time_limit, sinks=sinks, robot=robot)
-        for error in tree.sink_errors if log is not None else ():
-            if isinstance(error, OSError):
-                raise error
     except BrokenPipeError:
         raise
     except OSError as error:
@@ -112,10 +110,14 @@ def run_mission(
         show(tree.why(colour=has_colour(sys.stderr)), stream=sys.stderr)
     elif not quiet:
         show(_ending(outcome))
+    lost = [error for error in tree.sink_errors if log is not None and isinstance(error, OSError)]
+    if lost:
+        show(render(unwritable(log or "", lost[0]), has_colour(sys.stderr)), sys.stderr)
     if warn_of_motion(outcome.standstill):
         return STILL_MOVING
-    stopped = {"interrupted": 130, "emergency stop": EMERGENCY_STOPPED}.get(outcome.stopped, 0)
-    return 1 if outcome.status == FAILURE else stopped
+    if outcome.stopped in ("interrupted", "emergency stop"):
+        return EMERGENCY_STOPPED if outcome.stopped == "emergency stop" else 128 + came[0] if came else 130
+    return 1 if outcome.status == FAILURE else 2 if lost else 0
 
 
 def warn_of_motion(standstill: Standstill) -> bool:
@@ -126,13 +128,22 @@ def warn_of_motion(standstill: Standstill) -> bool:
 
 
 @contextmanager
-def _interrupted_by_signals() -> Iterator[None]:
-    """A signal to end, or that the terminal is gone, halts the robot as Ctrl-C does; a caller's own handler stays."""
+def _interrupted_by_signals() -> Iterator[list[int]]:
+    """A signal to end, or that the terminal is gone, halts the robot as Ctrl-C does; a caller's own handler stays.
+
+    The list keeps those that came.
+    """
+    came: list[int] = []
+
+    def interrupt(number: int, _: object) -> None:
+        came.append(number)
+        raise KeyboardInterrupt
+
     taken = [number for number in ENDING_SIGNALS if signal.getsignal(number) == signal.SIG_DFL]
     for number in taken:
-        signal.signal(number, signal.default_int_handler)
+        signal.signal(number, interrupt)
     try:
-        yield
+        yield came
     finally:
         for number in taken:
             signal.signal(number, signal.SIG_DFL)
@@ -163,10 +174,17 @@ def _live_view(tree: Runnable, keys: bool, tree_stays: bool) -> LiveView | None:
         return None  # the run itself tells what is wrong
 
 
-def _opened(log: str | None) -> AbstractContextManager[TextIO | None]:
+@contextmanager
+def _opened(log: str | None) -> Iterator[TextIO | None]:
     if log is None:
-        return nullcontext()
-    return open(log, "w", encoding="utf-8", errors="backslashreplace")  # a mission may hold what UTF-8 does not
+        yield None
+        return
+    file = open(log, "w", encoding="utf-8", errors="backslashreplace")  # noqa: SIM115  # its lines are flushed, and
+    try:  # who wrote them knows what was lost, so that closing it tells nothing new
+        yield file
+    finally:
+        with suppress(OSError):
+            file.close()
 
 
 def _too_slow(outcome: Outcome, worst: Overrun, label: Callable[[Node], str]) -> str:

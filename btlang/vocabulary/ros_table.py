@@ -1,4 +1,4 @@
-"""The `ros` table of a keyword entry: how a phrase uses an interface of a ROS 2 robot. Described in docs/ros.md.
+"""The `ros` table of a keyword entry: how a phrase uses an interface of a ROS 2 robot. Described in docs/ros_words.md.
 
 It is read and checked here as far as that needs no ROS 2: keys, forms, and the slots that texts name in braces.
 """
