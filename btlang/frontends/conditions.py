@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.frames import Frame
 from btlang.frontends.scan import ENDS, Scan
 from btlang.frontends.token import Token
@@ -118,6 +119,21 @@ class ConditionScan(Scan):
         self._frames.append(Frame("body", opener, self._frames[-1]))
         self._next(token, True)
         self._separator()
+
+    def _end_block(self) -> None:
+        self._at += 1
+        self._operand_due = False
+        if self._frames[-1].kind != "block":
+            return
+        block = self._frames.pop()
+        if not block.statement and block.opener is not None:  # there is nothing but politeness in it
+            self.problems.append(diagnostic("BT027", self._span(block.opener)))
+        self._out.append(Token("CLOSE", None, self._last_end, self._last_end))
+        body = self._frames[-1]
+        is_rule = body.opener is not None and body.opener.value == "whenever"
+        if body.kind == "body" and body.else_owner is not body and not (is_rule and self._at_otherwise()):
+            self._frames.pop()  # an `otherwise` behind a rule is about what the rule does
+            self._emit_end()
 
     def _at_otherwise(self) -> bool:
         token = self._raw[self._at]

@@ -11,7 +11,6 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.conditions import STARTS_OPERAND, ConditionScan
 from btlang.frontends.definitions import Header
 from btlang.frontends.frames import Frame
@@ -41,7 +40,7 @@ class Matcher(ConditionScan):
     def __init__(
         self, source: Source, raw: list[Token], conditions: set[str], word: Callable[[str], str] = str
     ) -> None:
-        super().__init__(source, _without_idle_stops(raw), word)
+        super().__init__(source, raw, word)
         self.units: list[Unit] = []
         self._conditions = conditions
         self._main = self._out, self._frames
@@ -355,36 +354,6 @@ class Matcher(ConditionScan):
         else:
             self._at += 1
             self._operand_due = True
-
-    def _end_block(self) -> None:
-        if self._frames[-1].kind == "block":
-            block = self._frames.pop()
-            if not block.statement and block.opener is not None:  # there is nothing but politeness in it
-                self.problems.append(diagnostic("BT027", self._span(block.opener)))
-            self._out.append(Token("CLOSE", None, self._last_end, self._last_end))
-            body = self._frames[-1]
-            self._at += 1
-            self._operand_due = False
-            is_rule = body.opener is not None and body.opener.value == "whenever"
-            if body.kind == "body" and body.else_owner is not body and not (is_rule and self._at_otherwise()):
-                self._frames.pop()  # an `otherwise` behind a rule is about what the rule does
-                self._emit_end()
-            return
-        self._at += 1
-        self._operand_due = False
-
-
-def _without_idle_stops(raw: list[Token]) -> list[Token]:
-    """A stop at the end of a line ends nothing where the next line goes on with `otherwise`."""
-    kept: list[Token] = []
-    for at, token in enumerate(raw):
-        if token.kind == "otherwise" and at and raw[at - 1].kind == "newline":
-            newline = kept.pop()
-            while kept and kept[-1].kind == "semi":
-                kept.pop()
-            kept.append(newline)
-        kept.append(token)
-    return kept
 
 
 _OPERAND: dict[str, Callable[[Matcher, Token], None]] = {

@@ -22,7 +22,7 @@ class Scan:
         self.problems: list[Diagnostic] = []
         self.failed_at: list[int] = []
         """Index of the raw token (the end is one too) at which each problem showed."""
-        self._raw = [*raw, Token("end", None, len(source.text), len(source.text))]
+        self._raw = [*_without_idle_stops(raw), Token("end", None, len(source.text), len(source.text))]
         self._word = word
         self._at = 0
         self._operand_due = True
@@ -124,3 +124,16 @@ class Scan:
         self._frames.append(block)
         self._at += 1
         self._operand_due = True
+
+
+def _without_idle_stops(raw: list[Token]) -> list[Token]:
+    """A stop at the end of a line ends nothing where the next line goes on with `otherwise`."""
+    kept: list[Token] = []
+    for at, token in enumerate(raw):
+        if token.kind == "otherwise" and at and raw[at - 1].kind == "newline":
+            newline = kept.pop()
+            while kept and kept[-1].kind == "semi":
+                kept.pop()
+            kept.append(newline)
+        kept.append(token)
+    return kept

@@ -7,6 +7,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Iterable, Mapping, Sequence
+from marshal import dumps, loads  # a copy of a trie, at a tenth of the time that importing `copy` takes
 
 from btlang.record import Record
 from btlang.text.source import Source
@@ -138,7 +139,7 @@ class Values:
     def with_names(self, names: Mapping[str, Iterable[tuple[str, str]]]) -> Values:
         """The same with further names of types, each with its words."""
         made = self.for_reading()
-        made._names = {**self._names, **{kind: _copied(self._names[kind]) for kind in names}}
+        made._names = {**self._names, **{kind: loads(dumps(self._names[kind])) for kind in names}}
         for kind, pairs in names.items():
             for words, name in pairs:
                 made.add_name(kind, words, name)
@@ -396,8 +397,3 @@ def key_of(words: Iterable[str]) -> str:
 
 def _too_small(value: float, value_type: ValueType) -> bool:
     return value_type.least is not None and value < value_type.least
-
-
-def _copied(trie: Any) -> Any:
-    """What `copy.deepcopy` does, which takes long to import."""
-    return {word: _copied(below) if isinstance(below, dict) else below for word, below in trie.items()}

@@ -14,7 +14,8 @@ from btlang.vocabulary.keyword_file import read_keyword_file
 from btlang.vocabulary.ros_binding import Fields, RosBinding
 from btlang.vocabulary.ros_table import KINDS, read_ros
 
-PAGE = (Path(__file__).parent.parent.parent / "docs" / "ros.md").read_text(encoding="utf-8")
+DOCS = Path(__file__).parent.parent.parent / "docs"
+PAGE = "".join((DOCS / name).read_text(encoding="utf-8") for name in ("ros_words.md", "ros.md"))
 
 
 def wrong(table: Any, sort: str = "action") -> str:
