@@ -101,6 +101,21 @@ def whole(rounds: int) -> None:
     print(f"text to runnable tree, {LINES:,} lines: {told}, {loops / speed:,.0f} a line")
 
 
+def again(rounds: int) -> None:
+    """A short sentence in a process that has read one before, with the words that ship and with an own one."""
+
+    @btlang.action("hop over")
+    def hop() -> None:
+        """An own word."""
+
+    works: dict[str, Callable[[], object]] = {
+        "": lambda: [btlang.parse_tree("move forward 1 m then say done") for _ in range(100)],
+        " with an own word": lambda: [btlang.parse_tree("hop over then wave", keywords=[hop]) for _ in range(100)],
+    }
+    for what, taken in medians(works, rounds).items():
+        print(f"parse_tree of a short sentence once more{what}: {taken * 10:.2f} ms")
+
+
 def check(rounds: int) -> None:
     """The command beside a start of Python with what any command needs.
 
@@ -141,7 +156,7 @@ def main() -> None:
     options = argparse.ArgumentParser(description="How fast missions are compiled.")
     options.add_argument("--rounds", type=int, default=5)
     rounds = options.parse_args().rounds
-    for measure in (parsers, whole, check, growth):
+    for measure in (parsers, whole, again, check, growth):
         measure(rounds)
 
 
