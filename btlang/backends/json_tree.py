@@ -11,7 +11,7 @@ import re
 
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.english.phrase import phrase_of
-from btlang.text.source import Source, Span
+from btlang.text.source import NOWHERE, Source, Span
 from btlang.tree.model import NodeModel, PortModel
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.vocabulary import Vocabulary
@@ -29,11 +29,19 @@ _PORT_KEYS = {"name": str, "direction": str, "type": str, "default": str, "text"
 
 
 def to_json(tree: Tree, vocabulary: Vocabulary) -> str:
-    """One document, one line a node. `read_json` gives an equal tree; spans are told, and not read back."""
+    """One document, one line a node. `read_json` gives an equal tree; spans are told, and not read back.
+
+    Raises MissionError (BT134) for a text with NUL or a lone surrogate, which `read_json` would refuse.
+    """
     import json
 
     def line(value: object) -> str:
-        return json.dumps(value, ensure_ascii=False)
+        written = json.dumps(value, ensure_ascii=False)
+        if _UNFIT_WRITTEN.search(written):
+            reason = "one of its texts has a NUL or a lone surrogate, which no text can hold"
+            problem = diagnostic("BT134", tree.root.span or NOWHERE, id=tree.root.id, target="JSON", reason=reason)
+            raise MissionError([problem])
+        return written
 
     trees = []
     for name, root in ((tree.name, tree.root), *tree.subtrees):
@@ -192,6 +200,7 @@ def _of(value: Any, kind: type, what: str) -> Any:
 
 
 _UNFIT = re.compile("[\0\ud800-\udfff]")  # NUL and lone surrogates, which XML and UTF-8 do not have either
+_UNFIT_WRITTEN = re.compile(r"(?<!\\)(?:\\\\)*\\u0000|[\ud800-\udfff]")
 
 
 _KINDS: dict[type, str] = {dict: "object", list: "array", str: "text"}

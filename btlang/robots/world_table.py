@@ -48,11 +48,11 @@ class Table:
         value = self._required(key, "a number")
         if type(value) not in (int, float) or value != value:
             raise self.problem(key, f'"{key}" is a number; write {key} = 1.5')
-        if (low is not None and value < low) or (high is not None and value > high):
-            bounds = f"at least {low:g}" if high is None else f"from {low:g} to {high:g}"
-            raise self.problem(key, f'"{key}" is {bounds}')
         if not -_MOST <= value <= _MOST:
             raise self.problem(key, f'"{key}" is a number from {-_MOST:,} to {_MOST:,}')
+        if (low is not None and value < low) or (high is not None and value > high):
+            bounds = f"at least {low:g}" if high is None else f"from {low:g} to {high:g}"
+            raise self.problem(key, f'"{key}" is {bounds}, not {value:g}')
         return float(value)
 
     def text(self, key: str) -> str:

@@ -20,7 +20,7 @@ import pytest
 
 from btlang.ros import interfaces
 from tests.ros.domains import free_domain
-from tests.ros.processes import REPOSITORY, ROOM, Command, end_all
+from tests.ros.processes import REPOSITORY, ROOM, STARTED, Command, end_all
 
 if TYPE_CHECKING:
     from tests.ros.client import Client
@@ -50,9 +50,10 @@ def _isolated() -> Iterator[None]:
 
 @pytest.fixture(autouse=True)
 def _processes_end() -> Iterator[None]:
-    """Also those of a test that fails."""
+    """Also those of a test that fails; not those of fixtures that several tests share, which are made before this."""
+    first = len(STARTED)
     yield
-    end_all()
+    end_all(first)
 
 
 @pytest.fixture

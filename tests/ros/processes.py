@@ -25,23 +25,23 @@ def wait_until(condition: Callable[[], object], what: str, seconds: float = LONG
         time.sleep(0.005)
 
 
-_started: list[subprocess.Popen[Any]] = []
+STARTED: list[subprocess.Popen[Any]] = []
 
 
 def start(*command: str, **options: Any) -> subprocess.Popen[Any]:
-    """A process in a group of its own, which `end_all` ends at the end of the test, however that ends."""
+    """A process in a group of its own, which ends with the test, or with the module where that shares it."""
     process: subprocess.Popen[Any] = subprocess.Popen(command, start_new_session=True, **options)
-    _started.append(process)
+    STARTED.append(process)
     return process
 
 
-def end_all() -> None:
-    """Kills the groups of all processes that were started since the last call."""
-    for process in _started:
+def end_all(first: int) -> None:
+    """Kills the groups of all processes that were started from that number on."""
+    while len(STARTED) > first:
+        process = STARTED.pop()
         if group_is_alive(process):
             os.killpg(process.pid, signal.SIGKILL)
         process.wait()
-    _started.clear()
 
 
 def group_is_alive(process: subprocess.Popen[Any]) -> bool:

@@ -191,7 +191,7 @@ def test_a_goal_is_cancelled_when_the_mission_is(
 
 
 @pytest.mark.parametrize(
-    ("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 130), (signal.SIGHUP, 130), (signal.SIGQUIT, 131)]
+    ("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143), (signal.SIGHUP, 129), (signal.SIGQUIT, 131)]
 )
 def test_a_signal_leaves_the_robot_at_rest(
     number: signal.Signals, code: int, robot: Callable[..., Script], btc: Callable[..., Command]
