@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from importlib import import_module
+from importlib.util import find_spec
 from types import ModuleType
 
 from btlang.backends.comparing import comparing
@@ -87,9 +88,11 @@ def _module(entry: Entry, name: str) -> ModuleType:
     if entry.span is None or not os.path.isfile(entry.span.source.name):
         return import_module(name)
     folder = os.path.dirname(os.path.realpath(entry.span.source.name))
-    beside = os.path.join(folder, *name.split("."))
-    if not os.path.isfile(f"{beside}.py") and not os.path.isfile(os.path.join(beside, "__init__.py")):
-        return import_module(name)
+    top = os.path.join(folder, name.partition(".")[0])
+    beside = [path for path in (f"{top}.py", os.path.join(top, "__init__.py")) if os.path.isfile(path)]
+    spec = find_spec(name.partition(".")[0]) if beside else None
+    if not beside or (spec is not None and spec.origin is not None and os.path.realpath(spec.origin) in beside):
+        return import_module(name)  # the very module that the program imports, too
     package = _packages.setdefault(folder, f"btlang_words_{len(_packages)}")
     if package not in sys.modules:
         made = ModuleType(package, f"The modules beside the keyword files of {folder}.")
