@@ -10,11 +10,19 @@ from types import ModuleType
 import pytest
 from hypothesis import HealthCheck, settings
 
+from tests.profiles import LONG
+
 settings.register_profile(
     "ci", deadline=None, derandomize=True, database=None, suppress_health_check=[HealthCheck.too_slow]
 )
 for variable in ("FORCE_COLOR", "CLICOLOR_FORCE"):  # what is compared is plain text
     os.environ.pop(variable, None)
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """`-m long` is known before the tests are read."""
+    if config.option.markexpr == "long":
+        os.environ[LONG] = "1"
 
 
 def matches_golden(actual: str, path: Path) -> None:

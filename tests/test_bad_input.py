@@ -13,6 +13,7 @@ from btlang.engine.status import RUNNING, SUCCESS
 from btlang.frontends.mission import read_mission
 from btlang.passes import compile_mission
 from btlang.text.source import Source
+from tests.profiles import searches
 
 BOTH = pytest.mark.parametrize("parser", ["shunting-yard", "lark"])
 VOCABULARY = world_vocabulary()
@@ -44,7 +45,7 @@ PIECES += [",", ".", ";", ":", "(", ")", '"', "\n", "\n  ", "\n    ", "is", "mea
 PIECES += ["3 times", "for 5 s", "within 2 min", "every 5 s", "5", "m", "%", "-", "twice", "wait", "# x"]
 
 
-@settings(max_examples=1500)
+@searches(500, 15000)
 @given(st.lists(st.sampled_from(PIECES), max_size=25).map(" ".join))
 def test_any_words(text: str) -> None:
     assert codes(text) == codes(text, "lark")

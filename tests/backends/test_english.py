@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import pytest
-from hypothesis import given, note, settings
+from hypothesis import given, note
 
 from btlang.api import parse_tree, world_vocabulary
 from btlang.backends.english import to_english
@@ -20,12 +20,13 @@ from btlang.tree.dump import plain
 from btlang.tree.node import Node, Tree
 from tests.backends.any_tree import trees
 from tests.conftest import matches_golden
+from tests.profiles import searches
 
 PARSERS = ("shunting-yard", "lark")
 CORPUS = sorted((Path(__file__).parents[1] / "corpus" / "good").glob("*.xml"))
 
 
-@settings(max_examples=300)
+@searches(60, 3000)
 @given(trees())
 def test_any_tree_is_said_and_read_back(tree: Tree) -> None:
     vocabulary = world_vocabulary()

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 
 from btlang.api import parse_tree, world_vocabulary
 from btlang.backends.english import to_english
@@ -20,6 +20,7 @@ from btlang.tree.node import Node, Tree
 from btlang.vocabulary.vocabulary import Vocabulary
 from tests.english import trees
 from tests.language.letters import letters
+from tests.profiles import searches
 
 PARSERS = ("shunting-yard", "lark")
 ROOT = Path(__file__).parent.parent.parent
@@ -58,7 +59,7 @@ def test_missions_that_ship(path: Path, monkeypatch: pytest.MonkeyPatch) -> None
     assert (_BY_ID.search(said) is not None) == (path.stem in NOT_ALL_NATURAL), said
 
 
-@settings(max_examples=150, deadline=None)
+@searches(40, 1500)
 @given(trees.missions())
 def test_missions_with_values(mission: ast.Mission) -> None:
     text = said_and_read(lower_mission(mission, letters()), letters())

@@ -16,6 +16,7 @@ from btlang.backends.py_trees.module import to_module
 from btlang.tree.model import NodeModel
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.vocabulary import Vocabulary
+from tests.profiles import searches
 
 from ..engine.random_trees import letters
 from ..engine.scripted import World, n
@@ -143,7 +144,7 @@ class Twins:
         return found
 
 
-@settings(max_examples=1000, deadline=None)
+@searches(400, 10000)
 @given(TREES, letters("ttttth", 3, 12))
 def test_statuses_are_the_same(shape: Node, orders: str) -> None:
     compare(Twins(shape, in_module=False), orders)

@@ -6,12 +6,13 @@ import sys
 from collections.abc import Callable, Iterator
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 
 from btlang.engine.compile import NODE_TYPES
 from btlang.engine.engine import Engine
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SUCCESS
 from btlang.tree.node import Node
+from tests.profiles import searches
 
 from .checked import CheckedWorld
 from .every_type import RUNS, around, running
@@ -76,7 +77,7 @@ def test_a_halt_stops_nothing_that_does_not_run() -> None:
 # On random trees, where leaves raise exceptions and interrupts wherever they are called
 
 
-@settings(max_examples=1500)
+@searches(400, 15000)
 @given(BUSY | TREES, letters("ttttthpe", 3, 10), letters("................xi", 1, 12))
 def test_leaves_are_used_as_they_must_be(shape: Node, orders: str, trouble: str) -> None:
     """Started before they are ticked, halted once and only while they run, none next to what excludes it.

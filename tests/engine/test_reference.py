@@ -8,11 +8,12 @@ from __future__ import annotations
 
 from typing import Any
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 from btlang.engine.status import IDLE
 from btlang.tree.node import Node
+from tests.profiles import searches
 
 from .random_trees import BUSY, TREES, Drawn, letters
 from .reference import Mission, Reference
@@ -20,7 +21,7 @@ from .reference_board import Board
 from .scripted import LETTER, World
 
 
-@settings(max_examples=2000, deadline=None)
+@searches(800, 20000)
 @given(TREES | BUSY, letters("ttttthpe", 3, 12), st.booleans())
 def test_engine_equals_reference(shape: Node, orders: str, watched: bool) -> None:
     drawn, world = Drawn(shape), World()

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from btlang.api import world_vocabulary
@@ -27,6 +27,7 @@ from btlang.vocabulary.vocabulary import Vocabulary
 from tests.english import trees
 from tests.language import sentences
 from tests.language.letters import letters, read
+from tests.profiles import searches
 
 PARSERS = ("shunting-yard", "lark")
 BRACKETS = ("needed", "clear", "all")
@@ -56,7 +57,7 @@ def _placed(fact: ast.Fact) -> tuple[object, ...]:
     return fact.name, fact.x, fact.y, fact.facing
 
 
-@settings(max_examples=250)
+@searches(80, 3000)
 @given(st.one_of(sentences.missions, sentences.broken_missions()))
 @example("repeat a until p 3t NL")
 @example("try try a 3t otherwise b NL")
@@ -68,7 +69,7 @@ def test_sentences_keep_their_tree(words: str) -> None:
     keeps_its_tree(mission, letters())
 
 
-@settings(max_examples=250)
+@searches(80, 3000)
 @given(trees.missions())
 @example(ast.Mission(ast.Every("5", ast.Repeat("1", trees.phrase("u"), trees.SPAN), trees.SPAN), (), trees.SPAN))
 @example(ast.Mission(ast.Try(trees.phrase("u"), trees.either("v", "w"), trees.SPAN), (), trees.SPAN))
@@ -76,7 +77,7 @@ def test_syntax_trees_keep_their_tree(mission: ast.Mission) -> None:
     keeps_its_tree(mission, letters())
 
 
-@settings(max_examples=150)
+@searches(60, 2000)
 @given(trees.missions(), st.sampled_from([1, 20, 50]), st.sampled_from(BRACKETS))
 def test_blocks_keep_the_tree(mission: ast.Mission, width: int, brackets: str) -> None:
     tree = compile_mission(mission, letters())

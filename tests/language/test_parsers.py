@@ -6,7 +6,7 @@ import runpy
 from pathlib import Path
 
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from btlang.diagnostics.diagnostic import MissionError
@@ -20,6 +20,7 @@ from btlang.tree import ast
 from tests.language import grouping_oracle
 from tests.language.letters import read
 from tests.language.sentences import broken_missions, english, missions
+from tests.profiles import searches
 
 BOTH = ("shunting-yard", "lark")
 GRAMMAR = Path(__file__).parents[2] / "grammar"
@@ -33,7 +34,7 @@ def reading(text: str, parser: str) -> ast.Mission | tuple[str, ...]:
         return tuple(problem.code for problem in error.diagnostics)
 
 
-@settings(max_examples=3000)
+@searches(700, 30000)
 @given(st.one_of(missions, broken_missions()))
 @example("a repeat until p NL")
 @example("not ( p ) NL")
@@ -46,7 +47,7 @@ def test_parsers_agree(words: str) -> None:
         assert all(span[0] < span[1] for span in _spans(shunted))
 
 
-@settings(max_examples=500)
+@searches(200, 5000)
 @given(missions, st.sampled_from([".", ";", "!", " ."]))
 @example("a NL otherwise b NL", ".")
 @example("if p : NL IN a NL DE NL otherwise : NL IN b NL DE NL", ".")
@@ -106,7 +107,7 @@ _command = st.recursive(
 )
 
 
-@settings(max_examples=1000)
+@searches(300, 10000)
 @given(_command)
 def test_each_parser_takes_all_that_the_matching_stage_may_write(kinds: str) -> None:
     """Also token streams that no sentence was drawn for."""
@@ -176,7 +177,7 @@ def ours(node: ast.Ast | None) -> object:
     return (kind, *map(ours, ast.parts(node)))
 
 
-@settings(max_examples=3000)
+@searches(700, 30000)
 @given(st.one_of(missions, broken_missions()))
 def test_groups_as_the_oracle_does(words: str) -> None:
     """The language takes a little more than the oracle (`then` at the start, empty lines); never anything else."""

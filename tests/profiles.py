@@ -1,0 +1,23 @@
+"""How long property tests search: a while in each run of the suite, and much longer with `pytest -m long`."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Callable
+from typing import Any
+
+import pytest
+from hypothesis import settings
+
+LONG = "BTLANG_LONG"
+"""The environment variable that tests/conftest.py sets where the tests are those of `-m long`."""
+
+
+def searches(usual: int, long: int, **options: Any) -> Callable[[Any], Any]:
+    """A property test draws so many examples in each run, and so many in a long one."""
+
+    def decorate(test: Any) -> Any:
+        count = long if os.environ.get(LONG) else usual
+        return pytest.mark.long(settings(max_examples=count, **options)(test))
+
+    return decorate
