@@ -27,24 +27,24 @@ def fallback(site: Site, children: Sequence[Compiled]) -> Compiled:
 
 
 def sequence_with_memory(site: Site, children: Sequence[Compiled]) -> Compiled:
-    """A Sequence that, after a failure or a halt, starts again at the child it had reached.
+    """An AsyncSequence that, after a failure or a halt, starts again at the child it had reached.
 
     Only its own success starts it at the first child (sequence_with_memory_node.cpp).
     """
-    return _in_order(children, SUCCESS, remember=True)
+    return _breathing(site, children, SUCCESS, remember=True)
 
 
 def async_sequence(site: Site, children: Sequence[Compiled]) -> Compiled:
     """A Sequence that returns RUNNING after each child that succeeded within one tick: it can be interrupted."""
-    return _breathing(children, SUCCESS)
+    return _breathing(site, children, SUCCESS)
 
 
 def async_fallback(site: Site, children: Sequence[Compiled]) -> Compiled:
     """A Fallback that returns RUNNING after each child that failed within one tick."""
-    return _breathing(children, FAILURE)
+    return _breathing(site, children, FAILURE)
 
 
-def _in_order(children: Sequence[Compiled], passes: int, remember: bool = False) -> Compiled:
+def _in_order(children: Sequence[Compiled], passes: int) -> Compiled:
     """Goes on to the next child at the status `passes`, and returns it after the last child."""
     ticks, halts, sites = row(children)
     nothing = None if passes is SUCCESS else passes  # what functions return is most often nothing
@@ -56,7 +56,6 @@ def _in_order(children: Sequence[Compiled], passes: int, remember: bool = False)
         count: int = len(ticks),
         passes: int = passes,
         nothing: int | None = nothing,
-        remember: bool = remember,
     ) -> int:
         nonlocal index, skipped
         plain = -1  # the latest child that passed, where nothing has settled what it answered
@@ -77,9 +76,7 @@ def _in_order(children: Sequence[Compiled], passes: int, remember: bool = False)
             else:
                 status = settle(sites[index], status)
                 if status is not passes:
-                    skipped = 0
-                    if not remember:
-                        index = 0
+                    index = skipped = 0
                     return status
                 plain = -1
             index += 1
@@ -91,27 +88,33 @@ def _in_order(children: Sequence[Compiled], passes: int, remember: bool = False)
         index = 0
         return passes
 
-    def halt(keep: bool, remember: bool = remember) -> None:
+    def halt(keep: bool) -> None:
         nonlocal index, skipped
         if index < len(halts):  # not so where an exception came after the last child
             halts[index](keep)
         if not keep:
-            skipped = 0
-            if not remember:
-                index = 0
+            index = skipped = 0
 
     return tick, halt
 
 
-def _breathing(children: Sequence[Compiled], passes: int) -> Compiled:
-    """As `_in_order`, but RUNNING between two children of which the first took no longer than its tick."""
+def _breathing(site: Site, children: Sequence[Compiled], passes: int, remember: bool = False) -> Compiled:
+    """As `_in_order`, but RUNNING between two children of which the first took no longer than its tick.
+
+    The next tick comes at once then; but not in a second run at the same time, so that no loop holds the time.
+    """
     ticks, halts = apart(children)
     count = len(ticks)
+    clock = site.shared.clock
     index = skipped = 0
     waiting = -1  # the child that was RUNNING at the last tick
+    began: float | None = None  # when the first child was last started
+    hurries = True
 
     def tick() -> int:
-        nonlocal index, skipped, waiting
+        nonlocal index, skipped, waiting, began, hurries
+        if index == 0 and waiting != 0:
+            began, hurries = clock.now, began != clock.now
         while index < count:
             status = ticks[index]()
             if status == RUNNING:
@@ -121,11 +124,15 @@ def _breathing(children: Sequence[Compiled], passes: int) -> Compiled:
                 halts[index](False)
                 skipped += 1
             elif status is not passes:
-                index = skipped = 0
+                skipped = 0
                 waiting = -1
+                if not remember:
+                    index = 0
                 return status
             index += 1
             if status is passes and index != waiting + 1 and index < count:
+                if hurries:
+                    clock.wake_at(clock.now)
                 return RUNNING
         result = SKIPPED if skipped == count else passes
         index = skipped = 0
@@ -137,8 +144,10 @@ def _breathing(children: Sequence[Compiled], passes: int) -> Compiled:
         if index < count:  # not so where an exception came after the last child
             halts[index](keep)
         if not keep:
-            index = skipped = 0
+            skipped = 0
             waiting = -1
+            if not remember:
+                index = 0
 
     return tick, halt
 

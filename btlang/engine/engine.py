@@ -78,7 +78,8 @@ class Engine:
         self.stopwatch = stopwatch
         self.on_wake: Callable[[], object] | None = None
         """What the service `wake` calls, in the thread of whoever asks for it: "tick again now"."""
-        self._shared = Shared(bind, clock, {"wake": self._wake, "progress": unheard, **services}, enums, stopwatch)
+        own = {"wake": self._wake, "wake_at": clock.leaf_wake_at, "progress": unheard}
+        self._shared = Shared(bind, clock, {**own, **services}, enums, stopwatch)
         if on_unknown is not None:
             self._shared.on_unknown = lambda fault: on_unknown(self._failure(fault))
         with no_collection:
