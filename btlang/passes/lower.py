@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from btlang.passes.scope import Scope
-from btlang.passes.scripts import as_number, assignment, behind, comparison, prepared, script
+from btlang.passes.scripts import assignment, behind, comparison, prepared, script
 from btlang.record import Record
 from btlang.text.source import Span
 from btlang.tree import ast
@@ -186,7 +186,7 @@ def _timed(seconds: str, scope: Scope) -> tuple[list[Node], str]:
     if not key:
         return [], str(round(float(seconds) * 1000))
     made = scope.new_key()
-    return [script(f"{as_number(made, key)}; {made} *= 1000")], f"{{{made}}}"
+    return [script(f"{made} := {key} * 1000")], f"{{{made}}}"
 
 
 def _timer(milliseconds: str) -> Node:
