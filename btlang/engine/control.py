@@ -158,6 +158,8 @@ def parallel(site: Site, children: Sequence[Compiled]) -> Compiled:
     Ports success_count (all by default) and failure_count (1); -1 is all, -2 all but one. It fails also when too few
     are left to succeed. With a negative success_count a skipped child counts as a success (parallel_node.cpp).
     """
+    if site.node.port("success_count", "-1") == "-1" and site.node.port("failure_count", "1") == "1":
+        return _all_or_none(site, children)
     ticks, halts, sites = row(children)
     count = len(ticks)
     success_count = site.number("success_count", -1, -count - 1, count)
@@ -218,6 +220,63 @@ def parallel(site: Site, children: Sequence[Compiled]) -> Compiled:
         if not keep:
             completed[:] = [False] * count
             successes = failures = 0
+
+    return tick, halt
+
+
+def _all_or_none(site: Site, children: Sequence[Compiled]) -> Compiled:
+    """A Parallel with the usual thresholds: it ends with the first failure, or when no child is RUNNING any more."""
+    ticks, halts, sites = row(children)
+    everyone = tuple(enumerate(ticks))
+    left = everyone  # those that have not completed
+    completed = [False] * len(ticks)
+    shared = site.shared
+
+    def tick() -> int:
+        nonlocal left
+        running = fewer = skipped = False
+        for index, child in left:
+            try:
+                status = child()
+                if status is SUCCESS or status is None:
+                    completed[index] = fewer = True
+                    continue
+                if status == RUNNING:
+                    running = True
+                    continue
+            except Exception as problem:
+                status = problem
+            if status == SKIPPED:
+                skipped = True
+            elif settle(sites[index], status) is FAILURE:
+                fault = shared.fault
+                halt(False)
+                shared.fault = fault
+                return FAILURE
+            else:
+                completed[index] = fewer = True
+        if running:
+            if fewer:
+                find_left()
+            return RUNNING
+        if skipped:
+            halt(False)
+        else:
+            completed[:] = [False] * len(completed)
+            left = everyone
+        return SUCCESS
+
+    def find_left() -> None:
+        nonlocal left
+        left = tuple([each for each in everyone if not completed[each[0]]])
+
+    def halt(keep: bool) -> None:
+        for index, stop in enumerate(halts):
+            if not completed[index]:
+                stop(keep)
+        if not keep:
+            completed[:] = [False] * len(completed)
+        find_left()
 
     return tick, halt
 
