@@ -71,7 +71,7 @@ def _phrase(item: ast.Phrase, _done: list[Lowered], scope: Scope) -> Lowered:
 
 def _name(item: ast.Name, _done: list[Lowered], scope: Scope) -> Lowered:
     """A subtree sees its arguments, and what it needs of the mission's values."""
-    scripts, ports = prepared(item.arguments, scope)
+    scripts, ports = prepared(item.arguments, scope, scope.parameters.get(item.name, {}))
     shared = tuple((key, f"{{{key}}}") for key in scope.free.get(item.name, ()))
     node = Node("SubTree", (), (("ID", item.name), *ports, *shared), span=item.span)
     return Lowered(behind(scripts, node), item.name in scope.skipping and not scripts)
@@ -100,7 +100,7 @@ def _for_each(item: ast.ForEach, done: list[Lowered], scope: Scope) -> Lowered:
     shared = tuple((key, f"{{{key}}}") for key in scope.needs(item.body, [item.key]))
     rounds = []
     for text in item.values:
-        scripts, ports = prepared([(item.key, text)], scope)
+        scripts, ports = prepared([(item.key, text)], scope, {item.key: item.kind})
         rounds.append(behind(scripts, Node("SubTree", (), (("ID", name), *ports, *shared), span=item.span)))
     node = rounds[0] if len(rounds) == 1 else _node("Sequence", rounds, item.span)
     return Lowered(node, done[0].can_skip)

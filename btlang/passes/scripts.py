@@ -6,7 +6,7 @@ the node that needs it, as a BehaviorTree.CPP port holds either a text or one re
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from btlang.passes.scope import Scope
 from btlang.tree.node import Node
@@ -27,16 +27,33 @@ def behind(scripts: Sequence[Node], node: Node) -> Node:
     return Node("Sequence", (*scripts, node), span=node.span) if scripts else node
 
 
-def prepared(arguments: Iterable[tuple[str, str]], scope: Scope) -> tuple[list[Node], Ports]:
-    """The ports of a node, and what has to be computed before it."""
+def prepared(
+    arguments: Iterable[tuple[str, str]], scope: Scope, kinds: Mapping[str, str] = {}
+) -> tuple[list[Node], Ports]:
+    """The ports of a node, and what has to be computed before it. `kinds` are the types of those of a SubTree."""
     scripts: list[Node] = []
     ports: list[tuple[str, str]] = []
     for name, text in arguments:
         if "{" in text or "}" in text:
             before, text = _port(text, scope)
             scripts += before
+        elif name in kinds and not scope.is_number(kinds[name]) and _would_change(text):
+            before, text = _own_key(text, scope)
+            scripts += before
         ports.append((name, text))
     return scripts, tuple(ports)
+
+
+def _would_change(text: str) -> bool:
+    """Whether a text such as 007 or 2.50 would be another one as the number that it is in a port of a SubTree."""
+    try:
+        return str(int(text)) != text
+    except ValueError:
+        pass
+    try:
+        return float(text) is not None
+    except ValueError:
+        return False
 
 
 def _port(text: str, scope: Scope) -> tuple[list[Node], str]:
@@ -47,6 +64,10 @@ def _port(text: str, scope: Scope) -> tuple[list[Node], str]:
             return [], f"{{{part.key}}}"
         if not (part.startswith("{") and part.endswith("}")):
             return [], part
+    return _own_key(text, scope)
+
+
+def _own_key(text: str, scope: Scope) -> tuple[list[Node], str]:
     scripts, value = concatenated(text, scope)
     key = scope.new_key()
     return [*scripts, script(f"{key} := {value}")], f"{{{key}}}"

@@ -1,9 +1,9 @@
 """How fast trees are ticked, beside py_trees: `python -m tests.benchmarks.ticks [--rounds 15]`.
 
 Both run the same tree, with leaves that do nothing, written as each documents it: here functions, and generators or
-classes for what takes time; there behaviours. A tick is `Engine.tick` and `BehaviourTree.tick`. Ratios are those of medians
-of rounds in which all take turns. The last lines are the ratios without a listener; before them stand those with every
-status change sent to the event stream, what depth does to a tick, and what a node costs.
+classes for what takes time; there behaviours. A tick is `Engine.tick` and `BehaviourTree.tick`. Ratios are those of
+medians of rounds in which all take turns. The last lines are the ratios without a listener; before them stand those
+with every status change sent to the event stream, what depth does to a tick, and what a node costs.
 """
 
 from __future__ import annotations
