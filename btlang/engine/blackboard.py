@@ -61,11 +61,10 @@ class Blackboard:
         scope, key = self._owner(key)
         return scope._values[key]
 
-    def argument(self, key: str) -> str | None:
-        """The text that a subtree was given for a key, None for a key of the outermost scope."""
+    def argument(self, key: str) -> Any:
+        """What a subtree was given for a key, None for a key of the outermost scope."""
         scope, key = self._owner(key)
-        value = scope._values.get(key) if scope is not self._outermost else None
-        return value if isinstance(value, str) else None
+        return scope._values.get(key) if scope is not self._outermost else None
 
     def set(self, key: str, value: Any) -> None:
         """Sets the value in the scope that owns the key. Raises ActionFailed for a text longer than MOST_TEXT."""

@@ -2,17 +2,36 @@
 
 from __future__ import annotations
 
+from math import inf
+
+SOONEST = 0.001
+"""Seconds after which a leaf may be ticked again at the earliest, so that none can hold the time of a mission."""
+
 
 class Clock:
-    """Seconds since the mission began, moved on by the runner (or a test). Never goes back."""
+    """Seconds since the mission began, moved on by the runner (or a test). Never goes back.
 
-    __slots__ = ("now",)
+    What waits says during a tick when it is due (`wake_at`); it says so again at the next tick if it still waits then.
+    `due` is the earliest of these times, inf where nothing waits. The runner sets it back before each tick.
+    """
+
+    __slots__ = ("due", "now")
 
     def __init__(self, now: float = 0.0) -> None:
         self.now = now
+        self.due = inf
 
     def advance(self, seconds: float) -> None:
         """Raises ValueError for a negative step."""
         if seconds < 0:
             raise ValueError(f"time does not go back: {seconds}")
         self.now += seconds
+
+    def wake_at(self, time: float) -> None:
+        """Asks for a tick at that time, at once if it is now. A time in the past asks for nothing."""
+        if self.now <= time < self.due:
+            self.due = time
+
+    def leaf_wake_at(self, time: float) -> None:
+        """As `wake_at`, for leaves, which are not ticked again sooner than SOONEST from now."""
+        self.wake_at(max(time, self.now + SOONEST))

@@ -27,24 +27,24 @@ def fallback(site: Site, children: Sequence[Compiled]) -> Compiled:
 
 
 def sequence_with_memory(site: Site, children: Sequence[Compiled]) -> Compiled:
-    """A Sequence that, after a failure or a halt, starts again at the child it had reached.
+    """An AsyncSequence that, after a failure or a halt, starts again at the child it had reached.
 
     Only its own success starts it at the first child (sequence_with_memory_node.cpp).
     """
-    return _in_order(children, SUCCESS, remember=True)
+    return _breathing(site, children, SUCCESS, remember=True)
 
 
 def async_sequence(site: Site, children: Sequence[Compiled]) -> Compiled:
     """A Sequence that returns RUNNING after each child that succeeded within one tick: it can be interrupted."""
-    return _breathing(children, SUCCESS)
+    return _breathing(site, children, SUCCESS)
 
 
 def async_fallback(site: Site, children: Sequence[Compiled]) -> Compiled:
     """A Fallback that returns RUNNING after each child that failed within one tick."""
-    return _breathing(children, FAILURE)
+    return _breathing(site, children, FAILURE)
 
 
-def _in_order(children: Sequence[Compiled], passes: int, remember: bool = False) -> Compiled:
+def _in_order(children: Sequence[Compiled], passes: int) -> Compiled:
     """Goes on to the next child at the status `passes`, and returns it after the last child."""
     ticks, halts, sites = row(children)
     nothing = None if passes is SUCCESS else passes  # what functions return is most often nothing
@@ -56,7 +56,6 @@ def _in_order(children: Sequence[Compiled], passes: int, remember: bool = False)
         count: int = len(ticks),
         passes: int = passes,
         nothing: int | None = nothing,
-        remember: bool = remember,
     ) -> int:
         nonlocal index, skipped
         plain = -1  # the latest child that passed, where nothing has settled what it answered
@@ -79,9 +78,7 @@ def _in_order(children: Sequence[Compiled], passes: int, remember: bool = False)
             else:
                 status = settle(sites[index], status)
                 if status is not passes:
-                    skipped = 0
-                    if not remember:
-                        index = 0
+                    index = skipped = 0
                     return status
                 plain = -1
             index += 1
@@ -93,27 +90,33 @@ def _in_order(children: Sequence[Compiled], passes: int, remember: bool = False)
         index = 0
         return passes
 
-    def halt(keep: bool, remember: bool = remember) -> None:
+    def halt(keep: bool) -> None:
         nonlocal index, skipped
         if index < len(halts):  # not so where an exception came after the last child
             halts[index](keep)
         if not keep:
-            skipped = 0
-            if not remember:
-                index = 0
+            index = skipped = 0
 
     return tick, halt
 
 
-def _breathing(children: Sequence[Compiled], passes: int) -> Compiled:
-    """As `_in_order`, but RUNNING between two children of which the first took no longer than its tick."""
+def _breathing(site: Site, children: Sequence[Compiled], passes: int, remember: bool = False) -> Compiled:
+    """As `_in_order`, but RUNNING between two children of which the first took no longer than its tick.
+
+    The next tick comes at once then; but not in a second run at the same time, so that no loop holds the time.
+    """
     ticks, halts = apart(children)
     count = len(ticks)
+    clock = site.shared.clock
     index = skipped = 0
     waiting = -1  # the child that was RUNNING at the last tick
+    began: float | None = None  # when the first child was last started
+    hurries = True
 
     def tick() -> int:
-        nonlocal index, skipped, waiting
+        nonlocal index, skipped, waiting, began, hurries
+        if index == 0 and waiting != 0:
+            began, hurries = clock.now, began != clock.now
         while index < count:
             status = ticks[index]()
             if status == RUNNING:
@@ -123,11 +126,15 @@ def _breathing(children: Sequence[Compiled], passes: int) -> Compiled:
                 halts[index](False)
                 skipped += 1
             elif status is not passes:
-                index = skipped = 0
+                skipped = 0
                 waiting = -1
+                if not remember:
+                    index = 0
                 return status
             index += 1
             if status is passes and index != waiting + 1 and index < count:
+                if hurries:
+                    clock.wake_at(clock.now)
                 return RUNNING
         result = SKIPPED if skipped == count else passes
         index = skipped = 0
@@ -139,8 +146,10 @@ def _breathing(children: Sequence[Compiled], passes: int) -> Compiled:
         if index < count:  # not so where an exception came after the last child
             halts[index](keep)
         if not keep:
-            index = skipped = 0
+            skipped = 0
             waiting = -1
+            if not remember:
+                index = 0
 
     return tick, halt
 
@@ -151,6 +160,8 @@ def parallel(site: Site, children: Sequence[Compiled]) -> Compiled:
     Ports success_count (all by default) and failure_count (1); -1 is all, -2 all but one. It fails also when too few
     are left to succeed. With a negative success_count a skipped child counts as a success (parallel_node.cpp).
     """
+    if site.node.port("success_count", "-1") == "-1" and site.node.port("failure_count", "1") == "1":
+        return _all_or_none(site, children)
     ticks, halts, sites = row(children)
     count = len(ticks)
     success_count = site.number("success_count", -1, -count - 1, count)
@@ -213,6 +224,65 @@ def parallel(site: Site, children: Sequence[Compiled]) -> Compiled:
         if not keep:
             completed[:] = [False] * count
             successes = failures = 0
+
+    return tick, halt
+
+
+def _all_or_none(site: Site, children: Sequence[Compiled]) -> Compiled:
+    """A Parallel with the usual thresholds: it ends with the first failure, or when no child is RUNNING any more."""
+    ticks, halts, sites = row(children)
+    everyone = tuple(enumerate(ticks))
+    left = everyone  # those that have not completed
+    completed = [False] * len(ticks)
+    shared = site.shared
+
+    def tick(going_on: int = RUNNING) -> int:
+        nonlocal left
+        running = fewer = skipped = False
+        for index, child in left:
+            try:
+                status = child()
+                if status is going_on:  # what nearly all say, compared as fast as can be
+                    running = True
+                    continue
+                if status is SUCCESS or status is None:
+                    completed[index] = fewer = True
+                    continue
+            except Exception as problem:
+                status = problem
+            if status == RUNNING:
+                running = True
+            elif status == SKIPPED:
+                skipped = True
+            elif settle(sites[index], status) is FAILURE:
+                fault = shared.fault
+                halt(False)
+                shared.fault = fault
+                return FAILURE
+            else:
+                completed[index] = fewer = True
+        if running:
+            if fewer:
+                find_left()
+            return RUNNING
+        if skipped:
+            halt(False)
+        else:
+            completed[:] = [False] * len(completed)
+            left = everyone
+        return SUCCESS
+
+    def find_left() -> None:
+        nonlocal left
+        left = tuple([each for each in everyone if not completed[each[0]]])
+
+    def halt(keep: bool) -> None:
+        for index, stop in enumerate(halts):
+            if not completed[index]:
+                stop(keep)
+        if not keep:
+            completed[:] = [False] * len(completed)
+        find_left()
 
     return tick, halt
 

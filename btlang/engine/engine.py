@@ -81,7 +81,7 @@ class Engine:
         self.stopwatch = stopwatch
         self.on_wake: Callable[[], object] | None = None
         """What the service `wake` calls, in the thread of whoever asks for it: "tick again now"."""
-        own = {"wake": self._wake, "progress": unheard}
+        own = {"wake": self._wake, "wake_at": clock.leaf_wake_at, "progress": unheard}
         self._shared = Shared(bind, clock, {**own, **services}, enums, stopwatch, proxies)
         if on_unknown is not None:
             self._shared.on_unknown = lambda fault: on_unknown(self._failure(fault))
@@ -182,7 +182,7 @@ class Engine:
         """As `node`, with the arguments of the subtrees around it in place of their `{names}`."""
         node, scope = self._sites[index].node, self._sites[index].scope
         keys = [(port, text, blackboard_key(port, text)) for port, text in node.ports]
-        ports = tuple((port, text if key is None else scope.argument(key) or text) for port, text, key in keys)
+        ports = tuple((port, text if key is None else _argument(scope, key, text)) for port, text, key in keys)
         return node if ports == node.ports else node.replace(ports=ports)
 
     def valued(self, indices: Iterable[int]) -> dict[int, Node]:
@@ -303,6 +303,11 @@ class Engine:
         return Failure(
             index, self.node(index), self.path(index), self._text(fault), fault.exception, self.span(index), around
         )
+
+
+def _argument(scope: Blackboard, key: str, text: str) -> str:
+    value = scope.argument(key)
+    return as_text(value) if isinstance(value, str | int | float) else text
 
 
 def _valued(scope: Blackboard, port: str, text: str) -> str:

@@ -35,7 +35,7 @@ def faults(tree: Tree, bind: Callable[[str], LeafBinding | None], services: Mapp
     Trees that are not used are not looked at. `bind` and `services` are as for an Engine, which would refuse the tree
     where there is a fault; it refuses one of too many nodes, too.
     """
-    shared = Shared(bind, Clock(), {"wake": None, **services}, {}, None)
+    shared = Shared(bind, Clock(), {"wake": None, "wake_at": None, **services}, {}, None)
     found: list[EngineError] = []
     uses: dict[str, list[Node]] = {}
     used = dict(used_subtrees(tree))

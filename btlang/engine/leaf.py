@@ -11,10 +11,11 @@ A leaf is one of
   the task of an async function, and sets the event `halted` for a thread, which should look at it. Neither is waited
   for: one that goes on is not started again before it has ended, and is reported where it outlives the run.
 
-Parameters are filled by name: ports first, then services (`robot`, `clock`, `blackboard`, `wake`, `progress`); a class
-gets the services in its constructor and the ports in `start`. `wake()` asks for a tick at once, from any thread; a
-thread has `halted` too, a threading.Event. `progress(share, state)` tells from any thread how much is done, from 0 to
-1, and in words what it does now; in most runs nobody listens.
+Parameters are filled by name: ports first, then services (`robot`, `clock`, `blackboard`, `wake`, `wake_at`,
+`progress`); a class gets the services in its constructor and the ports in `start`. `wake()` asks for a tick at once,
+from any thread; `wake_at(time)`, called during a tick, for the next tick at that time of the clock if that is sooner
+than usual. A thread has `halted` too, a threading.Event. `progress(share, state)` tells from any thread how much is
+done, from 0 to 1, and in words what it does now; in most runs nobody listens.
 
 What a background leaf uses of these it uses beside the tick. Safe are `wake`, `progress`, `halted`, reading
 `clock.now`, and reading and setting single blackboard entries. Other services may be proxies (see Engine): they hand

@@ -151,17 +151,20 @@ def rate_controller(site: Site, children: Sequence[Compiled]) -> Compiled:
 
     def tick() -> int:
         nonlocal fresh, running
-        due = watch.reached(1000 / hz())
+        period = 1000 / hz()
+        due = watch.reached(period)
         if not (fresh or running or due):
-            return RUNNING
+            return watch.wait(period)
         fresh = False
         status = child()
         running = status == RUNNING
-        if status == SUCCESS:
-            watch.halt(False)
-            watch.reached(0)
         if not stays and status in (SUCCESS, FAILURE):
             reset()
+        elif not running:
+            if status == SUCCESS:
+                watch.halt(False)
+                watch.reached(period)
+            watch.wait(period)
         return status
 
     def reset() -> None:

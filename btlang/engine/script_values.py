@@ -5,6 +5,7 @@ Names as in operators.hpp of BehaviorTree.CPP 4.10. All functions raise ScriptFa
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable
 from math import copysign, inf, nan
 
@@ -19,6 +20,8 @@ if TYPE_CHECKING:
 
 _SAME = 2.0**-23  # numbers that are no further apart are equal there: the epsilon of a C++ float
 _EXACT = 2.0**53  # below it a double holds every whole number
+_WHOLE = re.compile(r"-?[0-9]+")
+_DECIMAL = re.compile(r"-?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
 
 
 class ScriptFailed(ActionFailed):
@@ -52,6 +55,13 @@ def as_text(value: Any) -> str:
     """A value as people read it: a whole number as `3`, any other with at most six decimals: `0.5`."""
     number = read(value)
     return str(kept(round(number, 6) if isinstance(number, float) else number))
+
+
+def literal(text: str) -> int | float | str:
+    """What a constant in a port of a SubTree is there since 4.9: a whole number of 64 bits, a double, or a text."""
+    if _WHOLE.fullmatch(text) and -(2**63) <= (whole := int(text)) < 2**63:
+        return whole
+    return float(text) if _DECIMAL.fullmatch(text) and abs(float(text)) < inf else text
 
 
 # Unary operators

@@ -7,6 +7,7 @@ from collections.abc import Sequence
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.build import EngineError, Site, blackboard_key
 from btlang.engine.ports import TRUTHS
+from btlang.engine.script_values import literal
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False
@@ -23,20 +24,20 @@ def subtree(site: Site, children: Sequence[Compiled]) -> Compiled:
 def child_scope(node: Node, scope: Blackboard) -> Blackboard:
     """The blackboard of a SubTree node's tree.
 
-    A port `key="{other}"` makes `key` there a name for `other` here, any other text is a value set once, as in C++.
-    With `_autoremap="true"` all keys but private ones (`_name`) are shared that have no port.
+    A port `key="{other}"` makes `key` there a name for `other` here, any other text is a value set once, a number where
+    it is one, as in C++. With `_autoremap="true"` all keys but private ones (`_name`) are shared that have no port.
     """
     shares = TRUTHS.get(text := node.port("_autoremap", "false"))
     if shares is None:
         raise EngineError(f"_autoremap must be true or false, not {text!r}", node)
     remapped: dict[str, tuple[Blackboard, str]] = {}
-    values: dict[str, str] = {}
+    values: dict[str, int | float | str] = {}
     for port, text in node.ports:
         if port == "ID" or port.startswith("_"):
             continue
         key = blackboard_key(port, text)
         if key is None:
-            values[port] = text
+            values[port] = literal(text)
         else:
             remapped[port] = (scope, key)
     return Blackboard(remapped, scope, shares=shares, values=values)

@@ -1,7 +1,7 @@
 """Nodes that wait for the clock: timeout_node.cpp, delay_node.cpp and sleep_node.cpp of BehaviorTree.CPP 4.10.
 
-The clock is read when they are ticked; C++ has a timer thread instead. A Timeout whose child is
-SKIPPED starts its time anew; in C++ it goes on, or ends, by chance.
+The clock is read when they are ticked, and asked for a tick when their time is over; C++ has a timer thread instead. A
+Timeout whose child is SKIPPED starts its time anew; in C++ it goes on, or ends, by chance.
 """
 
 from __future__ import annotations
@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from btlang.engine.build import Site
-from btlang.engine.clock import Clock
+from btlang.engine.clock import SOONEST, Clock
 from btlang.engine.status import RUNNING, SKIPPED, SUCCESS
 
 TYPE_CHECKING = False
@@ -35,6 +35,12 @@ class Stopwatch:
             self.since = self.clock.now
         return self.kept + self.clock.now - self.since >= msec / 1000 - _SLACK
 
+    def wait(self, msec: float) -> int:
+        """RUNNING, with a tick when so much time has passed since it began to run; at most a thousand a second."""
+        assert self.since is not None
+        self.clock.wake_at(self.since + max(msec / 1000, SOONEST) - self.kept)
+        return RUNNING
+
     def halt(self, keep: bool) -> None:
         if not keep:
             self.kept = 0.0
@@ -49,8 +55,9 @@ def sleep(site: Site, children: Sequence[Compiled]) -> Compiled:
     watch = Stopwatch(site.shared.clock)
 
     def tick() -> int:
-        if not watch.reached(msec()):
-            return RUNNING
+        time = msec()
+        if not watch.reached(time):
+            return watch.wait(time)
         watch.halt(False)
         return SUCCESS
 
@@ -64,8 +71,9 @@ def delay(site: Site, children: Sequence[Compiled]) -> Compiled:
     watch = Stopwatch(site.shared.clock)
 
     def tick() -> int:
-        if not watch.reached(msec()):
-            return RUNNING
+        time = msec()
+        if not watch.reached(time):
+            return watch.wait(time)
         status = child()
         if status != RUNNING and status != SKIPPED:
             watch.halt(False)
@@ -92,6 +100,8 @@ def timeout(site: Site, children: Sequence[Compiled]) -> Compiled:
         status = child()
         if status != RUNNING:
             watch.halt(False)
+        elif limit:
+            watch.wait(limit)
         return status
 
     def halt(keep: bool) -> None:

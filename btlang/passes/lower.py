@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 
 from btlang.passes.scope import Scope
-from btlang.passes.scripts import as_number, assignment, behind, comparison, prepared, script
+from btlang.passes.scripts import assignment, behind, comparison, prepared, script
 from btlang.record import Record
 from btlang.text.source import Span
 from btlang.tree import ast
@@ -71,7 +71,7 @@ def _phrase(item: ast.Phrase, _done: list[Lowered], scope: Scope) -> Lowered:
 
 def _name(item: ast.Name, _done: list[Lowered], scope: Scope) -> Lowered:
     """A subtree sees its arguments, and what it needs of the mission's values."""
-    scripts, ports = prepared(item.arguments, scope)
+    scripts, ports = prepared(item.arguments, scope, scope.parameters.get(item.name, {}))
     shared = tuple((key, f"{{{key}}}") for key in scope.free.get(item.name, ()))
     node = Node("SubTree", (), (("ID", item.name), *ports, *shared), span=item.span)
     return Lowered(behind(scripts, node), item.name in scope.skipping and not scripts)
@@ -100,7 +100,7 @@ def _for_each(item: ast.ForEach, done: list[Lowered], scope: Scope) -> Lowered:
     shared = tuple((key, f"{{{key}}}") for key in scope.needs(item.body, [item.key]))
     rounds = []
     for text in item.values:
-        scripts, ports = prepared([(item.key, text)], scope)
+        scripts, ports = prepared([(item.key, text)], scope, {item.key: item.kind})
         rounds.append(behind(scripts, Node("SubTree", (), (("ID", name), *ports, *shared), span=item.span)))
     node = rounds[0] if len(rounds) == 1 else _node("Sequence", rounds, item.span)
     return Lowered(node, done[0].can_skip)
@@ -186,7 +186,7 @@ def _timed(seconds: str, scope: Scope) -> tuple[list[Node], str]:
     if not key:
         return [], str(round(float(seconds) * 1000))
     made = scope.new_key()
-    return [script(f"{as_number(made, key)}; {made} *= 1000")], f"{{{made}}}"
+    return [script(f"{made} := {key} * 1000")], f"{{{made}}}"
 
 
 def _timer(milliseconds: str) -> Node:

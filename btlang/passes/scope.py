@@ -13,14 +13,15 @@ class Scope:
     """State of lowering one mission, whose defined names and types of values are given.
 
     `skipping` are the names whose trees can end SKIPPED, `free` the keys of the mission's values that the tree of a
-    name needs from outside, in their order. `bodies` are the subtrees, used ones before their users. `made` is how many
-    keys of its own it has made.
+    name needs from outside, in their order, `parameters` the types of its parameters. `bodies` are the subtrees, used
+    ones before their users. `made` is how many keys of its own it has made.
     """
 
     def __init__(self, names: Iterable[str], types: Mapping[str, ValueType]) -> None:
         self._types = types
         self.skipping: set[str] = set()
         self.free: dict[str, tuple[str, ...]] = {}
+        self.parameters: dict[str, dict[str, str]] = {}
         self.bodies: list[tuple[str, Node]] = []
         self._names = set(names)
         self.made = 0
@@ -44,6 +45,7 @@ class Scope:
 
     def define(self, definition: ast.Definition, can_skip: bool) -> None:
         """Its name may be used from now on."""
+        self.parameters[definition.name] = dict(definition.parameters)
         self.free[definition.name] = self.needs(definition.body, dict(definition.parameters))
         if can_skip:
             self.skipping.add(definition.name)

@@ -6,7 +6,7 @@ the node that needs it, as a BehaviorTree.CPP port holds either a text or one re
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 
 from btlang.passes.scope import Scope
 from btlang.tree.node import Node
@@ -27,16 +27,33 @@ def behind(scripts: Sequence[Node], node: Node) -> Node:
     return Node("Sequence", (*scripts, node), span=node.span) if scripts else node
 
 
-def prepared(arguments: Iterable[tuple[str, str]], scope: Scope) -> tuple[list[Node], Ports]:
-    """The ports of a node, and what has to be computed before it."""
+def prepared(
+    arguments: Iterable[tuple[str, str]], scope: Scope, kinds: Mapping[str, str] = {}
+) -> tuple[list[Node], Ports]:
+    """The ports of a node, and what has to be computed before it. `kinds` are the types of those of a SubTree."""
     scripts: list[Node] = []
     ports: list[tuple[str, str]] = []
     for name, text in arguments:
         if "{" in text or "}" in text:
             before, text = _port(text, scope)
             scripts += before
+        elif name in kinds and not scope.is_number(kinds[name]) and _would_change(text):
+            before, text = _own_key(text, scope)
+            scripts += before
         ports.append((name, text))
     return scripts, tuple(ports)
+
+
+def _would_change(text: str) -> bool:
+    """Whether a text such as 007 or 2.50 would be another one as the number that it is in a port of a SubTree."""
+    try:
+        return str(int(text)) != text
+    except ValueError:
+        pass
+    try:
+        return float(text) is not None
+    except ValueError:
+        return False
 
 
 def _port(text: str, scope: Scope) -> tuple[list[Node], str]:
@@ -47,14 +64,13 @@ def _port(text: str, scope: Scope) -> tuple[list[Node], str]:
             return [], f"{{{part.key}}}"
         if not (part.startswith("{") and part.endswith("}")):
             return [], part
+    return _own_key(text, scope)
+
+
+def _own_key(text: str, scope: Scope) -> tuple[list[Node], str]:
     scripts, value = concatenated(text, scope)
     key = scope.new_key()
     return [*scripts, script(f"{key} := {value}")], f"{{{key}}}"
-
-
-def as_number(key: str, other: str) -> str:
-    """Gives a key the number of another one, which may hold it as text: ports of a SubTree do."""
-    return f"{key} := 0; {key} = {other}"
 
 
 def assignment(key: str, operation: str, text: str, kind: str, scope: Scope) -> tuple[list[Node], str]:
@@ -64,41 +80,26 @@ def assignment(key: str, operation: str, text: str, kind: str, scope: Scope) -> 
         return scripts, f"{key} := {value}"
     value = _plain_or_key(text)
     if operation == "set":
-        return [], as_number(key, value) if value != text else f"{key} := {value}"
+        return [], f"{key} := {value}"
     sign = "+=" if operation == "increase" else "-="
-    if value == text:
-        return [], f"{key} {sign} {value}"
-    number = scope.new_key()
-    return [], f"{as_number(number, value)}; {key} {sign} {number}"
+    return [], f"{key} {sign} {value}"
 
 
 def comparison(key: str, arguments: Iterable[tuple[str, str]], kind: str, scope: Scope) -> tuple[list[Node], str]:
     """The code of a condition on a key, and what it needs before it."""
     scripts: list[Node] = []
     values: list[tuple[str, str]] = []
-    before = ""
     for way, text in arguments:
         needed, value = ([], _plain_or_key(text)) if scope.is_number(kind) else concatenated(text, scope)
         scripts += needed
         values.append((way, value))
-    if scope.is_number(kind) and any(not _is_number(value) for _, value in values):
-        number = scope.new_key()  # two numbers that are held as texts would be compared as texts
-        before, key = f"{as_number(number, key)}; ", number
-    return scripts, before + " && ".join(f"{key} {OPERATORS[way]} {value}" for way, value in values)
+    return scripts, " && ".join(f"{key} {OPERATORS[way]} {value}" for way, value in values)
 
 
 def _plain_or_key(text: str) -> str:
     """The number that a port text is, or the key that it refers to."""
     [piece] = pieces(text)
     return piece.key if isinstance(piece, Reference) else piece
-
-
-def _is_number(text: str) -> bool:
-    try:
-        float(text)
-    except ValueError:
-        return False
-    return True
 
 
 def concatenated(text: str, scope: Scope) -> tuple[list[Node], str]:
@@ -118,4 +119,6 @@ def concatenated(text: str, scope: Scope) -> tuple[list[Node], str]:
                 terms.append(quote)
             if plain:
                 terms.append(f"'{plain}'")
+    if len(terms) > 1 and not any(term[0] == "'" for term in terms[:2]):
+        terms.insert(0, "''")  # two numbers make no text
     return scripts, " .. ".join(terms) or "''"

@@ -34,13 +34,12 @@ class RosPace(Pace):
         """A period begins now."""
         self._last = self._due = self._time()
 
-    def sleep(self, seconds: float) -> float:
-        """Sleeps through a period, unless it is woken or the run is stopped; returns the seconds that have passed."""
-        self._due += seconds
+    def sleep(self, period: float, wait: float = math.inf) -> float:
+        """Sleeps as Pace does; returns the seconds that have passed."""
         now = self._time()
-        if now >= self._due:
+        if now >= self._due + period:
             self.late += 1
-            self._due = now
+        self._due = max(now, min(self._due + period, self._last + wait))
         while now < self._due and not self._woken and not self._controls.stopped:
             self._controls.wait(min(self._due - now, self._look))
             now = self._time()

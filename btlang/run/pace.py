@@ -40,22 +40,27 @@ class Pace:
             time.sleep(seconds / self._speed)
         return seconds
 
-    def sleep(self, seconds: float) -> float:
+    def sleep(self, period: float, wait: float = math.inf) -> float:
         """Sleeps through a period of so many seconds of the mission; returns how many have passed.
 
-        Those are all of them unless it is woken or the run is stopped.
+        Those are all of them unless it is to `wait` less from the tick's beginning on, is woken, or the run is stopped.
         """
+        seconds = min(period, wait)
         if self._speed == math.inf:
             return seconds
+        began, now = self._due, time.monotonic()
         self._due += seconds / self._speed
-        left = self._due - time.monotonic()
-        if left <= 0:
+        if now >= began + period / self._speed:
             self.late += 1
-            self._due -= left
-        while left > 0:
+            self._due = now
+            return period
+        if now > self._due:
+            self._due = now
+            return (now - began) * self._speed
+        while (left := self._due - now) > 0:
             if self._woken or self._controls.stopped:
-                self._due -= left
+                self._due = now
                 return max(0.0, seconds - left * self._speed)
             self._controls.wait(left)
-            left = self._due - time.monotonic()
+            now = time.monotonic()
         return seconds

@@ -109,9 +109,9 @@ class Runner:
     """Ticks an engine `rate` times a second of the mission until the tree completes.
 
     `speed` is seconds of the mission per second of real time; math.inf does not wait at all. `pace` makes what waits
-    between two ticks, and says how much time has passed. The service `wake` of the
-    engine ends the wait: the next tick comes at once, after the part of the period that has passed. Where the engine
-    has a stopwatch, ticks that take longer than their period are events (Overrun).
+    between two ticks, and says how much time has passed. The next tick comes sooner where a node has told the clock
+    that it is due before the period is over (Clock.due), and at once where the service `wake` of the engine is called.
+    Where the engine has a stopwatch, ticks that take longer than their period are events (Overrun).
 
     A pause suspends the tree (see Engine.suspend) and brakes the robot. Then the time of the mission stands still, and
     so does a simulated world once the robot is at rest.
@@ -206,13 +206,15 @@ class Runner:
             status = self._tick(self._overruns or self._engine)
             if status != RUNNING:
                 return status, ""
-            self._advance(self._pace.sleep(self._period_left()))
+            if self._clock.due > self._clock.now:
+                self._advance(self._pace.sleep(self._period_left(), self._clock.due - self._clock.now))
         return IDLE, "interrupted"
 
     def _tick(self, ticking: Ticked | Overruns) -> int:
         self._suspended = False
         if self._disabled and not getattr(self._engine, "idle", False):
             self._enable()
+        self._clock.due = math.inf
         self._pace.tick_begins()
         status = ticking.tick()
         self.ticks += 1

@@ -36,11 +36,11 @@ _CONDITIONS = (
     ("IsPathValid", (("path", "{path}"),)),
 )
 _CODES = (
-    "count := 3", "count := 3.0", "count := 'a'", "count += 2", "count -= 0.5", "count := 0; count = level",
-    "_1 := 0; _1 = level; count += _1", "_2 := 'a' .. count", "_1 := count", "mood := 'it is'", "mood := ''",
+    "count := 3", "count := 3.0", "count := 'a'", "count += 2", "count -= 0.5", "count := level",
+    "count := level * 1000", "count += level", "_2 := 'a' .. count", "_1 := count", "mood := 'it is'", "mood := ''",
     "mood := count", "mood := 'lab'", "goal := 'lab'", "goal := mood", "limit := 2", "the_mood := 1", "Mood := 1",
 )  # fmt: skip
-_COMPARED = ("count > 1 && count < 3", "count >= 1 && count <= 3", "mood == 'it'", "_1 := 0; _1 = count; _1 == level")
+_COMPARED = ("count > 1 && count < 3", "count >= 1 && count <= 3", "mood == 'it'", "count == level")
 _VALUES = (
     *(("Script", (("code", code),)) for code in _CODES),
     *(("ScriptCondition", (("code", code),)) for code in _COMPARED),
@@ -61,8 +61,8 @@ _COMPUTED = (
     (("_1 := 'a ' .. count",), "Say", "text"),
     (("_2 := mood .. who .. stop",), "Say", "text"),
     (("_1 := 'x'", "_2 := _1 .. ''"), "Say", "text"),
-    (("_1 := 0; _1 = count; _1 *= 1000",), "Sleep", "msec"),
-    (("_3 := 0; _3 = count; _3 *= 1000",), "Sleep", "msec"),
+    (("_1 := count * 1000",), "Sleep", "msec"),
+    (("_3 := count * 1000",), "Sleep", "msec"),
     (("_1 := 'to ' .. goal",), "GoTo", "place"),
 )
 MODELS = (NodeModel("Condition", "IsPathValid"), NodeModel("Action", "FollowPath"))

@@ -1,9 +1,9 @@
 """How fast trees are ticked, beside py_trees: `python -m tests.benchmarks.ticks [--rounds 15]`.
 
-Both run the same tree, with leaves that do nothing, written as each documents it: here functions, and generators for
-what takes time; there behaviours. A tick is `Engine.tick` and `BehaviourTree.tick`. Ratios are those of medians of
-rounds in which all take turns. The last lines are the ratios without a listener; before them stand those with every
-status change sent to the event stream, what depth does to a tick, and what a node costs.
+Both run the same tree, with leaves that do nothing, written as each documents it: here functions, and generators or
+classes for what takes time; there behaviours. A tick is `Engine.tick` and `BehaviourTree.tick`. Ratios are those of
+medians of rounds in which all take turns. The last lines are the ratios without a listener; before them stand those
+with every status change sent to the event stream, what depth does to a tick, and what a node costs.
 """
 
 from __future__ import annotations
@@ -39,11 +39,25 @@ def run() -> Iterator[None]:
         yield
 
 
+class Wait:
+    """An action that never completes, as a class."""
+
+    def start(self) -> None: ...
+
+    def tick(self) -> None: ...
+
+    def halt(self) -> None: ...
+
+
+KEY = "x"
+"""A value of the blackboard that leaves read at each tick."""
 BINDINGS = {
     "Yes": LeafBinding(lambda: True),
     "No": LeafBinding(lambda: False),
     "Act": LeafBinding(lambda: None),
     "Run": LeafBinding(run),
+    "Wait": LeafBinding(Wait),
+    "Keyed": LeafBinding(lambda value: True, {"value": float}),
 }
 
 
@@ -59,6 +73,7 @@ class Answer(py_trees.behaviour.Behaviour):
 
 
 ANSWERS = {"Yes": Status.SUCCESS, "No": Status.FAILURE, "Act": Status.SUCCESS, "Run": Status.RUNNING}
+ANSWERS |= {"Wait": Status.RUNNING, "Keyed": Status.SUCCESS}
 DECORATORS = {
     "Inverter": py_trees.decorators.Inverter,
     "ForceSuccess": py_trees.decorators.FailureIsSuccess,
@@ -118,12 +133,19 @@ TREES: dict[str, tuple[str, Node]] = {
     "T3": (f"reactive guard of {CONDITIONS} conditions", n("ReactiveSequence", *[n("Yes")] * CONDITIONS, n("Run"))),
     "T4": (f"parallel of {RUNNERS} running leaves", n("Parallel", *[n("Run")] * RUNNERS)),
     "T5": (f"sequence of {ACTIONS:,} actions run to the end", n("Sequence", *[n("Act")] * ACTIONS)),
+    "T6": (f"parallel of {RUNNERS} running classes", n("Parallel", *[n("Wait")] * RUNNERS)),
+    "T7": (
+        f"reactive guard of {CONDITIONS} conditions with a port from the blackboard",
+        n("ReactiveSequence", *[Node("Keyed", ports=(("value", f"{{{KEY}}}"),))] * CONDITIONS, n("Run")),
+    ),
 }
 
 
 def engine(root: Node) -> Engine:
     """Without a listener."""
-    return Engine(Tree(root), BINDINGS.get, clock=Clock())
+    made = Engine(Tree(root), BINDINGS.get, clock=Clock())
+    made.blackboard.set(KEY, 1.5)
+    return made
 
 
 def nodes(root: Node) -> Iterator[Node]:
@@ -144,7 +166,9 @@ def compared(root: Node, rounds: int, fresh: bool) -> dict[str, float]:
 
     def traced() -> Callable[[], object]:
         stream = EventStream(told.append)
-        return traced_engine(Tree(root), BINDINGS.get, clock=Clock(), events=stream).tick
+        made = traced_engine(Tree(root), BINDINGS.get, clock=Clock(), events=stream)
+        made.blackboard.set(KEY, 1.5)
+        return made.tick
 
     told: list[object] = []
     makers: dict[str, Callable[[], Callable[[], object]]] = {

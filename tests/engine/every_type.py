@@ -14,7 +14,7 @@ RUNS: dict[str, tuple[str, dict[str, str]]] = {
     "Fallback": ("f R", {}),
     "AsyncSequence": ("k R", {}),
     "AsyncFallback": ("k R", {}),
-    "SequenceWithMemory": ("s R", {}),
+    "SequenceWithMemory": ("k R", {}),
     "Parallel": ("R s R", {}),
     "ParallelAll": ("R f R", {}),
     "ReactiveSequence": ("s R", {}),

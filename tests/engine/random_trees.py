@@ -46,6 +46,7 @@ def _parents(children: st.SearchStrategy[Node]) -> st.SearchStrategy[Node]:
         st.sampled_from(IN_ORDER + REACTIVE).flatmap(many),
         st.sampled_from(REACTIVE).flatmap(many),
         st.lists(children, min_size=1, max_size=4).flatmap(parallel),
+        many("Parallel", success_count=-1, failure_count=1),
         many("ParallelAll", max_failures=1),
         branches.map(lambda c: n("IfThenElse", *c)),
         branches.map(lambda c: n("WhileDoElse", *c)),

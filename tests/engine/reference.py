@@ -195,7 +195,8 @@ class Reference(MoreNodes):
                 return RUNNING
             if result == passes:
                 self.at += 1
-                if id.startswith("Async") and before == IDLE and self.at < len(self.children):
+                breathes = id.startswith("Async") or id == "SequenceWithMemory"
+                if breathes and before == IDLE and self.at < len(self.children):
                     return RUNNING
             elif result == SKIPPED:
                 self.at += 1

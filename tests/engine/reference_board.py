@@ -24,7 +24,7 @@ class Board:
             elif text.startswith("{"):
                 board.names[port] = text.strip("{}")
             elif port != "ID" and not port.startswith("_"):
-                board.values[port] = text
+                board.values[port] = int(text) if text.isdigit() else text
                 board.counts[port] = 1
         return board
 

@@ -22,7 +22,7 @@ def test_a_halted_sequence_starts_anew() -> None:
 def test_a_halted_sequence_with_memory_keeps_its_place() -> None:
     world = World()
     engine = world.engine(n("SequenceWithMemory", world.fn("A", "s"), world.cls("B", "r")))
-    engine.tick()
+    assert world.ticks(engine, 2) == "rr"
     engine.halt()
     engine.tick()
     assert world.log == ["A", "B.start", "B.halt", "B.start"]
@@ -42,7 +42,7 @@ def suspended(build: Node, world: World, before: int, after: int) -> tuple[str, 
 def test_suspended_sequences_keep_their_place(id: str) -> None:
     world = World()
     build = n(id, world.fn("A", "s"), world.cls("B", "rs"), world.fn("C", "s"))
-    before = 2 if id == "AsyncSequence" else 1
+    before = 1 if id == "Sequence" else 2
     assert suspended(build, world, before, 1) == ("s", ["B.start", "C"])
 
 

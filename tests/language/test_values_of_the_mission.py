@@ -85,6 +85,12 @@ def test_giving_a_value(text: str, node: str) -> None:
         ("set pause to 0.3 s; say a then wait {pause} then say b", ["a", "b"]),
         ("enough means x is above 2\nset x to 3; if enough, say yes", ["yes"]),
         ("count is increase x by 1\nset x to 0; count 3 times; say {x}", ["3"]),
+        (
+            'call {who} is say "agent {who}" then say {who}\ncall James; call "007"; call "2.50"; call "3"',
+            ["agent James", "James", "agent 007", "007", "agent 2.50", "2.50", "agent 3", "3"],
+        ),
+        ('for each name in "007", "it": say {name}', ["007", "it"]),
+        ("set n to 2; set n to {n}; say {n}", ["2"]),
     ],
 )
 def test_running(text: str, expected: list[str]) -> None:

@@ -9,6 +9,7 @@ process pace it. A tick sees all that the step before it told, and a step all th
 from __future__ import annotations
 
 import sys
+from math import inf
 from time import monotonic
 
 import pytest
@@ -42,8 +43,8 @@ class LockStep(RosPace):
         self._done = message.data
         self._controls.wake()
 
-    def sleep(self, seconds: float) -> float:
-        due = self._last + seconds
+    def sleep(self, period: float, wait: float = inf) -> float:
+        due = self._last + min(period, wait)
         self._allowed.publish(Float64(data=due))
         while (now := self._done) < due - _EXACT and not self._woken and not self._controls.stopped:
             self._controls.wait(None)

@@ -98,6 +98,11 @@ class Uses:
         given = self._given.get(model.id)
         return model if given is None else model.replace(ports=tuple(p for p in model.ports if p.name in given))
 
+    def port_types(self, node_id: str) -> dict[str, str]:
+        """The C++ types of the ports of such a node; of any other none are told."""
+        ports = self._model(node_id).ports if node_id in self._ports else ()
+        return {port.name: port.type for port in ports}
+
     def _model(self, node_id: str) -> NodeModel:
         model = self._known.get(node_id)
         if model is None or model.kind not in KINDS:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from btlang.backends.btcpp.markup import INDENT, Markers, margin
 from btlang.backends.btcpp.models import Uses, model_part
 from btlang.backends.btcpp.names import tree_ids
+from btlang.backends.btcpp.typed import typed
 from btlang.frontends.btcpp.dialect import told_by_shapes
 from btlang.frontends.btcpp.file import SPOKEN_NAME
 from btlang.frontends.btcpp.models import why_no_port
@@ -47,6 +48,8 @@ class _Writer:
                 self._markers.wrong("name", why_no_port("name"), node.span)
             self._kind = self._uses.kind
             self._ids = tree_ids(tree, self._uses.ids, dialect)
+            if dialect == 4:
+                self._tree = typed(tree, self._uses.port_types)
         else:
             kinds = {model.id: model.kind for model in tree.models}
             self._kind = lambda node_id: kinds.get(node_id, "")  # any other tag is told by the origin

@@ -14,7 +14,7 @@ from btlang.tree.node import Node
 from btlang.vocabulary.references import plain
 
 _TOKEN = re.compile(
-    r"\s*('[^']*'|[^\W\d]\w*|_\w+|-?\d+(?:\.\d+)?(?:e[+-]?\d+)?|:=|\+=|-=|\*=|==|>=|<=|&&|\.\.|[<>=;])", re.DOTALL
+    r"\s*('[^']*'|[^\W\d]\w*|_\w+|-?\d+(?:\.\d+)?(?:e[+-]?\d+)?|:=|\+=|-=|==|>=|<=|&&|\.\.|[<>*;])", re.DOTALL
 )
 _NUMBER = re.compile(r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?")
 _KEY = re.compile(r"[^\W\d]\w*|_\w+")
@@ -23,19 +23,22 @@ _SIGNS = {"+=": "increase", "-=": "decrease"}
 
 
 class Given(Record):
-    """What a Script gives a key: `operation` is that of ast.Assign, or "time" for milliseconds of a time in seconds."""
+    """What a Script gives a key: `operation` is that of ast.Assign, or "time" for milliseconds of a time in seconds.
+
+    `is_number` is None where the code does not tell, as it only copies a value.
+    """
 
     key: str
     operation: str
-    is_number: bool
+    is_number: bool | None
     text: str
 
 
 class Comparison(Record):
-    """What a ScriptCondition compares; `arguments` as in ast.Compared."""
+    """What a ScriptCondition compares; `arguments` as in ast.Compared, `is_number` as in Given."""
 
     key: str
-    is_number: bool
+    is_number: bool | None
     arguments: tuple[tuple[str, str], ...]
 
 
@@ -44,16 +47,16 @@ def given_by(code: str, texts: Mapping[str, str]) -> Given | None:
     match _statements(code):
         case [[key, ":=", value]] if _NUMBER.fullmatch(value):
             return Given(key, "set", True, value)
+        case [[key, ":=", other]] if _KEY.fullmatch(other) and other not in texts:
+            return Given(key, "set", None, f"{{{other}}}")
+        case [[key, ":=", other, "*", "1000"]] if _KEY.fullmatch(other):
+            return Given(key, "time", True, f"{{{other}}}")
         case [[key, ":=", *terms]]:
             text = _joined(terms, texts)
             return Given(key, "set", False, text) if text is not None else None
         case [[key, ("+=" | "-=") as sign, value]] if _NUMBER.fullmatch(value):
             return Given(key, _SIGNS[sign], True, value)
-        case [[key, ":=", "0"], [same, "=", other]] if key == same and _KEY.fullmatch(other):
-            return Given(key, "set", True, f"{{{other}}}")
-        case [[key, ":=", "0"], [same, "=", other], [again, "*=", "1000"]] if key == same == again:
-            return Given(key, "time", True, f"{{{other}}}")
-        case [[made, ":=", "0"], [same, "=", other], [key, ("+=" | "-=") as sign, used]] if made == same == used:
+        case [[key, ("+=" | "-=") as sign, other]] if _KEY.fullmatch(other):
             return Given(key, _SIGNS[sign], True, f"{{{other}}}")
     return None
 
@@ -61,31 +64,28 @@ def given_by(code: str, texts: Mapping[str, str]) -> Given | None:
 def compared_by(code: str, texts: Mapping[str, str]) -> Comparison | None:
     """The comparison of a ScriptCondition."""
     statements = _statements(code)
-    renamed = ""
-    match statements:
-        case [[made, ":=", "0"], [same, "=", key], _] if made == same:
-            renamed = key
-        case [_]:
-            pass
-        case _:
-            return None
+    if len(statements) != 1:
+        return None
     arguments: list[tuple[str, str]] = []
     keys: set[str] = set()
-    numbers: set[bool] = set()
-    for part in _split(statements[-1], "&&"):
+    numbers: set[bool | None] = set()
+    for part in _split(statements[0], "&&"):
         if len(part) < 3:
             return None
         key, sign, *terms = part
-        is_number = bool(renamed) or (len(terms) == 1 and _NUMBER.fullmatch(terms[0]) is not None)
-        text = terms[0] if len(terms) == 1 and _NUMBER.fullmatch(terms[0]) else _joined(terms, texts)
+        is_number: bool | None = len(terms) == 1 and _NUMBER.fullmatch(terms[0]) is not None
+        text = terms[0] if is_number else _joined(terms, texts)
         if sign not in _WAYS or text is None:
             return None
+        if len(terms) == 1 and _KEY.fullmatch(terms[0]) and terms[0] not in texts:
+            is_number = None
         arguments.append((_WAYS[sign], text))
         keys.add(key)
         numbers.add(is_number)
-    if len(keys) != 1 or len(numbers) != 1:
+    told = numbers - {None}
+    if len(keys) != 1 or len(told) > 1:
         return None
-    return Comparison(renamed or keys.pop(), numbers.pop(), tuple(arguments))
+    return Comparison(keys.pop(), told.pop() if told else None, tuple(arguments))
 
 
 class Computed(Record):

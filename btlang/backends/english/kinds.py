@@ -119,13 +119,13 @@ class Kinds:
             self._need(texts[key], "duration", own)
         if node.id == "Script" and (given := given_by(node.port("code"), texts)) is not None:
             value = self._value(given.key, own)
-            self._sorts.setdefault(value, set()).add(given.is_number)
+            self._sort(value, given.is_number)
             self._give(value, given.text, own, {}, given.is_number)
             if given.operation == "time":
                 self._need(given.text, "duration", own)
         elif node.id == "ScriptCondition" and (found := compared_by(node.port("code"), texts)) is not None:
             value = self._value(found.key, own)
-            self._sorts.setdefault(value, set()).add(found.is_number)
+            self._sort(value, found.is_number)
             for _, text in found.arguments:
                 self._give(value, text, own, {}, found.is_number)
         elif node.id == "SubTree" and node.port("ID") in self._names:
@@ -141,13 +141,22 @@ class Kinds:
                 if name in types:
                     self._need(text, types[name], own)
 
+    def _sort(self, value: Value, is_number: bool | None) -> None:
+        if is_number is not None:
+            self._sorts.setdefault(value, set()).add(is_number)
+
     def _value(self, key: str, own: Mapping[str, str]) -> Value:
         value = own.get(key, ""), key
         self._groups.setdefault(value, [value])
         return value
 
     def _give(
-        self, value: Value, text: str, own: Mapping[str, str], texts: Mapping[str, str], is_number: bool = False
+        self,
+        value: Value,
+        text: str,
+        own: Mapping[str, str],
+        texts: Mapping[str, str],
+        is_number: bool | None = False,
     ) -> None:
         self._groups.setdefault(value, [value])
         key = text[1:-1] if text[:1] == "{" else ""

@@ -10,24 +10,31 @@ from btlang.backends.py_trees.node import FAILURE, RUNNING, SKIPPED, SUCCESS, As
 
 
 class InOrder(Node):
-    """One child after the other at the status `passes`, from the one that was reached."""
+    """One child after the other at the status `passes`, from the one that was reached.
+
+    One that `remembers` goes on with the child that failed or was stopped, and is RUNNING after each child that passed
+    at once.
+    """
 
     passes = SUCCESS
     remembers = False
     index = skipped = 0
+    waiting = -1  # the child that was RUNNING at the last tick
 
     def halt(self, keep: bool) -> None:
         if self.index < len(self.children):
             halt(self.children[self.index], keep)
         if not keep:
-            self.skipped = 0
+            self.skipped, self.waiting = 0, -1
             if not self.remembers:
                 self.index = 0
 
     def run(self) -> Asking:
         while self.index < len(self.children):
             status = yield from self.ask(self.children[self.index])
+            waited, self.waiting = self.waiting == self.index, -1
             if status == RUNNING:
+                self.waiting = self.index
                 return RUNNING
             if status == SKIPPED:
                 halt(self.children[self.index])
@@ -38,6 +45,9 @@ class InOrder(Node):
                     self.index = 0
                 return status
             self.index += 1
+            at_once = status == self.passes and not waited
+            if self.remembers and at_once and self.index < len(self.children):
+                return RUNNING
         skipped, self.skipped, self.index = self.skipped, 0, 0
         return SKIPPED if skipped == len(self.children) else self.passes
 
@@ -59,7 +69,7 @@ class SkippableFallback(InOrder, composites.Selector):
 
 
 class SequenceWithMemory(SkippableSequence):
-    """A sequence that goes on with the child that failed or was stopped."""
+    """SequenceWithMemory of the engine."""
 
     remembers = True
 

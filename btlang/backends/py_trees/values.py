@@ -22,7 +22,7 @@ _STATUSES = {RUNNING: Status.RUNNING, SUCCESS: Status.SUCCESS, FAILURE: Status.F
 
 
 class _Clock:
-    """Time as the engine asks for it."""
+    """Time as the engine asks for it. Whoever ticks the tree knows nothing of when it is due."""
 
     def __init__(self, now: Callable[[], float]) -> None:
         self._now = now
@@ -30,6 +30,11 @@ class _Clock:
     @property
     def now(self) -> float:
         return self._now()
+
+    def wake_at(self, time: float) -> None:
+        """Does nothing."""
+
+    leaf_wake_at = wake_at
 
 
 class EngineLeaf(Node):

@@ -94,6 +94,8 @@ class NodeReader:
                         skipped = -1
                     else:
                         settled[node_id] = tag
+            if skipped == 0 and "ID" in flat and self._dialect == 3:
+                skipped = -1
             if skipped >= 0 and "name" in flat:
                 if flat[skipped] == "name" and (name := flat[skipped + 1]) and flat.count("name") == 1:
                     skipped += 2
@@ -138,6 +140,8 @@ class NodeReader:
             node_id = "SubTree"
         node_id = TO_4.get(node_id, node_id)
         name = attributes.pop("name", "")
+        if self._dialect == 3 and node_id in IN_3:
+            attributes.pop("ID", None)  # which says again what node it is
         if node_id == "SubTree":
             ports = self._subtree(attributes, tag == "SubTreePlus")
         else:

@@ -1,0 +1,90 @@
+// The node Whenever of btlang for BehaviorTree.CPP 4.10: condition, reaction, work.
+//
+//   CMakeLists.txt   find_package(behaviortree_cpp REQUIRED)
+//                    target_link_libraries(my_robot behaviortree_cpp::behaviortree_cpp)  # without ROS 2: BT::behaviortree_cpp
+//   once             factory.registerNodeType<btlang::Whenever>("Whenever");
+//
+// Each time the condition becomes true (true at the start counts too) the work is halted, the reaction is ticked until it
+// completes, and then the work goes on. The node ends with the status of the work, or fails where the reaction fails. The
+// condition must have been false before it counts again.
+//
+// BehaviorTree.CPP cannot suspend a node: work that was halted starts anew. Where it must keep its place, make it a
+// SequenceWithMemory.
+
+#pragma once
+
+#include <string>
+
+#include <behaviortree_cpp/bt_factory.h>
+#include <behaviortree_cpp/control_node.h>
+
+namespace btlang
+{
+class Whenever : public BT::ControlNode
+{
+public:
+  explicit Whenever(const std::string& name) : BT::ControlNode(name, {})
+  {}
+
+  void halt() override
+  {
+    armed_ = true;
+    reacting_ = false;
+    BT::ControlNode::halt();
+  }
+
+private:
+  BT::NodeStatus tick() override
+  {
+    if(children_nodes_.size() != 3)
+    {
+      throw BT::LogicError("Whenever has three children: condition, reaction, work");
+    }
+    setStatus(BT::NodeStatus::RUNNING);
+
+    const BT::NodeStatus asked = children_nodes_[0]->executeTick();
+    if(asked != BT::NodeStatus::RUNNING)
+    {
+      haltChild(0);
+    }
+    if(asked != BT::NodeStatus::SUCCESS)
+    {
+      armed_ = true;
+    }
+    else if(armed_ && !reacting_)
+    {
+      armed_ = false;
+      reacting_ = true;
+      haltChild(2);
+    }
+
+    if(reacting_)
+    {
+      const BT::NodeStatus reaction = children_nodes_[1]->executeTick();
+      if(reaction == BT::NodeStatus::RUNNING)
+      {
+        return reaction;
+      }
+      reacting_ = false;
+      haltChild(1);
+      if(reaction == BT::NodeStatus::FAILURE)
+      {
+        return ended(reaction);
+      }
+    }
+
+    const BT::NodeStatus work = children_nodes_[2]->executeTick();
+    return work == BT::NodeStatus::RUNNING ? work : ended(work);
+  }
+
+  BT::NodeStatus ended(BT::NodeStatus status)
+  {
+    armed_ = true;
+    resetChildren();
+    return status;
+  }
+
+  bool armed_ = true;      // the condition has been false since it last counted
+  bool reacting_ = false;  // the reaction is under way
+};
+}  // namespace btlang
