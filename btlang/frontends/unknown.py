@@ -226,8 +226,8 @@ def _unknown_phrase(
     is_node = text.words[at] in (phrase for role in NODE_ROLES for phrase in vocabulary.roles[role])
     if is_node and meant is not None and meant.meaning.entry is not None:  # `do wave`
         rest = text.span(at + 1, meant.last).text
-        whole = text.span(at, meant.last)
-        return diagnostic("BT010", span, fix=(whole, rest), words=span.text, help=nearest_known([rest]))
+        head = Span(text.source, text.starts[at], text.starts[at + 1])
+        return diagnostic("BT010", span, fix=(head, ""), words=span.text, help=nearest_known([rest]))
     node = misread_node(text, at, vocabulary) if is_node else None
     if node is not None:
         advice = f"A node by its id: {' or '.join(node[1])}"
