@@ -1,4 +1,4 @@
-"""Writes `english.words.txt`, the words of correct English, and their licence, from Debian's package `scowl`.
+"""Writes `english.words`, the words of correct English, and their licence, from Debian's package `scowl`.
 
     apt-get download scowl && dpkg -x scowl_*.deb FOLDER
     python keywords/make_words.py FOLDER
@@ -13,7 +13,7 @@ import re
 import sys
 from pathlib import Path
 
-WORDS = Path(__file__).with_name("english.words.txt")
+WORDS = Path(__file__).with_name("english.words")
 LICENCE = WORDS.with_name("english.words.license")
 LEVELS = {"words": 40, "upper": 40, "proper-names": 50}
 """How common words of a category must be: SCOWL's levels go from 10, the most common, to 95."""

@@ -11,6 +11,7 @@ not be tried is not proposed.
 
 from __future__ import annotations
 
+import re
 from bisect import bisect_left, bisect_right
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
@@ -99,6 +100,8 @@ class _Corrections:
         for problem in problems:
             if problem.is_error:
                 self._beside.setdefault(_sentence(self._text, problem.span.start), []).append(problem)
+        for beside in self._beside.values():
+            beside.sort(key=lambda problem: problem.span.start)
 
     def corrected(self) -> list[Diagnostic]:
         """Each problem once, in the order given."""
@@ -107,7 +110,7 @@ class _Corrections:
     def _improved(self, problem: Diagnostic) -> Diagnostic:
         change = self._cure(problem) if self._budget > 0 else None
         if change is None:
-            return problem.replace(fix=None)
+            return problem.replace(fix=None)  # type: ignore[no-any-return]
         proposed = _proposed(problem)
         if proposed is not None and self._with(change).lower() == self._with(proposed).lower():
             return problem
@@ -196,11 +199,18 @@ class _Corrections:
 
     def _changes_for(self, problem: Diagnostic, trial: _Trial) -> list[tuple[int, Change]]:
         suspects = self._suspects(problem, trial.own)
-        proposed = _proposed(problem)
+        proposed = self._before_article(_proposed(problem))
         strangers = [word for word in suspects if self._text.words[word] not in self._known]
         changes = [*self._changes_of_names(suspects), *self._changes(strangers), *([proposed] if proposed else ())]
         allowed = [change for change in dict.fromkeys(changes) if self._is_respelling(change)]
         return sorted(((self._far(change), change) for change in allowed), key=lambda pair: pair[0])
+
+    def _before_article(self, change: Change | None) -> Change | None:
+        """Words that are put before a word are put before its article."""
+        if change is None or change[0] < change[1]:
+            return change
+        start, _ = self._text.articles.get(bisect_left(self._text.starts, change[0]), change[:2])
+        return start, start, change[2]
 
     def _is_respelling(self, change: Change) -> bool:
         start, end, words = change
@@ -349,7 +359,7 @@ def _with_fix(problem: Diagnostic, change: Change) -> Diagnostic:
     arguments = dict(problem.arguments)
     told = arguments.get("help", "")
     is_within = problem.span.start <= start <= end <= problem.span.end
-    if problem.code in _UNKNOWN and is_within and words not in told and '"' not in told:
+    if problem.code in _UNKNOWN and is_within and not re.search(rf"\b{re.escape(words)}\b", told) and '"' not in told:
         arguments["help"] = nearest_known([words])
     fix = Span(problem.span.source, start, end), words
     return Diagnostic(problem.code, problem.span, tuple(arguments.items()), problem.notes, fix)

@@ -1,4 +1,4 @@
-"""The rule that the words of a correction keep: they differ by spelling from those that were written, not by meaning."""
+"""The rule for the words of a correction: they differ from those that were written by spelling, not by meaning."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator
 from functools import lru_cache
 
-from btlang.text.spelling import is_misspelling
+from btlang.text.spelling import distance, fewest_slips, is_misspelling
 from btlang.vocabulary.correct_words import correct_words
 from btlang.vocabulary.trie import SLOTS, TrieNode
 from btlang.vocabulary.values import END
@@ -18,14 +18,17 @@ _PIECE = re.compile(r"[^\W\d_]+(?:['\N{RIGHT SINGLE QUOTATION MARK}][^\W\d_]+)?|
 def is_respelling(written: str, meant: str, vocabulary: Vocabulary, before: str = "") -> bool:
     """Whether two texts say the same but for slips in words that are no words; `before` is the word before them.
 
-    It is also where only marks or blanks differ, where words are added to none, or to a number. A word of correct
-    English is never changed, and no word that might as well be a negation or a word for how many.
+    They also do where only marks or blanks differ, where words are added to none, or to a number, or where the word of
+    a node by its id is taken away (`do wave`). A word of correct English is never changed, nor one that might as well
+    be a negation or a word for how many.
     """
     was, now = _PIECE.findall(written.lower()), _PIECE.findall(meant.lower())
+    if was == now and not vocabulary.quantifiers.isdisjoint(was):
+        return False  # quotes round `hello never wave` would change what it means
     if was == now or not any(piece[0].isalpha() for piece in was):
         return [piece for piece in now if piece[0].isdigit()] == [piece for piece in was if piece[0].isdigit()]
-    if not now:
-        return any(" ".join(was) in vocabulary.roles[role] for role in NODE_ROLES)  # `do wave`
+    if was[1:] == now and any(was[0] in vocabulary.roles[role] for role in NODE_ROLES):
+        return bool(now)
     if len(was) != len(now):
         if min(len(was), len(now)) > 1 or not _are_slips(was, vocabulary, before):
             return False
@@ -46,8 +49,23 @@ def _are_slips(words: list[str], vocabulary: Vocabulary, before: str) -> bool:
 
 
 def _is_slip(written: str, meant: str, vocabulary: Vocabulary) -> bool:
-    unread = vocabulary.quantifiers - words_of(vocabulary)  # those that can be read are tried like any word
-    return is_misspelling(written, meant, unread, correct_words(vocabulary.language))
+    if distance(written, meant) > 2 * _fewest_slips(written, vocabulary.language):
+        return False  # another word of English is nearer
+    return is_misspelling(written, meant, _turned(written, vocabulary))
+
+
+@lru_cache(maxsize=1024)  # mistakes repeat
+def _fewest_slips(written: str, language: str) -> int:
+    return fewest_slips(written, correct_words(language))
+
+
+@lru_cache(maxsize=1024)
+def _turned(written: str, vocabulary: Vocabulary) -> frozenset[str]:
+    """What would turn the meaning round, if it was meant: negations, and those with a word that they run into."""
+    right, known, quantifiers = correct_words(vocabulary.language), words_of(vocabulary), vocabulary.quantifiers
+    apart = ((written[:at], written[at:]) for at in range(1, len(written)))  # `nowave`
+    found = (pair for pair in apart if not quantifiers.isdisjoint(pair) and all(p in right or p in known for p in pair))
+    return (quantifiers - known).union(map(" ".join, found))  # those that can be read are tried like any word
 
 
 @lru_cache(maxsize=4)

@@ -53,15 +53,22 @@ def distance(written: str, meant: str) -> int:
     return 2 * OSA.distance(written, meant) - (sorted(written) == sorted(meant) and written != meant)
 
 
-def is_misspelling(written: str, meant: str, others: Iterable[str], right: Iterable[str]) -> bool:
-    """Whether so few slips make of one word the other: none of the others is as near, and no right word has fewer."""
+def is_misspelling(written: str, meant: str, others: Iterable[str]) -> bool:
+    """Whether few slips make of one word the other, and none of the others is as near."""
+    from rapidfuzz.distance import OSA
+
+    is_near = OSA.distance(written, meant) <= _most_slips(written)
+    return is_near and not any(distance(written, other) <= distance(written, meant) for other in others)
+
+
+def fewest_slips(written: str, known: Iterable[str]) -> int:
+    """How many slips away the nearest of the known words is; as many as a word may have where none is nearer."""
     from rapidfuzz import process
     from rapidfuzz.distance import OSA
 
-    far = OSA.distance(written, meant)
-    if far > _most_slips(written) or any(distance(written, o) <= distance(written, meant) for o in others):
-        return False
-    return far <= 1 or process.extractOne(written, right, scorer=OSA.distance, score_cutoff=far - 1) is None
+    most = _most_slips(written)
+    found = process.extractOne(written, known, scorer=OSA.distance, score_cutoff=most - 1) if most > 1 else None
+    return most if found is None else int(found[1])
 
 
 def respellings(written: str, known: Iterable[str], limit: int = 8) -> list[str]:

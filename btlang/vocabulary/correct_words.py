@@ -11,7 +11,7 @@ from btlang.vocabulary.shipped import shipped
 @cache
 def correct_words(language: str) -> frozenset[str]:
     """Those of a language, in lower case; none where no list of them ships (`keywords/make_words.py` makes them)."""
-    path = shipped("keywords", f"{language}.words.txt")
+    path = shipped("keywords", f"{language}.words")
     if not language.isalpha() or not os.path.exists(path):
         return frozenset()
     with open(path, encoding="utf-8") as file:

@@ -279,8 +279,9 @@ def _compared(name: str, patterns: Iterable[str]) -> list[str]:
 
 
 _LANGUAGE: dict[str, Any] = {
-    "language": "", "articles": [], "politeness": [], "unit_joiner": [], "quantifiers": [], "halting": [], "roles": {}, "about": {}, "comparisons": {}, "counts": {},
-    "negations": {}, "pronouns": {}, "nodes": {}, "meanings": {}, "numbers": {}, "multipliers": {}, "fractions": {},
+    "language": "", "articles": [], "politeness": [], "unit_joiner": [], "quantifiers": [], "halting": [],
+    "roles": {}, "about": {}, "comparisons": {}, "counts": {}, "negations": {},
+    "pronouns": {}, "nodes": {}, "meanings": {}, "numbers": {}, "multipliers": {}, "fractions": {},
 }  # fmt: skip
 
 
