@@ -26,7 +26,7 @@ FILES = sorted(
     for path in (ROOT / folder).rglob("*")
     if path.is_file()
     and not {"__pycache__", "samples"} & set(path.relative_to(ROOT).parts)
-    and path.suffix not in (".svg", ".png", ".gif")
+    and path.suffix not in (".svg", ".png", ".gif", ".words")
 )
 PAGES = [*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")]
 MODULES = [path for path in FILES if path.suffix == ".py"]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 
 from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.text.output import CYAN, PLAIN, RED, YELLOW, one_line
@@ -58,7 +59,8 @@ def mended_line(diagnostic: Diagnostic) -> str:
     shown = mended  # a hint that has the words together with the one before them says enough
     if before.strip():
         shown = words if span.start < diagnostic.span.start else f"{before.split()[-1]} {words}"
-    return "" if len(mended) > _WIDEST or shown in diagnostic.hint else mended
+    is_told = re.search(rf"{re.escape(shown)}(?! \{{)", diagnostic.hint)  # `go to {place}` does not tell `go to`
+    return "" if len(mended) > _WIDEST or is_told else mended
 
 
 def underlined(span: Span, colour: str = "") -> list[str]:

@@ -241,9 +241,9 @@ class Matcher(ConditionScan):
             self._next(token, True)
             self._next(following, True)
         elif following.kind in ("count", "for", "within", "if_possible", "provided"):
-            words = self._words(following)
-            advice = f"Take it away; for more than the command before it use brackets: ( ... ) {words}"
-            self._fail("BT032", self._span(token), (self._span(token), ""), place=f"before '{words}'", advice=advice)
+            fix = (self._span(token), "") if self._is_alone() else None
+            advice = "Take it away." if fix else self._both_readings(following)
+            self._fail("BT032", self._span(token), fix, place=f"before '{self._words(following)}'", advice=advice)
         else:
             self._frames[-1].connective(self._emit("COMMA", token))
             self._next(token, True)
@@ -317,10 +317,11 @@ class Matcher(ConditionScan):
         self._fail("BT026", self._span(token))
 
     def _close(self, token: Token) -> None:
+        is_alone = self._is_alone()
         self._close_forms()
         frame = self._frames[-1]
         if frame.kind != "bracket":
-            self._fail("BT024", self._span(token), (self._span(token), ""))
+            self._fail("BT024", self._span(token), (self._span(token), "") if is_alone else None)
             return
         frame.close_chain()
         self._frames.pop()

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from importlib import import_module
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
@@ -24,6 +24,7 @@ PARSERS = {
     "lark": "btlang.frontends.lark_parser",  # imported only when asked for
 }
 DEFAULT_PARSER = "shunting-yard"
+_PASSES = "btlang.passes"
 
 
 class Reading(Record):
@@ -106,14 +107,23 @@ class _Reader:
         if not lexer.tokens and not lexer.names.ends and not problems:
             problems = [diagnostic("BT005", Span(source, 0, 0), example="move forward 1 m")]
         is_broken = any(problem.is_error for problem in problems)
-        if is_broken and self._suggest:
-            from btlang.frontends.respelling import with_respellings  # most missions need none
+        if is_broken:
+            from btlang.frontends.corrections import corrected  # most missions need none
 
-            problems = with_respellings(lexer, problems)
+            problems = corrected(lexer, problems, self._errors if self._suggest else None)
         self.problems += problems
         if is_broken:
             return Included(_names_only(source, lexer), frozenset(lexer.conditions), lexer.names.known)
         return Included(self._mission(source, lexer, matcher), frozenset(lexer.conditions), lexer.names.known)
+
+    def _errors(self, lexer: Lexer, matcher: Matcher) -> Iterable[Diagnostic]:
+        """What is wrong with a text that can be read, for the corrections of one that cannot."""
+        try:
+            mission = self._mission(lexer.text.source, lexer, matcher)
+            import_module(_PASSES).compile_mission(mission, self._vocabulary, needs_command=False)
+        except MissionError as error:
+            return error.diagnostics
+        return ()
 
     def _mission(self, source: Source, lexer: Lexer, matcher: Matcher) -> Mission:
         parse = import_module(PARSERS[self._parser]).parse

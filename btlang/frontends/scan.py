@@ -11,6 +11,8 @@ from btlang.text.source import Source, Span
 
 ENDS = frozenset(("newline", "semi", "close", "dedent", "end"))
 _CLOSES_LINE = frozenset(("newline", "indent", "dedent", "end"))
+_STARTS_STATEMENT = frozenset(("newline", "semi", "indent", "dedent", "open", "define"))
+_COMMANDS = frozenset(("command", "wait", "nothing", "fail", "open"))
 _FOUND = {"newline": "the line ends", "semi": "the sentence ends", "close": "the bracket closes"}
 
 
@@ -58,6 +60,28 @@ class Scan:
         """A fix: the word of a role put before a token."""
         return Span(self.source, token.start, token.start), f"{self._word(role)} "
 
+    def _is_alone(self) -> bool:
+        """Whether one command stands before this place in its bracket: what comes can be about nothing else."""
+        frame = self._frames[-1]
+        return frame.is_group and frame.last is None
+
+    def _both_readings(self, form: Token) -> str:
+        """What a form behind a comma may be about, as two texts: the command before it, or all in this bracket."""
+        first = last = self._at
+        depth = 0
+        while first and (depth or self._raw[first - 1].kind not in _STARTS_STATEMENT):
+            first -= 1
+            depth += (self._raw[first].kind == "close") - (self._raw[first].kind == "open")
+            if not depth and last == self._at and self._raw[first].kind in _COMMANDS:
+                last = first
+        end = form.end
+        if form.kind == "provided":
+            end = next(token.start for token in self._raw[self._at :] if token.kind in ENDS)
+        text, start, command = self.source.text, self._raw[first].start, self._raw[last].start
+        before, form_words = text[start : self._raw[self._at].start], text[form.start : end].strip()
+        one = f"{before[: command - start]}({before[command - start :]} {form_words})"
+        return f"Write which you mean: {one}, or: ({before}) {form_words}"
+
     def _fail(self, code: str, span: Span, fix: tuple[Span, str] | None = None, **arguments: str) -> None:
         self.problems.append(diagnostic(code, span, (), fix, **arguments))
         self.failed_at.append(self._at)
@@ -84,14 +108,14 @@ class Scan:
         frame = self._frames[-1]
         before = self._raw[self._at - 1] if self._at else None
         wanted = "condition" if frame.is_condition else "command"
-        starts = before is None or before.kind in ("newline", "semi", "indent", "dedent", "open", "define")
+        starts = before is None or before.kind in _STARTS_STATEMENT
         if starts and token.kind in ENDS:
             self._empty(token, before)
         elif token.kind == "colon":
             self._fail("BT026", self._span(token))
         elif starts and token.kind == "comma":
             self._fail(
-                "BT032", self._span(token), (self._span(token), ""), place="at the start", advice="Take it away."
+                "BT032", self._span(token), (self._with_blanks(token), ""), place="at the start", advice="Take it away."
             )
         elif starts or token.kind not in ENDS | {"then", "and", "or", "after", "otherwise", "comma"}:
             self._fail("BT022", self._span(token), word=self._words(token), example="wave")
@@ -100,6 +124,10 @@ class Scan:
             self._fail("BT032", self._span(before), (self._span(before), ""), place="at the end", advice=advice)
         elif before is not None:
             self._fail("BT020", self._span(before), wanted=wanted, word=self._words(before), found=self._found(token))
+
+    def _with_blanks(self, token: Token) -> Span:
+        text = self.source.text
+        return Span(self.source, token.start, len(text) - len(text[token.end :].lstrip(" \t")))
 
     def _found(self, token: Token) -> str:
         if token.kind in _FOUND:

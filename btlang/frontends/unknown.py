@@ -12,6 +12,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.definitions import Definitions
 from btlang.frontends.heads import span_of
 from btlang.frontends.nodes import misread_node
+from btlang.frontends.spelling_rule import is_respelling
 from btlang.frontends.token import Token
 from btlang.record import Record
 from btlang.text.source import Span
@@ -55,7 +56,7 @@ def explain_unknown(
     number = vocabulary.values.number(text, at)
     for _, kind, child in vocabulary.trie.get(SLOTS, ()):
         if number is not None and text.words[number[1]] in child:  # `0 times`
-            return _number_misfit(text, at, number, [vocabulary.types[kind]], "", "", kind)
+            return _number_misfit(text, at, number, [vocabulary.types[kind]], "", "", kind, vocabulary)
     if number is not None or text.words[at][0] == '"':
         return diagnostic("BT019", text.span(at, end), example='say "hello"')
     return _unknown_phrase(text, at, end, vocabulary, definitions, before)
@@ -150,7 +151,7 @@ def _misfit(
         reason = f"it is {_article(quantity[1])} {quantity[1]}, and {wanted} is needed"
         return diagnostic("BT011", span, words=span.text, wanted=reason, example=example)
     if number is not None:
-        return _number_misfit(text, at, number, types, head, example, wanted)
+        return _number_misfit(text, at, number, types, head, example, wanted, vocabulary)
     named = [kind for kind in types if kind.kind == "names"]
     following = frozenset().union(*(misfit.following for misfit in misfits))
     span = text.span(at, next((i for i in range(at + 1, end) if text.words[i] in following), max(end, at + 1)))
@@ -184,13 +185,21 @@ def _is_connective(text: Words, at: int, vocabulary: Vocabulary) -> bool:
 
 
 def _number_misfit(
-    text: Words, at: int, number: tuple[float, int], types: list[ValueType], head: str, example: str, wanted: str
+    text: Words,
+    at: int,
+    number: tuple[float, int],
+    types: list[ValueType],
+    head: str,
+    example: str,
+    wanted: str,
+    vocabulary: Vocabulary,
 ) -> Diagnostic:
     span = text.span(at, number[1])
     measured = next((kind for kind in types if kind.kind == "quantity"), None)
     if measured is not None:
         units = [word for unit in measured.units for word in unit.words]
-        misspelt = nearest(text.words[number[1]], units)[:1] if text.words[number[1]][0].isalpha() else []
+        written = text.words[number[1]]
+        misspelt = [unit for unit in nearest(written, units)[:1] if is_respelling(written, unit, vocabulary)]
         unit = misspelt[0] if misspelt else units[0]
         value = with_unit(span.text, unit)
         reason = f"{wanted} has a unit"

@@ -38,6 +38,39 @@ def nearest_start(written: Sequence[str], known: Mapping[str, Sequence[str]]) ->
     return [key for _, key in sorted(scored)]
 
 
+def _most_slips(written: str) -> int:
+    """How many slips of a letter a word of that length may have."""
+    return 1 if len(written) < _SHORT else 2 if len(written) < _LONG else 3
+
+
+def distance(written: str, meant: str) -> int:
+    """Two for each letter that was left out, added or mistaken for another, or that changed places with the next one.
+
+    One less where all letters are there: that is the likeliest slip.
+    """
+    from rapidfuzz.distance import OSA
+
+    return 2 * OSA.distance(written, meant) - (sorted(written) == sorted(meant) and written != meant)
+
+
+def is_misspelling(written: str, meant: str, others: Iterable[str]) -> bool:
+    """Whether few slips make of one word the other, and none of the others is as near."""
+    from rapidfuzz.distance import OSA
+
+    is_near = OSA.distance(written, meant) <= _most_slips(written)
+    return is_near and not any(distance(written, other) <= distance(written, meant) for other in others)
+
+
+def fewest_slips(written: str, known: Iterable[str]) -> int:
+    """How many slips away the nearest of the known words is; as many as a word may have where none is nearer."""
+    from rapidfuzz import process
+    from rapidfuzz.distance import OSA
+
+    most = _most_slips(written)
+    found = process.extractOne(written, known, scorer=OSA.distance, score_cutoff=most - 1) if most > 1 else None
+    return most if found is None else int(found[1])
+
+
 def respellings(written: str, known: Iterable[str], limit: int = 8) -> list[str]:
     """Known words that a slip of a few letters turns into what was written, the likeliest first; then two run together.
 
@@ -47,8 +80,7 @@ def respellings(written: str, known: Iterable[str], limit: int = 8) -> list[str]
     from rapidfuzz.distance import OSA
 
     known = known if isinstance(known, frozenset) else frozenset(known)
-    most = 1 if len(written) < _SHORT else 2 if len(written) < _LONG else 3
-    near = process.extract(written, known, scorer=OSA.distance, score_cutoff=most, limit=None)
+    near = process.extract(written, known, scorer=OSA.distance, score_cutoff=_most_slips(written), limit=None)
     scored = sorted(
         (distance, sorted(word) != sorted(written), word[0] != written[0], word[-1] != written[-1], word)
         for word, distance, _ in near

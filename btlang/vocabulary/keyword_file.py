@@ -244,7 +244,7 @@ def read_keyword_file(source: Source) -> KeywordFile:
             names += declared[1]
     language = {k: v for k, v in document.items() if k not in ("action", "condition", "quantity", "type")}
     for key, value in language.items():
-        if key in TABLES or key in WORD_LISTS:
+        if key in _TOP:
             for reason, near in problems(key, value):
                 reader.wrong(reason, near)
     if reader.problems:

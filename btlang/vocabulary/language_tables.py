@@ -34,7 +34,7 @@ BETWEEN = ("then", "and", "or", "after")
 EXPLAINED = (*ROLES, "compare", "politeness")
 """What the table `about` tells of."""
 
-WORD_LISTS = frozenset(("articles", "politeness", "unit_joiner"))
+WORD_LISTS = frozenset(("articles", "politeness", "unit_joiner", "quantifiers", "halting"))
 
 
 def _words(value: object) -> bool:
@@ -79,6 +79,10 @@ TABLES: dict[str, tuple[Callable[[object], bool], str]] = {
 
 def problems(table: str, value: Any) -> Iterator[tuple[str, str]]:
     """What is wrong with a table or word list of a file: (reason, text near it)."""
+    if table == "language":
+        if not isinstance(value, str):
+            yield "language is a name", table
+        return
     if table in WORD_LISTS:
         if not _words(value):
             yield f"{table} is a list of words", table

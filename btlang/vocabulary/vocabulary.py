@@ -55,6 +55,9 @@ class Vocabulary:
                 if self.types[kind].kind == "names":
                     self.values.add_name(kind, self._bare(words), name)
         self.roles: dict[str, list[str]] = {**language["roles"], "politeness": language["politeness"]}
+        self.language: str = language["language"]
+        self.quantifiers, self.halting = frozenset(language["quantifiers"]), frozenset(language["halting"])
+        """Negations and words for how many, and words like `stop`: corrections are careful about them."""
         self.counts: dict[str, int] = language["counts"]
         self.nodes: dict[str, str] = language["nodes"]
         """The words of nodes that have some, by their ids."""
@@ -276,8 +279,9 @@ def _compared(name: str, patterns: Iterable[str]) -> list[str]:
 
 
 _LANGUAGE: dict[str, Any] = {
-    "articles": [], "politeness": [], "unit_joiner": [], "roles": {}, "about": {}, "comparisons": {}, "counts": {},
-    "negations": {}, "pronouns": {}, "nodes": {}, "meanings": {}, "numbers": {}, "multipliers": {}, "fractions": {},
+    "language": "", "articles": [], "politeness": [], "unit_joiner": [], "quantifiers": [], "halting": [],
+    "roles": {}, "about": {}, "comparisons": {}, "counts": {}, "negations": {},
+    "pronouns": {}, "nodes": {}, "meanings": {}, "numbers": {}, "multipliers": {}, "fractions": {},
 }  # fmt: skip
 
 
@@ -288,7 +292,7 @@ def _merged(files: Iterable[KeywordFile]) -> dict[str, Any]:
         for key, value in file.language.items():
             if isinstance(value, dict):
                 merged[key] |= value
-            elif isinstance(value, list):
+            else:
                 merged[key] = value
     return merged
 

@@ -12,6 +12,7 @@ from collections.abc import Iterable
 
 from btlang.diagnostics.codes import NAMES
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.frontends.spelling_rule import is_respelling
 from btlang.text.source import Source, Span
 from btlang.text.spelling import nearest
 from btlang.text.words import Words, split
@@ -37,7 +38,7 @@ def heard(warnings: Iterable[Diagnostic], source: Source, vocabulary: Vocabulary
             code = NAMES.get(" ".join(name[0].lower().split()))
             if code is None:
                 near = nearest(name[0].lower(), NAMES)
-                fix = (span, near[0]) if near else None
+                fix = (span, near[0]) if near and is_respelling(name[0], near[0], vocabulary) else None
                 known = ", ".join(near or sorted(NAMES))
                 warnings.append(diagnostic("BT056", span, fix=fix, name=name[0], near=known))
             else:
