@@ -248,11 +248,12 @@ def _all_or_none(site: Site, children: Sequence[Compiled]) -> Compiled:
                 if status is SUCCESS or status is None:
                     completed[index] = fewer = True
                     continue
+                if status == RUNNING:
+                    running = True
+                    continue
             except Exception as problem:
                 status = problem
-            if status == RUNNING:
-                running = True
-            elif status == SKIPPED:
+            if status == SKIPPED:
                 skipped = True
             elif settle(sites[index], status) is FAILURE:
                 fault = shared.fault
