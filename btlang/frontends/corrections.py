@@ -319,14 +319,15 @@ def _read(like: Lexer, text: str) -> tuple[Lexer, Matcher, list[int]]:
 
 
 def _sentence(text: Words, at: int) -> tuple[int, int]:
-    """The characters of the sentence at a place: a line, or a part of one between stops that are in no brackets."""
+    """The characters of the sentence at a place: a line, or a part of one between stops in no brackets."""
     if not text.lines:
         return 0, at
     line = text.lines[max(bisect_right(text.lines, at, key=lambda line: text.starts[line.first]) - 1, 0)]
     first, depth = line.first, 0
     for word in range(line.first, line.last):
         depth += (text.words[word] == "(") - (text.words[word] == ")")
-        if text.words[word] == END_OF_STATEMENT and depth <= 0:
+        is_stop = text.words[word] == END_OF_STATEMENT and not text.source.text[text.ends[word] :][:1].strip()
+        if is_stop and depth <= 0:
             if at <= text.starts[word]:
                 return text.starts[first], text.starts[word]
             first = word + 1

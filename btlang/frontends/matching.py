@@ -14,6 +14,7 @@ from collections.abc import Callable
 from btlang.frontends.conditions import STARTS_OPERAND, ConditionScan
 from btlang.frontends.definitions import Header
 from btlang.frontends.frames import Frame
+from btlang.frontends.scan import ENDS
 from btlang.frontends.token import Token
 from btlang.record import Record
 from btlang.text.source import Source
@@ -317,11 +318,11 @@ class Matcher(ConditionScan):
         self._fail("BT026", self._span(token))
 
     def _close(self, token: Token) -> None:
-        is_alone = self._is_alone()
+        groups_nothing = self._is_alone() or self._raw[self._at + 1].kind in ENDS
         self._close_forms()
         frame = self._frames[-1]
         if frame.kind != "bracket":
-            self._fail("BT024", self._span(token), (self._span(token), "") if is_alone else None)
+            self._fail("BT024", self._span(token), (self._span(token), "") if groups_nothing else None)
             return
         frame.close_chain()
         self._frames.pop()

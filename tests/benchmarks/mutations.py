@@ -5,7 +5,8 @@
 Missions are the shipped examples, the good samples and the sentences of the documents. Each mutant is one of them with
 one mistake, the kinds spread evenly. It is compiled with both parsers, as `btc check` does. Printed are how many ended
 in a traceback, how many are refused, and of how many misspellings the first suggestion is the cure: the fix of the
-first error, applied, gives the tree of the mission without the mistake.
+first error, applied, gives the tree of the mission without the mistake. A slip that makes another word of English
+(`ten` for `then`) is counted apart: such a word is never corrected.
 """
 
 from __future__ import annotations
@@ -27,6 +28,7 @@ from btlang.frontends.mission import read_mission
 from btlang.passes import compile_mission
 from btlang.text.source import Source
 from btlang.tree.dump import plain
+from btlang.vocabulary.correct_words import correct_words
 from btlang.vocabulary.vocabulary import Vocabulary
 
 ROOT = Path(__file__).parent.parent.parent
@@ -48,12 +50,13 @@ class Mission(NamedTuple):
 
 
 class Mutant(NamedTuple):
-    """A mission with one mistake; `where` says what was changed."""
+    """A mission with one mistake; `where` says what was changed, `written` is what stands there now."""
 
     mission: Mission
     kind: str
     text: str
     where: str
+    written: str
 
 
 class Result(NamedTuple):
@@ -115,7 +118,7 @@ def mutants(count: int, seed: int) -> Iterator[Mutant]:
         if change is not None:
             start, end, words = change
             text = mission.text[:start] + words + mission.text[end:]
-            yield Mutant(mission, kind, text, f"{mission.text[start:end]!r} -> {words!r}")
+            yield Mutant(mission, kind, text, f"{mission.text[start:end]!r} -> {words!r}", words)
             made += 1
 
 
@@ -200,6 +203,13 @@ def repaired(mutant: Mutant, problems: tuple[Diagnostic, ...]) -> str:
     return "repairs it" if tree == compiled(*mutant.mission[1:]).tree else "compiles, other tree"
 
 
+def cure_of(mutant: Mutant, problems: tuple[Diagnostic, ...]) -> str:
+    """As `repaired`, "another word" where the slip made one that is correct English and nothing repairs it."""
+    is_right = mutant.written.lower() in correct_words("english")
+    cure = repaired(mutant, problems)
+    return "another word" if is_right and cure == "no suggestion" else cure
+
+
 def _show(mutant: Mutant, problems: tuple[Diagnostic, ...], outcome: str) -> None:
     problem = next(problem for problem in problems if problem.is_error)
     fix = f"{problem.fix[0].text!r} -> {problem.fix[1]!r}" if problem.fix else "-"
@@ -222,18 +232,21 @@ def main() -> None:
         outcome = "traceback" if result.crash else "refused" if result.tree is None else "still a mission"
         outcomes[outcome] += 1
         if mutant.kind == "misspelt" and not result.crash:
-            cure = repaired(mutant, result.problems) if result.tree is None else "still a mission"
+            cure = "still a mission" if result.tree is not None else cure_of(mutant, result.problems)
             cures[cure] += 1
-            if options.show and cure not in ("repairs it", "still a mission"):
+            if options.show and cure not in ("repairs it", "still a mission", "another word"):
                 _show(mutant, result.problems, cure)
     print(f"{options.count} mutants of {len(pool())} missions, seed {options.seed}")
     print(", ".join(f"{outcomes[name]} {name}" for name in ("traceback", "refused", "still a mission")))
-    wrong = cures.total() - cures["still a mission"]
+    right, wrong = cures["another word"], cures.total() - cures["still a mission"]
     shares = [
         f"{name} {cures[name]}" for name in ("repairs it", "compiles, other tree", "still wrong", "no suggestion")
     ]
     print(f"{cures.total()} misspellings, {cures['still a mission']} of them still a mission, {wrong} refused")
     print(f"the first suggestion: {', '.join(shares)}; {cures['repairs it'] / max(wrong, 1):.0%} repaired")
+    print(
+        f"without the {right} that are other words of English: {cures['repairs it'] / max(wrong - right, 1):.0%} repaired"
+    )
 
 
 if __name__ == "__main__":

@@ -88,10 +88,10 @@ def test_the_command_colours_where_it_is_asked_to(
     [
         ("go to the ktichen then wave", "go to the kitchen then wave"),
         ("if bumped:\n    \twave nod  ", "wave then nod"),
-        ("wave nod then go to the ktichen", "wave then nod then go to the ktichen"),
+        ("wave nod then go to the ktichen", "wave then nod then go to the kitchen"),
         ("move forward 2 then wave", ""),  # the hint has it: move forward 2 m
         ("wave within 5 parsecs", ""),
-        ("the battery is low", "the check battery is low"),
+        ("the battery is low", "check the battery is low"),
         ("say hello dear friends", ""),
         ("wave then say hello dear friends", ""),
         ("flarp", ""),

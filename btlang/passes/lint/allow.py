@@ -12,7 +12,6 @@ from collections.abc import Iterable
 
 from btlang.diagnostics.codes import NAMES
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.frontends.spelling_rule import is_respelling
 from btlang.text.source import Source, Span
 from btlang.text.spelling import nearest
 from btlang.text.words import Words, split
@@ -37,6 +36,8 @@ def heard(warnings: Iterable[Diagnostic], source: Source, vocabulary: Vocabulary
             span = Span(source, start, start + len(name[0]))
             code = NAMES.get(" ".join(name[0].lower().split()))
             if code is None:
+                from btlang.frontends.spelling_rule import is_respelling  # most comments name what there is
+
                 near = nearest(name[0].lower(), NAMES)
                 fix = (span, near[0]) if near and is_respelling(name[0], near[0], vocabulary) else None
                 known = ", ".join(near or sorted(NAMES))
