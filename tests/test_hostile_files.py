@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import sys
 from pathlib import Path
 
 import pytest
@@ -90,3 +91,14 @@ def test_what_is_said_of_a_deep_tree_grows_with_it_and_not_with_its_square(
         return len(capsys.readouterr().out)
 
     assert length(10_000) < 6 * length(2_000)
+
+
+def test_nested_json_where_a_deep_tree_has_raised_the_limit_of_recursion() -> None:
+    """Python's reader of JSON recurses in C, and would crash."""
+    before = sys.getrecursionlimit()
+    sys.setrecursionlimit(1_000_000)
+    try:
+        with pytest.raises(btlang.MissionError, match="nested too deep"):
+            btlang.parse_tree('{"format":1,"trees":' + '{"a":[' * 200_000)
+    finally:
+        sys.setrecursionlimit(before)

@@ -24,6 +24,7 @@ SCHEMA = os.path.join(os.path.dirname(os.path.abspath(__file__)), "tree.schema.j
 """The file of the JSON Schema."""
 
 FORMAT = 1
+_DEEPEST = 100  # brackets in each other: nodes are a list
 _LONGEST = 200  # characters of a sentence: that of the root is the whole mission
 _PORT_KEYS = {"name": str, "direction": str, "type": str, "default": str, "text": str}
 
@@ -96,13 +97,12 @@ def read_json(text: str | Source) -> Tree:
 
     source = Source(text) if isinstance(text, str) else text
     try:
+        _check_depth(source.text)
         return _tree(json.loads(source.text), _Places(source))
     except json.JSONDecodeError as error:
         at, reason = error.pos, f"it is not JSON: {error.msg}"
     except ValueError:
         at, reason = 0, "a number is too long"
-    except RecursionError:
-        at, reason = 0, "it is nested too deep"
     except _Wrong as error:
         at, reason = 0, str(error)
     raise MissionError([diagnostic("BT133", Span(source, at, at), reason=reason)])
@@ -110,6 +110,16 @@ def read_json(text: str | Source) -> Tree:
 
 class _Wrong(Exception):
     """The document does not hold a tree; the message says where and why."""
+
+
+def _check_depth(text: str) -> None:
+    """Python's reader would recurse, in C: where an engine has raised the limit of recursion, it would crash."""
+    depth = 0
+    for found in re.finditer(r'"(?:[^"\\]|\\.)*"|[\[{]|[\]}]', text):
+        mark = found[0]
+        depth += (mark in "[{") - (mark in "]}")
+        if depth > _DEEPEST:
+            raise _Wrong("it is nested too deep")
 
 
 class _Places:
