@@ -15,7 +15,7 @@ from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.conditions import STARTS_OPERAND, ConditionScan
 from btlang.frontends.definitions import Header
 from btlang.frontends.frames import Frame
-from btlang.frontends.scan import ENDS
+from btlang.frontends.scan import ENDS, without_idle_stops
 from btlang.frontends.token import Token
 from btlang.record import Record
 from btlang.text.source import Source
@@ -42,7 +42,7 @@ class Matcher(ConditionScan):
     def __init__(
         self, source: Source, raw: list[Token], conditions: set[str], word: Callable[[str], str] = str
     ) -> None:
-        super().__init__(source, _without_idle_stops(raw), word)
+        super().__init__(source, without_idle_stops(raw), word)
         self.units: list[Unit] = []
         self._conditions = conditions
         self._main = self._out, self._frames
@@ -186,12 +186,6 @@ class Matcher(ConditionScan):
         else:
             kind = "for"
         opener.value = (kind, amount.value)
-
-    def _refuse_in_condition(self, token: Token) -> bool:
-        if self._frames[-1].is_condition:
-            self._fail("BT029", self._span(token), words=self._words(token), place="here")
-            return True
-        return False
 
     def _leading_then(self, token: Token) -> None:
         """`After that, go home` at the start of a statement joins it as the line end does already."""
@@ -374,19 +368,6 @@ class Matcher(ConditionScan):
             return
         self._at += 1
         self._operand_due = False
-
-
-def _without_idle_stops(raw: list[Token]) -> list[Token]:
-    """A stop at the end of a line ends nothing where the next line goes on with `otherwise`."""
-    kept: list[Token] = []
-    for at, token in enumerate(raw):
-        if token.kind == "otherwise" and at and raw[at - 1].kind == "newline":
-            newline = kept.pop()
-            while kept and kept[-1].kind == "semi":
-                kept.pop()
-            kept.append(newline)
-        kept.append(token)
-    return kept
 
 
 _OPERAND: dict[str, Callable[[Matcher, Token], None]] = {

@@ -152,3 +152,16 @@ class Scan:
         self._frames.append(block)
         self._at += 1
         self._operand_due = True
+
+
+def without_idle_stops(raw: list[Token]) -> list[Token]:
+    """A stop at the end of a line ends nothing where the next line goes on with `otherwise`."""
+    kept: list[Token] = []
+    for at, token in enumerate(raw):
+        if token.kind == "otherwise" and at and raw[at - 1].kind == "newline":
+            newline = kept.pop()
+            while kept and kept[-1].kind == "semi":
+                kept.pop()
+            kept.append(newline)
+        kept.append(token)
+    return kept
