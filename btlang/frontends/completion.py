@@ -19,6 +19,7 @@ from btlang.record import Record
 from btlang.text.source import Source
 from btlang.text.spelling import nearest
 from btlang.vocabulary.continuations import Begun, begun, meanings, values_on, ways_on
+from btlang.vocabulary.correct_words import correct_words
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.pattern import Slot, forms
 from btlang.vocabulary.trie import SLOTS, TrieNode
@@ -112,7 +113,9 @@ class Completer:
     def _corrections(self) -> list[Completion]:
         options = {option.text: option for option in self._options("")}
         firsts = {text: text.split()[0].lower() for text in options}
-        likely = nearest(self._partial.lower(), dict.fromkeys(firsts.values()))
+        written = self._partial.lower()
+        is_right = written in correct_words(self._vocabulary.language)  # no slip, whatever else is like it
+        likely = [] if is_right else nearest(written, dict.fromkeys(firsts.values()))
         found = [options[text].replace(spelling=True) for word in likely for text in options if firsts[text] == word]
         return found[:_MOST_CORRECTIONS]
 

@@ -97,6 +97,12 @@ class ConditionScan(Scan):
         elif frame.after != "definition":
             self._emit_end()
 
+    def _refuse_in_condition(self, token: Token) -> bool:
+        if self._frames[-1].is_condition:
+            self._fail("BT029", self._span(token), words=self._words(token), place="here")
+            return True
+        return False
+
     def _separator(self) -> None:
         """What may stand between the head of a form and its body."""
         token = self._raw[self._at]

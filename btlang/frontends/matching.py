@@ -186,12 +186,6 @@ class Matcher(ConditionScan):
             kind = "for"
         opener.value = (kind, amount.value)
 
-    def _refuse_in_condition(self, token: Token) -> bool:
-        if self._frames[-1].is_condition:
-            self._fail("BT029", self._span(token), words=self._words(token), place="here")
-            return True
-        return False
-
     def _leading_then(self, token: Token) -> None:
         """`After that, go home` at the start of a statement joins it as the line end does already."""
         frame = self._frames[-1]

@@ -244,9 +244,8 @@ def main() -> None:
     ]
     print(f"{cures.total()} misspellings, {cures['still a mission']} of them still a mission, {wrong} refused")
     print(f"the first suggestion: {', '.join(shares)}; {cures['repairs it'] / max(wrong, 1):.0%} repaired")
-    print(
-        f"without the {right} that are other words of English: {cures['repairs it'] / max(wrong - right, 1):.0%} repaired"
-    )
+    share = cures["repairs it"] / max(wrong - right, 1)
+    print(f"without the {right} that are other words of English: {share:.0%} repaired")
 
 
 if __name__ == "__main__":

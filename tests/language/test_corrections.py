@@ -16,6 +16,7 @@ import btlang
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError
 from btlang.diagnostics.render import render
 from btlang.diagnostics.report import as_data
+from btlang.frontends.completion import completions
 from btlang.repl.screen import Screen
 from btlang.repl.session import Session
 from btlang.repl.store import Store
@@ -212,6 +213,11 @@ def test_a_comma_that_two_readings_fit_shows_both() -> None:
 @pytest.mark.parametrize("text", [text for text in UNCHANGED if "\n" not in text])
 def test_the_prompt_offers_none_of_them(text: str, tmp_path: Path) -> None:
     assert prompted(text, tmp_path) is None
+
+
+@pytest.mark.parametrize("text", ["if nobody", "go to the dick", "stop waving"])
+def test_tab_offers_no_other_spelling_of_correct_english(text: str) -> None:
+    assert not [option for option in completions(text, vocabulary(None)) if option.spelling]
 
 
 @pytest.mark.parametrize(("broken", "sound"), CORRECTED)
