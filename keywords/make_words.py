@@ -24,9 +24,7 @@ NEWER = (
 )
 """Words that people say to robots, and that SCOWL takes for rare."""
 
-NOTICE = (
-    "# Words of correct English from SCOWL (http://wordlist.aspell.net). english.words.license says what may be done.\n"
-)
+NOTICE = "# Words of correct English from SCOWL. english.words.license says what may be done.\n"
 
 
 def words(scowl: Path) -> set[str]:

@@ -59,7 +59,6 @@ def _fewest_slips(written: str, language: str) -> int:
     return fewest_slips(written, correct_words(language))
 
 
-@lru_cache(maxsize=1024)
 def _turned(written: str, vocabulary: Vocabulary) -> frozenset[str]:
     """What would turn the meaning round, if it was meant: negations, and those with a word that they run into."""
     right, known, quantifiers = correct_words(vocabulary.language), words_of(vocabulary), vocabulary.quantifiers

@@ -41,7 +41,7 @@ UNCHANGED = [
     "raise both and",
     "fro each place in the lab, the dock: go to the place",
     "do recovery nod:\n  wave\n  nod",
-    "go to the dick",
+    "go to the lap",
     "go to the document then nod",
     "wave at Rob then nod",
     "go to lab2 then nod",
@@ -215,7 +215,7 @@ def test_the_prompt_offers_none_of_them(text: str, tmp_path: Path) -> None:
     assert prompted(text, tmp_path) is None
 
 
-@pytest.mark.parametrize("text", ["if nobody", "go to the dick", "stop waving"])
+@pytest.mark.parametrize("text", ["if nobody", "go to the lap", "stop waving"])
 def test_tab_offers_no_other_spelling_of_correct_english(text: str) -> None:
     assert not [option for option in completions(text, vocabulary(None)) if option.spelling]
 
