@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import time
 from collections.abc import Callable
 from threading import Event, RLock
@@ -24,6 +25,7 @@ from btlang.ros.lease import Lease
 from btlang.ros.poses import MAP, pose_message, pose_of
 
 ACTION = "navigate_to_pose"
+_SEEN = 0.3  # seconds after which odometry shows what the robot does
 _SERVER = 2.0  # seconds that a server gets to be there
 _ANSWER = 5.0  # seconds that it gets to accept or reject, and between two of its feedbacks
 _MUTE, _STANDS = 15.0, 60.0  # seconds without any feedback, and with it, in which the robot does not move
@@ -196,6 +198,7 @@ class RosNavigation:
         self._client = ActionClient(node, NavigateToPose, ACTION)
         self._server = node.resolve_service_name(ACTION)
         self._journey: RosJourney | None = None
+        self._stopped = -math.inf
         self._given_up: list[RosJourney] = []
 
     def start(self, name: str, pose: Pose) -> RosJourney:
@@ -216,6 +219,7 @@ class RosNavigation:
         if journey is not None and not journey.done:
             journey.end(reason)
             self._given_up.append(journey)
+            self._stopped = AWAKE.now()
 
     def step(self) -> RosJourney | None:
         """Goes on; returns the journey when it has ended since the last call."""
@@ -232,6 +236,11 @@ class RosNavigation:
     def pending(self) -> list[str]:
         """Why the server may still drive the robot, for goals that were given up."""
         return [journey.pending for journey in self._given_up if journey.pending]
+
+    @property
+    def has_just_stopped(self) -> bool:
+        """Whether a goal was given up so short a time ago that nobody may have seen yet what became of the robot."""
+        return AWAKE.now() - self._stopped < _SEEN
 
     def confirm_stop(self, seconds: float) -> None:
         """Waits so long at most until the server has given up all goals that were withdrawn."""

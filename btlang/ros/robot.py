@@ -165,13 +165,14 @@ class RosRobot:
     @property
     def standstill(self) -> Standstill:
         """By the odometry, and by what servers answered to the cancelling of their goals."""
-        motion = self._base.motion
-        pending = [*self.pending(), *(self._navigation.pending() if self._navigation is not None else ())]
+        motion, navigation = self._base.motion, self._navigation
+        pending = [*self.pending(), *(navigation.pending() if navigation is not None else ())]
+        early = navigation is not None and navigation.has_just_stopped
         if motion is None:
-            return Standstill(None, "", tuple(pending))
+            return Standstill(None, "", tuple(pending), early)
         linear, angular = motion
         told = f"at {abs(linear):.2g} m/s" if linear else f"at {abs(angular):.0f} degrees a second" if angular else ""
-        return Standstill(bool(told) or self._joints.moving, told, tuple(pending))
+        return Standstill(bool(told) or self._joints.moving, told, tuple(pending), early)
 
     # Base
     @property

@@ -271,7 +271,7 @@ class Runner:
         while True:  # at least once: a robot that was stopped brakes with its next step
             self._advance(passed)
             standstill = standstill_of(self._robot)
-            if not standstill.alarming or self._clock.now >= rest_until - 1e-9:
+            if not (standstill.alarming or standstill.early) or self._clock.now >= rest_until - 1e-9:
                 return standstill
             passed = self._pace.rest(self._period)
 

@@ -12,12 +12,14 @@ if TYPE_CHECKING:
 class Standstill(Record):
     """`moving` is None where nothing reports it; `speed` says how fast.
 
-    `pending` are reasons why the robot may be moved on, such as a goal that its server did not give up.
+    `pending` are reasons why the robot may be moved on, such as a goal that its server did not give up. `early`: what
+    was measured may be older than the motion of a goal that was given up a moment ago.
     """
 
     moving: bool | None = False
     speed: str = ""
     pending: tuple[str, ...] = ()
+    early: bool = False
 
     @property
     def still(self) -> bool | None:

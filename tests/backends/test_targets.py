@@ -202,7 +202,14 @@ def test_compile_writes_a_file_at_once(tmp_path: Path, capsys: pytest.CaptureFix
     assert "error BT009" in capsys.readouterr().err
 
 
-@pytest.mark.parametrize("target", ["json", "python", "english", "tree"])
+def test_json_has_no_lone_surrogates(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """As XML has none."""
+    assert main(["compile", "-c", 'say "a\udcff"', "-o", str(tmp_path / "tree.json")]) == 2
+    assert "error BT134" in capsys.readouterr().err
+    assert not (tmp_path / "tree.json").exists()
+
+
+@pytest.mark.parametrize("target", ["python", "english", "tree"])
 def test_a_file_holds_what_utf_8_does_not(target: str, tmp_path: Path) -> None:
     out = tmp_path / "out"
     assert main(["compile", "-c", 'say "a\udcff"', "-o", str(out), "--to", target]) == 0
