@@ -88,10 +88,13 @@ def _module(entry: Entry, name: str) -> ModuleType:
     if entry.span is None or not os.path.isfile(entry.span.source.name):
         return import_module(name)
     folder = os.path.dirname(os.path.realpath(entry.span.source.name))
-    top = os.path.join(folder, name.partition(".")[0])
-    beside = [path for path in (f"{top}.py", os.path.join(top, "__init__.py")) if os.path.isfile(path)]
-    spec = find_spec(name.partition(".")[0]) if beside else None
-    if not beside or (spec is not None and spec.origin is not None and os.path.realpath(spec.origin) in beside):
+    beside = os.path.join(folder, *name.split("."))
+    if not os.path.isfile(f"{beside}.py") and not os.path.isfile(os.path.join(beside, "__init__.py")):
+        return import_module(name)
+    top = name.partition(".")[0]
+    spec = find_spec(top)
+    known = () if spec is None else (spec.origin or "", *(spec.submodule_search_locations or ()))
+    if any(os.path.realpath(path) in (os.path.join(folder, top), os.path.join(folder, f"{top}.py")) for path in known):
         return import_module(name)  # the very module that the program imports, too
     package = _packages.setdefault(folder, f"btlang_words_{len(_packages)}")
     if package not in sys.modules:

@@ -115,6 +115,13 @@ def test_packs_may_have_modules_of_the_same_name(tmp_path: Path) -> None:
     assert said == ["hop from a", "hop from b"]
 
 
+def test_a_module_in_a_plain_folder_beside_its_keyword_file(tmp_path: Path) -> None:
+    (tmp_path / "steps").mkdir()
+    (tmp_path / "steps" / "big.py").write_text("def stride():\n    return True\n")
+    (tmp_path / "steps.toml").write_text('[[action]]\nphrase = "stride"\nid = "Stride"\ncall = "steps.big:stride"\n')
+    assert parse_tree("stride", keywords=[str(tmp_path / "steps.toml")]).run(speed="max").status == SUCCESS
+
+
 def test_a_module_that_imports_another_one_beside_it(tmp_path: Path) -> None:
     (tmp_path / "steps.py").write_text("")
     (tmp_path / "walk.py").write_text("import steps\n")
