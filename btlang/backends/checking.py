@@ -9,11 +9,11 @@ from btlang.backends.engine import bind_leaf, leaf_binding
 from btlang.backends.keywords import Draft, drafts
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic, in_order
 from btlang.engine.build import EngineError
-from btlang.engine.compile import NODE_TYPES
 from btlang.engine.faults import UnknownNode, UnknownSubTree, faults
 from btlang.engine.leaf import LeafBinding
 from btlang.text.source import NOWHERE, Span
 from btlang.text.spelling import nearest
+from btlang.tree.catalogue import CATALOGUE
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.vocabulary import Vocabulary
 
@@ -63,13 +63,13 @@ def _told(error: EngineError, tree: Tree, vocabulary: Vocabulary, entries: dict[
         name = node.port("ID")
         near = nearest(name.lower(), [name for name, _ in tree.subtrees])
         return _helped(diagnostic("BT126", span, name=name), _near(near), _defining(name, span))
-    missing = node.id not in NODE_TYPES and node.id not in vocabulary.entries and node.id != "SubTree"
+    missing = node.id not in CATALOGUE and node.id not in vocabulary.entries
     if not isinstance(error, UnknownNode) and not (node.children and missing):
         return diagnostic("BT132", span, id=node.id, reason=error.message)
     if node.children:
-        near = nearest(node.id.lower(), [id for id, kind in NODE_TYPES.items() if kind.most])
+        near = nearest(node.id.lower(), [id for id, kind in CATALOGUE.items() if kind.most])
         return diagnostic("BT131", span, id=node.id, help=_near(near))
-    near = nearest(node.id.lower(), [*vocabulary.entries, *(id for id, kind in NODE_TYPES.items() if not kind.least)])
+    near = nearest(node.id.lower(), [*vocabulary.entries, *(id for id, kind in CATALOGUE.items() if not kind.least)])
     return _helped(diagnostic("BT130", span, id=node.id), _near(near), _entry(node, entries))
 
 

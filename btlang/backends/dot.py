@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from btlang.engine.compile import CONDITIONS, NODE_TYPES
 from btlang.english.phrase import phrase_of
+from btlang.tree.catalogue import CATALOGUE, SUBTREE
 from btlang.tree.dump import described
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.vocabulary import Vocabulary
@@ -42,7 +42,7 @@ def to_dot(tree: Tree, vocabulary: Vocabulary) -> str:
             lines.append(f"{indent}n{index} [label={_label(node, vocabulary)}, {_LOOKS[kind]}];")
             if above >= 0:
                 lines.append(f"{indent}n{above} -> n{index};")
-            if node.id == "SubTree":
+            if node.id == SUBTREE:
                 uses.append((index, node.port("ID")))
             number = index + 1
         if at:
@@ -66,16 +66,16 @@ def _numbered(root: Node, first: int) -> Iterator[tuple[int, Node, int]]:
 
 
 def _kind(node: Node, vocabulary: Vocabulary, kinds: dict[str, str]) -> str:
-    if node.id == "SubTree":
+    if node.id == SUBTREE:
         return "subtree"
-    known = NODE_TYPES.get(node.id)
+    known = CATALOGUE.get(node.id)
     if node.children:
         told = kinds.get(node.id, "")
         decorates = told == "decorator" if known is None and told else len(node.children) == 1
         return "decorator" if (known.most == 1 if known is not None else decorates) else "control"
     entry = vocabulary.entry(node.id)
     asks = entry.sort == "condition" if entry is not None else kinds.get(node.id) == "condition"
-    return "condition" if asks or node.id in CONDITIONS else "action"
+    return "condition" if asks or (known is not None and known.kind == "Condition") else "action"
 
 
 def _label(node: Node, vocabulary: Vocabulary) -> str:

@@ -15,6 +15,7 @@ from btlang.record import Record
 from btlang.text.source import Source
 from btlang.text.words import END_OF_STATEMENT, Words, split
 from btlang.tree import ast
+from btlang.tree.catalogue import SEQUENCE
 from btlang.tree.dump import outline
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import fold
@@ -83,7 +84,7 @@ def _commands(body: ast.Ast | None, root: Node, sentences: _Sentences) -> Iterat
         together.setdefault(sentences.number(item.span.start), []).append((item, nodes[id(item)]))
     for number, pairs in together.items():
         inner = tuple(node for _, node in pairs)
-        node = inner[0] if len(inner) == 1 else Node("Sequence", inner)
+        node = inner[0] if len(inner) == 1 else Node(SEQUENCE, inner)
         yield Statement(number, tuple(item for item, _ in pairs), node, joined)
 
 

@@ -6,8 +6,8 @@ import json
 import re
 from collections.abc import Iterator
 
-from btlang.engine.compile import NODE_TYPES
 from btlang.record import Record
+from btlang.tree.catalogue import CATALOGUE
 from btlang.tree.model import NodeModel, PortModel
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.entry import Entry, Meaning, SlotSpec
@@ -51,7 +51,7 @@ def unknown_leaves(tree: Tree, vocabulary: Vocabulary) -> dict[str, list[Node]]:
     """The leaves whose id is that of no entry and no node of the engine, by id, in the order of Tree.walk."""
     found: dict[str, list[Node]] = {}
     for node in tree.walk():
-        if not node.children and node.id != "SubTree" and node.id not in NODE_TYPES:
+        if not node.children and node.id not in CATALOGUE:
             if node.id not in vocabulary.entries:
                 found.setdefault(node.id, []).append(node)
     return found

@@ -22,6 +22,7 @@ from btlang.engine.leaf import REFUSED, ActionFailed, LeafBinding, Reason
 from btlang.engine.script_values import as_text
 from btlang.engine.status import FAILURE
 from btlang.record import Record
+from btlang.tree.catalogue import CATALOGUE
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False
@@ -124,9 +125,10 @@ class Site:
         self._usual: Fault | None = None
 
     @property
-    def parent(self) -> str:
-        """The id of the node above, "" for the root."""
-        return "" if self.above is None else self.above.node.id
+    def parent_keeps_completed(self) -> bool:
+        """Whether the node above doesn't reset a child that has completed."""
+        kind = None if self.above is None else CATALOGUE.get(self.above.node.id)
+        return kind is not None and kind.keeps_completed
 
     def refuse(self) -> int:
         """Records that this leaf has returned False; returns FAILURE."""
@@ -178,11 +180,16 @@ class Site:
         """An error to raise that blames this node."""
         return EngineError(message, self.node)
 
-    def number(self, port: str, default: int | None = None, least: int = 0, most: int = 2**31 - 1) -> Callable[[], int]:
+    def number(self, port: str, least: int = 0, most: int = 0) -> Callable[[], int]:
         """A function that gives the whole number in a port; for a `{key}` it may raise ActionFailed.
 
-        Raises EngineError where the port is missing and has no default, or its number is not from `least` to `most`.
+        `least` and `most` count where the catalogue has none. Raises EngineError where the port is missing and has no
+        default, or its number is not from `least` to `most`.
         """
+        known = CATALOGUE[self.node.id].ports[port]
+        default = known.default
+        least = least if known.least is None else known.least
+        most = most if known.most is None else known.most
         text = self.node.port(port)
         key = blackboard_key(port, text)
         if key is not None:

@@ -26,82 +26,64 @@ from btlang.engine.conditions import conditioned
 from btlang.engine.leaf import ActionFailed
 from btlang.engine.region import at_top, below, regions
 from btlang.engine.subtree import child_scope, subtree
-from btlang.engine.switch import switch, switch_ports
+from btlang.engine.switch import switch
 from btlang.engine.try_catch import try_catch
 from btlang.engine.watch import Trace, Watch, repeats
 from btlang.engine.whenever import whenever
-from btlang.record import Record
+from btlang.tree.catalogue import CATALOGUE, MOST_NODES, SUBTREE, NodeKind
 from btlang.tree.node import Node, Tree
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.engine.build import Compiled
 
-MAX_NODES = 1_000_000
 
-
-class NodeType(Record):
-    """How many children a node has, which ports, and the function that compiles it.
-
-    `waits`: while a child is RUNNING, a tick asks that child, and nothing else happens where it still is.
-    """
-
-    compile: Callable[[Site, Sequence[Compiled]], Compiled]
-    least: int
-    most: int
-    ports: tuple[str, ...] = ()
-    waits: bool = False
-
-
-_MANY = MAX_NODES
-
-NODE_TYPES = {
-    "Sequence": NodeType(control.sequence, 1, _MANY, waits=True),
-    "Fallback": NodeType(control.fallback, 1, _MANY, waits=True),
-    "AsyncSequence": NodeType(control.async_sequence, 1, _MANY, waits=True),
-    "AsyncFallback": NodeType(control.async_fallback, 1, _MANY, waits=True),
-    "SequenceWithMemory": NodeType(control.sequence_with_memory, 1, _MANY, waits=True),
-    "Parallel": NodeType(control.parallel, 1, _MANY, ("success_count", "failure_count")),
-    "ParallelAll": NodeType(control.parallel_all, 1, _MANY, ("max_failures",)),
-    "ReactiveSequence": NodeType(reactive.reactive_sequence, 1, _MANY),
-    "ReactiveFallback": NodeType(reactive.reactive_fallback, 1, _MANY),
-    "IfThenElse": NodeType(branch.if_then_else, 2, 3, waits=True),
-    "WhileDoElse": NodeType(branch.while_do_else, 2, 3),
-    **{f"Switch{cases}": NodeType(switch, cases + 1, cases + 1, switch_ports(cases)) for cases in range(2, 7)},
-    "TryCatch": NodeType(try_catch, 2, _MANY, ("catch_on_halt",)),
-    "Whenever": NodeType(whenever, 3, 3),
-    "PipelineSequence": NodeType(nav2.pipeline_sequence, 1, _MANY),
-    "RecoveryNode": NodeType(nav2.recovery_node, 2, 2, ("number_of_retries",), waits=True),
-    "RoundRobin": NodeType(nav2.round_robin, 1, _MANY, waits=True),
-    "Inverter": NodeType(decorators.inverter, 1, 1, waits=True),
-    "ForceSuccess": NodeType(decorators.force_success, 1, 1, waits=True),
-    "ForceFailure": NodeType(decorators.force_failure, 1, 1, waits=True),
-    "Repeat": NodeType(decorators.repeat, 1, 1, ("num_cycles",), waits=True),
-    "RetryUntilSuccessful": NodeType(decorators.retry_until_successful, 1, 1, ("num_attempts",), waits=True),
-    "Timeout": NodeType(timed.timeout, 1, 1, ("msec",)),
-    "Delay": NodeType(timed.delay, 1, 1, ("delay_msec",)),
-    "RateController": NodeType(nav2.rate_controller, 1, 1, ("hz",)),
-    "KeepRunningUntilFailure": NodeType(guards.keep_running_until_failure, 1, 1, waits=True),
-    "RunOnce": NodeType(guards.run_once, 1, 1, ("then_skip",)),
-    "Precondition": NodeType(guards.precondition, 1, 1, ("if", "else")),
-    "LoopInt": NodeType(loops.loop_int, 1, 1, loops.LOOP_PORTS),
-    "LoopBool": NodeType(loops.loop_bool, 1, 1, loops.LOOP_PORTS),
-    "LoopDouble": NodeType(loops.loop_double, 1, 1, loops.LOOP_PORTS),
-    "LoopString": NodeType(loops.loop_string, 1, 1, loops.LOOP_PORTS),
-    "SkipUnlessUpdated": NodeType(updates.skip_unless_updated, 1, 1, ("entry",)),
-    "WaitValueUpdate": NodeType(updates.wait_value_update, 1, 1, ("entry",)),
-    "WasEntryUpdated": NodeType(updates.was_entry_updated, 0, 0, ("entry",)),
-    "Sleep": NodeType(timed.sleep, 0, 0, ("msec",)),
-    "AlwaysSuccess": NodeType(leaves.always_success, 0, 0),
-    "AlwaysFailure": NodeType(leaves.always_failure, 0, 0),
-    "SetBlackboard": NodeType(blackboard_nodes.set_blackboard, 0, 0, ("value", "output_key")),
-    "UnsetBlackboard": NodeType(blackboard_nodes.unset_blackboard, 0, 0, ("key",)),
-    "Script": NodeType(script_nodes.script, 0, 0, ("code",)),
-    "ScriptCondition": NodeType(script_nodes.script_condition, 0, 0, ("code",)),
+SEMANTICS: dict[str, Callable[[Site, Sequence[Compiled]], Compiled]] = {
+    "Sequence": control.sequence,
+    "Fallback": control.fallback,
+    "AsyncSequence": control.async_sequence,
+    "AsyncFallback": control.async_fallback,
+    "SequenceWithMemory": control.sequence_with_memory,
+    "Parallel": control.parallel,
+    "ParallelAll": control.parallel_all,
+    "ReactiveSequence": reactive.reactive_sequence,
+    "ReactiveFallback": reactive.reactive_fallback,
+    "IfThenElse": branch.if_then_else,
+    "WhileDoElse": branch.while_do_else,
+    **{f"Switch{cases}": switch for cases in range(2, 7)},
+    "TryCatch": try_catch,
+    "Whenever": whenever,
+    "PipelineSequence": nav2.pipeline_sequence,
+    "RecoveryNode": nav2.recovery_node,
+    "RoundRobin": nav2.round_robin,
+    "Inverter": decorators.inverter,
+    "ForceSuccess": decorators.force_success,
+    "ForceFailure": decorators.force_failure,
+    "Repeat": decorators.repeat,
+    "RetryUntilSuccessful": decorators.retry_until_successful,
+    "Timeout": timed.timeout,
+    "Delay": timed.delay,
+    "RateController": nav2.rate_controller,
+    "KeepRunningUntilFailure": guards.keep_running_until_failure,
+    "RunOnce": guards.run_once,
+    "Precondition": guards.precondition,
+    "LoopInt": loops.loop_int,
+    "LoopBool": loops.loop_bool,
+    "LoopDouble": loops.loop_double,
+    "LoopString": loops.loop_string,
+    "SkipUnlessUpdated": updates.skip_unless_updated,
+    "WaitValueUpdate": updates.wait_value_update,
+    "WasEntryUpdated": updates.was_entry_updated,
+    "Sleep": timed.sleep,
+    "AlwaysSuccess": leaves.always_success,
+    "AlwaysFailure": leaves.always_failure,
+    "SetBlackboard": blackboard_nodes.set_blackboard,
+    "UnsetBlackboard": blackboard_nodes.unset_blackboard,
+    "Script": script_nodes.script,
+    "ScriptCondition": script_nodes.script_condition,
+    SUBTREE: subtree,
 }
-CONDITIONS = frozenset(("ScriptCondition", "WasEntryUpdated"))
-"""Those of them that only ask."""
-_SUBTREE = NodeType(subtree, 1, 1, waits=True)
+"""What compiles each node of the catalogue."""
 
 
 def expand(tree: Tree, blackboard: Blackboard, shared: Shared) -> list[Site]:
@@ -117,12 +99,12 @@ def expand(tree: Tree, blackboard: Blackboard, shared: Shared) -> list[Site]:
             within.remove(top)
             continue
         node, above, position, scope = top
-        if len(sites) == MAX_NODES:
-            raise EngineError(f"the tree has more than {MAX_NODES:,} nodes", node)
+        if len(sites) == MOST_NODES:
+            raise EngineError(f"the tree has more than {MOST_NODES:,} nodes", node)
         site = Site(node, len(sites), above, position, scope, shared)
         sites.append(site)
         children = node.children
-        if node.id == "SubTree":
+        if node.id == SUBTREE:
             name = node.port("ID")
             if children:
                 raise EngineError("SubTree takes no children", node)
@@ -157,7 +139,7 @@ def compile_sites(sites: Sequence[Site], trace: Trace | None) -> Compiled:
     around = regions(sites, _waits)
     for site in reversed(sites):
         node = site.node
-        count = 1 if node.id == "SubTree" else len(node.children)
+        count = 1 if node.id == SUBTREE else len(node.children)
         children: Sequence[Compiled] = ()
         if count:
             children = waiting[: -count - 1 : -1]
@@ -185,11 +167,11 @@ def compile_sites(sites: Sequence[Site], trace: Trace | None) -> Compiled:
 
 
 def _waits(site: Site) -> bool:
-    kind = _SUBTREE if site.node.id == "SubTree" else NODE_TYPES.get(site.node.id)
+    kind = CATALOGUE.get(site.node.id)
     if kind is None or not kind.waits:
         return False
     for port, text in site.node.ports:
-        if (port[:1] == "_" and port != "_autoremap") or ("{" in text and kind is not _SUBTREE):
+        if (port[:1] == "_" and port != "_autoremap") or ("{" in text and not kind.any_ports):
             return False  # pre-conditions are asked, and a port is read, at each tick
     return True
 
@@ -197,21 +179,26 @@ def _waits(site: Site) -> bool:
 def compile_node(site: Site, children: Sequence[Compiled]) -> Compiled:
     """One node whose children are compiled. Raises EngineError."""
     node = site.node
-    kind = _SUBTREE if node.id == "SubTree" else NODE_TYPES.get(node.id)
+    kind = CATALOGUE.get(node.id)
     if kind is None:
         compiled = _compile_leaf(site, children)
     else:
-        if not kind.least <= len(children) <= kind.most:
+        if not kind.least <= len(children) <= kind.most and kind.id != SUBTREE:
             raise site.error(f"{node.id} has {len(children)} children instead of {_how_many(kind)}")
-        for port, _ in node.ports:
-            if kind is not _SUBTREE and port not in kind.ports and port[:1] != "_":
-                raise site.error(f"{node.id} takes no port {port}")
-        compiled = kind.compile(site, children)
-        for port, text in node.ports:
-            if "{" in text and port in kind.ports:
-                compiled = _checked(site, compiled)
-                break
+        compiled = _compile_built_in(site, kind, children)
     return conditioned(site, compiled) if node.ports else compiled
+
+
+def _compile_built_in(site: Site, kind: NodeKind, children: Sequence[Compiled]) -> Compiled:
+    ports = kind.ports
+    from_blackboard = False
+    for port, text in site.node.ports:
+        if port in ports:
+            from_blackboard = from_blackboard or "{" in text
+        elif port[:1] != "_" and not kind.any_ports:
+            raise site.error(f"{kind.id} takes no port {port}")
+    compiled = SEMANTICS[kind.id](site, children)
+    return _checked(site, compiled) if from_blackboard and not kind.any_ports else compiled
 
 
 def _compile_leaf(site: Site, children: Sequence[Compiled]) -> Compiled:
@@ -228,8 +215,8 @@ def _compile_leaf(site: Site, children: Sequence[Compiled]) -> Compiled:
     return compiled if shared.stopwatch is None else shared.stopwatch.wrap(site.index, compiled)
 
 
-def _how_many(kind: NodeType) -> str:
-    if kind.most == _MANY:
+def _how_many(kind: NodeKind) -> str:
+    if kind.most == MOST_NODES:
         return f"{kind.least} or more"
     return str(kind.least) if kind.least == kind.most else f"{kind.least} or {kind.most}"
 

@@ -28,6 +28,7 @@ from btlang.engine.leaves import skipped
 from btlang.engine.script import truth
 from btlang.engine.script_nodes import read_script
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
+from btlang.tree.catalogue import SUBTREE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -56,7 +57,7 @@ def conditioned(site: Site, compiled: Compiled) -> Compiled:
             continue
         if port in _DECIDES or port in _AFTER:
             texts[port] = text
-        elif port not in OF_EDITORS and (port != "_autoremap" or site.node.id != "SubTree"):
+        elif port not in OF_EDITORS and (port != "_autoremap" or site.node.id != SUBTREE):
             raise site.error(f"{site.node.id} takes no port {port}")
     if texts.get("_skipIf") == "false":
         del texts["_skipIf"]

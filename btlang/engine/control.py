@@ -164,8 +164,8 @@ def parallel(site: Site, children: Sequence[Compiled]) -> Compiled:
         return _all_or_none(site, children)
     ticks, halts, sites = row(children)
     count = len(ticks)
-    success_count = site.number("success_count", -1, -count - 1, count)
-    failure_count = site.number("failure_count", 1, -count - 1, count)
+    success_count = site.number("success_count", -count - 1, count)
+    failure_count = site.number("failure_count", -count - 1, count)
     completed = [False] * count
     successes = failures = 0
     shared = site.shared
@@ -292,7 +292,7 @@ def parallel_all(site: Site, children: Sequence[Compiled]) -> Compiled:
     """Ticks all until each has completed; FAILURE if max_failures (1) or more failed (parallel_all_node.cpp)."""
     ticks, halts, sites = row(children)
     count = len(ticks)
-    max_failures = site.number("max_failures", 1, -count - 1, count)
+    max_failures = site.number("max_failures", -count - 1, count)
     completed = [False] * count
     failures = 0
     shared = site.shared

@@ -51,12 +51,12 @@ def force_failure(site: Site, children: Sequence[Compiled]) -> Compiled:
 
 def repeat(site: Site, children: Sequence[Compiled]) -> Compiled:
     """Runs its child num_cycles times (-1: for ever) or until it fails (repeat_node.cpp)."""
-    return _rounds(site, children, site.number("num_cycles", least=-1), SUCCESS)
+    return _rounds(site, children, site.number("num_cycles"), SUCCESS)
 
 
 def retry_until_successful(site: Site, children: Sequence[Compiled]) -> Compiled:
     """Runs its child until it succeeds, at most num_attempts times (-1: for ever) (retry_node.cpp)."""
-    return _rounds(site, children, site.number("num_attempts", least=-1), FAILURE)
+    return _rounds(site, children, site.number("num_attempts"), FAILURE)
 
 
 def _rounds(site: Site, children: Sequence[Compiled], limit: Callable[[], int], again: int) -> Compiled:

@@ -7,10 +7,11 @@ from collections.abc import Callable, Iterator, Mapping
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.build import EngineError, Shared, Site, halt_nothing
 from btlang.engine.clock import Clock
-from btlang.engine.compile import NODE_TYPES, compile_node
+from btlang.engine.compile import compile_node
 from btlang.engine.leaf import LeafBinding
 from btlang.engine.status import SUCCESS
 from btlang.engine.subtree import child_scope
+from btlang.tree.catalogue import CATALOGUE, SUBTREE
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import used_subtrees
 
@@ -42,13 +43,13 @@ def faults(tree: Tree, bind: Callable[[str], LeafBinding | None], services: Mapp
     for name, root in (("", tree.root), *used.items()):
         for node in Tree(root).walk():
             found += _wrong_with(node, used, shared)
-            if node.id == "SubTree" and node.port("ID") in used:
+            if node.id == SUBTREE and node.port("ID") in used:
                 uses.setdefault(name, []).append(node)
     return found + [EngineError(f"the subtree {node.port('ID')} contains itself", node) for node in _circles(uses)]
 
 
 def _wrong_with(node: Node, subtrees: dict[str, Node], shared: Shared) -> Iterator[EngineError]:
-    if node.id == "SubTree":
+    if node.id == SUBTREE:
         name = node.port("ID")
         if node.children:
             yield EngineError("it takes no children", node)
@@ -56,7 +57,7 @@ def _wrong_with(node: Node, subtrees: dict[str, Node], shared: Shared) -> Iterat
             yield EngineError("it needs a port ID", node)
         elif name not in subtrees:
             yield UnknownSubTree(f"there is no subtree {name}", node)
-    elif node.id not in NODE_TYPES:
+    elif node.id not in CATALOGUE:
         try:
             bound = shared.bind(node.id)
         except EngineError as error:
@@ -66,9 +67,9 @@ def _wrong_with(node: Node, subtrees: dict[str, Node], shared: Shared) -> Iterat
             yield UnknownNode(f"nothing is bound to {node.id}", node)
             return
     standing_in: Compiled = (lambda: SUCCESS, halt_nothing)
-    count = 1 if node.id == "SubTree" else len(node.children)
+    count = 1 if node.id == SUBTREE else len(node.children)
     try:
-        if node.id == "SubTree":
+        if node.id == SUBTREE:
             child_scope(node, Blackboard())
         compile_node(Site(node, 0, None, 0, Blackboard(), shared), [standing_in] * count)
     except EngineError as error:

@@ -37,7 +37,7 @@ def run_once(site: Site, children: Sequence[Compiled]) -> Compiled:
     From then on SKIPPED, or with then_skip="false" the status of that one run (run_once_node.h).
     """
     [(child, halt)] = children
-    then_skip = choice_port(site, "then_skip", TRUTHS, "true")
+    then_skip = choice_port(site, "then_skip", TRUTHS)
     result = IDLE
     shared = site.shared
     fault = shared.fault  # of that run
@@ -64,7 +64,7 @@ def precondition(site: Site, children: Sequence[Compiled]) -> Compiled:
     """Its child where the script `if` holds when it starts, else the status in `else` (script_precondition.h)."""
     condition, scope = script_of(site, "if"), site.scope
     refusal = not_true(site, "if")
-    otherwise = choice_port(site, "else", STATUSES, "FAILURE")
+    otherwise = choice_port(site, "else", STATUSES)
 
     def ask() -> int:
         try:

@@ -23,7 +23,6 @@ if TYPE_CHECKING:
 
     Next = Callable[[], list[Any]]
 
-LOOP_PORTS = ("queue", "if_empty", "value")
 _IF_EMPTY = {name: status for name, status in STATUSES.items() if status != RUNNING}
 
 
@@ -55,12 +54,12 @@ def _loop(site: Site, children: Sequence[Compiled], convert: Callable[[str], Any
     start.
     """
     [(child, halt_child)] = children
-    if_empty = choice_port(site, "if_empty", _IF_EMPTY, "SUCCESS")
+    if_empty = choice_port(site, "if_empty", _IF_EMPTY)
     scope, target = site.scope, _target(site)
     text = site.node.port("queue")
     key = blackboard_key("queue", text)
     values = [] if key is not None else _constants(site, text, convert, sort)
-    stays = site.parent == "PipelineSequence"  # which does not reset a child that has completed
+    stays = site.parent_keeps_completed  # it does not reset a child that has completed
     queue: Any = deque(values)
     running = False  # whether the child was RUNNING at the last tick
 

@@ -61,7 +61,7 @@ def recovery_node(site: Site, children: Sequence[Compiled]) -> Compiled:
     fails or is SKIPPED; SKIPPED where the first child is.
     """
     ticks, halts = apart(children)
-    retries = site.number("number_of_retries", 1)
+    retries = site.number("number_of_retries")
     position = count = 0  # of the child, and of the recoveries so far
 
     def tick() -> int:
@@ -144,9 +144,9 @@ def rate_controller(site: Site, children: Sequence[Compiled]) -> Compiled:
     RUNNING in between. The time counts from the child's last success, and a PipelineSequence leaves it running.
     """
     [(child, halt_child)] = children
-    hz = rate_port(site, "hz", "10")
+    hz = rate_port(site, "hz")
     watch = Stopwatch(site.shared.clock)
-    stays = site.parent == "PipelineSequence"  # which does not reset a child that has completed
+    stays = site.parent_keeps_completed  # it does not reset a child that has completed
     fresh, running = True, False  # not yet started; the child was RUNNING at the last tick
 
     def tick() -> int:

@@ -11,6 +11,7 @@ from btlang.engine.build import Site, blackboard_key, value_of
 from btlang.engine.leaf import ActionFailed
 from btlang.engine.script_values import as_text
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
+from btlang.tree.catalogue import CATALOGUE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -22,12 +23,13 @@ TRUTHS = {"true": True, "1": True, "false": False, "0": False}
 STATUSES = {"SUCCESS": SUCCESS, "FAILURE": FAILURE, "SKIPPED": SKIPPED, "RUNNING": RUNNING}
 
 
-def value_port(site: Site, port: str, convert: Callable[[Any], T], default: str | None = None) -> Callable[[], T]:
+def value_port(site: Site, port: str, convert: Callable[[Any], T]) -> Callable[[], T]:
     """A function that gives the converted value of a port. `convert` raises ActionFailed for what it cannot take."""
     text = site.node.port(port)
     key = blackboard_key(port, text)
     if key is not None:
         return lambda: convert(value_of(site.scope, key))
+    default = CATALOGUE[site.node.id].ports[port].default
     if not text and default is None:
         raise site.error(f"{site.node.id} needs a port {port}")
     try:
@@ -37,7 +39,7 @@ def value_port(site: Site, port: str, convert: Callable[[Any], T], default: str 
     return lambda: value
 
 
-def choice_port(site: Site, port: str, table: Mapping[str, T], default: str) -> Callable[[], T]:
+def choice_port(site: Site, port: str, table: Mapping[str, T]) -> Callable[[], T]:
     """As value_port, for a port that takes one of some words."""
 
     def convert(value: Any) -> T:
@@ -46,10 +48,10 @@ def choice_port(site: Site, port: str, table: Mapping[str, T], default: str) -> 
             raise ActionFailed(f"{port} must be {' or '.join(table)}, not {word!r}")
         return table[word]
 
-    return value_port(site, port, convert, default)
+    return value_port(site, port, convert)
 
 
-def rate_port(site: Site, port: str, default: str) -> Callable[[], float]:
+def rate_port(site: Site, port: str) -> Callable[[], float]:
     """As value_port, for a number above 0."""
 
     def convert(value: Any) -> float:
@@ -61,7 +63,7 @@ def rate_port(site: Site, port: str, default: str) -> Callable[[], float]:
             raise ActionFailed(f"{port} must be a number above 0, not {str(value)!r}")
         return number
 
-    return value_port(site, port, convert, default)
+    return value_port(site, port, convert)
 
 
 def key_port(site: Site, port: str) -> str:

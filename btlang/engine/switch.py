@@ -7,17 +7,13 @@ from collections.abc import Callable, Mapping, Sequence
 from btlang.engine.build import Site, apart, blackboard_key
 from btlang.engine.script_values import as_text
 from btlang.engine.status import RUNNING, SKIPPED
+from btlang.tree.catalogue import CATALOGUE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.engine.build import Compiled
 
 _SAME = 2.0**-23  # as in scripts
-
-
-def switch_ports(cases: int) -> tuple[str, ...]:
-    """The ports of a Switch with so many cases."""
-    return ("variable", *(f"case_{number}" for number in range(1, cases + 1)))
 
 
 def switch(site: Site, children: Sequence[Compiled]) -> Compiled:
@@ -28,7 +24,7 @@ def switch(site: Site, children: Sequence[Compiled]) -> Compiled:
     """
     ticks, halts = apart(children)
     cases = len(ticks) - 1
-    variable, *values = [_text(site, port) for port in switch_ports(cases)]
+    variable, *values = [_text(site, port) for port in CATALOGUE[site.node.id].ports]
     enums = site.shared.enums
     running = -1  # the child that was RUNNING at the last tick
 

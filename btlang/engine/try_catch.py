@@ -27,7 +27,7 @@ def try_catch(site: Site, children: Sequence[Compiled]) -> Compiled:
     ticks, halts = apart(children)
     last = len(ticks) - 1
     shared = site.shared
-    catch_on_halt = choice_port(site, "catch_on_halt", TRUTHS, "false")
+    catch_on_halt = choice_port(site, "catch_on_halt", TRUTHS)
     index = skipped = 0
     trying = catching = False
     cause = shared.fault

@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 
 from btlang.engine.leaves import FunctionLeaf, as_function, status_of, unanswered
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SUCCESS
+from btlang.tree.catalogue import CATALOGUE, ON_SUCCESS
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -18,16 +19,14 @@ if TYPE_CHECKING:
     Call: TypeAlias = Callable[[], Any]
     Listener: TypeAlias = Callable[["Changes"], object]
 
-_REPEATING = frozenset(("Repeat", "KeepRunningUntilFailure", "LoopInt", "LoopBool", "LoopDouble", "LoopString"))
-_LIMITS = {"RetryUntilSuccessful": "num_attempts", "RecoveryNode": "number_of_retries"}
-
 
 def repeats(node: Node) -> bool:
     """Whether each completion of the node's children is told: it runs them again after a success, or so many times.
 
     What it runs until it succeeds, without a limit, is a condition that is waited for.
     """
-    return node.id in _REPEATING or (node.id in _LIMITS and node.port(_LIMITS[node.id]) != "-1")
+    kind = CATALOGUE.get(node.id)
+    return kind is not None and bool(kind.again) and (kind.again == ON_SUCCESS or not kind.is_endless(node))
 
 
 class Changes:

@@ -16,6 +16,7 @@ from btlang.english.pieces import COLON, Pieces, is_longer, mark
 from btlang.english.sentence import is_flat_fallback, statements
 from btlang.english.speaker import THEN, Said, Speaker
 from btlang.tree import ast
+from btlang.tree.catalogue import SEQUENCE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -84,7 +85,7 @@ def _try_otherwise(node: ast.Chain, speaker: Speaker) -> Iterator[Section]:
 
 def _sequence_node(node: ast.Chain, speaker: Speaker) -> Iterator[Section]:
     """It may be said by its id where what holds it adds nothing to it: below a node that is, or if it never skips."""
-    yield from exact_block(ast.Exact("Sequence", (), "", node.items, False, node.span), speaker)
+    yield from exact_block(ast.Exact(SEQUENCE, (), "", node.items, False, node.span), speaker)
 
 
 def _branching(positive: str, negative: str) -> Callable[[Any, Speaker], Iterator[Section]]:

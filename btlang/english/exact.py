@@ -11,6 +11,7 @@ from collections.abc import Iterator
 from btlang.english.pieces import COLON, Pieces, mark
 from btlang.english.speaker import WHOLE, Said, Speaker
 from btlang.tree import ast
+from btlang.tree.catalogue import SUBTREE
 from btlang.vocabulary.vocabulary import Vocabulary
 
 _BARE = re.compile(r"-?\d+(\.\d+)?|\{[A-Za-z_][A-Za-z0-9_]*\}")
@@ -38,11 +39,11 @@ def node_head(node: ast.Exact, vocabulary: Vocabulary) -> str:
     ports = list(node.ports)
     parts = [vocabulary.word("test" if node.is_condition else "do")]
     words, subtree = vocabulary.nodes.get(node.id), dict(ports).get("ID")
-    if words is None or (node.id == "SubTree" and subtree is None):
+    if words is None or (node.id == SUBTREE and subtree is None):
         parts.append(quoted(node.id, vocabulary))
     else:
         parts.append(words)
-        if node.id == "SubTree" and subtree is not None:
+        if node.id == SUBTREE and subtree is not None:
             parts.append(quoted(subtree, vocabulary))
             ports.remove(("ID", subtree))
     if node.name:

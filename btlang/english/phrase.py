@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 
 from btlang.text.source import Source
 from btlang.text.words import split
+from btlang.tree.catalogue import SUBTREE
 from btlang.tree.dump import described
 from btlang.tree.node import Node
 from btlang.vocabulary.entry import MEASURED, Entry
@@ -22,7 +23,7 @@ def phrase_of(node: Node, vocabulary: Vocabulary) -> str:
 
     What works with values of the mission is shown as it was written.
     """
-    if node.id == "SubTree":
+    if node.id == SUBTREE:
         return _filled_name(node)
     computed = node.id in ("Script", "ScriptCondition") or any(text.startswith("{_") for _, text in node.ports)
     if node.span is not None and (computed or node.port(MEASURED)) and node.span.text[:1] not in _MARKUP:

@@ -14,10 +14,10 @@ from btlang.frontends.token import NodeCall
 from btlang.text.source import Span
 from btlang.text.spelling import respellings
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, statements
+from btlang.tree.catalogue import SUBTREE
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.vocabulary import Vocabulary
 
-SUBTREE = "SubTree"
 _MOST_WORDS = 12  # of the name of a port
 _IDENTIFIER = re.compile(r"(?=\w*_|\w+[A-Z])[A-Za-z_]\w*", re.ASCII)  # `maxSpeed`, `_skipIf`: no word of English
 _BEHIND_ID = (END_OF_TEXT, END_OF_STATEMENT, ":", ",", "(", ")")

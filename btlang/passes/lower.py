@@ -9,6 +9,7 @@ from btlang.passes.scripts import assignment, behind, comparison, prepared, scri
 from btlang.record import Record
 from btlang.text.source import Span
 from btlang.tree import ast
+from btlang.tree.catalogue import SUBTREE
 from btlang.tree.node import Node
 from btlang.tree.visit import fold
 from btlang.vocabulary.entry import MEASURED
@@ -73,7 +74,7 @@ def _name(item: ast.Name, _done: list[Lowered], scope: Scope) -> Lowered:
     """A subtree sees its arguments, and what it needs of the mission's values."""
     scripts, ports = prepared(item.arguments, scope, scope.parameters.get(item.name, {}))
     shared = tuple((key, f"{{{key}}}") for key in scope.free.get(item.name, ()))
-    node = Node("SubTree", (), (("ID", item.name), *ports, *shared), span=item.span)
+    node = Node(SUBTREE, (), (("ID", item.name), *ports, *shared), span=item.span)
     return Lowered(behind(scripts, node), item.name in scope.skipping and not scripts)
 
 
@@ -101,7 +102,7 @@ def _for_each(item: ast.ForEach, done: list[Lowered], scope: Scope) -> Lowered:
     rounds = []
     for text in item.values:
         scripts, ports = prepared([(item.key, text)], scope, {item.key: item.kind})
-        rounds.append(behind(scripts, Node("SubTree", (), (("ID", name), *ports, *shared), span=item.span)))
+        rounds.append(behind(scripts, Node(SUBTREE, (), (("ID", name), *ports, *shared), span=item.span)))
     node = rounds[0] if len(rounds) == 1 else _node("Sequence", rounds, item.span)
     return Lowered(node, done[0].can_skip)
 

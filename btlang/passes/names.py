@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.tree.ast import Ast, Definition, Exact, Mission, Name, all_definitions, parts
+from btlang.tree.catalogue import SUBTREE
 from btlang.tree.visit import in_order_of_use
 
 
@@ -32,7 +33,7 @@ def names_in(node: Ast) -> list[str]:
             stack += reversed(parts(item))
         if isinstance(item, Name):
             found[item.name] = None
-        elif isinstance(item, Exact) and item.id == "SubTree":
+        elif isinstance(item, Exact) and item.id == SUBTREE:
             found[_subtree(item)] = None
     return list(found)
 

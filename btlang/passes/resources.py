@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.order import used_first
 from btlang.text.source import NOWHERE
+from btlang.tree.catalogue import CATALOGUE, SUBTREE
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import children_first
 from btlang.vocabulary.vocabulary import Vocabulary
@@ -28,12 +29,13 @@ def check_resources(tree: Tree, vocabulary: Vocabulary) -> list[Diagnostic]:
             if count:
                 inner = results[-count:]
                 del results[-count:]
-                if node.id.startswith("Parallel"):
+                kind = CATALOGUE.get(node.id)
+                if kind is not None and kind.at_once:
                     problems += _conflicts(inner)
                 results.append(_joined(inner))
             elif node.id in vocabulary.entries:
                 results.append(dict.fromkeys(vocabulary.entries[node.id][0].resources, node))
-            elif node.id == "SubTree":
+            elif node.id == SUBTREE:
                 results.append(dict.fromkeys(held_by_name.get(node.port("ID"), ()), node))
             else:
                 results.append(_NONE)

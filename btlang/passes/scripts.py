@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping, Sequence
 
 from btlang.passes.scope import Scope
+from btlang.tree.catalogue import SEQUENCE
 from btlang.tree.node import Node
 from btlang.vocabulary.references import Reference, pieces
 
@@ -24,7 +25,7 @@ def script(code: str) -> Node:
 
 def behind(scripts: Sequence[Node], node: Node) -> Node:
     """The node after what computes its ports."""
-    return Node("Sequence", (*scripts, node), span=node.span) if scripts else node
+    return Node(SEQUENCE, (*scripts, node), span=node.span) if scripts else node
 
 
 def prepared(

@@ -5,10 +5,9 @@ from __future__ import annotations
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.order import used_first
 from btlang.text.source import NOWHERE
+from btlang.tree.catalogue import MOST_NODES, SUBTREE
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.vocabulary import Vocabulary
-
-MOST_NODES = 1_000_000
 
 
 def check_size(tree: Tree, _vocabulary: Vocabulary) -> list[Diagnostic]:
@@ -26,6 +25,6 @@ def _size(root: Node, sizes: dict[str, int]) -> int:
     stack = [root]
     while stack:
         node = stack.pop()
-        total += 1 + (sizes.get(node.port("ID"), 0) if node.id == "SubTree" else 0)
+        total += 1 + (sizes.get(node.port("ID"), 0) if node.id == SUBTREE else 0)
         stack.extend(node.children)
     return total

@@ -9,6 +9,7 @@ from btlang.engine.status import IDLE, RUNNING, SKIPPED
 from btlang.record import Record
 from btlang.robots.geometry import Point, Pose
 from btlang.run.events import PeriodPassed, RobotEvent, StatusChanged, StatusesChanged
+from btlang.run.lines import is_asked_wait
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False
@@ -119,7 +120,7 @@ class RunRecord:
     def _changed(self, event: StatusChanged) -> None:
         if event.path == "/":  # after a pause it runs again
             self.ended = None if event.status == RUNNING else (event.status, event.t)
-        if not ((event.node.id == "Sleep" and event.node.span) or self._is_action(event.node)):
+        if not (is_asked_wait(event.node) or self._is_action(event.node)):
             return
         command = self._running.pop(event.path, None)
         if command is None:

@@ -6,6 +6,7 @@ from collections.abc import Iterator, Mapping
 
 from btlang.engine.status import IDLE, RUNNING
 from btlang.run.events import StatusesChanged
+from btlang.tree.catalogue import SUBTREE
 from btlang.tree.node import Tree
 
 TYPE_CHECKING = False
@@ -46,7 +47,7 @@ def _keys(path: str, tree: Tree) -> Iterator[tuple[str, str]]:
     subtrees = dict(tree.subtrees)
     name, node, steps = "", tree.root, ""
     for step in path.strip("/").split("/") if path != "/" else ():
-        if node.id == "SubTree":
+        if node.id == SUBTREE:
             name, steps = node.port("ID"), ""
             if name not in subtrees:
                 return

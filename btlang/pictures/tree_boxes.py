@@ -4,35 +4,18 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from btlang.engine.compile import NODE_TYPES
 from btlang.english.phrase import seconds
 from btlang.pictures.letters import shown
 from btlang.pictures.statuses import by_definition
 from btlang.record import Record
+from btlang.tree.catalogue import CATALOGUE, SUBTREE
 from btlang.tree.node import Node, Tree
 
 IN_PLACE = 500  # nodes; a tree that is larger with its subtrees filled in is drawn apart
 MOST = 2000  # nodes in a picture; what is beyond becomes "... and 17 more"
 DEEPEST = 60
 
-_SYMBOLS = {
-    "Sequence": "→",
-    "AsyncSequence": "→",
-    "SequenceWithMemory": "→",
-    "ReactiveSequence": "→",
-    "Fallback": "?",
-    "AsyncFallback": "?",
-    "ReactiveFallback": "?",
-    "Parallel": "⇉",
-    "ParallelAll": "⇉",
-    "Inverter": "¬",
-    "ForceSuccess": "✓",
-    "ForceFailure": "✗",
-    "Repeat": "↻",
-    "RetryUntilSuccessful": "↺",
-}
 _TIMES = "\N{MULTIPLICATION SIGN}"
-_ROLES = {"IfThenElse": ("if", "then", "else"), "WhileDoElse": ("while", "do", "else")}
 
 
 class Box(Record):
@@ -107,10 +90,11 @@ class Maker:
                 continue
             index = len(boxes)
             children = node.children
-            if node.id == "SubTree" and not apart and node.port("ID") in self._subtrees:
+            if node.id == SUBTREE and not apart and node.port("ID") in self._subtrees:
                 children = (self._subtrees[node.port("ID")],)
             boxes.append(self._box(node, bool(children), parent, role, statuses.get(path)))
-            roles = _ROLES.get(node.id, ())
+            kind = CATALOGUE.get(node.id)
+            roles = kind.roles if kind is not None else ()
             for i in range(len(children) - 1, -1, -1):
                 below = f"{path.rstrip('/')}/{i}"
                 stack.append((children[i], index, below, roles[i] if i < len(roles) else "", depth + 1))
@@ -118,13 +102,13 @@ class Maker:
         return Sheet(name, tuple(boxes))
 
     def _box(self, node: Node, has_children: bool, parent: int, role: str, status: int | None) -> Box:
-        if node.id == "SubTree":
+        if node.id == SUBTREE:
             text = shown(node.name or node.port("ID"))
             return Box("frame" if has_children else "subtree", text, "", parent, role, status)
-        kind = NODE_TYPES.get(node.id)
+        kind = CATALOGUE.get(node.id)
         if has_children:
             shape = "decorator" if kind is not None and kind.most == 1 else "control"
-            return Box(shape, shown(_named(node)), _SYMBOLS.get(node.id, ""), parent, role, status)
+            return Box(shape, shown(_named(node)), kind.symbol if kind is not None else "", parent, role, status)
         shape = "action" if kind is not None or self._is_action(node) else "condition"
         skipped = " (skipped)" if node.port("_skipIf") == "true" else ""
         return Box(shape, shown(self._label(node.replace(ports=_plain(node))) + skipped), "", parent, role, status)
@@ -137,10 +121,13 @@ def _plain(node: Node) -> tuple[tuple[str, str], ...]:
 def _named(node: Node) -> str:
     """The id with its ports in short: `Repeat x3`, `Timeout 5 s`."""
     words = [node.name, node.id]
+    kind = CATALOGUE.get(node.id)
     for key, text in node.ports:
-        if key in ("num_cycles", "num_attempts"):
+        port = kind.ports.get(key) if kind is not None else None
+        unit = port.unit if port is not None else ""
+        if unit == "rounds":
             words.append(_TIMES + ("∞" if text == "-1" else text))
-        elif key in ("msec", "delay_msec"):
+        elif unit == "ms":
             words.append(seconds(text))
         else:
             words.append(f"{key}={text}")

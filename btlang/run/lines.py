@@ -7,6 +7,7 @@ from collections.abc import Callable
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED
 from btlang.run.events import Overrun, RobotEvent, StatusChanged, StatusesChanged
 from btlang.text.output import one_line
+from btlang.tree.catalogue import CATALOGUE
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False
@@ -36,7 +37,7 @@ class Lines:
             self._robot(event)
         elif isinstance(event, StatusesChanged):
             for change in event:
-                if (change.node.id == "Sleep" and change.node.span) or self._is_action(change.node):
+                if is_asked_wait(change.node) or self._is_action(change.node):
                     self._action(change, event.valued.get(change.index, change.node))
         elif isinstance(event, Overrun):
             self._overrun(event)
@@ -72,3 +73,9 @@ class Lines:
 def brief(seconds: float) -> str:
     """Seconds with two digits that matter, however few they are."""
     return f"{seconds:.2f}" if seconds >= 0.1 else f"{seconds:.2g}"
+
+
+def is_asked_wait(node: Node) -> bool:
+    """Whether a node is a wait that a sentence asks for; the timers inside `for` and `every` have no sentence."""
+    kind = CATALOGUE.get(node.id)
+    return kind is not None and kind.is_wait and node.span is not None

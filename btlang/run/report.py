@@ -9,6 +9,7 @@ from btlang.diagnostics.render import underlined
 from btlang.engine.engine import Failure
 from btlang.run.story import Attempt, Attempts, Story
 from btlang.text.output import printable
+from btlang.tree.catalogue import CATALOGUE, SUBTREE
 from btlang.tree.node import Node
 
 _LONGEST = 60  # of the words of a sentence beside a reason
@@ -56,7 +57,7 @@ class _Report:
         engine = self._story.engine
         index = engine.parent(self._failure.index)
         while index >= 0:
-            if index in reasons or (engine.node(index).id == "SubTree" and engine.node(index).span is not None):
+            if index in reasons or (engine.node(index).id == SUBTREE and engine.node(index).span is not None):
                 yield f"  {self._sentence(index)}{reasons.get(index, '')}"
             index = engine.parent(index)
 
@@ -78,7 +79,8 @@ class _Report:
 
     def _named(self, index: int) -> int:
         """The node that a reason is about: that of a `not` is about what it denies, its child."""
-        return index + 1 if self._story.engine.node(index).id == "Inverter" else index
+        kind = CATALOGUE.get(self._story.engine.node(index).id)
+        return index + 1 if kind is not None and len(kind.turns) == 2 else index
 
     def _sentence(self, index: int) -> str:
         """The words of a node, cut where they are many, with their line where that is not the one of the failure."""
@@ -97,7 +99,7 @@ class _Report:
         """A command or condition in the words of the vocabulary, and as it was written what is made of several."""
         engine = self._story.engine
         node, span = engine.filled(index), engine.span(index)
-        if span is None or (node.span is not None and not node.children and node.id != "SubTree"):
+        if span is None or (node.span is not None and not node.children and node.id != SUBTREE):
             return self._label(node)
         return span.text.splitlines()[0]
 

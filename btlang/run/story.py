@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SUCCESS
 from btlang.record import Record
 from btlang.run.events import StatusChanged, StatusesChanged
+from btlang.tree.catalogue import CATALOGUE, ON_FAILURE, SUBTREE, NodeKind
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -15,10 +16,6 @@ if TYPE_CHECKING:
 
 MOST = 10
 """So many different failures are kept for a node, the latest ones."""
-
-_NEED_ALL = frozenset(("Fallback", "AsyncFallback", "ReactiveFallback", "RoundRobin", "Parallel", "ParallelAll"))
-_TRY_AGAIN = frozenset(("RetryUntilSuccessful", "RecoveryNode"))
-_ASK = frozenset(("IfThenElse", "WhileDoElse", "Whenever"))  # a first child that fails is an answer
 
 
 class Attempt(Record):
@@ -105,7 +102,7 @@ class Story:
         above = self.engine.parent(index)
         self._failed.get(above, {}).pop(index, None)
         if status == RUNNING:
-            if not event.node.children and event.node.id != "SubTree":
+            if not event.node.children and event.node.id != SUBTREE:
                 self._since[index] = event.t
             return
         began, tried = self._since.pop(index, None), self._tried.pop(index, _NONE)
@@ -117,18 +114,20 @@ class Story:
                     self._stopped, self._stopped_at = [], event.t
                 self._stopped.append((index, event.t - began))
             self._add(above, tried)
-        elif status == SUCCESS and index != above + 1 and self._kind(above) == "RecoveryNode":
+        elif status == SUCCESS and index != above + 1 and self._recovers(above):
             self._add(above, Attempts((Attempt(index, "", event.t, event.t, event.t),)))
 
     def _fail(self, event: StatusChanged, above: int, tried: Attempts) -> None:
         index = event.index
         failed = self._failed.get(index)
+        kind = CATALOGUE.get(event.node.id)
         if not failed:
             told = together((tried, Attempts((Attempt(index, event.reason, event.t, event.t, event.t),))))
-        elif event.node.id in _TRY_AGAIN:
+        elif kind is not None and kind.again == ON_FAILURE:
             told = tried
         else:
-            told = together(failed.values()) if event.node.id in _NEED_ALL else next(reversed(failed.values()))
+            needs_all = kind is not None and (kind.goes_on == ON_FAILURE or kind.at_once)
+            told = together(failed.values()) if needs_all else next(reversed(failed.values()))
         now = self._stopped if event.t == self._stopped_at else []
         halted = tuple(leaf for leaf in now if leaf[0] > index)  # what is below comes later
         if halted and told.kept:
@@ -136,7 +135,8 @@ class Story:
             told = told.replace(kept=(*others, latest.replace(stopped=latest.stopped + halted)))
         self._stopped.clear()
         self._failed.setdefault(above, {})[index] = told
-        if index != above + 1 or self._kind(above) not in _ASK:
+        parent = self._kind(above)
+        if index != above + 1 or parent is None or not parent.asks_first:
             self._add(above, told)
         if above < 0:
             self.ended = event.t
@@ -145,5 +145,10 @@ class Story:
         if tried.kept and index >= 0:
             self._tried[index] = together((self._tried.get(index, _NONE), tried))
 
-    def _kind(self, index: int) -> str:
-        return self.engine.node(index).id if index >= 0 else ""
+    def _recovers(self, index: int) -> bool:
+        """Whether what a node does beside its first child is to help that one."""
+        kind = self._kind(index)
+        return kind is not None and kind.again == ON_FAILURE and kind.most > 1
+
+    def _kind(self, index: int) -> NodeKind | None:
+        return CATALOGUE.get(self.engine.node(index).id) if index >= 0 else None

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
+from btlang.tree.catalogue import SUBTREE
+
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import TypeVar
@@ -51,7 +53,7 @@ def children_first(root: Node) -> list[Node]:
 
 def subtree_names(root: Node) -> list[str]:
     """The names of the subtrees that a tree uses itself, from left to right, each as often as it is used."""
-    return [node.port("ID") for node in children_first(root) if node.id == "SubTree"]
+    return [node.port("ID") for node in children_first(root) if node.id == SUBTREE]
 
 
 def used_subtrees(tree: Tree, names: Iterable[str] = ()) -> tuple[tuple[str, Node], ...]:

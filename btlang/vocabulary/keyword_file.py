@@ -10,6 +10,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.record import Record
 from btlang.text.source import Source, Span
 from btlang.text.toml import parse_toml
+from btlang.tree.catalogue import CATALOGUE
 from btlang.vocabulary.entry import COMPARISONS, MEASURED, Entry, SlotSpec
 from btlang.vocabulary.language_tables import TABLES, WORD_LISTS, problems
 from btlang.vocabulary.pattern import PatternError, Slot, forms
@@ -22,16 +23,6 @@ if TYPE_CHECKING:
     from typing import Any
 
 _TOP = {"language", "action", "condition", "quantity", "type", *WORD_LISTS, *TABLES}
-NODE_IDS = frozenset((
-    "Sequence", "Fallback", "AsyncSequence", "AsyncFallback", "SequenceWithMemory", "Parallel", "ParallelAll",
-    "ReactiveSequence", "ReactiveFallback", "IfThenElse", "WhileDoElse", "Inverter", "ForceSuccess", "ForceFailure",
-    "Repeat", "RetryUntilSuccessful", "Timeout", "Delay", "Sleep", "AlwaysSuccess", "AlwaysFailure", "SubTree",
-    "Whenever", "SetBlackboard", "UnsetBlackboard", "Script", "ScriptCondition", "Switch2", "Switch3", "Switch4",
-    "Switch5", "Switch6", "TryCatch", "KeepRunningUntilFailure", "RunOnce", "Precondition", "LoopInt", "LoopBool",
-    "LoopDouble", "LoopString", "SkipUnlessUpdated", "WaitValueUpdate", "WasEntryUpdated", "PipelineSequence",
-    "RecoveryNode", "RoundRobin", "RateController",
-))  # fmt: skip
-"""Ids that are not free: those of the engine."""
 _ENTRY = {"phrase", "id", "call", "ros", "slots", "resources", "topic", "help", "example"}
 _FLAGS = ("instant", "uninterruptible", "thread")
 _MORE = {"action": set(_FLAGS), "condition": set[str](), "quantity": {"type"}}
@@ -89,7 +80,7 @@ class _Reader:
         keys = _ENTRY | _MORE[sort]
         for key in [key for key in table if key not in keys]:
             self.wrong(f"'{key}' is not known in [[{sort}]]; known are {', '.join(sorted(keys))}", near)
-        if name in NODE_IDS:
+        if name in CATALOGUE:
             self.wrong(f"'{name}' is a node of the tree itself; the {sort} '{near}' needs another id", near)
         call, resources = table.get("call", ""), table.get("resources", [])
         if not isinstance(call, str) or (call and not re.fullmatch(r"[\w.]+:[\w.]+", call)):

@@ -7,11 +7,11 @@ from collections.abc import Sequence
 
 from hypothesis import strategies as st
 
-from btlang.engine.compile import NODE_TYPES
+from btlang.tree.catalogue import CATALOGUE, SUBTREE
 from btlang.tree.model import NodeModel
 from btlang.tree.node import Node, Tree
 
-SHAPES = {node_id: (kind.least, min(kind.most, kind.least + 2)) for node_id, kind in NODE_TYPES.items()}
+SHAPES = {node_id: (kind.least, min(kind.most, kind.least + 2)) for node_id, kind in CATALOGUE.items()}
 """How many children a node of each type has at least, and at most here."""
 _INNER = [node_id for node_id, (_, most) in SHAPES.items() if most]
 _NATURAL = ["Sequence", "Fallback", "Parallel", "IfThenElse", "Whenever", "Repeat", "ReactiveSequence", "WhileDoElse"]
@@ -96,7 +96,7 @@ def leaves(subtrees: Sequence[str]) -> st.SearchStrategy[Node]:
     own = st.builds(Node, st.sampled_from(_OWN_LEAVES), st.just(()), _ports, _names)
     valued = st.sampled_from(_VALUES).map(lambda leaf: Node(leaf[0], (), leaf[1]))
     prepared = st.sampled_from(_COMPUTED).map(_computed)
-    built_in = [node_id for node_id, (_, most) in SHAPES.items() if not most]
+    built_in = [node_id for node_id, (_, most) in SHAPES.items() if not most and node_id != SUBTREE]
     odd = st.builds(Node, st.sampled_from(built_in), st.just(()), _ports, _names)
     if not subtrees:
         return st.one_of(plain, plain, valued, valued, prepared, own, odd)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from hypothesis import strategies as st
 
-from btlang.engine.compile import NODE_TYPES
+from btlang.tree.catalogue import CATALOGUE, SUBTREE
 from btlang.tree.node import Node, Tree
 
 AWKWARD = (
@@ -37,7 +37,7 @@ def _node(node_id: str, children: list[Node], ports: dict[str, str], name: str) 
 
 LEAVES = st.builds(
     _node,
-    st.one_of(LEAF_IDS, st.sampled_from([id for id, kind in NODE_TYPES.items() if kind.most == 0])),
+    st.one_of(LEAF_IDS, st.sampled_from([id for id, kind in CATALOGUE.items() if kind.most == 0 and id != SUBTREE])),
     st.just([]),
     PORTS,
     TEXTS,
@@ -46,7 +46,7 @@ SHARES = st.dictionaries(st.sampled_from(("success_count", "failure_count")), TE
 
 
 def _parents(children: st.SearchStrategy[Node]) -> st.SearchStrategy[Node]:
-    ids = st.one_of(INNER_IDS, st.sampled_from([id for id, kind in NODE_TYPES.items() if kind.most > 0]))
+    ids = st.one_of(INNER_IDS, st.sampled_from([id for id, kind in CATALOGUE.items() if kind.most > 0]))
     several = st.lists(children, min_size=1, max_size=4)
     return st.one_of(
         st.builds(_node, ids, several, PORTS, TEXTS), st.builds(_node, st.just("Parallel"), several, SHARES, TEXTS)

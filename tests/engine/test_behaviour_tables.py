@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from btlang.engine.compile import NODE_TYPES
+from btlang.tree.catalogue import CATALOGUE
 from btlang.tree.node import Node, Tree
 
 from .scripted import LETTER, World, leaves
@@ -80,5 +80,5 @@ def test_no_node_is_left_out() -> None:
     for columns in (6, 5):
         named = {row[0].split()[0] for row in rows(columns)}
         alike = {id for first, others in same.items() if first in named for id in others}
-        missing = {id for id, kind in NODE_TYPES.items() if kind.most and id not in named | alike}
+        missing = {id for id, kind in CATALOGUE.items() if kind.most and id not in named | alike}
         assert missing <= ({"ForceSuccess", "ForceFailure"} if columns == 5 else set())

@@ -8,9 +8,9 @@ from collections.abc import Callable, Iterator
 import pytest
 from hypothesis import given
 
-from btlang.engine.compile import NODE_TYPES
 from btlang.engine.engine import Engine
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SUCCESS
+from btlang.tree.catalogue import CATALOGUE
 from btlang.tree.node import Node
 from tests.profiles import searches
 
@@ -23,7 +23,7 @@ every_type = pytest.mark.parametrize("id", RUNS)
 
 
 def test_every_node_type_is_here() -> None:
-    assert set(RUNS) == {id for id, kind in NODE_TYPES.items() if kind.most} | {"SubTree"}
+    assert set(RUNS) == {id for id, kind in CATALOGUE.items() if kind.most} | {"SubTree"}
 
 
 # A halt reaches every running leaf exactly once, children before parents

@@ -79,7 +79,7 @@ def test_a_subtree_that_contains_itself() -> None:
 
 
 def test_a_tree_that_grows_too_large(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(compiling, "MAX_NODES", 100)
+    monkeypatch.setattr(compiling, "MOST_NODES", 100)
     levels = [(f"t{i}", n("Sequence", *[n("SubTree", ID=f"t{i + 1}")] * 2)) for i in range(50)]
     with pytest.raises(EngineError, match="the tree has more than 100 nodes"):
         World().engine(Tree(n("SubTree", ID="t0"), (*levels, ("t50", n("AlwaysSuccess")))))

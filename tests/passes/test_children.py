@@ -8,9 +8,9 @@ import pytest
 
 from btlang.api import parse_tree
 from btlang.diagnostics.diagnostic import MissionError
-from btlang.engine.compile import NODE_TYPES
+from btlang.tree.catalogue import CATALOGUE
 
-INNER = [node_id for node_id, kind in NODE_TYPES.items() if kind.most]
+INNER = [node_id for node_id, kind in CATALOGUE.items() if kind.most]
 COUNTS = range(4)
 CHILDREN = ("wave", "nod", "say hello")
 TARGETS = ("xml", "english", "json", "python", "py_trees", "dot", "tree", "keywords")
@@ -25,7 +25,7 @@ def _said(node_id: str, count: int, indent: str = "") -> str:
 @pytest.mark.parametrize("node_id", INNER)
 def test_a_wrong_number_of_children_is_told(node_id: str, parser: str) -> None:
     """In all places where a lint looks at the ending of a node."""
-    kind = NODE_TYPES[node_id]
+    kind = CATALOGUE[node_id]
     for count in COUNTS:
         alone, inside = _said(node_id, count), _said(node_id, count, "  ")
         text = f"{alone}\nwave\ndo fallback:\n{inside}\n  wave\ndo retry until successful:\n{inside}"

@@ -8,8 +8,6 @@ import pytest
 
 from btlang.api import parse_tree
 from btlang.diagnostics.diagnostic import MissionError
-from btlang.engine.compile import NODE_TYPES
-from btlang.vocabulary.keyword_file import NODE_IDS
 
 ACTION = '[[action]]\nphrase = "hop"\nid = "Hop"\n'
 
@@ -88,7 +86,3 @@ def test_a_byte_order_mark_is_fine(tmp_path: Path) -> None:
 def test_what_is_no_word_is_told() -> None:
     with pytest.raises(TypeError, match=r"btlang\.action"):
         parse_tree("wave", keywords=[print])
-
-
-def test_ids_of_the_engine_are_not_free() -> None:
-    assert {*NODE_TYPES, "SubTree"} == NODE_IDS

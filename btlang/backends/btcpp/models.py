@@ -4,23 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from btlang.engine.compile import CONDITIONS, NODE_TYPES
 from btlang.frontends.btcpp.models import nav2_models
 from btlang.frontends.btcpp.origin import Element
 from btlang.frontends.btcpp.spelling import AUTOREMAP, IN_3, KINDS, MODEL, TRUE
+from btlang.tree.catalogue import BEHAVIOR_TREE_CPP, CATALOGUE, SUBTREE
 from btlang.tree.model import NodeModel, PortModel
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.entry import COMPARISONS, MEASURED, Entry
 from btlang.vocabulary.vocabulary import Vocabulary
 
-_OTHERS = frozenset(("Whenever", "PipelineSequence", "RecoveryNode", "RoundRobin", "RateController"))
-"""Nodes that the engine has beside those of BehaviorTree.CPP."""
-_WHENEVER = NodeModel(
-    "Control", "Whenever", (),
-    "Condition, reaction, work. Each time the condition becomes true, the work is suspended, the reaction runs once, "
-    "and the work goes on.",
-)  # fmt: skip
-_BUILT_IN = frozenset(NODE_TYPES) - _OTHERS | {"SubTree"}
+_BUILT_IN = frozenset(kind.id for kind in CATALOGUE.values() if kind.origin == BEHAVIOR_TREE_CPP)
 
 
 class Uses:
@@ -29,7 +22,7 @@ class Uses:
     def __init__(self, tree: Tree, vocabulary: Vocabulary, dialect: int) -> None:
         self._vocabulary = vocabulary
         self._known = {model.id: model for model in tree.models}
-        self._own = IN_3 | {"SubTree"} if dialect == 3 else _BUILT_IN
+        self._own = IN_3 | {SUBTREE} if dialect == 3 else _BUILT_IN
         self._ports: dict[str, dict[str, None]] = {}  # those in use, by the id of a node
         self._most: dict[str, int] = {}  # children
         self._given: dict[str, set[str]] = {}  # ports that all SubTree nodes of a tree have, by its name
@@ -38,7 +31,7 @@ class Uses:
         for node in tree.walk():
             if node.id not in self._own:
                 self._add(node)
-            elif node.id == "SubTree" and dialect == 4:
+            elif node.id == SUBTREE and dialect == 4:
                 self._add_use(node)
             for key, _ in node.ports:
                 if key == "name":
@@ -77,11 +70,9 @@ class Uses:
         model = self._known.get(node_id)
         if model is not None and model.kind in KINDS:
             return model.kind
-        built_in = NODE_TYPES.get(node_id)
+        built_in = CATALOGUE.get(node_id)
         if built_in is not None:
-            if built_in.most == 0:
-                return "Condition" if node_id in CONDITIONS else "Action"
-            return "Decorator" if built_in.most == 1 else "Control"
+            return built_in.kind
         entry = self._vocabulary.entry(node_id)
         if entry is not None:
             return entry.sort.capitalize()
@@ -90,7 +81,7 @@ class Uses:
     def models(self) -> list[NodeModel]:
         """One for each, in an order that does not change with the tree: by kind, then by id."""
         found = [self._model(node_id) for node_id in self._ports]
-        subtrees = [self._subtree(m) for m in self._known.values() if m.kind == "SubTree" and m.id in self._trees]
+        subtrees = [self._subtree(m) for m in self._known.values() if m.kind == SUBTREE and m.id in self._trees]
         return sorted(found, key=lambda m: (KINDS.index(m.kind), m.id)) + sorted(subtrees, key=lambda m: m.id)
 
     def _subtree(self, model: NodeModel) -> NodeModel:
@@ -108,7 +99,8 @@ class Uses:
         if model is None or model.kind not in KINDS:
             entries = self._vocabulary.entries.get(node_id, [])
             ports = [port for entry in entries for port in self._entry_ports(entry)]
-            text = entries[0].help if entries else _WHENEVER.text if node_id == _WHENEVER.id else ""
+            built_in = CATALOGUE.get(node_id)
+            text = entries[0].help if entries else built_in.text if built_in is not None else ""
             model = NodeModel(self.kind(node_id), node_id, tuple({port.name: port for port in ports}.values()), text)
         named = {port.name for port in model.ports}
         used = tuple(PortModel(name) for name in self._ports[node_id] if name not in named)
@@ -141,7 +133,7 @@ def _element(model: NodeModel, ids: dict[str, str]) -> Element:
     inner = [_port(port) for port in model.ports]
     if model.text:
         inner.append(Element("MetadataFields", (), (Element("Metadata", (("description", model.text),)),)))
-    node_id = ids.get(model.id, model.id) if model.kind == "SubTree" else model.id
+    node_id = ids.get(model.id, model.id) if model.kind == SUBTREE else model.id
     return Element(model.kind, (("ID", node_id),), tuple(inner))
 
 

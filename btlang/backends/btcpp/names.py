@@ -8,13 +8,13 @@ from __future__ import annotations
 import re
 from collections.abc import Iterable
 
-from btlang.frontends.btcpp.spelling import IN_3, KINDS, MAIN_TREE
+from btlang.frontends.btcpp.spelling import KINDS, MAIN_TREE
+from btlang.tree.catalogue import CATALOGUE
 from btlang.tree.node import Tree
-from btlang.vocabulary.keyword_file import NODE_IDS
 
 _REFUSED = re.compile(r"""[\x00-\x20\x7f<>&"'/\\:*?|.{}]+""")
 """Also braces, which they take; but a name in braces looks like a reference."""
-_RESERVED = frozenset(("", "Root", "root", *KINDS, *NODE_IDS, *IN_3))
+_RESERVED = frozenset(("", "Root", "root", *KINDS, *CATALOGUE))
 
 
 def tree_ids(tree: Tree, leaves: Iterable[str], dialect: int) -> dict[str, str]:

@@ -16,6 +16,7 @@ from btlang.engine.script_tokens import ScriptError, Tokens
 from btlang.engine.script_values import literal
 from btlang.passes.scripts import script
 from btlang.record import Record
+from btlang.tree.catalogue import CATALOGUE, SEQUENCE, SUBTREE
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import children_first, fold
 
@@ -28,23 +29,19 @@ if TYPE_CHECKING:
     PortTypes: TypeAlias = Callable[[str], Mapping[str, str]]
     """The C++ types of the ports of a node, by its id."""
 
-_BUILT_IN: dict[str, dict[str, str]] = {
-    "Repeat": {"num_cycles": "int"},
-    "RetryUntilSuccessful": {"num_attempts": "int"},
-    "Sleep": {"msec": "unsigned int"},
-    "Timeout": {"msec": "unsigned int"},
-    "Delay": {"delay_msec": "unsigned int"},
-    "Parallel": {"success_count": "int", "failure_count": "int"},
-    "ParallelAll": {"max_failures": "int"},
-    "RecoveryNode": {"number_of_retries": "int"},
-    "RateController": {"hz": "double"},
-}
 _DECIMALS = ("double", "float")
 _TEXT = "std::string"
 _INTEGER = re.compile(r"u?int(8|16|32|64)?(_t)?|(unsigned|long|short)( .*)?|size_t|int")
 _OWN_KEY = re.compile(r"_([0-9]{1,15})")
 _SETS = (":=", "=")
 _CHANGES = ("+=", "-=", "*=", "/=")
+
+
+_BUILT_IN = {
+    kind.id: {name: port.type for name, port in kind.ports.items()}
+    for kind in CATALOGUE.values()
+    if any(port.type for port in kind.ports.values())
+}
 
 
 class Assignment(Record):
@@ -114,10 +111,10 @@ class _Typing:
         for text in (text for port, text in node.ports if port == "code" or port[:1] == "_"):
             for made in assignments(text):
                 self._note(name, made)
-        types = {} if node.id == "SubTree" else self._port_types(node.id)
+        types = {} if node.id == SUBTREE else self._port_types(node.id)
         for port, text in node.ports:
             key = blackboard_key(port, text)
-            if node.id == "SubTree" and port != "ID" and port[:1] != "_":
+            if node.id == SUBTREE and port != "ID" and port[:1] != "_":
                 inner = self._value((node.port("ID"), port))
                 if key is None:
                     self._facts[inner].given.add(type(literal(text)))
@@ -197,13 +194,13 @@ class _Typing:
             return node
         own = tuple(port for port in node.ports if port[0][:1] == "_" and port[0] != "_autoremap")
         node = node.replace(ports=tuple(port for port in node.ports if port not in own))
-        return Node("Sequence", (*scripts, node), own, span=node.span)
+        return Node(SEQUENCE, (*scripts, node), own, span=node.span)
 
     def _port(self, name: str, node: Node, port: str, text: str, scripts: list[Node]) -> str:
         if port == "code" or (port[:1] == "_" and port != "_autoremap"):
             return self._code(name, text)
         key = blackboard_key(port, text)
-        if node.id == "SubTree":
+        if node.id == SUBTREE:
             if port == "ID" or port[:1] == "_" or key is not None or isinstance(literal(text), str):
                 return text
             facts = self._facts[self._value((node.port("ID"), port))]

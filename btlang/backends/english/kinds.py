@@ -15,6 +15,7 @@ from btlang.frontends.heads import find_heads
 from btlang.record import Record
 from btlang.text.source import Source
 from btlang.text.words import split
+from btlang.tree.catalogue import CATALOGUE, SUBTREE
 from btlang.tree.node import Node
 from btlang.vocabulary.entry import MEASURED
 from btlang.vocabulary.pattern import Slot, name_form
@@ -27,8 +28,6 @@ if TYPE_CHECKING:
     from typing import TypeAlias
 
     Value: TypeAlias = tuple[str, str]
-
-_ROUNDS = {"Repeat": "num_cycles", "RetryUntilSuccessful": "num_attempts"}
 
 
 class Around(Record):
@@ -113,6 +112,7 @@ class Kinds:
 
     def _leaf(self, made: Computed, own: Mapping[str, str]) -> None:
         node, texts = made.node, made.texts
+        kind = CATALOGUE.get(node.id)
         for text in texts.values():
             self._mention(text, own)
         for key in made.times:
@@ -128,11 +128,13 @@ class Kinds:
             self._sort(value, found.is_number)
             for _, text in found.arguments:
                 self._give(value, text, own, {}, found.is_number)
-        elif node.id == "SubTree" and node.port("ID") in self._names:
+        elif node.id == SUBTREE and node.port("ID") in self._names:
             for key in parameters(node.port("ID")):
                 self._give((node.port("ID"), key), node.port(key), own, texts)
-        elif node.id in _ROUNDS:
-            self._need(node.port(_ROUNDS[node.id]), "count", own)
+        elif kind is not None:
+            for name, port in kind.ports.items():
+                if port.unit == "rounds":
+                    self._need(node.port(name), "count", own)
         for entry in self._vocabulary.entries.get(node.id, ()):
             types = {slot.name: slot.type for slot in entry.slots} | (
                 {MEASURED: entry.measures} if entry.measures else {}

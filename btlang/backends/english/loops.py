@@ -7,6 +7,7 @@ from collections.abc import Container
 
 from btlang.backends.english.code import Computed, computed
 from btlang.record import Record
+from btlang.tree.catalogue import SUBTREE
 from btlang.tree.node import Node, Tree
 
 _PREFIX = "each_"
@@ -26,7 +27,7 @@ def find_loops(tree: Tree, refused: Container[str]) -> dict[int, Loop]:
     bodies = {name: root for name, root in tree.subtrees if name.startswith(_PREFIX) and name not in refused}
     if not bodies:
         return {}
-    uses = Counter(node.port("ID") for node in tree.walk() if node.id == "SubTree")
+    uses = Counter(node.port("ID") for node in tree.walk() if node.id == SUBTREE)
     loops: dict[int, Loop] = {}
     for node in tree.walk():
         rounds = [_round(node)] if uses[_used(node)] == 1 else [_round(child) for child in _children(node)]
@@ -44,10 +45,10 @@ def _children(node: Node) -> tuple[Node, ...]:
 
 
 def _round(node: Node) -> Computed | None:
-    if node.id == "SubTree":
+    if node.id == SUBTREE:
         return Computed(node, {})
     made = computed(node)
-    return made if made is not None and made.node.id == "SubTree" else None
+    return made if made is not None and made.node.id == SUBTREE else None
 
 
 def _used(node: Node) -> str:

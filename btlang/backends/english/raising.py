@@ -12,7 +12,6 @@ from btlang.backends.english.known import Known
 from btlang.backends.english.loops import Loop
 from btlang.backends.english.raised import Checked, Raised
 from btlang.backends.english.values import assigned, can_say, compared, remembered, texts_of
-from btlang.engine.compile import CONDITIONS
 from btlang.english.phrase import leaf_words
 from btlang.english.speaker import Speaker
 from btlang.passes.lower import Lowered
@@ -20,6 +19,7 @@ from btlang.passes.scope import Scope
 from btlang.record import Record
 from btlang.text.source import NOWHERE
 from btlang.tree import ast
+from btlang.tree.catalogue import CATALOGUE, SUBTREE
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import fold
 from btlang.vocabulary.entry import Entry
@@ -176,7 +176,7 @@ class Raiser:
         if condition is not None:
             if not isinstance(condition, ast.Exact):
                 yield ast.Check(condition, NOWHERE)
-        elif node.id == "SubTree":
+        elif node.id == SUBTREE:
             yield from self._name(node)
         elif not children:
             yield from self._phrase(node, "action")
@@ -208,9 +208,9 @@ class Raiser:
     def _exact_condition(self, node: Node) -> ast.Ast | None:
         """None for what is no condition: an action would be asked, and a subtree done."""
         known = self._kind(node.id)
-        if known not in ("", "Condition") or node.id == "SubTree" or node.id in FORMS:
+        if known not in ("", "Condition") or node.id == SUBTREE or node.id in FORMS:
             return None
-        if not known and node.id in self._vocabulary.nodes and node.id not in CONDITIONS:
+        if not known and node.id in self._vocabulary.nodes and not _asks(node):
             return None
         made = ast.Exact(node.id, node.ports, node.name, (), True, NOWHERE)
         assert self._checked.says(made, node)
@@ -219,9 +219,9 @@ class Raiser:
     def _is_condition(self, node: Node, children: tuple[Raised, ...]) -> bool:
         if node.children:
             return all(child.is_condition for child in children)
-        if node.id == "SubTree":
+        if node.id == SUBTREE:
             return True
-        return self._kind(node.id) == "Condition" or node.id in CONDITIONS
+        return self._kind(node.id) == "Condition" or _asks(node)
 
     def _kind(self, node_id: str) -> str:
         """What the tree or a keyword entry tells of a kind of node, "" for one of the language itself."""
@@ -258,3 +258,8 @@ def _first_line(said: ast.Ast) -> ast.Ast:
     """The statement that stands first where all of it are lines."""
     is_chain = isinstance(said, ast.Chain) and said.operator == "sequence"
     return ast.parts(said)[0] if is_chain else said
+
+
+def _asks(node: Node) -> bool:
+    kind = CATALOGUE.get(node.id)
+    return kind is not None and kind.kind == "Condition"

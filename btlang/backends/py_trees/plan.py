@@ -9,12 +9,13 @@ from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.build import Shared, Site
 from btlang.engine.clock import Clock
-from btlang.engine.compile import NODE_TYPES, expand
+from btlang.engine.compile import expand
 from btlang.engine.conditions import OF_EDITORS
 from btlang.engine.leaf import LeafBinding
 from btlang.english.phrase import phrase_of
 from btlang.record import Record
 from btlang.text.source import NOWHERE
+from btlang.tree.catalogue import CATALOGUE, SUBTREE, Port
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.vocabulary import Vocabulary
 
@@ -100,7 +101,7 @@ class _Planner:
         scopes = [scope for site in self._sites if (scope := self._look_down(site)) is not None]
         waiting: list[tuple[int, Part]] = []  # parts whose parents come later, so that the last ones are the next one's
         for site in reversed(self._sites):
-            count = 1 if site.node.id == "SubTree" else len(site.node.children)
+            count = 1 if site.node.id == SUBTREE else len(site.node.children)
             below = waiting[: -count - 1 : -1] if count else []
             del waiting[len(waiting) - count :]
             part = self._part(site, [index for index, _ in below], tuple(part for _, part in below))
@@ -117,11 +118,13 @@ class _Planner:
             around = self._scopes[above.index]
             self._depths[index] = self._depths[above.index] + 1
             self._suspended[index] = self._suspended[above.index] or (above.node.id == "Whenever" and site.position > 0)
-            last = len(above.node.children) - 1
-            before = {"ReactiveSequence": last, "ReactiveFallback": last, "WhileDoElse": 1, "Whenever": 1}
-            self._asked[index] = self._asked[above.index] or site.position < before.get(above.node.id, 0)
+            kind = CATALOGUE.get(above.node.id)
+            before = 0
+            if kind is not None and kind.reactive:
+                before = 1 if kind.asks_first else len(above.node.children) - 1
+            self._asked[index] = self._asked[above.index] or site.position < before
         self._scopes[index] = around
-        if site.node.id != "SubTree":
+        if site.node.id != SUBTREE:
             return None
         self._scopes[index] = f"values_{index}"
         return Scope(self._scopes[index], site.node.ports, around)
@@ -150,9 +153,10 @@ class _Planner:
         if not children:
             return self._leaf(site)
         skips = [self._skips[i] for i in below]
-        self._skips[index] = _SKIPS.get(node.id, any)(skips)
+        kind = CATALOGUE.get(node.id)
+        self._skips[index] = _SKIPPED[kind.skipped if kind is not None else "any"](skips)
         if node.id == "RunOnce":
-            self._skips[index] = skips[0] or _truth(node, "then_skip", "true")
+            self._skips[index] = skips[0] or _truth(node, "then_skip")
         native = not self._suspended[index] and not any(skips) and (node.id != "RunOnce" or not self._skips[index])
         if node.id in ("ReactiveSequence", "ReactiveFallback"):
             native = native and not any(self._acts[i] for i in below[:-1])
@@ -169,13 +173,13 @@ class _Planner:
         if node.id in ("AlwaysSuccess", "AlwaysFailure"):
             return Part(f"behaviours.{node.id.removeprefix('Always')}", self._name(node))
         starts = self._asked[index] and self._acts[index]
-        if node.id in NODE_TYPES:
+        if node.id in CATALOGUE:
             given = (("id", node.id), ("ports", dict(ports)), ("values", scope), ("now", Name("now")))
             return Part("engine_leaf", self._name(node), (), given, starts)
         return Part("leaf", self._name(node), (), (("id", node.id), ("ports", dict(ports)), ("values", scope)), starts)
 
     def _takes_time(self, node: Node) -> bool:
-        if node.id in NODE_TYPES or node.id == "SubTree" or node.id in self._conditions:
+        if node.id in CATALOGUE or node.id in self._conditions:
             return False
         entry = self._vocabulary.entry(node.id)
         return entry is None or entry.sort == "action"
@@ -189,29 +193,27 @@ class _Planner:
         return node.port("_skipIf") == "true"
 
     def _name(self, node: Node) -> str:
-        if node.name or node.id == "SubTree":
+        if node.name or node.id == SUBTREE:
             return node.name or node.port("ID")
         return node.id if node.children else phrase_of(node.replace(ports=_without_conditions(node)), self._vocabulary)
 
 
-_SKIPS: dict[str, Callable[[list[bool]], bool]] = {
-    **dict.fromkeys(
-        ("Sequence", "Fallback", "SequenceWithMemory", "ReactiveSequence", "ReactiveFallback", "Parallel"), all
-    ),
-    **dict.fromkeys(("ParallelAll", "PipelineSequence", "RoundRobin"), all),
-    **dict.fromkeys(("IfThenElse", "WhileDoElse"), lambda skips: any(skips[1:])),
-    "Whenever": lambda skips: skips[2],
-    "TryCatch": lambda skips: all(skips[:-1]),
-    "RecoveryNode": lambda skips: skips[0],
-    "KeepRunningUntilFailure": lambda skips: False,
+_SKIPPED: dict[str, Callable[[list[bool]], bool]] = {
+    "any": any,
+    "all": all,
+    "first": lambda skips: skips[0],
+    "last": lambda skips: skips[-1],
+    "tried": lambda skips: all(skips[:-1]),
+    "branch": lambda skips: any(skips[1:]),
+    "never": lambda skips: False,
 }
-"""Whether a node can be skipped, by whether its children can be; of all others, where any can."""
+"""Whether a node can be skipped, by whether its children can be, for each way of NodeKind.skipped."""
 
 _INTERRUPTS = (("interrupts", Name("interrupts")),)
 _OURS = {
     "Sequence": "SkippableSequence",
     "Fallback": "SkippableFallback",
-    **{id: id for id in ("SequenceWithMemory", "IfThenElse", "PipelineSequence", "RoundRobin", "SubTree")},
+    **{id: id for id in ("SequenceWithMemory", "IfThenElse", "PipelineSequence", "RoundRobin", SUBTREE)},
     **{id: id for id in ("Inverter", "ForceSuccess", "ForceFailure", "KeepRunningUntilFailure")},
 }
 _REACTIVE = ("ReactiveSequence", "ReactiveFallback", "WhileDoElse", "Whenever")
@@ -225,7 +227,7 @@ _THEIRS: dict[str, tuple[str, tuple[tuple[str, Any], ...]]] = {
     "ForceFailure": ("decorators.SuccessIsFailure", ()),
     "KeepRunningUntilFailure": ("decorators.SuccessIsRunning", ()),
     "RunOnce": ("decorators.OneShot", (("policy", Name("common.OneShotPolicy.ON_COMPLETION")),)),
-    "SubTree": ("decorators.PassThrough", ()),
+    SUBTREE: ("decorators.PassThrough", ()),
 }
 """The nodes of py_trees that mean the same where no child can be skipped, and nothing has to be suspended."""
 
@@ -237,40 +239,46 @@ def _ours(node: Node) -> tuple[str, tuple[tuple[str, Any], ...]]:
     if node.id in _REACTIVE:
         return node.id, _INTERRUPTS
     if node.id == "RunOnce":
-        return node.id, (("then_skip", _truth(node, "then_skip", "true")),)
-    if node.id == "TryCatch" and not _truth(node, "catch_on_halt", "false"):
+        return node.id, (("then_skip", _truth(node, "then_skip")),)
+    if node.id == "TryCatch" and not _truth(node, "catch_on_halt"):
         return node.id, ()
     if node.id not in _NUMBERS:
         what = "with catch_on_halt " if node.id == "TryCatch" else ""
         raise _Untold(f"py_trees has no such node {what}and btlang makes none for it")
-    make, ports = _NUMBERS[node.id]
+    make, names = _NUMBERS[node.id]
     arguments: list[tuple[str, Any]] = []
-    for argument, port, usual, factor in ports:
-        text = node.port(port) or usual
-        if "{" in text:
-            raise _Untold(f"its {port} is a value of the mission, and there it must be a number")
-        if argument == "seconds":
-            arguments += [("seconds", float(text) * factor if factor else 1 / float(text)), ("now", Name("now"))]
-        else:
-            arguments.append((argument, int(text)))
+    for name, port in zip(names, CATALOGUE[node.id].ports.items(), strict=True):
+        arguments += _argument(node, name, *port)
     return make, tuple(arguments)
 
 
-_NUMBERS: dict[str, tuple[str, tuple[tuple[str, str, str, float], ...]]] = {
-    "Parallel": ("Parallel", (("successes", "success_count", "-1", 1), ("failures", "failure_count", "1", 1))),
-    "ParallelAll": ("ParallelAll", (("failures", "max_failures", "1", 1),)),
-    "Repeat": ("Repeat", (("most", "num_cycles", "", 1),)),
-    "RetryUntilSuccessful": ("Retry", (("most", "num_attempts", "", 1),)),
-    "RecoveryNode": ("RecoveryNode", (("retries", "number_of_retries", "1", 1),)),
-    "Timeout": ("Timeout", (("seconds", "msec", "", 0.001),)),
-    "Delay": ("Delay", (("seconds", "delay_msec", "", 0.001),)),
-    "RateController": ("RateController", (("seconds", "hz", "10", 0),)),
+def _argument(node: Node, name: str, port: str, kind: Port) -> list[tuple[str, Any]]:
+    """A port of numbers as an argument of our class; times are in seconds there, and need a clock."""
+    text = node.port(port) or kind.default or ""
+    if "{" in text:
+        raise _Untold(f"its {port} is a value of the mission, and there it must be a number")
+    if kind.unit == "ms":
+        return [(name, float(text) * 0.001), ("now", Name("now"))]
+    if kind.unit == "Hz":
+        return [(name, 1 / float(text)), ("now", Name("now"))]
+    return [(name, int(text))]
+
+
+_NUMBERS: dict[str, tuple[str, tuple[str, ...]]] = {
+    "Parallel": ("Parallel", ("successes", "failures")),
+    "ParallelAll": ("ParallelAll", ("failures",)),
+    "Repeat": ("Repeat", ("most",)),
+    "RetryUntilSuccessful": ("Retry", ("most",)),
+    "RecoveryNode": ("RecoveryNode", ("retries",)),
+    "Timeout": ("Timeout", ("seconds",)),
+    "Delay": ("Delay", ("seconds",)),
+    "RateController": ("RateController", ("seconds",)),
 }
-"""Our class, and of each argument its port, what an absent one stands for, and a factor; 0 is for a frequency."""
+"""Our class, and its arguments for the ports of the node."""
 
 
-def _truth(node: Node, port: str, usual: str) -> bool:
-    text = node.port(port) or usual
+def _truth(node: Node, port: str) -> bool:
+    text = node.port(port) or CATALOGUE[node.id].ports[port].default or ""
     if "{" in text:
         raise _Untold(f"its {port} is a value of the mission, and there it must be known before")
     return text in ("true", "1")

@@ -13,6 +13,7 @@ from btlang.engine.leaf import LeafBinding
 from btlang.engine.status import FAILURE, RUNNING, SUCCESS
 from btlang.engine.subtree import child_scope
 from btlang.tree import node as btlang_node
+from btlang.tree.catalogue import SUBTREE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -70,4 +71,4 @@ def engine_leaf(
 
 def values_of(ports: Mapping[str, str], values: Blackboard) -> Blackboard:
     """The values that a subtree with these ports sees."""
-    return child_scope(btlang_node.Node("SubTree", ports=tuple(ports.items())), values)
+    return child_scope(btlang_node.Node(SUBTREE, ports=tuple(ports.items())), values)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from btlang.frontends.btcpp.scan import Document
 from btlang.frontends.btcpp.spelling import AUTOREMAP, AUTOREMAP_3, PORTS_TO_4, SHARED, TO_4, without_dollar
+from btlang.tree.catalogue import BEHAVIOR_TREE_CPP, CATALOGUE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -14,12 +15,12 @@ if TYPE_CHECKING:
 
 _NODES = {
     3: TO_4.keys() | {"BlackboardCheckBool", "BlackboardCheckDouble", "BlackboardCheckInt", "BlackboardCheckString"},
-    4: frozenset((
-        "Script", "ScriptCondition", "SequenceWithMemory", "AsyncSequence", "AsyncFallback", "ParallelAll", "TryCatch",
-        "RunOnce", "Precondition", "LoopInt", "LoopBool", "LoopDouble", "LoopString", "SkipUnlessUpdated",
-        "WaitValueUpdate", "WasEntryUpdated", "UnsetBlackboard",
-    )),
-}  # fmt: skip
+    4: frozenset(
+        kind.id
+        for kind in CATALOGUE.values()
+        if kind.id not in kind.tags_3 and kind.origin == BEHAVIOR_TREE_CPP and not kind.is_common_name
+    ),
+}
 """Tags that only one version has. Kind tags tell nothing: `<Action ID="Script"/>` may be a node that somebody made."""
 _KEYS = {
     3: frozenset((SHARED, AUTOREMAP_3)),
@@ -28,11 +29,9 @@ _KEYS = {
     )),
 }  # fmt: skip
 _PORTS: dict[int, dict[str, frozenset[str]]] = {
-    3: {"Parallel": frozenset((*PORTS_TO_4["Parallel"], "threshold"))},
-    4: {
-        "Parallel": frozenset(PORTS_TO_4["Parallel"].values()),
-        "Sleep": frozenset(("msec",)),  # a Sleep that somebody made for version 3 need not have it
-    },
+    3: {node_id: frozenset((*names, "threshold")) for node_id, names in PORTS_TO_4.items()},
+    4: {node_id: frozenset(names.values()) for node_id, names in PORTS_TO_4.items()}
+    | {kind.id: frozenset(kind.ports) for kind in CATALOGUE.values() if kind.is_common_name},
 }
 _NONE: frozenset[str] = frozenset()
 

@@ -11,6 +11,7 @@ from btlang.frontends.btcpp.fragments import Notes
 from btlang.frontends.btcpp.scan import Document
 from btlang.frontends.btcpp.spelling import KINDS, is_xml_name
 from btlang.text.spelling import nearest
+from btlang.tree.catalogue import SUBTREE
 from btlang.tree.model import NodeModel, PortModel
 
 TYPE_CHECKING = False
@@ -24,7 +25,7 @@ _DIRECTIONS = {
     "bidirectional_port": "inout",
     "Parameter": "input",
 }
-MODEL_KINDS = (*KINDS, "SubTree")
+MODEL_KINDS = (*KINDS, SUBTREE)
 _NAV2 = os.path.join(os.path.dirname(__file__), "nav2.toml")
 _MARKS = {"<": "output", "=": "inout"}
 
@@ -109,7 +110,7 @@ def subtree_defaults(models: Iterable[NodeModel]) -> dict[str, Pairs]:
     As in BehaviorTree.CPP an empty text is none; a name such as `_autoremap` tells of the node, and is no port.
     """
     return {model.id: tuple((port.name, port.default) for port in model.ports if port.default and port.name[:1] != "_")
-            for model in models if model.kind == "SubTree"}  # fmt: skip
+            for model in models if model.kind == SUBTREE}  # fmt: skip
 
 
 def nav2_models(ids: Iterable[str]) -> dict[str, NodeModel]:

@@ -20,17 +20,18 @@ from btlang.frontends.btcpp.spelling import (
     without_dollar,
 )
 from btlang.text.source import Span
+from btlang.tree.catalogue import SUBTREE
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.frontends.btcpp.spelling import Pairs, Spelling
 
-_ODD = frozenset((*KINDS, *TO_4, "SubTree"))
+_ODD = frozenset((*KINDS, *TO_4, SUBTREE))
 """Tags that are not the id of their node, or need a second look."""
 _PLAIN_3 = IN_3 - TO_3.keys() - PORTS_TO_4.keys()
 _KIND = 2  # entries of `ID="..."`
-_RENAMED_OR_OWN = IN_3 | TO_4.keys() | {"", "SubTree"}
+_RENAMED_OR_OWN = IN_3 | TO_4.keys() | {"", SUBTREE}
 _ROOM = 64  # levels; more are added where a tree is deeper
 
 
@@ -130,26 +131,26 @@ class NodeReader:
         attributes = dict(pairs)
         node_id = tag
         is_kind = tag in KINDS
-        if is_kind or tag in ("SubTree", "SubTreePlus"):
+        if is_kind or TO_4.get(tag, tag) == SUBTREE:
             if not attributes.get("ID"):
                 self.problems.append(diagnostic("BT123", span, tag=tag, attribute="ID", advice=_ID_ADVICE[is_kind]))
             if is_kind:
                 node_id = attributes.pop("ID", "")
         elif tag in self._names and tag not in self._kinds and tag not in IN_3 and tag not in TO_4:
             attributes = {"ID": tag, **attributes}  # the ID of a tree may be a tag
-            node_id = "SubTree"
+            node_id = SUBTREE
         node_id = TO_4.get(node_id, node_id)
         name = attributes.pop("name", "")
         if self._dialect == 3 and node_id in IN_3:
             attributes.pop("ID", None)  # which says again what node it is
-        if node_id == "SubTree":
+        if node_id == SUBTREE:
             ports = self._subtree(attributes, tag == "SubTreePlus")
         else:
             if is_kind and node_id not in IN_3:
                 self._kinds.setdefault(node_id, tag)
             ports = tuple(attributes.items()) if self._dialect == 4 else _ports_3(node_id, attributes, len(children))
         node = Node(node_id, children, ports, name, span)
-        if node_id == "SubTree":
+        if node_id == SUBTREE:
             self.uses.append(node)
         usual = SPELL[self._dialect](node, self._kind, self._written)
         return node, None if usual == (tag, pairs) else (tag, pairs)
@@ -189,7 +190,7 @@ def _ports_3(node_id: str, attributes: dict[str, str], children: int) -> tuple[t
     names = PORTS_TO_4.get(node_id, {})
     ports = [(names.get(key, key), without_dollar(text)) for key, text in attributes.items()]
     enough = attributes.get("threshold", "")
-    if node_id == "Parallel" and enough.isdecimal() and len(enough) < 10:
+    if names and enough.isdecimal() and len(enough) < 10:
         # so many successes; the rest may fail, but no more
         counts = (("success_count", enough), ("failure_count", str(max(children - int(enough) + 1, 1))))
         ports = [port for port in ports if port[0] != "threshold"] + list(counts)

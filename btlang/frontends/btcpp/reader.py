@@ -14,12 +14,12 @@ from btlang.frontends.btcpp.scan import scanned
 from btlang.frontends.btcpp.spelling import MAIN_TREE, MODEL, TO_4
 from btlang.text.source import Source, Span
 from btlang.text.spelling import nearest
+from btlang.tree.catalogue import CATALOGUE, SUBTREE
 from btlang.tree.model import NodeModel
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import in_order_of_use
-from btlang.vocabulary.keyword_file import NODE_IDS
 
-_NO_NODES = NODE_IDS | TO_4.keys() | {"root", "BehaviorTree", MODEL, *MODEL_KINDS}
+_NO_NODES = CATALOGUE.keys() | TO_4.keys() | {"root", "BehaviorTree", MODEL, *MODEL_KINDS}
 """Tags that are no ids of nodes that somebody made."""
 _MAIN = "main_tree_to_execute"
 _ROS_FOLDERS = "AMENT_PREFIX_PATH"  # where ROS 2 has its packages
@@ -49,7 +49,7 @@ class _Reader:
         names = {head.written or head.name: name for name, head in heads.items()}
         # what a file tells counts for more than what those tell that it includes
         models = {node_id: model for each in self._files[::-1] for node_id, model in each.models.items()}
-        kinds = {node_id: model.kind for node_id, model in models.items() if model.kind != "SubTree"}
+        kinds = {node_id: model.kind for node_id, model in models.items() if model.kind != SUBTREE}
         defaults = subtree_defaults(models.values())
         self._stop_where_wrong()
         for each in self._files:

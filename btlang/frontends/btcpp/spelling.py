@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Mapping, Sequence
 
+from btlang.tree.catalogue import CATALOGUE, SUBTREE
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False
@@ -21,24 +22,18 @@ MAIN_TREE = "MainTree"
 """The ID of the main tree where it has no name of its own."""
 MODEL = "TreeNodesModel"
 
-TO_4 = {
-    "SequenceStar": "SequenceWithMemory",
-    "FallbackStar": "Fallback",
-    "RetryUntilSuccesful": "RetryUntilSuccessful",
-    "SubTreePlus": "SubTree",
-}
+_IN_3 = {kind.id: kind.tags_3 for kind in CATALOGUE.values() if kind.tags_3}
+TO_4 = {tag: node_id for node_id, tags in _IN_3.items() for tag in tags if tag != node_id}
 """Names that nodes had before format 4."""
-TO_3 = {"SequenceWithMemory": "SequenceStar", "RetryUntilSuccessful": "RetryUntilSuccesful"}
-"""And back: the spelling with one `s` is the one that all of version 3 knows."""
-PORTS_TO_4 = {"Parallel": {"success_threshold": "success_count", "failure_threshold": "failure_count"}}
-_PORTS_TO_3 = {"Parallel": {"success_count": "success_threshold", "failure_count": "failure_threshold"}}
-IN_3 = frozenset((
-    "Sequence", "Fallback", "Parallel", "ReactiveSequence", "ReactiveFallback", "SequenceWithMemory", "IfThenElse",
-    "WhileDoElse", "Inverter", "ForceSuccess", "ForceFailure", "Repeat", "RetryUntilSuccessful", "Timeout", "Delay",
-    "KeepRunningUntilFailure", "AlwaysSuccess", "AlwaysFailure", "SetBlackboard", "Switch2", "Switch3", "Switch4",
-    "Switch5", "Switch6",
-))  # fmt: skip
+TO_3 = {node_id: tags[0] for node_id, tags in _IN_3.items() if tags[0] != node_id}
+"""And back."""
+_PORTS = {kind.id: {name: port.name_3 for name, port in kind.ports.items() if port.name_3}
+          for kind in CATALOGUE.values()}  # fmt: skip
+_PORTS_TO_3 = {node_id: names for node_id, names in _PORTS.items() if names}
+PORTS_TO_4 = {node_id: {old: new for new, old in names.items()} for node_id, names in _PORTS_TO_3.items()}
+IN_3 = frozenset(_IN_3.keys() - {SUBTREE})
 """The nodes of version 3 that have a tag of their own, under their names of format 4."""
+_, _SUBTREE_PLUS = CATALOGUE[SUBTREE].tags_3
 SHARED = "__shared_blackboard"
 AUTOREMAP_3 = "__autoremap"
 AUTOREMAP = "_autoremap"
@@ -65,8 +60,8 @@ def without_dollar(text: str) -> str:
 def spelled_4(node: Node, kind: Callable[[str], str], written: Mapping[str, str]) -> Spelling:
     """In format 4. `kind` is that of a node by its id, `written` has the IDs of trees whose names cannot be IDs."""
     named = (("name", node.name),) if node.name else ()
-    if node.id == "SubTree":
-        return "SubTree", _subtree(node, named, node.ports, written)
+    if node.id == SUBTREE:
+        return SUBTREE, _subtree(node, named, node.ports, written)
     if node.id in KINDS or not is_xml_name(node.id):
         return kind(node.id), (("ID", node.id), *named, *node.ports)
     return node.id, named + node.ports
@@ -75,7 +70,7 @@ def spelled_4(node: Node, kind: Callable[[str], str], written: Mapping[str, str]
 def spelled_3(node: Node, kind: Callable[[str], str], written: Mapping[str, str]) -> Spelling:
     """In the dialect of version 3."""
     named = (("name", node.name),) if node.name else ()
-    if node.id == "SubTree":
+    if node.id == SUBTREE:
         return _subtree_3(node, named, written)
     if node.id in IN_3:
         ports = node.ports
@@ -98,9 +93,9 @@ def _subtree_3(node: Node, named: Pairs, written: Mapping[str, str]) -> Spelling
     """SubTree where all ports are references, which it writes without braces; SubTreePlus for all else."""
     others = [port for port in node.ports if port[0] != "ID"]
     if all(is_reference(text) and key[:1] != "_" and text != "{=}" for key, text in others):
-        return "SubTree", _subtree(node, named, [(key, text[1:-1]) for key, text in others], written)
+        return SUBTREE, _subtree(node, named, [(key, text[1:-1]) for key, text in others], written)
     renamed = [(AUTOREMAP_3 if key == AUTOREMAP else key, text) for key, text in others]
-    return "SubTreePlus", _subtree(node, named, renamed, written)
+    return _SUBTREE_PLUS, _subtree(node, named, renamed, written)
 
 
 SPELL = {3: spelled_3, 4: spelled_4}

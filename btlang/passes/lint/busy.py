@@ -6,14 +6,12 @@ from collections.abc import Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.lint.subject import Subject, fold_tree
+from btlang.tree.catalogue import CATALOGUE, ON_FAILURE, SUBTREE
 from btlang.tree.node import Node
 from btlang.vocabulary.entry import Entry
 
 ASKS, INSTANT, TAKES_TIME = range(3)
 """What the leaves below a node are at most: conditions, things that end in the tick they start, others."""
-
-_LOOPS = {"Repeat": "num_cycles", "RetryUntilSuccessful": "num_attempts"}
-_WAITING = frozenset(("Sleep", "Delay"))
 
 
 def busy_loops(subject: Subject) -> list[Diagnostic]:
@@ -22,23 +20,22 @@ def busy_loops(subject: Subject) -> list[Diagnostic]:
     entries = subject.vocabulary.entries
 
     def combine(node: Node, children: Sequence[int], named: dict[str, int]) -> int:
+        kind = CATALOGUE.get(node.id)
         if not children:
-            if node.id == "SubTree":
+            if node.id == SUBTREE:
                 return named.get(node.port("ID"), TAKES_TIME)
-            if node.id in _WAITING:
-                return TAKES_TIME
+            if kind is not None:
+                return TAKES_TIME if kind.takes_time else ASKS if kind.kind == "Condition" else INSTANT
             return _leaf(entries[node.id][0]) if node.id in entries else INSTANT
-        if node.id == "Parallel" and node.port("success_count") == "1":
+        if kind is not None and kind.enough and node.port(kind.enough) == "1":
             while busy and any(child is busy[-1] for child in node.children):
                 busy.pop()  # the loop of `for 5 s` has an end
             return TAKES_TIME
-        if node.id in _WAITING:
-            return TAKES_TIME
         most = max(children)
-        if most == TAKES_TIME or node.id not in _LOOPS or node.port(_LOOPS[node.id]) != "-1":
-            return most
-        if node.id == "RetryUntilSuccessful" and most == ASKS:
-            return TAKES_TIME
+        if kind is None or most == TAKES_TIME or not kind.again or not kind.is_endless(node):
+            return TAKES_TIME if kind is not None and kind.takes_time else most
+        if most == ASKS and (kind.again == ON_FAILURE or not kind.rounds):
+            return TAKES_TIME  # it waits for a condition to become true, or false
         busy.append(node)
         return most
 
@@ -49,7 +46,6 @@ def busy_loops(subject: Subject) -> list[Diagnostic]:
 
 
 def _leaf(entry: Entry) -> int:
-    """What is in no keyword file is a node of the tree itself, such as a script: that is INSTANT, too."""
     if entry.instant:
         return INSTANT
     return TAKES_TIME if entry.sort == "action" else ASKS

@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.lint.subject import Subject, fold_tree
 from btlang.record import Record
+from btlang.tree.catalogue import CATALOGUE, ON_FAILURE, ON_SUCCESS, SUBTREE
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False
@@ -37,7 +38,7 @@ def cut_off(subject: Subject) -> list[Diagnostic]:
         if any(entry.uninterruptible for entry in entries.get(node.id, ())):
             return Exposed(node, node)
         if not children:
-            inner = named.get(node.port("ID")) if node.id == "SubTree" else None
+            inner = named.get(node.port("ID")) if node.id == SUBTREE else None
             return inner and Exposed(inner.leaf, node)
         exposed = next(filter(None, children), None)
         when = _when(node) if exposed is not None else ""
@@ -52,16 +53,17 @@ def cut_off(subject: Subject) -> list[Diagnostic]:
 
 def _when(node: Node) -> str:
     """When a node halts what is in it, "" where it does not."""
-    if node.id == "Parallel":
-        return "when the time is over" if node.port("success_count") == "1" else ""
-    return _HALTING.get(node.id, "")
+    kind = CATALOGUE.get(node.id)
+    if kind is None or not (kind.interrupts or kind.enough):
+        return ""
+    if kind.enough:
+        return "when the time is over" if node.port(kind.enough) == "1" else ""
+    if kind.asks_first:
+        return "as soon as the condition changes"
+    return _WHEN.get(kind.goes_on, "when the time is over")
 
 
-_HALTING = {
-    "Timeout": "when the time is over",
-    "WhileDoElse": "as soon as the condition changes",
-    "ReactiveSequence": "as soon as the condition does not hold",
-}
+_WHEN = {ON_SUCCESS: "as soon as the condition does not hold", ON_FAILURE: "as soon as the condition holds"}
 
 
 def _told(exposed: Exposed, when: str, subject: Subject) -> list[Diagnostic]:

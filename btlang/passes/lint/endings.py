@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Sequence
+from collections.abc import Iterable, Sequence
 
+from btlang.tree.catalogue import CATALOGUE, SUBTREE, NodeKind
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False
@@ -24,41 +25,42 @@ def ends_of(node: Node, children: Sequence[Ends], named: dict[str, Ends]) -> End
     """The ways in which a node can end, given those of its children and those of the defined names."""
     if node.ports and node.port("_skipIf") == "true":
         return SKIPPED
-    if node.id == "SubTree":
+    if node.id == SUBTREE:
         return named.get(node.port("ID"), ANY)
-    if node.id in _LEAVES:
-        return _LEAVES[node.id]
-    known = _KINDS.get(node.id)
-    if known is None or len(children) < _LEAST.get(node.id, 1):
+    kind = CATALOGUE.get(node.id)
+    if kind is None or len(children) < kind.least:
         return ANY if children else EITHER  # with too few children no mission runs, which is told elsewhere
-    return known(node, children)
+    if not children:
+        return _sum(kind.ends) if kind.ends else EITHER
+    if kind.goes_on and not kind.rotates:
+        return _in_order(_NAMED[kind.goes_on] | SKIPPED, children)
+    if kind.enough:
+        return _at_once(node.port(kind.enough), children)
+    if kind.roles:
+        return _branches(kind, children)
+    if kind.most == 1:
+        return _decorated(kind, node, children[0])
+    return ANY
 
 
-def going_on(node: Node) -> Ends:
-    """The endings of a child at which a Sequence or Fallback comes to the next one."""
-    return SKIPPED | (FAILURE if node.id == "Fallback" else SUCCESS)
+def going_on(kind: NodeKind) -> Ends:
+    """The endings of a child at which a node whose children follow in order comes to the next one."""
+    return SKIPPED | _NAMED[kind.goes_on]
 
 
-def _in_turn(on: int) -> Callable[[Node, Sequence[Ends]], Ends]:
-    """Sequence and Fallback: they go on to the next child at SKIPPED and at the status `on`."""
-    going_on = on | SKIPPED
-
-    def ends(_node: Node, children: Sequence[Ends]) -> Ends:
-        some, each = 0, SKIPPED
-        for child in children:
-            if not child & going_on:
-                return (some & ~going_on) | child
-            some |= child
-            each &= child
-        return (some & ~SKIPPED) | each
-
-    return ends
+def _in_order(going_on: Ends, children: Sequence[Ends]) -> Ends:
+    some, each = 0, SKIPPED
+    for child in children:
+        if not child & going_on:
+            return (some & ~going_on) | child
+        some |= child
+        each &= child
+    return (some & ~SKIPPED) | each
 
 
-def _at_once(node: Node, children: Sequence[Ends]) -> Ends:
-    """Parallel: it succeeds with `success_count` of its children, fails with `failure_count` of them."""
-    wanted = node.port("success_count")
-    least = int(wanted) if _NUMBER.fullmatch(wanted) else len(children)
+def _at_once(enough: str, children: Sequence[Ends]) -> Ends:
+    """A Parallel succeeds with `enough` of its children."""
+    least = int(enough) if _NUMBER.fullmatch(enough) else len(children)
     found = 0
     if sum(bool(child & (SUCCESS | SKIPPED)) for child in children) >= least:
         found |= SUCCESS
@@ -69,55 +71,30 @@ def _at_once(node: Node, children: Sequence[Ends]) -> Ends:
     return found
 
 
-def _rounds(again: int, port: str) -> Callable[[Node, Sequence[Ends]], Ends]:
-    """Repeat and RetryUntilSuccessful: another round at the status `again`."""
-
-    def ends(node: Node, children: Sequence[Ends]) -> Ends:
-        if node.port(port) != "-1":
-            return children[0]
-        return (children[0] & ~again) | NEVER
-
-    return ends
-
-
-def _turned(change: dict[int, int]) -> Callable[[Node, Sequence[Ends]], Ends]:
-    def ends(_node: Node, children: Sequence[Ends]) -> Ends:
-        return sum({change.get(end, end) for end in (SUCCESS, FAILURE, SKIPPED, NEVER) if children[0] & end})
-
-    return ends
-
-
-def _branches(node: Node, children: Sequence[Ends]) -> Ends:
-    """The condition of `while` ends a branch that would not end by itself."""
+def _branches(kind: NodeKind, children: Sequence[Ends]) -> Ends:
+    """What interrupts a branch ends one that would not end by itself. A rule fails too where its reaction does."""
+    if "reaction" in kind.roles:
+        return children[2] | (children[1] & FAILURE)
     found = children[1] | (children[2] if len(children) > 2 else FAILURE)
-    return found & ~NEVER if node.id == "WhileDoElse" else found
+    return found & ~NEVER if kind.interrupts else found
 
 
-def _same(also: int = 0, but: int = 0) -> Callable[[Node, Sequence[Ends]], Ends]:
-    return lambda _node, children: (children[0] | also) & ~but
+def _decorated(kind: NodeKind, node: Node, child: Ends) -> Ends:
+    if kind.turns:
+        turns = {_NAMED[before]: _NAMED[after] for before, after in kind.turns}
+        return sum({turns.get(end, end) for end in (SUCCESS, FAILURE, SKIPPED, NEVER) if child & end})
+    if kind.again:
+        if not kind.is_endless(node):
+            return child if kind.rounds else ANY
+        kept = child & ~_NAMED[kind.again]
+        return (kept & ~SKIPPED if kind.skipped == "never" else kept) | NEVER
+    if kind.interrupts:
+        return (child | FAILURE) & ~NEVER
+    return child if kind.takes_time else ANY
 
 
-def _ruled(_node: Node, children: Sequence[Ends]) -> Ends:
-    """Whenever: its block fails too where the reaction does."""
-    return children[2] | (children[1] & FAILURE)
+def _sum(names: Iterable[str]) -> Ends:
+    return sum(_NAMED[name] for name in names)
 
 
-_LEAVES: dict[str, Ends] = {"Sleep": SUCCESS, "AlwaysSuccess": SUCCESS, "AlwaysFailure": FAILURE}
-_KINDS: dict[str, Callable[[Node, Sequence[Ends]], Ends]] = {
-    "Sequence": _in_turn(SUCCESS),
-    "ReactiveSequence": _in_turn(SUCCESS),
-    "Fallback": _in_turn(FAILURE),
-    "Parallel": _at_once,
-    "IfThenElse": _branches,
-    "WhileDoElse": _branches,
-    "Whenever": _ruled,
-    "Inverter": _turned({SUCCESS: FAILURE, FAILURE: SUCCESS}),
-    "ForceSuccess": _turned({FAILURE: SUCCESS}),
-    "ForceFailure": _turned({SUCCESS: FAILURE}),
-    "Repeat": _rounds(SUCCESS, "num_cycles"),
-    "RetryUntilSuccessful": _rounds(FAILURE, "num_attempts"),
-    "Timeout": _same(FAILURE, but=NEVER),
-    "Delay": _same(),
-}
-_LEAST = {"IfThenElse": 2, "WhileDoElse": 2, "Whenever": 3}
-"""How many children those look at that need more than one."""
+_NAMED = {"SUCCESS": SUCCESS, "FAILURE": FAILURE}

@@ -8,19 +8,21 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.lint.endings import NEVER, Ends, ends_of, going_on
 from btlang.passes.lint.subject import Subject, fold_tree
 from btlang.text.source import Span
+from btlang.tree.catalogue import CATALOGUE, ON_SUCCESS, NodeKind
 from btlang.tree.node import Node
 
 
 def never_runs(subject: Subject) -> list[Diagnostic]:
-    """The first such command of each Sequence and Fallback."""
+    """The first such command of each node whose children follow in order."""
     found: list[Diagnostic] = []
 
     def combine(node: Node, children: Sequence[Ends], named: dict[str, Ends]) -> Ends:
-        if node.id in ("Sequence", "Fallback"):
-            wanted = going_on(node)
+        kind = CATALOGUE.get(node.id)
+        if kind is not None and kind.goes_on and not kind.rotates:
+            wanted = going_on(kind)
             for at in range(len(children) - 1):
                 if not children[at] & wanted:
-                    found.extend(_told(node, node.children[at], children[at], node.children[at + 1]))
+                    found.extend(_told(kind, node.children[at], children[at], node.children[at + 1]))
                     break
         return ends_of(node, children, named)
 
@@ -28,15 +30,15 @@ def never_runs(subject: Subject) -> list[Diagnostic]:
     return found
 
 
-def _told(parent: Node, before: Node, ends: Ends, behind: Node) -> list[Diagnostic]:
+def _told(parent: NodeKind, before: Node, ends: Ends, behind: Node) -> list[Diagnostic]:
     """Nothing where both stand for the same words: then a form has put one of them there."""
     if before.span is None or behind.span is None or _overlap(before.span, behind.span):
         return []
     if ends & NEVER:
-        how = "fails" if parent.id == "Sequence" else "succeeds"
+        how = "fails" if parent.goes_on == ON_SUCCESS else "succeeds"
         reason = "never ends" if ends == NEVER else f"goes on until it {how}"
     else:
-        reason = "always fails" if parent.id == "Sequence" else "always succeeds"
+        reason = "always fails" if parent.goes_on == ON_SUCCESS else "always succeeds"
     return [diagnostic("BT052", behind.span, ((before.span, f"this {reason}"),), reason=reason)]
 
 

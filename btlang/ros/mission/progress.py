@@ -8,6 +8,7 @@ from collections.abc import Callable
 from btlang.engine.status import RUNNING
 from btlang.record import Record
 from btlang.run.events import PeriodPassed, RobotEvent, StatusChanged, StatusesChanged
+from btlang.tree.catalogue import SUBTREE
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False
@@ -59,7 +60,7 @@ class Progress:
         self._new[change.path] = change.status
         if change.status != RUNNING:
             self._running.pop(change.index, None)
-        elif not change.node.children and change.node.id != "SubTree":
+        elif not change.node.children and change.node.id != SUBTREE:
             self._running[change.index] = self._label(change.node)
 
     def _tell(self, now: float, all_too: bool) -> None:

@@ -18,6 +18,7 @@ from btlang.ros.serving.choosing import chosen, servable
 from btlang.ros.serving.names import FOLDER
 from btlang.text.output import show
 from btlang.text.source import NOWHERE
+from btlang.tree.catalogue import SEQUENCE
 from btlang.tree.node import Node, Tree
 
 TYPE_CHECKING = False
@@ -74,7 +75,7 @@ def serve(options: argparse.Namespace) -> int:
 
 def _check(stage: Stage, ids: Sequence[str], vocabulary: Vocabulary) -> None:
     """Tells what the robot lacks. Raises MissionError where an action cannot be bound."""
-    everything = Tree(Node("Sequence", tuple(Node(node_id) for node_id in ids)))
+    everything = Tree(Node(SEQUENCE, tuple(Node(node_id) for node_id in ids)))
     survey = getattr(stage, "survey", None)  # of a ROS 2 robot
     for interface, (node, reason) in survey(everything, vocabulary).items() if survey is not None else ():
         if reason:
