@@ -10,8 +10,8 @@ from btlang.backends.data import data_mark, read_tree
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.frontends.mission import DEFAULT_PARSER, read_mission
 from btlang.garbage import no_collection
-from btlang.passes import checked, compile_mission, lower_mission
-from btlang.passes.lint import lint
+from btlang.passes import compile_mission, errors_of, lower_mission, run_passes
+from btlang.passes.compilation import Compilation
 from btlang.text.output import show
 from btlang.text.source import NOWHERE, Source, Span
 from btlang.tree.ast import Fact, Mission, all_facts, exact_nodes
@@ -60,14 +60,14 @@ def parse_tree(
     with no_collection:
         vocabulary = world_vocabulary(keywords, world)
         if data_mark(source):
-            return RunnableTree(checked(read_tree(source, main), vocabulary), vocabulary, world)
+            compilation = run_passes(Compilation(vocabulary, tree=read_tree(source, main)))
+            return RunnableTree(compilation.tree, vocabulary, world, compilation.warnings)
         if main:
             place = Span(source, 0, 0)
             raise MissionError([diagnostic("BT126", place, name=main, help="A mission in English is one tree.")])
-        reading = read_mission(source, vocabulary, parser)
-        tree = compile_mission(reading.mission, vocabulary)
-        warnings = lint(reading.mission, tree, vocabulary, reading.warnings)
-    return RunnableTree(tree, vocabulary, world, warnings, mission=reading.mission)
+        reading = read_mission(source, vocabulary, parser, errors_of=errors_of)
+        compilation = run_passes(Compilation(vocabulary, reading.mission, warnings=reading.warnings))
+    return RunnableTree(compilation.tree, vocabulary, world, compilation.warnings, mission=reading.mission)
 
 
 def format_mission(
@@ -88,7 +88,8 @@ def format_mission(
         raise MissionError([diagnostic("BT001", Span(source, 0, 1), file=source.name, reason="this is no English")])
     with no_collection:
         vocabulary = world_vocabulary(keywords, world)
-        compile_mission(read_mission(source, vocabulary, parser).mission, vocabulary, needs_command=False)
+        mission = read_mission(source, vocabulary, parser, errors_of=errors_of).mission
+        compile_mission(mission, vocabulary, needs_command=False)
     return laid_out(source, vocabulary.articles)
 
 

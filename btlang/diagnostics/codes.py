@@ -86,7 +86,7 @@ _ALL = (
     Code("BT053", "This loop does not wait: a round of it takes no time, so it goes round at every tick.", "{advice}",
          "warning", "busy loop"),
     Code("BT054", "'{words}' should not be stopped half-way, but it is stopped {when}.",
-         "Leave it outside: put it before or after the form, with '{then}'.", "warning", "cut off"),
+         "{advice}", "warning", "cut off"),
     Code("BT055", "This is no part of '{name}': its definition ends where the sentence ends.",
          "Join the commands with '{then}', or write them as indented lines below '{head}'.",
          "warning", "line end in a definition"),

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from importlib import import_module
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
@@ -19,12 +19,17 @@ from btlang.tree.ast import Ast, Definition, Mission, Nothing
 from btlang.vocabulary.values import Known
 from btlang.vocabulary.vocabulary import Vocabulary
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+    ErrorsOf: TypeAlias = Callable[[Mission, Vocabulary], Iterable[Diagnostic]]
+
 PARSERS = {
     "shunting-yard": "btlang.frontends.shunting_yard",
     "lark": "btlang.frontends.lark_parser",  # imported only when asked for
 }
 DEFAULT_PARSER = "shunting-yard"
-_PASSES = "btlang.passes"
 
 
 class Reading(Record):
@@ -39,16 +44,16 @@ def read_mission(
     vocabulary: Vocabulary,
     parser: str = DEFAULT_PARSER,
     known: Mapping[str, Known] | None = None,
-    suggest: bool = True,
+    errors_of: ErrorsOf | None = None,
 ) -> Reading:
     """Reads a text and those that it includes; `known` are values that it may use though it does not set them.
 
-    With `suggest` False no corrections of what is wrong are tried, which takes time.
-    Raises MissionError with all that is wrong with them, and ValueError for an unknown parser.
+    `errors_of` says what is wrong with a mission that can be read; without it no corrections are tried of one that
+    cannot, which takes time. Raises MissionError with all that is wrong, and ValueError for an unknown parser.
     """
     if parser not in PARSERS:
         raise ValueError(f"no parser '{parser}'; there are {', '.join(PARSERS)}")
-    reader = _Reader(vocabulary, parser, known or {}, suggest)
+    reader = _Reader(vocabulary, parser, known or {}, errors_of)
     included = reader.read(source, (os.path.realpath(source.name),))
     if any(problem.is_error for problem in reader.problems):
         raise MissionError(reader.problems)
@@ -57,19 +62,21 @@ def read_mission(
 
 def lexed(source: Source, vocabulary: Vocabulary) -> Lexer:
     """The tokens of a text, with the names of what it includes; nothing is said of what is wrong."""
-    reader = _Reader(vocabulary, DEFAULT_PARSER, {}, False)
+    reader = _Reader(vocabulary, DEFAULT_PARSER, {}, None)
     return Lexer(source, vocabulary, explain=False, load=reader.loader(source, (os.path.realpath(source.name),)))
 
 
 class _Reader:
     """Reads a text and those that it includes, each once. `problems` are those of all of them."""
 
-    def __init__(self, vocabulary: Vocabulary, parser: str, known: Mapping[str, Known], suggest: bool) -> None:
+    def __init__(
+        self, vocabulary: Vocabulary, parser: str, known: Mapping[str, Known], errors_of: ErrorsOf | None
+    ) -> None:
         self.problems: list[Diagnostic] = []
         self._vocabulary = vocabulary
         self._parser = parser
         self._known = known
-        self._suggest = suggest
+        self._errors_of = errors_of
         self._read: dict[str, Included | None] = {}
 
     def loader(self, source: Source, within: tuple[str, ...]) -> Load:
@@ -110,7 +117,7 @@ class _Reader:
         if is_broken:
             from btlang.frontends.corrections import corrected  # most missions need none
 
-            problems = corrected(lexer, problems, self._errors if self._suggest else None)
+            problems = corrected(lexer, problems, self._errors if self._errors_of is not None else None)
         self.problems += problems
         if is_broken:
             return Included(_names_only(source, lexer), frozenset(lexer.conditions), lexer.names.known)
@@ -118,12 +125,11 @@ class _Reader:
 
     def _errors(self, lexer: Lexer, matcher: Matcher) -> Iterable[Diagnostic]:
         """What is wrong with a text that can be read, for the corrections of one that cannot."""
+        assert self._errors_of is not None
         try:
-            mission = self._mission(lexer.text.source, lexer, matcher)
-            import_module(_PASSES).compile_mission(mission, self._vocabulary, needs_command=False)
+            return self._errors_of(self._mission(lexer.text.source, lexer, matcher), self._vocabulary)
         except MissionError as error:
             return error.diagnostics
-        return ()
 
     def _mission(self, source: Source, lexer: Lexer, matcher: Matcher) -> Mission:
         parse = import_module(PARSERS[self._parser]).parse

@@ -1,57 +1,81 @@
-"""AST to tree: names are ordered, each form is lowered, and the tree is checked by one pass after the other."""
+"""The passes between reading and running: `PASSES` lists them in their order.
+
+Names are ordered, forms are lowered, the tree is checked, and lints warn about what is probably not meant.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Iterable
 
-from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
-from btlang.passes.lower import lower
-from btlang.passes.names import order_of_use
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, in_order
+from btlang.passes.compilation import Compilation, Pass
+from btlang.passes.lint.allow import silence
+from btlang.passes.lint.busy import busy_loops
+from btlang.passes.lint.cut_off import cut_off
+from btlang.passes.lint.line_end import line_ends
+from btlang.passes.lint.two_readings import two_readings
+from btlang.passes.lint.unreachable import never_runs
+from btlang.passes.lint.unused import unused_names
+from btlang.passes.lower import lower_names
+from btlang.passes.names import order_names
 from btlang.passes.resources import check_resources
-from btlang.passes.scope import Scope
 from btlang.passes.size import check_size
 from btlang.passes.types import check_types
-from btlang.tree.ast import Mission, exact_nodes
-from btlang.tree.model import NodeModel
-from btlang.tree.node import Node, Tree
+from btlang.tree.ast import Mission
+from btlang.tree.node import Tree
 from btlang.vocabulary.vocabulary import Vocabulary
 
-PASSES: tuple[Callable[[Tree, Vocabulary], Iterable[Diagnostic]], ...] = (check_types, check_size, check_resources)
-"""Checks of the lowered tree; each gives what is wrong."""
+LOWERING = (Pass("names", order_names, needs_text=True), Pass("lowering", lower_names, needs_text=True))
+CHECKS = (
+    *LOWERING,
+    Pass("types", check_types),
+    Pass("size", check_size, goes_on=True),
+    Pass("resources", check_resources, goes_on=True),
+)
+PASSES = (
+    *CHECKS,
+    Pass("two readings", two_readings, needs_text=True),
+    Pass("unused", unused_names, needs_text=True),
+    Pass("never runs", never_runs),
+    Pass("busy loop", busy_loops),
+    Pass("cut off", cut_off),
+    Pass("line end", line_ends, needs_text=True),
+    Pass("allow", silence, needs_text=True),
+)
+
+
+def run_passes(compilation: Compilation, passes: Iterable[Pass] = PASSES) -> Compilation:
+    """The same compilation. Raises MissionError with everything that is wrong."""
+    errors: list[Diagnostic] = []
+    for one in passes:
+        if errors and not one.goes_on:
+            break
+        if compilation.is_text or not one.needs_text:
+            for problem in one.run(compilation):
+                (errors if problem.is_error else compilation.warnings).append(problem)
+    if errors:
+        raise MissionError(errors)
+    compilation.warnings = in_order(compilation.warnings)
+    return compilation
 
 
 def compile_mission(mission: Mission, vocabulary: Vocabulary, *, needs_command: bool = True) -> Tree:
-    """The tree of a mission. Its subtrees come in an order in which used ones precede their users.
+    """The checked tree of a mission, without lints. Subtrees that are used come before their users.
 
-    A text that only defines names is refused; where it needs no command, its tree does nothing.
-    Raises MissionError with everything that the passes find (BT005, BT014, BT040 to BT042).
+    Raises MissionError (BT005, BT014, BT040 to BT042).
     """
-    return checked(lower_mission(mission, vocabulary, needs_command=needs_command), vocabulary)
+    return run_passes(Compilation(vocabulary, mission, needs_command=needs_command), CHECKS).tree
 
 
-def lower_mission(mission: Mission, vocabulary: Vocabulary, *, needs_command: bool = True) -> Tree:
+def lower_mission(mission: Mission, vocabulary: Vocabulary) -> Tree:
     """As `compile_mission`, without the checks of the tree."""
-    ordered, problems = order_of_use(mission)
-    if problems:
-        raise MissionError(problems)
-    scope = Scope((definition.name for definition in ordered), vocabulary.types)
-    subtrees = scope.bodies
-    for definition in ordered:
-        lowered = lower(definition.body, scope)
-        subtrees.append((definition.name, lowered.node))
-        scope.define(definition, lowered.can_skip)
-    if mission.body is None and needs_command:
-        last = mission.definitions[-1] if mission.definitions else None
-        example = "move forward 1 m" if last is None else f'do subtree "{last.name}"' if last.is_quoted else last.name
-        raise MissionError([diagnostic("BT005", mission.span, example=example)])
-    root = Node("AlwaysSuccess") if mission.body is None else lower(mission.body, scope).node
-    conditions = dict.fromkeys(node.id for node in exact_nodes(mission) if node.is_condition)
-    return Tree(root, tuple(subtrees), mission.name, tuple(NodeModel("Condition", id) for id in conditions))
+    return run_passes(Compilation(vocabulary, mission), LOWERING).tree
 
 
-def checked(tree: Tree, vocabulary: Vocabulary) -> Tree:
-    """The tree itself. Raises MissionError with everything that the passes find."""
-    problems = [problem for check in PASSES for problem in check(tree, vocabulary)]
-    if problems:
-        raise MissionError(problems)
-    return tree
+def errors_of(mission: Mission, vocabulary: Vocabulary) -> Iterable[Diagnostic]:
+    """What is wrong with a mission that could be read, for corrections of one that could not."""
+    try:
+        compile_mission(mission, vocabulary, needs_command=False)
+    except MissionError as error:
+        return error.diagnostics
+    return ()

@@ -2,15 +2,18 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.passes.compilation import Compilation
 from btlang.passes.scope import Scope
 from btlang.passes.scripts import assignment, behind, comparison, prepared, script
 from btlang.record import Record
 from btlang.text.source import Span
 from btlang.tree import ast
 from btlang.tree.catalogue import SUBTREE
-from btlang.tree.node import Node
+from btlang.tree.model import NodeModel
+from btlang.tree.node import Node, Tree
 from btlang.tree.visit import fold
 from btlang.vocabulary.entry import MEASURED
 from btlang.vocabulary.references import keys_in
@@ -27,6 +30,25 @@ class Lowered(Record):
 
     node: Node
     can_skip: bool = False
+
+
+def lower_names(compilation: Compilation) -> Iterator[Diagnostic]:
+    """The tree of a mission: each definition, then its commands. BT005 where there is no command but must be one."""
+    mission, ordered = compilation.mission, compilation.ordered
+    scope = Scope((definition.name for definition in ordered), compilation.vocabulary.types)
+    for definition in ordered:
+        lowered = lower(definition.body, scope)
+        scope.bodies.append((definition.name, lowered.node))
+        scope.define(definition, lowered.can_skip)
+    if mission.body is None and compilation.needs_command:
+        last = mission.definitions[-1] if mission.definitions else None
+        example = "move forward 1 m" if last is None else f'do subtree "{last.name}"' if last.is_quoted else last.name
+        yield diagnostic("BT005", mission.span, example=example)
+        return
+    root = Node("AlwaysSuccess") if mission.body is None else lower(mission.body, scope).node
+    conditions = dict.fromkeys(node.id for node in ast.exact_nodes(mission) if node.is_condition)
+    models = tuple(NodeModel("Condition", id) for id in conditions)
+    compilation.tree = Tree(root, tuple(scope.bodies), mission.name, models)
 
 
 def lower(root: ast.Ast, scope: Scope) -> Lowered:

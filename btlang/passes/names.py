@@ -3,20 +3,19 @@
 from __future__ import annotations
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.tree.ast import Ast, Definition, Exact, Mission, Name, all_definitions, parts
+from btlang.passes.compilation import Compilation
+from btlang.tree.ast import Ast, Definition, Exact, Name, all_definitions, parts
 from btlang.tree.catalogue import SUBTREE
 from btlang.tree.visit import in_order_of_use
 
 
-def order_of_use(mission: Mission) -> tuple[list[Definition], list[Diagnostic]]:
-    """The definitions, used ones before their users.
-
-    A name that reaches itself is a problem (BT040).
-    """
-    definitions = {definition.name: definition for definition in all_definitions(mission)}
+def order_names(compilation: Compilation) -> list[Diagnostic]:
+    """Puts the definitions in order, used ones before their users. BT040 for a name that reaches itself."""
+    definitions = {definition.name: definition for definition in all_definitions(compilation.mission)}
     uses = {name: names_in(definition.body) for name, definition in definitions.items()}
     ordered, circles = in_order_of_use(uses)
-    return [definitions[name] for name in ordered], [_circle(circle, definitions) for circle in circles]
+    compilation.ordered = [definitions[name] for name in ordered]
+    return [_circle(circle, definitions) for circle in circles]
 
 
 def _subtree(item: Exact) -> str:

@@ -5,12 +5,11 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.passes.order import used_first
+from btlang.passes.compilation import Compilation
 from btlang.text.source import NOWHERE
 from btlang.tree.catalogue import CATALOGUE, SUBTREE
-from btlang.tree.node import Node, Tree
+from btlang.tree.node import Node
 from btlang.tree.visit import children_first
-from btlang.vocabulary.vocabulary import Vocabulary
 
 Holders = Mapping[str, Node]
 """Resource -> a leaf (or name) that holds it."""
@@ -18,11 +17,12 @@ Holders = Mapping[str, Node]
 _NONE: Holders = {}  # one for all
 
 
-def check_resources(tree: Tree, vocabulary: Vocabulary) -> list[Diagnostic]:
+def check_resources(compilation: Compilation) -> list[Diagnostic]:
     """BT041 once for each parallel and resource that two of its children need."""
+    vocabulary = compilation.vocabulary
     problems: list[Diagnostic] = []
     held_by_name: dict[str, Holders] = {}
-    for name, root in used_first(tree):
+    for name, root in compilation.roots:
         results: list[Holders] = []
         for node in children_first(root):
             count = len(node.children)

@@ -3,21 +3,20 @@
 from __future__ import annotations
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.passes.order import used_first
+from btlang.passes.compilation import Compilation
 from btlang.text.source import NOWHERE
 from btlang.tree.catalogue import MOST_NODES, SUBTREE
-from btlang.tree.node import Node, Tree
-from btlang.vocabulary.vocabulary import Vocabulary
+from btlang.tree.node import Node
 
 
-def check_size(tree: Tree, _vocabulary: Vocabulary) -> list[Diagnostic]:
+def check_size(compilation: Compilation) -> list[Diagnostic]:
     """BT042 where the tree has more than a million nodes once its names are filled in."""
     sizes: dict[str, int] = {}
-    for name, root in used_first(tree):
+    for name, root in compilation.roots:
         sizes[name] = _size(root, sizes)
     if sizes[""] <= MOST_NODES:
         return []
-    return [diagnostic("BT042", tree.root.span or NOWHERE, limit=f"{MOST_NODES:,}")]
+    return [diagnostic("BT042", compilation.tree.root.span or NOWHERE, limit=f"{MOST_NODES:,}")]
 
 
 def _size(root: Node, sizes: dict[str, int]) -> int:

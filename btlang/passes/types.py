@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.passes.compilation import Compilation
 from btlang.text.source import Span
 from btlang.tree.catalogue import CATALOGUE, Port
-from btlang.tree.node import Node, Tree
+from btlang.tree.node import Node
 from btlang.tree.visit import children_first
-from btlang.vocabulary.vocabulary import Vocabulary
 
 
-def check_types(tree: Tree, _vocabulary: Vocabulary) -> Iterator[Diagnostic]:
+def check_types(compilation: Compilation) -> Iterator[Diagnostic]:
     """BT014 for whole numbers, such as times and numbers of rounds, that a tree cannot hold."""
-    for root in (tree.root, *(node for _, node in tree.subtrees)):
+    for _, root in compilation.roots:
         wrong = {id(node): wanted for node in children_first(root) if node.ports and (wanted := _out_of_range(node))}
         for node, span in _with_spans(root) if wrong else ():
             if span is not None and id(node) in wrong:

@@ -11,8 +11,8 @@ from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.engine.blackboard import Blackboard
 from btlang.frontends.lexer import Lexer
 from btlang.frontends.mission import DEFAULT_PARSER, lexed, read_mission
-from btlang.passes import compile_mission
-from btlang.passes.lint import lint
+from btlang.passes import compile_mission, errors_of, run_passes
+from btlang.passes.compilation import Compilation
 from btlang.record import Record
 from btlang.text.source import Source
 from btlang.tree.ast import Ast, Chain, Definition, Fact, Include, Mission, parts
@@ -105,21 +105,22 @@ class Session:
     def compile(self, text: str, suggest: bool = True) -> Compiled:
         """Reads an entry together with the definitions above. Raises MissionError.
 
-        `suggest` is that of `read_mission`.
+        With `suggest` False no corrections of what is wrong are tried, which takes time.
         """
         margin = text[: len(text) - len(text.lstrip())].rpartition("\n")[2]
         above = indent(self.context(text), margin)
         whole = f"{text}\n{above}"  # the entry first, so that places in it are those that were typed
         source = self._source(whole)
-        reading = read_mission(source, self.vocabulary, self._parser, self._known(), suggest)
+        trial = errors_of if suggest else None
+        reading = read_mission(source, self.vocabulary, self._parser, self._known(), trial)
         mission = reading.mission
         named: list[Definition | Fact | Include] = [*mission.includes, *mission.definitions, *mission.facts]
         own = [d for d in named if d.span.start < len(text)]
-        tree = compile_mission(reading.mission, self.vocabulary, needs_command=False)
+        compilation = Compilation(self.vocabulary, mission, needs_command=False, grows=True, warnings=reading.warnings)
+        tree = run_passes(compilation).tree
         entry = Entry(text, tuple((d.name, d.span.text) for d in own), reading.mission.body is not None)
         shown = Tree(tree.root, used_subtrees(tree, [name for name, _ in entry.definitions]))
-        warnings = lint(mission, tree, self.vocabulary, reading.warnings, grows=True)
-        own_warnings = [warning for warning in warnings if warning.span.start < len(text)]
+        own_warnings = [warning for warning in compilation.warnings if warning.span.start < len(text)]
         return Compiled(entry, self._runnable(shown, reading.mission, own_warnings, self._values()))
 
     def _values(self) -> Blackboard:
@@ -137,7 +138,8 @@ class Session:
 
     def compile_all(self) -> RunnableTree:
         """The whole mission. Raises MissionError, also where it holds no command."""
-        reading = read_mission(self._source(self.text, self.file or "<session>"), self.vocabulary, self._parser)
+        source = self._source(self.text, self.file or "<session>")
+        reading = read_mission(source, self.vocabulary, self._parser, errors_of=errors_of)
         tree = compile_mission(reading.mission, self.vocabulary)
         return self._runnable(tree, reading.mission, reading.warnings, Blackboard())
 
@@ -171,7 +173,7 @@ class Session:
     def entries_of(self, text: str, name: str = ENTRY) -> list[Entry]:
         """The statements of a whole mission, each with the comments above it. Raises MissionError."""
         source = Source(text, name)
-        mission = read_mission(source, self.vocabulary, self._parser).mission
+        mission = read_mission(source, self.vocabulary, self._parser, errors_of=errors_of).mission
         compile_mission(mission, self.vocabulary, needs_command=False)
         body = mission.body
         commands = [] if body is None else [body]

@@ -13,7 +13,7 @@ from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.reading import read_source
 from btlang.frontends.mission import read_mission
 from btlang.passes import lower_mission
-from btlang.passes.lint.subject import Subject
+from btlang.passes.compilation import Compilation
 from btlang.passes.lint.two_readings import two_readings
 from btlang.text.source import Source
 from btlang.tree.dump import plain
@@ -38,7 +38,7 @@ def test_any_tree_is_said_and_read_back(tree: Tree) -> None:
         assert plain(again) == plain(tree)
         for models in (tree.models, (*tree.models, *again.models)):
             assert to_english(again.replace(models=models), vocabulary) == text
-        assert not list(two_readings(Subject(mission, again, vocabulary)))
+        assert not list(two_readings(Compilation(vocabulary, mission, again)))
 
 
 @pytest.mark.parametrize("path", CORPUS, ids=lambda path: path.stem)

@@ -25,7 +25,7 @@ from btlang.api import world_vocabulary
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError
 from btlang.examples import examples
 from btlang.frontends.mission import read_mission
-from btlang.passes import compile_mission
+from btlang.passes import compile_mission, errors_of
 from btlang.text.source import Source
 from btlang.tree.dump import plain
 from btlang.vocabulary.correct_words import correct_words
@@ -90,7 +90,7 @@ def vocabulary(world: str | None) -> Vocabulary:
 def compiled(text: str, world: str | None = None, parser: str = PARSERS[0]) -> Result:
     """What one parser makes of a text."""
     try:
-        mission = read_mission(Source(text), vocabulary(world), parser).mission
+        mission = read_mission(Source(text), vocabulary(world), parser, errors_of=errors_of).mission
         return Result(plain(compile_mission(mission, vocabulary(world))), (), "")
     except MissionError as error:
         return Result(None, tuple(error.diagnostics), "")

@@ -11,8 +11,8 @@ from btlang.diagnostics.diagnostic import Diagnostic, MissionError
 from btlang.diagnostics.reading import read_source
 from btlang.frontends.btcpp.reader import read_xml
 from btlang.frontends.mission import DEFAULT_PARSER, read_mission
-from btlang.passes import checked, compile_mission
-from btlang.passes.lint import lint
+from btlang.passes import errors_of, run_passes
+from btlang.passes.compilation import Compilation
 from btlang.text.source import Source
 from btlang.vocabulary.vocabulary import Vocabulary
 
@@ -26,13 +26,13 @@ def told(source: Source, command: str = "") -> list[Diagnostic]:
     try:
         vocabulary = words_of(options.get("--keywords"), options.get("--world"))
         if source.text.startswith("<"):
-            checked(read_xml(source), vocabulary)
-            return []
-        reading = read_mission(source, vocabulary, DEFAULT_PARSER)
-        tree = compile_mission(reading.mission, vocabulary)
+            compilation = Compilation(vocabulary, tree=read_xml(source))
+        else:
+            reading = read_mission(source, vocabulary, DEFAULT_PARSER, errors_of=errors_of)
+            compilation = Compilation(vocabulary, reading.mission, warnings=reading.warnings)
+        return run_passes(compilation).warnings
     except MissionError as error:
         return error.diagnostics
-    return list(lint(reading.mission, tree, vocabulary, reading.warnings))
 
 
 @cache

@@ -14,7 +14,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, MissionError
 from btlang.english.sentence import english
 from btlang.frontends.mission import read_mission
 from btlang.passes import compile_mission
-from btlang.passes.lint.subject import Subject
+from btlang.passes.compilation import Compilation
 from btlang.passes.lint.two_readings import two_readings
 from btlang.text.source import Source
 from btlang.tree.node import Node, Tree
@@ -41,7 +41,7 @@ crowded = st.lists(st.tuples(_joints, _parts), min_size=2, max_size=4).map(
 class Read(NamedTuple):
     """A mission, its tree and its warnings of two readings."""
 
-    subject: Subject
+    subject: Compilation
     tree: Tree
     warnings: list[Diagnostic]
 
@@ -49,7 +49,7 @@ class Read(NamedTuple):
 def read(text: str) -> Read:
     mission = read_mission(Source(text), letters()).mission
     tree = compile_mission(mission, letters())
-    subject = Subject(mission, tree, letters())
+    subject = Compilation(letters(), mission, tree)
     return Read(subject, tree, list(two_readings(subject)))
 
 

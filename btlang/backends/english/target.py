@@ -46,7 +46,7 @@ def to_english(tree: Tree, vocabulary: Vocabulary, *, facts: Sequence[Fact] = ()
         mission, speaker = _mission(tree, words, level, refused, comments)
         text = "".join(f"{line}\n" for line in _lines(mission.replace(facts=tuple(facts)), speaker, comments))
         try:
-            again = lower_mission(read_mission(Source(text), vocabulary, suggest=False).mission, vocabulary)
+            again = lower_mission(read_mission(Source(text), vocabulary).mission, vocabulary)
         except MissionError as error:
             reason = error.diagnostics[0].message.rstrip(".")
             continue

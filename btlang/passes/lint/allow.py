@@ -8,11 +8,12 @@ from __future__ import annotations
 
 import re
 from bisect import bisect
-from collections.abc import Iterable
+from collections.abc import Iterator
 
 from btlang.diagnostics.codes import NAMES
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.text.source import Source, Span
+from btlang.passes.compilation import Compilation
+from btlang.text.source import Span
 from btlang.text.spelling import nearest
 from btlang.text.words import Words, split
 from btlang.vocabulary.trie import longest
@@ -22,11 +23,11 @@ _ALLOW = r"(?i)#\s*allow\s*:(?P<names>[^\n]*)"
 _NAME = r"[^,\s](?:[^,]*[^,\s])?"
 
 
-def heard(warnings: Iterable[Diagnostic], source: Source, vocabulary: Vocabulary) -> list[Diagnostic]:
-    """The warnings that no comment of the source silences, and BT056 for names in such comments that no warning has."""
-    warnings = list(warnings)
+def silence(compilation: Compilation) -> Iterator[Diagnostic]:
+    """Leaves out the warnings that a comment silences. BT056 for names in such comments that no warning has."""
+    source, vocabulary = compilation.mission.span.source, compilation.vocabulary
     if "#" not in source.text or not re.search(_ALLOW, source.text):
-        return warnings
+        return
     words = split(source, vocabulary.articles)
     silent: dict[str, list[tuple[int, int]]] = {}
     for comment in words.comments:
@@ -41,12 +42,12 @@ def heard(warnings: Iterable[Diagnostic], source: Source, vocabulary: Vocabulary
                 near = nearest(name[0].lower(), NAMES)
                 fix = (span, near[0]) if near and is_respelling(name[0], near[0], vocabulary) else None
                 known = ", ".join(near or sorted(NAMES))
-                warnings.append(diagnostic("BT056", span, fix=fix, name=name[0], near=known))
+                yield diagnostic("BT056", span, fix=fix, name=name[0], near=known)
             else:
                 silent.setdefault(code, []).append(_scope(comment, words, vocabulary))
-    return [
+    compilation.warnings = [
         warning
-        for warning in warnings
+        for warning in compilation.warnings
         if warning.span.source is not source
         or not any(start <= warning.span.start < end for start, end in silent.get(warning.code, ()))
     ]

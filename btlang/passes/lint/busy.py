@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.passes.lint.subject import Subject, fold_tree
+from btlang.passes.compilation import Compilation
 from btlang.tree.catalogue import CATALOGUE, ON_FAILURE, SUBTREE
 from btlang.tree.node import Node
 from btlang.vocabulary.entry import Entry
@@ -14,10 +14,10 @@ ASKS, INSTANT, TAKES_TIME = range(3)
 """What the leaves below a node are at most: conditions, things that end in the tick they start, others."""
 
 
-def busy_loops(subject: Subject) -> list[Diagnostic]:
+def busy_loops(compilation: Compilation) -> list[Diagnostic]:
     """Loops with no leaf that takes time. `wait until C` asks again and again, too, but that is what it is for."""
     busy: list[Node] = []
-    entries = subject.vocabulary.entries
+    entries = compilation.vocabulary.entries
 
     def combine(node: Node, children: Sequence[int], named: dict[str, int]) -> int:
         kind = CATALOGUE.get(node.id)
@@ -26,22 +26,24 @@ def busy_loops(subject: Subject) -> list[Diagnostic]:
                 return named.get(node.port("ID"), TAKES_TIME)
             if kind is not None:
                 return TAKES_TIME if kind.takes_time else ASKS if kind.kind == "Condition" else INSTANT
-            return _leaf(entries[node.id][0]) if node.id in entries else INSTANT
+            return _leaf(entries[node.id][0]) if node.id in entries else TAKES_TIME
         if kind is not None and kind.enough and node.port(kind.enough) == "1":
             while busy and any(child is busy[-1] for child in node.children):
                 busy.pop()  # the loop of `for 5 s` has an end
             return TAKES_TIME
         most = max(children)
         if kind is None or most == TAKES_TIME or not kind.again or not kind.is_endless(node):
-            return TAKES_TIME if kind is not None and kind.takes_time else most
+            return TAKES_TIME if kind is None or kind.takes_time else most
         if most == ASKS and (kind.again == ON_FAILURE or not kind.rounds):
             return TAKES_TIME  # it waits for a condition to become true, or false
         busy.append(node)
         return most
 
-    fold_tree(subject.tree, combine)
-    word = subject.vocabulary.word
+    compilation.fold(combine)
+    word = compilation.vocabulary.word
     advice = f"To wait for a condition say '{word('wait_until')} ...'; else put a '{word('wait')}' into the loop."
+    if not compilation.is_text:
+        advice = "Put something into it that takes time, such as a node Sleep."
     return [diagnostic("BT053", node.span, advice=advice) for node in busy if node.span is not None]
 
 

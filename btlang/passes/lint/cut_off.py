@@ -9,7 +9,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.passes.lint.subject import Subject, fold_tree
+from btlang.passes.compilation import Compilation
 from btlang.record import Record
 from btlang.tree.catalogue import CATALOGUE, ON_FAILURE, ON_SUCCESS, SUBTREE
 from btlang.tree.node import Node
@@ -29,9 +29,9 @@ class Exposed(Record):
 Found: TypeAlias = "Exposed | None"
 
 
-def cut_off(subject: Subject) -> list[Diagnostic]:
+def cut_off(compilation: Compilation) -> list[Diagnostic]:
     """The first such action of each form; each action for its innermost form only."""
-    entries = subject.vocabulary.entries
+    entries = compilation.vocabulary.entries
     found: list[Diagnostic] = []
 
     def combine(node: Node, children: Sequence[Found], named: dict[str, Found]) -> Found:
@@ -44,10 +44,10 @@ def cut_off(subject: Subject) -> list[Diagnostic]:
         when = _when(node) if exposed is not None else ""
         if exposed is None or not when:
             return exposed
-        found.extend(_told(exposed, when, subject))
+        found.extend(_told(exposed, when, compilation))
         return None
 
-    fold_tree(subject.tree, combine)
+    compilation.fold(combine)
     return found
 
 
@@ -66,9 +66,13 @@ def _when(node: Node) -> str:
 _WHEN = {ON_SUCCESS: "as soon as the condition does not hold", ON_FAILURE: "as soon as the condition holds"}
 
 
-def _told(exposed: Exposed, when: str, subject: Subject) -> list[Diagnostic]:
+def _told(exposed: Exposed, when: str, compilation: Compilation) -> list[Diagnostic]:
     leaf, place = exposed.leaf.span, exposed.place.span
     if leaf is None or place is None:
         return []
     notes = () if exposed.leaf is exposed.place else ((leaf, f"'{leaf.text}' stands here"),)
-    return [diagnostic("BT054", place, notes, words=leaf.text, when=when, then=subject.vocabulary.word("then"))]
+    advice = "Leave it outside: put it before or after this node."
+    if compilation.is_text:
+        then = compilation.vocabulary.word("then")
+        advice = f"Leave it outside: put it before or after the form, with '{then}'."
+    return [diagnostic("BT054", place, notes, words=leaf.text, when=when, advice=advice)]

@@ -6,13 +6,13 @@ from bisect import bisect_left
 from collections.abc import Iterator
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.passes.lint.subject import Subject
+from btlang.passes.compilation import Compilation
 from btlang.tree.ast import Ast, Definition, parts
 
 
-def line_ends(subject: Subject) -> Iterator[Diagnostic]:
+def line_ends(compilation: Compilation) -> Iterator[Diagnostic]:
     """Only where a colon promises that more than one command belongs to the name."""
-    mission = subject.mission
+    mission = compilation.mission
     if mission.body is None:
         return
     source = mission.span.source
@@ -26,7 +26,7 @@ def line_ends(subject: Subject) -> Iterator[Diagnostic]:
         at = bisect_left(order, span.end)
         if at < len(order) and "\n" not in source.text[span.end : order[at]]:
             head = source.text[span.start : definition.body.span.start].partition(":")[0] + ":"
-            word = subject.vocabulary.word("then")
+            word = compilation.vocabulary.word("then")
             place = starts[order[at]].span
             yield diagnostic("BT055", place, ((span, "the definition"),), name=definition.name, head=head, then=word)
 

@@ -13,9 +13,9 @@ from bisect import bisect
 from collections.abc import Iterator
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.passes.compilation import Compilation
 from btlang.passes.lint.gaps import Gaps
 from btlang.passes.lint.other_reading import Attachment, Readings, in_chain, in_form, in_order, is_list
-from btlang.passes.lint.subject import Subject
 from btlang.text.source import Source, Span
 from btlang.tree import ast
 
@@ -26,27 +26,27 @@ if TYPE_CHECKING:
 _SENTENCE_END = re.compile(r"[\n;]|[.!?](?=\s)")
 
 
-def two_readings(subject: Subject) -> Iterator[Diagnostic]:
+def two_readings(compilation: Compilation) -> Iterator[Diagnostic]:
     """At most one of each kind for each sentence: the first."""
-    mission, told = subject.mission, set[tuple[str, int, str]]()
+    mission, told = compilation.mission, set[tuple[str, int, str]]()
     speaker: Speaker | None = None
     ends: dict[str, list[int]] = {}
     for root in (*mission.definitions, *([mission.body] if mission.body is not None else [])):
         source = root.span.source
-        for found in _attachments(root, subject):
+        for found in _attachments(root, compilation):
             if source.name not in ends:
                 ends[source.name] = _sentence_ends(source)
             key = source.name, bisect(ends[source.name], found.start), found.kind
             if key in told:
                 continue
             told.add(key)
-            speaker = speaker or _speaker(subject)
+            speaker = speaker or _speaker(compilation)
             readings = found.readings()
             if not speaker.say(readings.taken).in_lines:
                 yield _told(readings, speaker)
 
 
-def _attachments(root: ast.Ast, subject: Subject) -> Iterator[Attachment]:
+def _attachments(root: ast.Ast, compilation: Compilation) -> Iterator[Attachment]:
     """Outer ones first, in the order of the text."""
     stack = [(root, False)]
     while stack:
@@ -54,17 +54,17 @@ def _attachments(root: ast.Ast, subject: Subject) -> Iterator[Attachment]:
         if isinstance(node, ast.Chain):
             if is_list(node):
                 continue
-            yield from in_chain(node, is_part, subject.vocabulary)
-            stack += reversed(list(_parts(node, subject)))
+            yield from in_chain(node, is_part, compilation.vocabulary)
+            stack += reversed(list(_parts(node, compilation)))
             continue
         yield from in_form(node)
         stack += [(part, False) for part in reversed(ast.parts(node)) if part.parts]
 
 
-def _parts(chain: ast.Chain, subject: Subject) -> Iterator[tuple[ast.Ast, bool]]:
+def _parts(chain: ast.Chain, compilation: Compilation) -> Iterator[tuple[ast.Ast, bool]]:
     """The parts of a chain that have parts, and whether each has something beside it in its statement."""
     items = in_order(chain.items)
-    gaps = Gaps(items, subject.vocabulary)
+    gaps = Gaps(items, compilation.vocabulary)
     for at, item in enumerate(items):
         if item.parts:
             yield item, isinstance(item, ast.Chain) and not gaps.is_alone(at)
@@ -74,10 +74,10 @@ def _sentence_ends(source: Source) -> list[int]:
     return [match.start() for match in _SENTENCE_END.finditer(source.text)]
 
 
-def _speaker(subject: Subject) -> Speaker:
+def _speaker(compilation: Compilation) -> Speaker:
     from btlang.english.sentence import speaker_of  # most missions have nothing to tell
 
-    return speaker_of(subject.mission, subject.vocabulary, "all")
+    return speaker_of(compilation.mission, compilation.vocabulary, "all")
 
 
 def _told(found: Readings, speaker: Speaker) -> Diagnostic:

@@ -5,14 +5,14 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.passes.compilation import Compilation
 from btlang.passes.lint.endings import NEVER, Ends, ends_of, going_on
-from btlang.passes.lint.subject import Subject, fold_tree
 from btlang.text.source import Span
 from btlang.tree.catalogue import CATALOGUE, ON_SUCCESS, NodeKind
 from btlang.tree.node import Node
 
 
-def never_runs(subject: Subject) -> list[Diagnostic]:
+def never_runs(compilation: Compilation) -> list[Diagnostic]:
     """The first such command of each node whose children follow in order."""
     found: list[Diagnostic] = []
 
@@ -26,7 +26,7 @@ def never_runs(subject: Subject) -> list[Diagnostic]:
                     break
         return ends_of(node, children, named)
 
-    fold_tree(subject.tree, combine)
+    compilation.fold(combine)
     return found
 
 

@@ -5,16 +5,16 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.passes.lint.subject import Subject
+from btlang.passes.compilation import Compilation
 from btlang.passes.names import names_in
 from btlang.text.source import Span
 from btlang.tree.ast import Assign, Ast, Mission, Remember, all_definitions, keys_of, parts
 
 
-def unused_names(subject: Subject) -> Iterator[Diagnostic]:
-    """Nothing of a text that only defines names, nor of the names of another file: those are for others to use."""
-    mission = subject.mission
-    if mission.body is None:
+def unused_names(compilation: Compilation) -> Iterator[Diagnostic]:
+    """Not of a text that only defines names or grows, nor of the names of another file: those are for others."""
+    mission = compilation.mission
+    if mission.body is None or compilation.grows:
         return
     yield from _values(mission)
     if not mission.definitions:

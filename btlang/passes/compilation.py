@@ -1,0 +1,103 @@
+"""What the passes share: a text on its way to a tree that is checked."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Sequence
+
+from btlang.diagnostics.diagnostic import Diagnostic
+from btlang.passes.order import used_first
+from btlang.record import Record
+from btlang.tree.ast import Definition, Mission
+from btlang.tree.node import Node, Tree
+from btlang.tree.visit import children_first
+from btlang.vocabulary.vocabulary import Vocabulary
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import TypeVar
+
+    Result = TypeVar("Result")
+
+
+class Compilation:
+    """A syntax tree that becomes a tree, or a tree from XML or JSON, which has no syntax tree.
+
+    A mission that needs no command may only define names; its tree does nothing. One that `grows` isn't whole yet, so
+    that nothing is said of names that nothing uses. `warnings` begins with those of reading the text.
+    """
+
+    def __init__(
+        self,
+        vocabulary: Vocabulary,
+        mission: Mission | None = None,
+        tree: Tree | None = None,
+        *,
+        needs_command: bool = True,
+        grows: bool = False,
+        warnings: Iterable[Diagnostic] = (),
+    ) -> None:
+        self.vocabulary = vocabulary
+        self.needs_command = needs_command
+        self.grows = grows
+        self.warnings: list[Diagnostic] = list(warnings)
+        self.ordered: list[Definition] = []
+        """The definitions, used ones before their users."""
+        self._mission = mission
+        self._tree = tree
+        self._used_first: list[tuple[str, Node]] = []
+
+    @property
+    def is_text(self) -> bool:
+        """Whether there is a syntax tree."""
+        return self._mission is not None
+
+    @property
+    def mission(self) -> Mission:
+        """The syntax tree; only for passes that need one."""
+        assert self._mission is not None
+        return self._mission
+
+    @property
+    def tree(self) -> Tree:
+        """The tree; only behind lowering."""
+        assert self._tree is not None
+        return self._tree
+
+    @tree.setter
+    def tree(self, tree: Tree) -> None:
+        self._tree = tree
+        self._used_first = []
+
+    @property
+    def roots(self) -> list[tuple[str, Node]]:
+        """The subtrees by name, used ones before their users, then the main tree under ""."""
+        if not self._used_first:
+            self._used_first = used_first(self.tree)
+        return self._used_first
+
+    def fold(self, combine: Callable[[Node, Sequence[Result], dict[str, Result]], Result]) -> None:
+        """Combines each node with the results of its children; the third argument are those of the names so far."""
+        named: dict[str, Result] = {}
+        for name, root in self.roots:
+            results: list[Result] = []
+            for node in children_first(root):
+                count = len(node.children)
+                done: Sequence[Result] = ()
+                if count:
+                    done = results[-count:]
+                    del results[-count:]
+                results.append(combine(node, done, named))
+            named[name] = results[0]
+
+
+class Pass(Record):
+    """One step. `run` fills in the compilation and gives what it finds.
+
+    `needs_text`: it is left out for trees from XML and JSON. `goes_on`: it runs after errors of earlier passes too, so
+    that all are reported at once.
+    """
+
+    name: str
+    run: Callable[[Compilation], Iterable[Diagnostic]]
+    needs_text: bool = False
+    goes_on: bool = False
