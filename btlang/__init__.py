@@ -1,8 +1,8 @@
 """Robot missions in plain English, compiled to behavior trees and run.
 
-tree = btlang.parse_tree("move forward, then twist right and print hello")
-print(tree)
-tree.run()
+mission = btlang.parse_tree("move forward, then twist right and print hello")
+print(mission)
+mission.run()
 """
 
 from __future__ import annotations
@@ -11,17 +11,27 @@ __version__ = "0.1.0"
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.api import RunnableTree, parse_tree
+    from btlang.api import Mission, parse_file, parse_tree
     from btlang.diagnostics.diagnostic import Diagnostic, MissionError
     from btlang.engine.leaf import ActionFailed, Unknown
     from btlang.own_words import action, condition
+    from btlang.run.runner import Outcome
+    from btlang.run.statuses import Status
+    from btlang.session import Run, Session
 
-__all__ = ["ActionFailed", "Diagnostic", "MissionError", "RunnableTree", "Unknown", "action", "condition", "parse_tree"]
+__all__ = [
+    "ActionFailed", "Diagnostic", "Mission", "MissionError", "Outcome", "Run", "Session", "Status", "Unknown", "action",
+    "condition", "parse_file", "parse_tree",
+]  # fmt: skip
 
 _HOMES = {
     "ActionFailed": "btlang.engine.leaf",
     "Diagnostic": "btlang.diagnostics.diagnostic",
     "MissionError": "btlang.diagnostics.diagnostic",
+    "Outcome": "btlang.run.runner",
+    "Run": "btlang.session",
+    "Session": "btlang.session",
+    "Status": "btlang.run.statuses",
     "Unknown": "btlang.engine.leaf",
     "action": "btlang.own_words",
     "condition": "btlang.own_words",
@@ -35,3 +45,7 @@ def __getattr__(name: str) -> object:
     from importlib import import_module
 
     return getattr(import_module(_HOMES.get(name, "btlang.api")), name)
+
+
+def __dir__() -> list[str]:
+    return [*__all__, "__version__"]

@@ -6,7 +6,7 @@ import argparse
 import math
 from collections.abc import Callable
 
-from btlang.api import SLOWEST
+from btlang.run.limits import SLOWEST
 
 
 def speed(text: str) -> float | str:

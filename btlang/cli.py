@@ -10,7 +10,7 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from importlib import import_module
 
-from btlang.api import RunnableTree, format_mission, parse_tree, read_world, world_vocabulary
+from btlang.api import Mission, format_mission, parse_tree, world_vocabulary
 from btlang.cli_options import WIDEST, parsed
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.reading import read_source, reason_of
@@ -64,17 +64,20 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _run(options: argparse.Namespace) -> int:
     from btlang.pictures.command import pictures_of
+    from btlang.robots.world_problem import read_world
     from btlang.ros.command import chosen_robot, print_preflight
     from btlang.run.command import run_mission
+    from btlang.session import Session
 
     robot = chosen_robot(options)
-    tree = _tree(options)
+    mission = _mission(options)
     if options.preflight:
-        ready = print_preflight(tree.tree, tree.vocabulary, read_world(options.world), robot)
+        ready = print_preflight(mission.tree, mission.vocabulary, read_world(options.world), robot)
         return SUCCESS if ready else FAILED
-    with pictures_of(tree, options.picture, options.tree_picture) as sinks:
+    with pictures_of(mission, options.picture, options.tree_picture) as sinks:
         return run_mission(
-            tree,
+            mission,
+            partial(Session, robot, world=options.world),
             speed=options.speed,
             rate=options.rate,
             time_limit=options.time_limit,
@@ -82,12 +85,11 @@ def _run(options: argparse.Namespace) -> int:
             quiet=options.quiet,
             lines=options.lines,
             sinks=sinks,
-            robot=robot,
         )
 
 
 def _check(options: argparse.Namespace) -> int:
-    _tree(options).check()
+    _mission(options).check()
     if not options.report.is_json:
         show("The mission is fine.")
     return SUCCESS
@@ -96,20 +98,20 @@ def _check(options: argparse.Namespace) -> int:
 def _show_tree(options: argparse.Namespace) -> int:
     from btlang.tree.dump import plain
 
-    tree = _tree(options)
+    mission = _mission(options)
     if options.picture is not None:
-        _draw_tree(tree, options.picture, options.apart)
+        _draw_tree(mission, options.picture, options.apart)
         return SUCCESS
-    show(plain(tree.tree) if options.plain else str(tree))
+    show(plain(mission.tree) if options.plain else str(mission))
     return SUCCESS
 
 
-def _draw_tree(tree: RunnableTree, path: str, apart: bool) -> None:
+def _draw_tree(mission: Mission, path: str, apart: bool) -> None:
     from btlang.pictures.files import check_picture
     from btlang.pictures.tree_picture import draw_tree
 
     check_picture(path)
-    draw_tree(tree.tree, tree.label, tree.is_action, path, apart=apart)
+    draw_tree(mission.tree, mission.label, mission.is_action, path, apart=apart)
     show(f"The tree is drawn in {path}.")
 
 
@@ -124,7 +126,7 @@ def _compile(options: argparse.Namespace) -> int:
         options.usage_error(f"{name} is no text for a terminal: -o FILE writes it to a file")
     if options.dialect is not None and "dialect" not in TARGETS[name].options:
         options.usage_error(f"--dialect is for xml, not for {name}")
-    made = _tree(options).to(name, dialect=options.dialect)
+    made = _mission(options).to(name, dialect=options.dialect)
     if options.out is not None:
         write_file(options.out, made)
     elif isinstance(made, bytes):
@@ -175,8 +177,7 @@ def _explain_mission(options: argparse.Namespace) -> int:
     from shutil import get_terminal_size
 
     width = get_terminal_size((100, 24)).columns
-    tree = _tree(options)
-    show(tree.explain(min(width, WIDEST)))
+    show(_mission(options).explain(min(width, WIDEST)))
     return SUCCESS
 
 
@@ -258,13 +259,15 @@ def _typed(options: argparse.Namespace) -> Source:
     return Source(options.text, "<command line>", roots=roots)
 
 
-def _tree(options: argparse.Namespace) -> RunnableTree:
+def _mission(options: argparse.Namespace) -> Mission:
     """Compiles what the options name; warnings go to the report."""
     source = _typed(options) if options.text is not None else read_source(options.file, options.include_root)
-    tree = parse_tree(source, parser=options.parser, keywords=options.keywords, world=options.world, main=options.main)
-    for warning in tree.warnings:
+    mission = parse_tree(
+        source, parser=options.parser, keywords=options.keywords, world=options.world, main=options.main
+    )
+    for warning in mission.warnings:
         options.report.add([warning])
-    return tree
+    return mission
 
 
 if __name__ == "__main__":

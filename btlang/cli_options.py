@@ -7,10 +7,10 @@ import sys
 from collections.abc import Callable, Sequence
 
 import btlang
-from btlang.api import RATES
 from btlang.arguments import between, duration, picture, speed
 from btlang.diagnostics.report import FORMATS
 from btlang.frontends.mission import DEFAULT_PARSER, PARSERS
+from btlang.run.limits import RATES
 from btlang.text.output import show
 
 TYPE_CHECKING = False

@@ -30,12 +30,12 @@ class _RecordMeta(type):
     ) -> _RecordMeta:
         own = [f for f, kind in body.get("__annotations__", {}).items() if not str(kind).startswith("ClassVar")]
         inherited = [f for base in bases for f in getattr(base, "fields", ())]
-        defaults = {k: v for base in bases for k, v in getattr(base, "_defaults", {}).items()}
+        defaults = {k: v for base in bases for k, v in getattr(base, "field_defaults", {}).items()}
         defaults |= {f: body.pop(f) for f in own if f in body}
         cls = super().__new__(mcs, name, bases, body | {"__slots__": tuple(own)})
         fields = tuple(inherited + own)
         cls.fields = fields  # type: ignore[attr-defined]
-        cls._defaults = defaults  # type: ignore[attr-defined]
+        cls.field_defaults = defaults  # type: ignore[attr-defined]
         cls._compared = tuple(f for f in fields if f not in uncompared)  # type: ignore[attr-defined]
         if fields:
             open_body = {"__slots__": tuple(own), "__setattr__": object.__setattr__, "__delattr__": object.__delattr__}
@@ -78,6 +78,7 @@ class Record(metaclass=_RecordMeta):
 
     if TYPE_CHECKING:
         fields: ClassVar[tuple[str, ...]]
+        field_defaults: ClassVar[dict[str, Any]]
         _compared: ClassVar[tuple[str, ...]]
 
     def __setattr__(self, name: str, value: object) -> None:

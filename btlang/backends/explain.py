@@ -38,7 +38,7 @@ class Statement(Record):
 
 
 def explain_mission(
-    mission: ast.Mission, tree: Tree, vocabulary: Vocabulary, label: Callable[[Node], str], width: int = 100
+    mission: ast.Program, tree: Tree, vocabulary: Vocabulary, label: Callable[[Node], str], width: int = 100
 ) -> str:
     """Every statement and definition in the order of the text, below each other and at most `width` columns wide.
 
@@ -62,7 +62,7 @@ def explain_mission(
     return "\n\n".join(blocks)
 
 
-def _definitions(mission: ast.Mission, tree: Tree, sentences: _Sentences) -> Iterator[Statement]:
+def _definitions(mission: ast.Program, tree: Tree, sentences: _Sentences) -> Iterator[Statement]:
     roots = dict(tree.subtrees)
     for definition in mission.definitions:
         yield Statement(sentences.number(definition.name_span.start), (definition,), roots[definition.name])

@@ -13,11 +13,12 @@ from btlang.vocabulary.vocabulary import Vocabulary
 
 _HEAD = '''"""A behavior tree that runs on the simulated robot: python FILE [--speed max]. Needs btlang.
 
-The leaves do what the `call` of their keyword entry names. `tree` can be ticked, run and watched from other programs;
-see btlang.api.RunnableTree.
+The leaves do what the `call` of their keyword entry names. `mission` can be run and watched from other programs; see
+btlang.Mission and btlang.Session.
 """
 
-from btlang.api import RunnableTree, world_vocabulary
+from btlang import Mission, Session
+from btlang.api import world_vocabulary
 from btlang.tree.node import Node, Tree
 '''
 _FOOT = """
@@ -26,12 +27,12 @@ if __name__ == "__main__":
 
     from btlang.run.module import run_module
 
-    sys.exit(run_module(tree))
+    sys.exit(run_module(mission, lambda: Session(world=WORLD)))
 """
 
 
 def to_python(tree: Tree, vocabulary: Vocabulary, *, world: str | None = None, facts: Sequence[Fact] = ()) -> str:
-    """The text of a module with a name `tree`, a RunnableTree with the keyword files of its leaves.
+    """The text of a module with a name `mission`, a Mission with the keyword files of its leaves.
 
     Words that are Python objects (`btlang.action`) cannot be told; the leaf is then unknown there. Nor can the places
     in the text of the mission: failures name the leaf, but not its line.
@@ -50,14 +51,16 @@ def to_python(tree: Tree, vocabulary: Vocabulary, *, world: str | None = None, f
     lines += called("TREE = Tree", [*arguments, *([f"name={literal(tree.name)}"] if tree.name else [])]).lines
     lines.append(f"KEYWORDS = {literal(_files(tree, vocabulary))}")
     lines.append(f"WORLD = {literal(world)}")
-    lines.append("tree = RunnableTree(TREE, world_vocabulary(KEYWORDS, WORLD), WORLD)")
+    arguments = ["TREE", "world_vocabulary(KEYWORDS, WORLD)", "WORLD"]
     if facts:
         places = [
             f"Place({literal(fact.name)}, {literal(fact.x)}, {literal(fact.y)}, {literal(fact.facing)})"
             for fact in facts
         ]
         made = called("", places)
-        lines += [f"tree.facts = {made.lines[0]}", *made.lines[1:]]
+        lines += [f"PLACES = {made.lines[0]}", *made.lines[1:]]
+        arguments.append("facts=PLACES")
+    lines.append(f"mission = Mission({', '.join(map(str, arguments))})")
     return "\n".join([*lines, _FOOT])
 
 

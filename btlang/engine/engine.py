@@ -174,6 +174,11 @@ class Engine:
             paths.append(f"{above}/{site.position}" if site.above is not None else "/")
         return [(path, site.node) for path, site in zip(paths, self._sites, strict=True)]
 
+    @property
+    def size(self) -> int:
+        """The number of nodes, after expansion of subtrees."""
+        return len(self._sites)
+
     def node(self, index: int) -> Node:
         """The node with an index in preorder."""
         return self._sites[index].node

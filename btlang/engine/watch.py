@@ -31,25 +31,27 @@ def repeats(node: Node) -> bool:
 
 class Changes:
     """Changes of statuses, oldest first. Iterating gives for each the index of the node in preorder, its new status,
-    and for a FAILURE what had failed latest then: this node or one below.
+    the one before (IDLE in a new run of its parent), and for a FAILURE what had failed latest then: this node or one
+    below.
 
-    They are kept as three collections so that a change makes no new object: the garbage collector, which new objects
-    call for, took longer than the rest of a tick.
+    They are kept as collections of numbers so that a change makes no new object: the garbage collector, which new
+    objects call for, took longer than the rest of a tick.
     """
 
-    __slots__ = ("faults", "indices", "statuses")
+    __slots__ = ("before", "faults", "indices", "statuses")
 
     def __init__(self) -> None:
         self.indices: list[int] = []
+        self.before: list[int] = []
         self.statuses: list[int] = []
         self.faults: dict[int, Fault | Site | None] = {}  # by the position of the change
 
     def __len__(self) -> int:
         return len(self.indices)
 
-    def __iter__(self) -> Iterator[tuple[int, int, Fault | Site | None]]:
-        for position, (index, status) in enumerate(zip(self.indices, self.statuses, strict=True)):
-            yield index, status, self.faults.get(position)
+    def __iter__(self) -> Iterator[tuple[int, int, int, Fault | Site | None]]:
+        for position, (index, status, before) in enumerate(zip(self.indices, self.statuses, self.before, strict=True)):
+            yield index, status, before, self.faults.get(position)
 
 
 class Trace:
@@ -103,10 +105,10 @@ class Watch:
         elif status == RUNNING and self.last not in (IDLE, RUNNING):
             self._note_below()
         if status != self.last or (self.every and status != RUNNING):
-            took_time = self.last == RUNNING and not self.below
+            before = self.last
             self.last = status
-            self.note()
-            if took_time:
+            self.note(before)
+            if before == RUNNING and not self.below:  # a leaf that took time
                 self.trace.tell()
 
     def ended(self, status: int) -> int:
@@ -116,8 +118,8 @@ class Watch:
             self.change(status)
         return status
 
-    def note(self) -> None:
-        """Its status is news."""
+    def note(self, before: int = IDLE) -> None:
+        """Its status is news; `before` is what it was."""
         trace = self.trace
         changes = trace.changes
         self.told = trace.tick
@@ -125,6 +127,7 @@ class Watch:
             changes.faults[len(changes.indices)] = trace.shared.fault
         changes.indices.append(self.index)
         changes.statuses.append(self.last)
+        changes.before.append(before)
 
     def wrap(self, compiled: Compiled) -> Compiled:
         """The same node, watched. The root counts the ticks."""
@@ -168,13 +171,15 @@ class Watch:
                     status = status_of(leaf.site, status)
             self.reached = now = trace.tick
             if status is not self.last:
+                before = self.last
                 self.last = status
                 if status is SUCCESS:
                     self.told = now
                     trace.changes.indices.append(self.index)
                     trace.changes.statuses.append(SUCCESS)
+                    trace.changes.before.append(before)
                 else:
-                    self.note()
+                    self.note(before)
             return status
 
         return watched_tick

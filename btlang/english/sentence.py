@@ -36,13 +36,13 @@ def english(node: ast.Ast, vocabulary: Vocabulary, *, brackets: str = "needed", 
     """
     from btlang.english.blocks import lines_of
 
-    if not isinstance(node, ast.Mission):
+    if not isinstance(node, ast.Program):
         return "\n".join(lines_of(node, Speaker(vocabulary, names, brackets)))
     speaker = speaker_of(node, vocabulary, brackets)
     return "\n".join(mission_lines(node, speaker))
 
 
-def mission_lines(mission: ast.Mission, speaker: Speaker, width: float = math.inf) -> Iterator[str]:
+def mission_lines(mission: ast.Program, speaker: Speaker, width: float = math.inf) -> Iterator[str]:
     """The lines of a mission; see `lines_of`."""
     from btlang.english.blocks import lines_of
 
@@ -53,7 +53,7 @@ def mission_lines(mission: ast.Mission, speaker: Speaker, width: float = math.in
         yield from lines_of(part, speaker, width, joined)
 
 
-def speaker_of(mission: ast.Mission, vocabulary: Vocabulary, brackets: str = "needed") -> Speaker:
+def speaker_of(mission: ast.Program, vocabulary: Vocabulary, brackets: str = "needed") -> Speaker:
     """Says the parts of a mission, where its names and places are known."""
     facts = ast.all_facts(mission)
     if facts:

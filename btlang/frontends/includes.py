@@ -6,7 +6,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.record import Record
 from btlang.text.source import Span
 from btlang.text.words import Words, statements
-from btlang.tree.ast import Mission
+from btlang.tree.ast import Program
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.values import Known
 from btlang.vocabulary.vocabulary import Vocabulary
@@ -17,7 +17,7 @@ ROLE = "include"
 class Included(Record):
     """Another mission, the names in it that stand for conditions, and the values that it names, by key."""
 
-    mission: Mission
+    mission: Program
     conditions: frozenset[str]
     known: dict[str, Known]
 

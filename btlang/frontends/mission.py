@@ -15,7 +15,7 @@ from btlang.frontends.matching import Matcher
 from btlang.frontends.names import Load
 from btlang.record import Record
 from btlang.text.source import Source, Span
-from btlang.tree.ast import Ast, Definition, Mission, Nothing
+from btlang.tree.ast import Ast, Definition, Nothing, Program
 from btlang.vocabulary.values import Known
 from btlang.vocabulary.vocabulary import Vocabulary
 
@@ -23,7 +23,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import TypeAlias
 
-    ErrorsOf: TypeAlias = Callable[[Mission, Vocabulary], Iterable[Diagnostic]]
+    ErrorsOf: TypeAlias = Callable[[Program, Vocabulary], Iterable[Diagnostic]]
 
 PARSERS = {
     "shunting-yard": "btlang.frontends.shunting_yard",
@@ -35,7 +35,7 @@ DEFAULT_PARSER = "shunting-yard"
 class Reading(Record):
     """What a text says, and the warnings on the way."""
 
-    mission: Mission
+    mission: Program
     warnings: tuple[Diagnostic, ...]
 
 
@@ -131,7 +131,7 @@ class _Reader:
         except MissionError as error:
             return error.diagnostics
 
-    def _mission(self, source: Source, lexer: Lexer, matcher: Matcher) -> Mission:
+    def _mission(self, source: Source, lexer: Lexer, matcher: Matcher) -> Program:
         parse = import_module(PARSERS[self._parser]).parse
         build = Builder(source)
         body: Ast | None = None
@@ -148,12 +148,12 @@ class _Reader:
         facts = {fact.name: fact for fact in lexer.names.facts}  # a later fact replaces an earlier one
         whole = Span(source, 0, len(source.text))
         names = lexer.names
-        return Mission(
+        return Program(
             body, tuple(definitions.values()), whole, tuple(facts.values()), tuple(names.includes), names.main_name
         )
 
 
-def _names_only(source: Source, lexer: Lexer) -> Mission:
+def _names_only(source: Source, lexer: Lexer) -> Program:
     """The names that a text defines; their bodies do nothing."""
     whole = Span(source, 0, len(source.text))
     types, headers = lexer.names.definitions.types, lexer.names.definitions.headers.values()
@@ -162,4 +162,4 @@ def _names_only(source: Source, lexer: Lexer) -> Mission:
         for header in headers
         if header.body in types
     }
-    return Mission(None, tuple(definitions.values()), whole, tuple(lexer.names.facts), tuple(lexer.names.includes))
+    return Program(None, tuple(definitions.values()), whole, tuple(lexer.names.facts), tuple(lexer.names.includes))

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Sequence
 from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.passes.order import used_first
 from btlang.record import Record
-from btlang.tree.ast import Definition, Mission
+from btlang.tree.ast import Definition, Program
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import children_first
 from btlang.vocabulary.vocabulary import Vocabulary
@@ -29,7 +29,7 @@ class Compilation:
     def __init__(
         self,
         vocabulary: Vocabulary,
-        mission: Mission | None = None,
+        mission: Program | None = None,
         tree: Tree | None = None,
         *,
         needs_command: bool = True,
@@ -52,7 +52,7 @@ class Compilation:
         return self._mission is not None
 
     @property
-    def mission(self) -> Mission:
+    def mission(self) -> Program:
         """The syntax tree; only for passes that need one."""
         assert self._mission is not None
         return self._mission

@@ -15,10 +15,13 @@ if TYPE_CHECKING:
     from btlang.run.events import Sink
 
     class Mission(Protocol):
-        """What a picture needs of a btlang.api.RunnableTree."""
+        """What a picture needs of a btlang.api.Mission."""
 
-        tree: Tree
-        world: str | None
+        @property
+        def tree(self) -> Tree: ...
+
+        @property
+        def world(self) -> str | None: ...
 
         def label(self, node: Node) -> str: ...
 

@@ -16,6 +16,7 @@ from btlang.pictures.style import INK, LOOKS, SMALL, SOFT
 from btlang.pictures.track import END, START, draw_body, draw_track, shade, way
 from btlang.pictures.world_map import WorldMap
 from btlang.robots.world import World
+from btlang.run.bus import INLINE
 from btlang.tree.node import Node
 
 _MARGIN, _GUTTER, _STRIP = 16.0, 22.0, 26.0
@@ -33,7 +34,9 @@ _SIGNS = {
 
 
 class RunPicture:
-    """A sink of a run, and then its picture. `label` and `is_action` are those of btlang.api.RunnableTree."""
+    """A sink of a run, and then its picture. `label` and `is_action` are those of btlang.api.Mission."""
+
+    policy = INLINE
 
     def __init__(self, world: World, label: Callable[[Node], str], is_action: Callable[[Node], bool]) -> None:
         self._world = world

@@ -8,7 +8,19 @@ from btlang.engine.leaf import ActionFailed
 from btlang.engine.status import IDLE, RUNNING, SKIPPED
 from btlang.record import Record
 from btlang.robots.geometry import Point, Pose
-from btlang.run.events import PeriodPassed, RobotEvent, StatusChanged, StatusesChanged
+from btlang.run.bus import INLINE
+from btlang.run.events import (
+    Bumped,
+    Dropped,
+    Grasped,
+    PeriodPassed,
+    Printed,
+    Released,
+    Said,
+    StatusChanged,
+    StatusesChanged,
+    Stuck,
+)
 from btlang.run.lines import is_asked_wait
 from btlang.tree.node import Node
 
@@ -51,11 +63,13 @@ class Mark(Record):
 
 
 class RunRecord:
-    """A sink. `label` and `is_action` are those of btlang.api.RunnableTree.
+    """A sink. `label` and `is_action` are those of btlang.api.Mission.
 
     Commands are numbered from 1 in the order in which they began. `ended` holds status and time of the whole mission.
     `moved` says where each object that was picked up lies; None is in the robot's hand.
     """
+
+    policy = INLINE
 
     def __init__(self, label: Callable[[Node], str], is_action: Callable[[Node], bool]) -> None:
         self._label = label
@@ -79,11 +93,11 @@ class RunRecord:
         if isinstance(event, PeriodPassed):
             if event.robot is not None:
                 self._see(event.t, event.robot)
-        elif isinstance(event, RobotEvent):
-            self._happened(event)
         elif isinstance(event, StatusesChanged) and self.track:
             for change in event:
                 self._changed(change)
+        elif self.track:
+            self._happened(event)
 
     def _see(self, t: float, robot: Any) -> None:
         try:
@@ -99,19 +113,22 @@ class RunRecord:
             self._moved(t, name, robot.locate(name))
         self._put_down.clear()
 
-    def _happened(self, event: RobotEvent) -> None:
-        if not self.track:
-            return
-        name = str(event.data.get("name") or "")
-        text = str(event.data.get("text", event.data.get("into", name)))
-        if event.kind in ("say", "print", "bump", "stuck", "grasp", "release", "drop"):
-            if event.kind == "release" and not name:
-                return  # an empty hand was opened
-            self.marks.append(Mark(event.t, event.kind, text, self.track[-1].pose))
-        if event.kind == "grasp":
-            self._moved(event.t, name, None)
-        elif event.kind in ("release", "drop"):
-            self._put_down.append(name)
+    def _happened(self, event: Event) -> None:
+        if isinstance(event, Said | Printed):
+            self._mark(event, event.text)
+        elif isinstance(event, Bumped):
+            self._mark(event, event.into)
+        elif isinstance(event, Stuck):
+            self._mark(event, "")
+        elif isinstance(event, Grasped):
+            self._mark(event, event.name)
+            self._moved(event.t, event.name, None)
+        elif isinstance(event, Released | Dropped) and event.name:
+            self._mark(event, event.name)
+            self._put_down.append(event.name)
+
+    def _mark(self, event: Event, text: str) -> None:
+        self.marks.append(Mark(event.t, event.tag, text, self.track[-1].pose))
 
     def _moved(self, t: float, name: str, place: Point | None) -> None:
         self.moved[name] = place

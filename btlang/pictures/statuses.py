@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 
 from btlang.engine.status import IDLE, RUNNING
+from btlang.run.bus import INLINE
 from btlang.run.events import StatusesChanged
 from btlang.tree.catalogue import SUBTREE
 from btlang.tree.node import Tree
@@ -21,6 +22,8 @@ class LastStatuses:
 
     IDLE stands for a node that was halted while it ran; a reset after it completed is no status.
     """
+
+    policy = INLINE
 
     def __init__(self) -> None:
         self.by_path: dict[str, int] = {}

@@ -41,7 +41,7 @@ class Sheet(Record):
 
 
 class Maker:
-    """Makes the sheets of a tree. `label` and `is_action` are those of btlang.api.RunnableTree."""
+    """Makes the sheets of a tree. `label` and `is_action` are those of btlang.api.Mission."""
 
     def __init__(
         self,

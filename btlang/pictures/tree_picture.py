@@ -49,7 +49,7 @@ def draw_tree(
 
     Named subtrees are framed in place; `apart` draws each once, below the main tree, and so does a tree that would
     have more than 500 nodes. Of more than 2,000 nodes, or 60 levels, the rest is counted only. `statuses` by path are
-    those of LastStatuses.by_path; None draws the tree without. `label` and `is_action` are those of a RunnableTree.
+    those of LastStatuses.by_path; None draws the tree without. `label` and `is_action` are those of a Mission.
     Raises ValueError for another ending, MissionError (BT009, BT081).
     """
     kind = ending(path, STILL)

@@ -1,1 +1,1 @@
-"""The mission at the keyboard: `btc` alone. `session` holds what was entered, `screen` draws it, `loop` runs it."""
+"""The mission at the keyboard: `btc` alone. `draft` holds what was entered, `screen` draws it, `loop` runs it."""

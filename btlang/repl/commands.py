@@ -9,7 +9,7 @@ from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.reading import read_source, unwritable
 from btlang.frontends.definitions import find_definitions
 from btlang.record import Record
-from btlang.repl.session import Entry, Session
+from btlang.repl.draft import Entry, MissionDraft
 from btlang.repl.store import Store
 from btlang.robots.world import said
 from btlang.text.source import Source
@@ -52,7 +52,7 @@ COMMANDS = (
 _NAMES = {command.name: command for command in COMMANDS}
 
 
-def command_of(text: str, session: Session) -> tuple[str, str] | None:
+def command_of(text: str, draft: MissionDraft) -> tuple[str, str] | None:
     """The word of the REPL that a line begins with, and the rest; None where the line belongs to the mission.
 
     A word that the mission knows, as a phrase or as a name that is defined or being defined, is the mission's; but
@@ -64,15 +64,13 @@ def command_of(text: str, session: Session) -> tuple[str, str] | None:
         return name[1:].lower(), rest.strip()
     if "\n" in line or name.lower() not in _NAMES:
         return None
-    if name.lower() == "show" and (rest in ("", "tree") or rest.lower() in session.definitions):
+    if name.lower() == "show" and (rest in ("", "tree") or rest.lower() in draft.definitions):
         return "show", rest
-    source = Source(f"{session.context()}{line}")
-    words = split(source, session.vocabulary.articles)
-    definitions = find_definitions(words, session.vocabulary)
+    source = Source(f"{draft.context()}{line}")
+    words = split(source, draft.vocabulary.articles)
+    definitions = find_definitions(words, draft.vocabulary)
     at = words.lines[-1].first
-    known = (
-        longest(trie, words, at, session.vocabulary.values) for trie in (session.vocabulary.trie, definitions.trie)
-    )
+    known = (longest(trie, words, at, draft.vocabulary.values) for trie in (draft.vocabulary.trie, definitions.trie))
     return None if any(known) else (name.lower(), rest.strip())
 
 
@@ -85,14 +83,14 @@ class Commands:
     """Does what the words of the REPL say; `write` gets lines for the user, `run` runs the whole mission."""
 
     def __init__(
-        self, session: Session, write: Callable[[str], object], run: Callable[[], object], store: Store | None = None
+        self, draft: MissionDraft, write: Callable[[str], object], run: Callable[[], object], store: Store | None = None
     ) -> None:
-        self._session = session
+        self._draft = draft
         self._write = write
         self._run_all = run
         self._store = store
         self.speed: float | str = "real"
-        self.saved = session.text
+        self.saved = draft.text
         """The mission as some file has it."""
         self.draft = ""
         """What the next line begins with."""
@@ -100,7 +98,7 @@ class Commands:
     @property
     def is_saved(self) -> bool:
         """Whether nothing would be lost."""
-        return self._session.text in ("", self.saved)
+        return self._draft.text in ("", self.saved)
 
     def do(self, name: str, rest: str) -> None:
         """Raises MissionError where a file or text is wrong, Leave where the user wants to leave."""
@@ -118,51 +116,51 @@ class Commands:
         elif rest in _NAMES:
             self._write(_described(_NAMES[rest]))
         else:
-            self._write("\n".join(help_on(self._session.vocabulary, rest)))
+            self._write("\n".join(help_on(self._draft.vocabulary, rest)))
 
     def _words(self, rest: str) -> None:
-        self._write("\n".join(listing(self._session.vocabulary, rest)))
+        self._write("\n".join(listing(self._draft.vocabulary, rest)))
 
     def _show(self, rest: str) -> None:
-        session = self._session
-        if not session.entries:
+        draft = self._draft
+        if not draft.entries:
             self._write("There is nothing yet: type a command, such as: move forward 1 m")
         elif rest == "tree":
-            self._write(str(session.compile_all()))
+            self._write(str(draft.compile_all()))
         elif rest:
             name = " ".join(rest.lower().split())
-            if name not in session.definitions:
-                known = ", ".join(session.definitions) or "none yet"
+            if name not in draft.definitions:
+                known = ", ".join(draft.definitions) or "none yet"
                 self._write(f"There is no name '{rest}'; defined are: {known}.")
                 return
-            definition = session.definitions[name]
-            tree = str(session.compile(definition).tree).splitlines()[2:]
+            definition = draft.definitions[name]
+            tree = str(draft.compile(definition).mission).splitlines()[2:]
             self._write("\n".join([definition, *tree]))
         else:
-            self._write(session.text.rstrip("\n"))
+            self._write(draft.text.rstrip("\n"))
 
     def _names(self, rest: str) -> None:
-        self._write("\n".join(self._session.definitions.values()) or "No name is defined: patrol is go to the lobby")
+        self._write("\n".join(self._draft.definitions.values()) or "No name is defined: patrol is go to the lobby")
 
     def _run(self, rest: str) -> None:
         self._run_all()
 
     def _undo(self, rest: str) -> None:
-        before = self._session.entries
-        if not self._session.undo():
+        before = self._draft.entries
+        if not self._draft.undo():
             self._write("There is nothing to take back.")
             return
         self._write_change(before, "The robot stays where it is.")
 
     def _redo(self, rest: str) -> None:
-        before = self._session.entries
-        if not self._session.redo():
+        before = self._draft.entries
+        if not self._draft.redo():
             self._write("There is no undo to take back.")
             return
         self._write_change(before, "")
 
     def _write_change(self, before: tuple[Entry, ...], note: str) -> None:
-        now = self._session.entries
+        now = self._draft.entries
         gone = [entry.text for entry in before if entry not in now]
         come = [entry.text for entry in now if entry not in before]
         lines = [f"- {line}" for text in gone for line in text.splitlines()]
@@ -170,35 +168,35 @@ class Commands:
         self._write("\n".join([*lines, note] if note else lines))
 
     def _save(self, rest: str) -> None:
-        session = self._session
+        draft = self._draft
         over = rest.startswith("over ")
-        path = rest.removeprefix("over ").strip() or session.file
+        path = rest.removeprefix("over ").strip() or draft.file
         if not path:
             self._write("Save to which file? save mission.txt")
             return
-        if os.path.exists(path) and path != session.file and not over:
+        if os.path.exists(path) and path != draft.file and not over:
             self._write(f"{path} exists already. To replace it: save over {path}")
             return
         try:
             with open(path, "w", encoding="utf-8", errors="surrogateescape") as file:
-                file.write(session.text)
+                file.write(draft.text)
         except OSError as error:
             raise MissionError([unwritable(path, error)]) from None
-        session.file, self.saved = path, session.text
-        self._write(f"Saved {_lines(session.text)} to {path}.")
+        draft.file, self.saved = path, draft.text
+        self._write(f"Saved {_lines(draft.text)} to {path}.")
 
     def _load(self, rest: str) -> None:
         if not rest:
             self._write("Load which file? load mission.txt")
             return
         source = read_source(rest)
-        self._session.change(self._session.entries_of(source.text, rest))
-        self._session.file, self.saved = rest, self._session.text
+        self._draft.change(self._draft.entries_of(source.text, rest))
+        self._draft.file, self.saved = rest, self._draft.text
         self._write(f"Loaded {_lines(source.text)} from {rest}. 'run' runs the mission, 'show' shows it.")
 
     def _new(self, rest: str) -> None:
-        self._session.change(())
-        self._session.file = None
+        self._draft.change(())
+        self._draft.file = None
         self._write("A new mission. 'undo' brings the last one back.")
 
     def _restore(self, rest: str) -> None:
@@ -206,32 +204,32 @@ class Commands:
         if left is None or self._store is None:
             self._write("No session was left.")
             return
-        if left.world is not None and left.world != self._session.world:
+        if left.world is not None and left.world != self._draft.world:
             self._world(left.world)
-        entries = self._session.entries_of("\n".join(left.entries)) if left.entries else []
-        self._session.change((*self._session.entries, *entries))
+        entries = self._draft.entries_of("\n".join(left.entries)) if left.entries else []
+        self._draft.change((*self._draft.entries, *entries))
         self.draft = left.draft
         self._store.done_with(left)
-        self._write(f"Back: {_lines(self._session.text)}. 'run' runs the mission, 'show' shows it.")
+        self._write(f"Back: {_lines(self._draft.text)}. 'run' runs the mission, 'show' shows it.")
 
     def _world(self, rest: str) -> None:
-        session = self._session
+        draft = self._draft
         if rest:
-            before = session.world, session.vocabulary, session.simulation
-            session.use_world(rest)
+            before = draft.world, draft.vocabulary, draft.session
+            draft.use_world(rest)
             try:
-                session.entries_of(session.text, session.file or "<session>") if session.entries else None
+                draft.entries_of(draft.text, draft.file or "<session>") if draft.entries else None
             except MissionError:
-                session.world, session.vocabulary, session.simulation = before
+                draft.world, draft.vocabulary, draft.session = before
                 raise
-        self._write("\n".join(world_lines(session)))
+        self._write("\n".join(world_lines(draft)))
 
     def _reset(self, rest: str) -> None:
-        self._session.reset()
-        self._write(robot_line(self._session))
+        self._draft.reset()
+        self._write(robot_line(self._draft))
 
     def _speed(self, rest: str) -> None:
-        from btlang.api import SLOWEST
+        from btlang.run.limits import SLOWEST
 
         if rest in ("real", "max"):
             self.speed = rest
@@ -267,9 +265,9 @@ def overview() -> list[str]:
     ]
 
 
-def robot_line(session: Session) -> str:
+def robot_line(draft: MissionDraft) -> str:
     """Where the robot is and how it is."""
-    robot = session.simulation.robot
+    robot = draft.session.robot
     held = [said(name) for hand in ("left", "right") if (name := robot.holding(hand))]
     parts = [
         f"robot at ({robot.pose.x:.1f}, {robot.pose.y:.1f}) facing {robot.pose.heading:.0f}\N{DEGREE SIGN}",
@@ -280,14 +278,14 @@ def robot_line(session: Session) -> str:
     return ", ".join(parts)
 
 
-def world_lines(session: Session) -> list[str]:
+def world_lines(draft: MissionDraft) -> list[str]:
     """The names of the world, and the robot in it."""
-    names = session.simulation.world.names
+    names = draft.session.world.names
     kinds = (("places", names.places), ("people", names.people), ("objects", names.objects))
     return [
-        f"world   {session.world or 'the one that ships'}",
+        f"world   {draft.world or 'the one that ships'}",
         *(f"{kind:<7} {', '.join(known)}" for kind, known in kinds if known),
-        robot_line(session),
+        robot_line(draft),
     ]
 
 

@@ -30,11 +30,11 @@ def key_bindings(screen: Screen) -> KeyBindings:
         text = buffer.text
         if not text.strip():
             return
-        if command_of(text, screen.session) is None:
+        if command_of(text, screen.draft) is None:
             if needs_more(text):
                 _new_line(event)
                 return
-            errors = preview(screen.session, text).errors
+            errors = preview(screen.draft, text).errors
             if errors:
                 buffer.cursor_position = min(errors[0].span.end, len(text))
                 screen.refuse()

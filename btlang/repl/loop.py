@@ -5,15 +5,15 @@ from __future__ import annotations
 import signal
 import sys
 from collections.abc import Iterable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, nullcontext
 
-from btlang.api import RunnableTree
+from btlang.api import Mission
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.render import has_colour, render
 from btlang.frontends.mission import DEFAULT_PARSER
 from btlang.repl.commands import Commands, Leave, command_of
+from btlang.repl.draft import MissionDraft
 from btlang.repl.entering import entries
-from btlang.repl.session import Session
 from btlang.repl.store import Kept, Store, state_folder
 from btlang.run.command import ENDING_SIGNALS, can_draw, run_mission
 from btlang.text.output import show
@@ -21,6 +21,8 @@ from btlang.text.output import show
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import NoReturn
+
+    from btlang.engine.blackboard import Blackboard
 
 
 def run_repl(
@@ -32,13 +34,13 @@ def run_repl(
     speed: float | str = "real",
 ) -> int:
     """Runs until the user leaves or the input ends; returns the exit code. Raises MissionError for wrong files."""
-    session = Session(keywords, world, parser, include_root)
+    draft = MissionDraft(keywords, world, parser, include_root)
     if not can_draw(sys.stdout) or sys.stdin is None or not sys.stdin.isatty():
-        return Repl(session, Store(None), speed).read(sys.stdin or ())
+        return Repl(draft, Store(None), speed).read(sys.stdin or ())
     store = Store(state_folder())
     before = [signal.signal(number, _terminate) for number in ENDING_SIGNALS]
     try:
-        Repl(session, store, speed).talk()
+        Repl(draft, store, speed).talk()
     finally:
         for number, handler in zip(ENDING_SIGNALS, before, strict=True):
             signal.signal(number, handler)
@@ -46,19 +48,19 @@ def run_repl(
 
 
 class Repl:
-    """One session, at the keyboard (`talk`) or from a file of lines (`read`)."""
+    """One draft, at the keyboard (`talk`) or from a file of lines (`read`)."""
 
-    def __init__(self, session: Session, store: Store, speed: float | str) -> None:
-        self._session = session
+    def __init__(self, draft: MissionDraft, store: Store, speed: float | str) -> None:
+        self._draft = draft
         self._store = store
-        self._commands = Commands(session, show, self._run_all, store)
+        self._commands = Commands(draft, show, self._run_all, store)
         self._commands.speed = speed
 
     def talk(self) -> None:
         """At the keyboard, until the user leaves."""
         from btlang.repl.screen import CONTINUED, PROMPT, Screen
 
-        screen = Screen(self._session, self._store)
+        screen = Screen(self._draft, self._store)
         show("btlang: type what the robot is to do. 'help' tells more; Ctrl-D twice leaves.")
         if self._store.problem:
             show(f"What you type is not kept: {self._store.problem}")
@@ -84,7 +86,7 @@ class Repl:
     def read(self, lines: Iterable[str]) -> int:
         """From lines; returns 0, or 1 where a command failed, or 2 where an entry was wrong."""
         worst = 0
-        for text in entries(lines, self._session.vocabulary):
+        for text in entries(lines, self._draft.vocabulary):
             try:
                 worst = max(worst, self._do(text))
             except Leave:
@@ -94,19 +96,19 @@ class Repl:
     def _do(self, text: str) -> int:
         """Returns the exit code that `btc run` would have. Raises Leave."""
         try:
-            own = command_of(text, self._session)
+            own = command_of(text, self._draft)
             if own is not None:
                 self._commands.do(*own)
                 return 0
-            compiled = self._session.compile(text)
+            compiled = self._draft.compile(text)
             if not compiled.entry.has_command and not compiled.entry.definitions:
                 return 0  # a comment, or politeness
-            self._session.add(compiled.entry)
+            self._draft.add(compiled.entry)
             self._keep()  # before it runs: a crash on the way loses nothing
-            for warning in compiled.tree.warnings:
+            for warning in compiled.mission.warnings:
                 show(render(warning, has_colour(sys.stdout)))
             if compiled.entry.has_command:
-                return self._run(compiled.tree)
+                return self._run(compiled.mission, self._draft.values())
             show("Defined: " + ", ".join(name for name, _ in compiled.entry.definitions))
         except MissionError as error:
             show(
@@ -116,17 +118,18 @@ class Repl:
         return 0
 
     def _run_all(self) -> None:
-        self._run(self._session.compile_all())
+        self._run(self._draft.compile_all())
 
-    def _run(self, tree: RunnableTree) -> int:
+    def _run(self, mission: Mission, values: Blackboard | None = None) -> int:
         speed = self._commands.speed
         with _type_ahead():
             return run_mission(
-                tree, speed=speed, rate=20.0, time_limit=None, log=None, quiet=False, keys=False, tree_stays=False
-            )
+                mission, lambda: nullcontext(self._draft.session), speed=speed, rate=20.0, time_limit=None, log=None,
+                quiet=False, keys=False, tree_stays=False, values=values,
+            )  # fmt: skip
 
     def _keep(self) -> None:
-        self._store.save([entry.text for entry in self._session.entries], "", self._session.world)
+        self._store.save([entry.text for entry in self._draft.entries], "", self._draft.world)
 
 
 @contextmanager

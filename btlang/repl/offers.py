@@ -8,8 +8,8 @@ from prompt_toolkit.completion import CompleteEvent, Completer, Completion, Path
 from prompt_toolkit.document import Document
 
 from btlang.repl.commands import COMMANDS
+from btlang.repl.draft import MissionDraft
 from btlang.repl.preview import continuations
-from btlang.repl.session import Session
 
 _TAKE_FILES = frozenset(("load", "save", "world"))
 _SPEEDS = ("real", "max", "5")
@@ -18,8 +18,8 @@ _SPEEDS = ("real", "max", "5")
 class Offers(Completer):
     """The completer of the entry. At the start of a line it offers nothing until the user asks."""
 
-    def __init__(self, session: Session) -> None:
-        self._session = session
+    def __init__(self, draft: MissionDraft) -> None:
+        self._draft = draft
         self._paths = PathCompleter(expanduser=False)
 
     def get_completions(self, document: Document, complete_event: CompleteEvent) -> Iterable[Completion]:
@@ -33,12 +33,12 @@ class Offers(Completer):
             yield from self._paths.get_completions(Document(rest), complete_event)
             return
         if space and name in ("show", "speed"):
-            words = [*self._session.definitions, "tree"] if name == "show" else _SPEEDS
+            words = [*self._draft.definitions, "tree"] if name == "show" else _SPEEDS
             yield from (Completion(word, -len(rest)) for word in words if word.startswith(rest))
             if name == "speed":
                 return
         own = list(_own_words(text)) if not space and "\n" not in text else []
-        for option in continuations(self._session, text):
+        for option in continuations(self._draft, text):
             if option.spelling and own:
                 break
             mark = "(spelling) " if option.spelling else ""

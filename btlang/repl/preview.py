@@ -7,7 +7,7 @@ from btlang.frontends.completion import Completion, completions
 from btlang.frontends.lexer import Lexer
 from btlang.frontends.token import Token
 from btlang.record import Record
-from btlang.repl.session import Compiled, Session
+from btlang.repl.draft import Compiled, MissionDraft
 from btlang.text.source import Source
 from btlang.vocabulary.vocabulary import Vocabulary
 
@@ -43,29 +43,29 @@ class Preview(Record):
         return tuple(problem for problem in self.problems if problem.is_error)
 
 
-def preview(session: Session, text: str) -> Preview:
+def preview(draft: MissionDraft, text: str) -> Preview:
     """Compiles the entry. Raises nothing."""
     if not text.strip():
         return Preview()
-    tokens = Lexer(Source(text), session.vocabulary, explain=False).tokens
+    tokens = Lexer(Source(text), draft.vocabulary, explain=False).tokens
     marks = _marks(tokens)
     try:
-        compiled = session.compile(text, suggest=False)
+        compiled = draft.compile(text, suggest=False)
     except MissionError as error:
         own = _own(error, text)
-        unfinished = _is_unfinished(own, text, session.vocabulary) and _goes_on(session, text)
+        unfinished = _is_unfinished(own, text, draft.vocabulary) and _goes_on(draft, text)
         if not unfinished:
-            own = _with_corrections(session, text)
+            own = _with_corrections(draft, text)
         spans = () if unfinished else tuple((p.span.start, p.span.end, "error") for p in own if p.is_error)
         midword = unfinished and text[-1:].isalnum() and own[0].code in _UNKNOWN
-        return Preview(own, unfinished, midword, _tree_so_far(session, text, tokens), (*marks, *spans))
-    return Preview(compiled.tree.warnings, False, False, _tree_lines(compiled), marks)
+        return Preview(own, unfinished, midword, _tree_so_far(draft, text, tokens), (*marks, *spans))
+    return Preview(compiled.mission.warnings, False, False, _tree_lines(compiled), marks)
 
 
-def continuations(session: Session, text: str) -> list[Completion]:
+def continuations(draft: MissionDraft, text: str) -> list[Completion]:
     """What may follow the text that stands before the cursor."""
-    context = session.context()
-    found = completions(context + text, session.vocabulary)
+    context = draft.context()
+    found = completions(context + text, draft.vocabulary)
     return [option.replace(start=option.start - len(context)) for option in found]
 
 
@@ -73,10 +73,10 @@ def _own(error: MissionError, text: str) -> tuple[Diagnostic, ...]:
     return tuple(p for p in error.diagnostics if p.span.start <= len(text)) or tuple(error.diagnostics)
 
 
-def _with_corrections(session: Session, text: str) -> tuple[Diagnostic, ...]:
+def _with_corrections(draft: MissionDraft, text: str) -> tuple[Diagnostic, ...]:
     """What is wrong with an entry that cannot be read."""
     try:
-        session.compile(text)
+        draft.compile(text)
     except MissionError as error:
         return _own(error, text)
     return ()
@@ -89,14 +89,14 @@ def _is_unfinished(problems: tuple[Diagnostic, ...], text: str, vocabulary: Voca
     return all(vocabulary.articles.issuperset(rest) for rest in rests)
 
 
-def _goes_on(session: Session, text: str) -> bool:
+def _goes_on(draft: MissionDraft, text: str) -> bool:
     """Whether anything but another spelling may follow."""
     if text.count('"') % 2:
         return True
-    return any(not option.spelling for option in continuations(session, text))
+    return any(not option.spelling for option in continuations(draft, text))
 
 
-def _tree_so_far(session: Session, text: str, tokens: list[Token]) -> tuple[str, ...]:
+def _tree_so_far(draft: MissionDraft, text: str, tokens: list[Token]) -> tuple[str, ...]:
     """The tree of the text without its last words, as few as possible."""
     tokens = [token for token in tokens if token.end > token.start]
     for _ in range(_MOST_TRIES):
@@ -107,7 +107,7 @@ def _tree_so_far(session: Session, text: str, tokens: list[Token]) -> tuple[str,
         if not tokens:
             break
         try:
-            return _tree_lines(session.compile(text[: tokens[-1].end], suggest=False))
+            return _tree_lines(draft.compile(text[: tokens[-1].end], suggest=False))
         except MissionError:
             continue
     return ()
@@ -115,7 +115,7 @@ def _tree_so_far(session: Session, text: str, tokens: list[Token]) -> tuple[str,
 
 def _tree_lines(compiled: Compiled) -> tuple[str, ...]:
     """The tree as `btc tree` prints it; of definitions alone only their subtrees."""
-    lines = str(compiled.tree).splitlines()
+    lines = str(compiled.mission).splitlines()
     return tuple(lines if compiled.entry.has_command else lines[2:])
 
 

@@ -21,10 +21,10 @@ from prompt_toolkit.output import Output
 from prompt_toolkit.styles import Style
 
 from btlang.repl.commands import command_of, is_begun, robot_line
+from btlang.repl.draft import MissionDraft
 from btlang.repl.keys import key_bindings
 from btlang.repl.offers import Offers
 from btlang.repl.preview import Preview, continuations, preview
-from btlang.repl.session import Session
 from btlang.repl.store import Store
 
 PROMPT, CONTINUED = "> ", "  "
@@ -55,9 +55,9 @@ class Screen:
     """
 
     def __init__(
-        self, session: Session, store: Store, input: Input | None = None, output: Output | None = None
+        self, draft: MissionDraft, store: Store, input: Input | None = None, output: Output | None = None
     ) -> None:
-        self.session = session
+        self.draft = draft
         self._store = store
         self._seen: tuple[str, Preview] = ("", Preview())
         self.note = ""
@@ -67,7 +67,7 @@ class Screen:
         self._refused = ""
         history: History = InMemoryHistory() if store.problem else FileHistory(str(store.history))
         self.buffer = Buffer(
-            completer=Offers(session),
+            completer=Offers(draft),
             complete_while_typing=True,
             history=history,
             multiline=True,
@@ -93,8 +93,8 @@ class Screen:
         """Of the text as it is now."""
         text = self.buffer.text
         if self._seen[0] != text or not text:
-            seen = preview(self.session, text)
-            is_own = command_of(text, self.session) is not None or (seen.errors and is_begun(text))
+            seen = preview(self.draft, text)
+            is_own = command_of(text, self.draft) is not None or (seen.errors and is_begun(text))
             self._seen = text, Preview() if is_own else seen
         return self._seen[1]
 
@@ -110,7 +110,7 @@ class Screen:
         self._keep()
 
     def _keep(self) -> None:
-        self._store.save([entry.text for entry in self.session.entries], self.buffer.text, self.session.world)
+        self._store.save([entry.text for entry in self.draft.entries], self.buffer.text, self.draft.world)
 
     # -- what is drawn
 
@@ -180,7 +180,7 @@ class Screen:
         keys = "Tab takes what is offered" if self.buffer.complete_state else "'help' tells more"
         if fix is not None:
             keys = f"Ctrl-F writes: {fix[2]}"
-        return [("class:bottom", f"{CONTINUED}{keys} \N{MIDDLE DOT} {robot_line(self.session)}")]
+        return [("class:bottom", f"{CONTINUED}{keys} \N{MIDDLE DOT} {robot_line(self.draft)}")]
 
     def fix(self) -> tuple[int, int, str] | None:
         """The first correction that is proposed: characters from and to, and what to write there."""
@@ -193,7 +193,7 @@ class Screen:
 
     def offers(self) -> bool:
         """Whether anything may follow at the cursor."""
-        return bool(continuations(self.session, self.buffer.document.text_before_cursor))
+        return bool(continuations(self.draft, self.buffer.document.text_before_cursor))
 
     def _rows(self) -> int:
         return self.application.output.get_size().rows

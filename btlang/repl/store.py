@@ -1,4 +1,4 @@
-"""What outlives the REPL: the history of what was typed, and each session as it is at every moment."""
+"""What outlives the REPL: the history of what was typed, and each draft as it is at every moment."""
 
 from __future__ import annotations
 
@@ -20,7 +20,7 @@ _MOST_KEPT = 20  # sessions; older ones are deleted
 
 
 class Kept(Record):
-    """A session of a process that is gone: its entries, what was being typed, and the world that it was for."""
+    """A draft of a process that is gone: its entries, what was being typed, and the world that it was for."""
 
     entries: tuple[str, ...]
     draft: str
@@ -34,7 +34,7 @@ def state_folder() -> Path:
 
 
 class Store:
-    """A folder with the file `history` and a file for each session; None keeps nothing.
+    """A folder with the file `history` and a file for each draft; None keeps nothing.
 
     A folder that cannot be written to is no error: `problem` says why nothing is kept.
     """
@@ -67,7 +67,7 @@ class Store:
         return self._folder / "history"
 
     def save(self, entries: list[str], draft: str, world: str | None = None) -> None:
-        """The present state of this session, in its file before this returns: it outlives a kill at any moment."""
+        """The present state of this draft, in its file before this returns: it outlives a kill at any moment."""
         if self.problem:
             return
         state = {"entries": entries, "draft": draft, "world": world and os.path.abspath(world)}
@@ -85,16 +85,16 @@ class Store:
             _delete(self._own)
 
     def left(self) -> Kept | None:
-        """The latest session that was left with something in it."""
+        """The latest draft that was left with something in it."""
         kept = []
         for path in self._files():
             if path == self._own or not _is_left(path):
                 continue
-            session = _read(path)
-            if session is None:
+            draft = _read(path)
+            if draft is None:
                 _delete(path)
             else:
-                kept.append(session)
+                kept.append(draft)
         for old in kept[_MOST_KEPT:]:
             _delete(old.path)
         return kept[0] if kept else None
@@ -106,12 +106,12 @@ class Store:
             return []
 
     def done_with(self, kept: Kept) -> None:
-        """A session that was taken up again is no longer kept by itself."""
+        """A draft that was taken up again is no longer kept by itself."""
         _delete(kept.path)
 
 
 def _read(path: Path) -> Kept | None:
-    """None where the session is empty or not readable."""
+    """None where the draft is empty or not readable."""
     try:
         state = json.loads(path.read_text(encoding="ascii"))
         entries, draft, world = tuple(map(str, state["entries"])), str(state["draft"]), state.get("world")
@@ -126,7 +126,7 @@ def _delete(path: Path) -> None:
 
 
 def _lock(path: Path) -> int | None:
-    """The open lock of a session, which ends with its process; None where one that still runs holds it."""
+    """The open lock of a draft, which ends with its process; None where one that still runs holds it."""
     lock = os.open(path.with_suffix(".lock"), os.O_CREAT | os.O_WRONLY, 0o600)
     if fcntl is not None:
         try:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Mapping
 
-from btlang.engine.clock import Clock
 from btlang.robots.simulated import SimulatedRobot
 from btlang.robots.world import World
-from btlang.run.events import EventStream, RobotEvent
+from btlang.run.bus import Bus
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -15,7 +14,6 @@ if TYPE_CHECKING:
 
     from btlang.engine.leaf import LeafBinding
     from btlang.run.controls import Controls
-    from btlang.run.events import Event, Sink
     from btlang.run.pace import Pace
     from btlang.tree.node import Tree
     from btlang.vocabulary.entry import Entry
@@ -23,21 +21,21 @@ if TYPE_CHECKING:
 
 
 class Simulation:
-    """The world keeps its state from one run to the next; each run gets a clock and an event stream of its own."""
+    """See btlang.run.connection.Connection. The world keeps its state from one run to the next."""
 
     def __init__(self, world: World) -> None:
         self.world = world
-        self.clock = Clock()
-        self._untold: list[Event] = []  # faults from the start are there before anybody listens
-        self.events = EventStream(self._untold.append)
-        self.robot = SimulatedRobot(world, on_event=self._publish)
+        self.bus = Bus()
+        self._early: list[tuple[str, Mapping[str, Any]]] = []  # faults from the start are there before anybody listens
+        self._begun = False
+        self.robot = SimulatedRobot(world, on_event=self._report)
 
-    def begin(self, sinks: Iterable[Sink]) -> None:
-        """A new run: time starts at 0 and events go to these sinks."""
-        self.clock, self.events = Clock(), EventStream(*sinks)
-        for event in self._untold:
-            self.events.publish(event)
-        self._untold.clear()
+    def begin(self, bus: Bus) -> None:
+        """A new run: what the robot reports goes on this bus."""
+        self.bus, self._begun = bus, True
+        for kind, data in self._early:
+            bus.emit_robot(kind, data)
+        self._early.clear()
 
     def bind(self, entry: Entry, vocabulary: Vocabulary) -> LeafBinding | None:
         """None: words are done by their `call`."""
@@ -55,5 +53,8 @@ class Simulation:
     def close(self) -> None:
         """Does nothing: the world stays as it is."""
 
-    def _publish(self, kind: str, data: Mapping[str, Any]) -> None:
-        self.events.publish(RobotEvent(self.clock.now, kind, data))
+    def _report(self, kind: str, data: Mapping[str, Any]) -> None:
+        if self._begun:
+            self.bus.emit_robot(kind, data)
+        else:
+            self._early.append((kind, data))

@@ -8,7 +8,7 @@ from contextlib import closing
 from functools import partial
 
 from btlang.arguments import namespace
-from btlang.robots.stages import ROBOTS, stage_maker
+from btlang.robots.registry import ROBOTS, connector
 from btlang.ros.available import require_interfaces, require_ros
 from btlang.ros.serving.names import FOLDER
 from btlang.text.output import show
@@ -18,35 +18,35 @@ if TYPE_CHECKING:
     from typing import Any
 
     from btlang.robots.world import World
-    from btlang.ros.stage import RosStage
-    from btlang.run.stage import Stage
+    from btlang.ros.connection import RosConnection
+    from btlang.run.connection import Connection
     from btlang.tree.node import Tree
     from btlang.vocabulary.vocabulary import Vocabulary
 
 _PACKAGES = ("geometry_msgs", "nav_msgs", "rosgraph_msgs", "sensor_msgs", "std_msgs", "std_srvs", "trajectory_msgs")
 
 
-def ros_stage(world: World, *, sim_time: bool = False, namespace: str = "", name: str = "btlang") -> RosStage:
-    """The stage of a mission on the ROS 2 robot of a namespace. Raises MissionError (BT100) without ROS 2."""
+def connect_ros(world: World, *, sim_time: bool = False, namespace: str = "", name: str = "btlang") -> RosConnection:
+    """A connection to the ROS 2 robot of a namespace. Raises MissionError (BT100) without ROS 2."""
     require_ros(*_PACKAGES)
-    from btlang.ros.stage import RosStage
+    from btlang.ros.connection import RosConnection
 
-    return RosStage(world, sim_time=sim_time, namespace=namespace, name=name)
+    return RosConnection(world, sim_time=sim_time, namespace=namespace, name=name)
 
 
-def actions_stage(
+def connect_actions(
     world: World, *, sim_time: bool = False, namespace: str = "", name: str = "btlang", servers: str = ""
-) -> RosStage:
-    """As ros_stage, where each action is done by its server, by default one of the same namespace.
+) -> RosConnection:
+    """As connect_ros, where each action is done by its server, by default one of the same namespace.
 
     Raises MissionError (BT100, BT110).
     """
     require_ros(*_PACKAGES)
     require_interfaces()
-    from btlang.ros.stage import RosStage
+    from btlang.ros.connection import RosConnection
 
     servers = servers or f"/{namespace.strip('/')}/{FOLDER}".replace("//", "/")
-    return RosStage(world, sim_time=sim_time, namespace=namespace, name=name, servers=servers)
+    return RosConnection(world, sim_time=sim_time, namespace=namespace, name=name, servers=servers)
 
 
 def add_robot_options(parser: ArgumentParser) -> None:
@@ -74,8 +74,8 @@ def add_namespace(parser: ArgumentParser, what: str) -> None:
     parser.add_argument("--namespace", type=namespace, default="", metavar="NS", help=what)
 
 
-def chosen_robot(options: Namespace) -> str | Callable[[World], Stage]:
-    """As `RunnableTree.run` takes it. Ends with a usage error where options do not go together."""
+def chosen_robot(options: Namespace) -> str | Callable[[World], Connection]:
+    """As `btlang.Session` takes it. Ends with a usage error where options do not go together."""
     if options.servers is not None and options.robot != "actions":
         options.refuse("--servers is for --robot actions")
     if options.robot == "simulated":
@@ -84,8 +84,8 @@ def chosen_robot(options: Namespace) -> str | Callable[[World], Stage]:
         return str(options.robot)
     if options.speed != "real":
         options.refuse(f"--robot {options.robot} runs in real time, so it takes no --speed")
-    stage: Any = stage_maker(options.robot)
-    make = partial(stage, sim_time=options.sim_time, namespace=options.namespace)
+    connect: Any = connector(options.robot)
+    make = partial(connect, sim_time=options.sim_time, namespace=options.namespace)
     return make if options.servers is None else partial(make, servers=f"/{options.servers.strip('/')}")
 
 
@@ -94,9 +94,9 @@ def print_preflight(tree: Tree, vocabulary: Vocabulary, world: World, robot: Any
 
     `robot` is what `chosen_robot` gives for a ROS 2 robot.
     """
-    with closing(robot(world)) as stage:
-        found = stage.survey(tree, vocabulary)
-        warnings = stage.warnings(found)
+    with closing(robot(world)) as connection:
+        found = connection.survey(tree, vocabulary)
+        warnings = connection.warnings(found)
     for interface, (_, reason) in found.items():
         state = f"missing: {reason}" if reason else "found"
         show(f"{interface.sort:<7} {interface.name:<20} {interface.type:<36} {state}")

@@ -6,12 +6,13 @@ import os
 import signal
 import sys
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager, nullcontext, suppress
+from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.reading import unwritable
 from btlang.diagnostics.render import has_colour, render
 from btlang.engine.status import FAILURE, SKIPPED
+from btlang.run.controls import Controls
 from btlang.run.emergency import emergency_signal
 from btlang.run.json_log import JsonLog
 from btlang.run.lines import Lines, brief
@@ -22,35 +23,35 @@ from btlang.tree.node import Node, Tree
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any, Protocol, TextIO
+    from typing import Protocol, TextIO
 
-    from btlang.run.controls import Controls
-    from btlang.run.events import Overrun, Sink
+    from btlang.engine.blackboard import Blackboard
+    from btlang.run.bus import Bus
+    from btlang.run.events import Sink
     from btlang.run.live.view import LiveView
-    from btlang.run.stage import Stage
 
-    class Runnable(Protocol):
-        """What can be run from the command line."""
-
-        tree: Tree
-
-        def run(
-            self,
-            *,
-            speed: float | str,
-            rate: float,
-            time_limit: float | None,
-            sinks: list[Sink],
-            robot: str | Callable[[Any], Stage],
-        ) -> Outcome: ...
+    class Run(Protocol):
+        """See btlang.session.Run."""
 
         @property
         def sink_errors(self) -> list[Exception]: ...
 
         @property
-        def controls(self) -> Controls: ...
+        def bus(self) -> Bus: ...
 
-        def why(self, *, colour: bool = False) -> str: ...
+        def execute(self) -> Outcome: ...
+
+    class Session(Protocol):
+        """See btlang.session.Session."""
+
+        @property
+        def prepare(self) -> Callable[..., Run]: ...
+
+    class Mission(Protocol):
+        """What can be run from the command line; see btlang.api.Mission."""
+
+        @property
+        def tree(self) -> Tree: ...
 
         def label(self, node: Node) -> str: ...
 
@@ -67,7 +68,8 @@ _LEAST_SIZE = os.terminal_size((30, 10))  # of a terminal in which the live view
 
 
 def run_mission(
-    tree: Runnable,
+    mission: Mission,
+    open_session: Callable[[], AbstractContextManager[Session]],
     *,
     speed: float | str,
     rate: float,
@@ -78,39 +80,45 @@ def run_mission(
     keys: bool = True,
     tree_stays: bool = True,
     sinks: Iterable[Sink] = (),
-    robot: str | Callable[[Any], Stage] = "simulated",
+    values: Blackboard | None = None,
 ) -> int:
     """Runs and reports; returns the exit code. Raises MissionError where the log cannot be opened (BT009).
 
     A log that cannot be written to the end does not change the mission: it is said after it, and a mission that
     succeeded has the exit code 2. On a terminal it shows the live view, with keys or not, whose tree stays at the end
     or not; elsewhere and where `lines` is true plain lines; and nothing when `quiet`. `sinks` get all events too;
-    `robot` is as for `RunnableTree.run`.
+    `open_session` gives the session to run in, and `values` are as for Session.prepare.
     """
-    view = None if quiet or lines else _live_view(tree, keys, tree_stays)
-    shown: list[Sink] = [view] if view is not None else [] if quiet else [Lines(tree.label, tree.is_action, show)]
+    controls = Controls()
+    view = None if quiet or lines else _live_view(mission, controls, keys, tree_stays)
+    shown: list[Sink] = [view] if view is not None else [] if quiet else [Lines(mission.label, mission.is_action, show)]
     sinks = [*shown, *sinks]
+    options = {"speed": speed, "rate": rate, "time_limit": time_limit, "values": values, "controls": controls}
     try:
         with (
             _interrupted_by_signals() as came,
-            emergency_signal(tree.controls.emergency_stop),
+            emergency_signal(controls.emergency_stop),
             _opened(log) as file,
             view if view is not None else nullcontext(),
+            open_session() as session,
         ):
             if file is not None:
-                sinks.append(JsonLog(file, tree.label))
-            outcome = tree.run(speed=speed, rate=rate, time_limit=time_limit, sinks=sinks, robot=robot)
+                sinks.append(JsonLog(file, mission.label))
+            run = session.prepare(mission, sinks=sinks, **options)
+            outcome = run.execute()
     except BrokenPipeError:
         raise
     except OSError as error:
         raise MissionError([unwritable(log or "the output", error)]) from None
     if outcome.worst is not None and not quiet:
-        show(_too_slow(outcome, outcome.worst, tree.label))
+        show(_too_slow(outcome, *outcome.worst, mission.label))
+    for slow in run.bus.slow:
+        show(f"A watcher of this run was too slow: the run waited {slow.seconds:.1f} s for it.", sys.stderr)
     if outcome.status == FAILURE:
-        show(tree.why(colour=has_colour(sys.stderr)), stream=sys.stderr)
+        show(outcome.why(colour=has_colour(sys.stderr)), stream=sys.stderr)
     elif not quiet:
         show(_ending(outcome))
-    lost = [error for error in tree.sink_errors if log is not None and isinstance(error, OSError)]
+    lost = [error for error in run.sink_errors if log is not None and isinstance(error, OSError)]
     if lost:
         show(render(unwritable(log or "", lost[0]), has_colour(sys.stderr)), sys.stderr)
     if warn_of_motion(outcome.standstill):
@@ -154,7 +162,7 @@ def can_draw(output: TextIO | None) -> bool:
     return output is not None and output.isatty() and os.environ.get("TERM", "dumb") not in ("", "dumb", "unknown")
 
 
-def _live_view(tree: Runnable, keys: bool, tree_stays: bool) -> LiveView | None:
+def _live_view(mission: Mission, controls: Controls, keys: bool, tree_stays: bool) -> LiveView | None:
     """None where standard output is no terminal in which it can be shown."""
     output = sys.stdout
     if output is None or not can_draw(output):
@@ -169,7 +177,7 @@ def _live_view(tree: Runnable, keys: bool, tree_stays: bool) -> LiveView | None:
     from btlang.run.live.view import LiveView
 
     try:
-        return LiveView(tree, output, sys.stdin if keys else None, tree_stays)
+        return LiveView(mission, controls, output, sys.stdin if keys else None, tree_stays)
     except EngineError:
         return None  # the run itself tells what is wrong
 
@@ -187,10 +195,9 @@ def _opened(log: str | None) -> Iterator[TextIO | None]:
             file.close()
 
 
-def _too_slow(outcome: Outcome, worst: Overrun, label: Callable[[Node], str]) -> str:
+def _too_slow(outcome: Outcome, node: Node, seconds: float, label: Callable[[Node], str]) -> str:
     ticks = f"{outcome.overruns} of {outcome.ticks} tick{'s' * (outcome.ticks > 1)} took too long"
-    leaf = label(worst.node) if worst.node is not None else ""
-    return f'{ticks}; the slowest leaf was "{leaf}" with {brief(worst.leaf_seconds)} s.'
+    return f'{ticks}; the slowest leaf was "{label(node)}" with {brief(seconds)} s.'
 
 
 def _ending(outcome: Outcome) -> str:

@@ -1,8 +1,9 @@
-"""The one stream of everything that happens while a mission runs."""
+"""Everything that happens while a mission runs: a class each, from which the JSON of logs and its schema are made."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
+from time import time
 
 from btlang.engine.status import FAILURE
 from btlang.record import Record
@@ -10,16 +11,16 @@ from btlang.tree.node import Node
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any, Protocol, TypeAlias
+    from typing import Any, ClassVar, Protocol, TypeAlias
 
     from btlang.engine.build import Fault, Site
     from btlang.engine.watch import Changes
+    from btlang.run.robot_state import RobotState
 
-    Event: TypeAlias = "StatusesChanged | RobotEvent | Overrun | PeriodPassed"
-    Sink: TypeAlias = Callable[[Event], object]
+    Sink: TypeAlias = Callable[["Event"], object]
 
     class Nodes(Protocol):
-        """What tells the nodes of a tree by their numbers."""
+        """The nodes of a tree by their numbers."""
 
         def path(self, index: int) -> str: ...
 
@@ -39,60 +40,226 @@ if TYPE_CHECKING:
         def stop(self) -> object: ...
 
 
-class StatusChanged(Record):
-    """Of a StatusesChanged: a node has a new status. `index` is its number in preorder, `path` its place; `t` is in
-    seconds of the mission.
-
-    `reason` says why a node failed, "" for any other status and where only a node below it can say that.
+class Event(Record):
+    """What all events have: `t` in seconds of the mission, `run` the id of the run, `number` from 0 on without gaps in
+    a run, and `wall` in seconds since 1970.
     """
 
+    tag: ClassVar[str] = ""
+    """The name of its class in logs; "" for a change of status."""
     t: float
-    index: int
+    run: str
+    number: int
+    wall: float
+
+    @classmethod
+    def stamped(cls, t: float, run: str, number: int, *data: Any, **more: Any) -> Event:
+        """An event of this class that happens now. The one place that fills in what all events have."""
+        return cls(t, run, number, time(), *data, **more)
+
+    @property
+    def count(self) -> int:
+        """How many numbers it takes."""
+        return 1
+
+
+class StatusChanged(Event):
+    """A node has a new status. `index` is its number in preorder, `path` its place.
+
+    `before` is its last status in this round: IDLE where its parent has begun again. `reason` says why a node failed,
+    "" for any other status and where only a node below it can say that.
+    """
+
     path: str
     node: Node
     status: int
+    before: int
+    index: int
     reason: str = ""
 
 
-class StatusesChanged(Record):
-    """Nodes have new statuses; iterating gives each as a StatusChanged, oldest first.
+class StatusesChanged(Event):
+    """Nodes have new statuses; iterating gives each as a StatusChanged, oldest first, with a number of its own.
 
     They come together because making an event of each would take ten times as long as the tick. `valued` has those
     nodes whose ports name keys, with the values that these had (see Engine.valued).
     """
 
-    t: float
     changes: Changes
     nodes: Nodes
     valued: Mapping[int, Node] = {}
 
+    @property
+    def count(self) -> int:
+        """One for each change."""
+        return len(self.changes)
+
     def __iter__(self) -> Iterator[StatusChanged]:
-        nodes = self.nodes
-        for index, status, fault in self.changes:
+        nodes, number = self.nodes, self.number
+        for index, status, before, fault in self.changes:
             reason = nodes.reason(index, fault) if status == FAILURE else ""
-            yield StatusChanged(self.t, index, nodes.path(index), nodes.node(index), status, reason)
+            path, node = nodes.path(index), nodes.node(index)
+            yield StatusChanged(self.t, self.run, number, self.wall, path, node, status, before, index, reason)
+            number += 1
 
 
-class RobotEvent(Record):
-    """Something that the robot did or met: kind `say`, `print`, `bump`, ... with its data.
+class Said(Event):
+    """The robot speaks."""
 
-    The last event of a run is of the kind `end`: `outcome` (a status), `stopped` and `seconds` as in its Outcome,
-    `still` (None where that is not known, and unless it is True `motion` in words) as in its `standstill`, and where it
-    failed `path`, `id` and `reason` of the failure, and the `place` of its sentence in the mission.
+    tag = "say"
+    text: str
+
+
+class Printed(Event):
+    """The robot shows a text."""
+
+    tag = "print"
+    text: str
+
+
+class NavigationStarted(Event):
+    """The robot sets out for a place, a person or an object."""
+
+    tag = "navigate"
+    name: str
+
+
+class Arrived(Event):
+    """The robot is where it was to go."""
+
+    tag = "arrive"
+    name: str
+
+
+class Bumped(Event):
+    """The robot touches something, "" where it cannot say what."""
+
+    tag = "bump"
+    into: str
+
+
+class Stuck(Event):
+    """The robot drives and does not move."""
+
+    tag = "stuck"
+
+
+class Stopped(Event):
+    """The robot was told to stop."""
+
+    tag = "stop"
+
+
+class Grasped(Event):
+    """A hand, "left" or "right", holds something."""
+
+    tag = "grasp"
+    hand: str
+    name: str
+
+
+class Released(Event):
+    """A hand was opened; None where it held nothing."""
+
+    tag = "release"
+    hand: str
+    name: str | None
+
+
+class Dropped(Event):
+    """Something fell out of a hand."""
+
+    tag = "drop"
+    hand: str
+    name: str | None
+
+
+class JointsMoved(Event):
+    """Joints set out for these angles in degrees."""
+
+    tag = "joint"
+    targets: Mapping[str, float]
+
+
+class Docked(Event):
+    """The robot is at its charging station."""
+
+    tag = "dock"
+
+
+class Undocked(Event):
+    """The robot is no longer at its charging station."""
+
+    tag = "undock"
+
+
+class BatteryEmpty(Event):
+    """The battery is empty."""
+
+    tag = "battery"
+    percent: float
+
+
+class FaultInjected(Event):
+    """A fault of the world file begins."""
+
+    tag = "fault"
+    kind: str
+    text: str
+
+
+class Warned(Event):
+    """Something to know of that does not end the mission, of the node at `path` at a `place` of the text, if any."""
+
+    tag = "warning"
+    text: str
+    path: str = ""
+    place: str = ""
+
+
+class Troubled(Event):
+    """Something went wrong beside the mission, such as a command that did not halt. As Warned."""
+
+    tag = "error"
+    text: str
+    path: str = ""
+    place: str = ""
+
+
+class RobotEvent(Event):
+    """Something else that a robot of one's own reports."""
+
+    tag = "robot"
+    kind: str
+    data: Mapping[str, Any]
+
+
+class Ended(Event):
+    """The last event of a run, with what its Outcome says: `outcome` (a status), `stopped`, `seconds`.
+
+    `still` (None where that is not known, and unless it is True `motion` in words) is as in its standstill, and where
+    the mission failed `path`, `id` and `reason` are those of the failure, and `place` that of its sentence.
     """
 
-    t: float
-    kind: str
-    data: Mapping[str, Any] = {}
+    tag = "end"
+    outcome: str
+    stopped: str
+    seconds: float
+    still: bool | None
+    motion: str = ""
+    path: str = ""
+    id: str = ""
+    reason: str = ""
+    place: str = ""
 
 
-class Overrun(Record):
+class Overrun(Event):
     """A tick took `seconds` of real time, longer than its `period`. Only in runs that keep step with real time.
 
     `node` is its slowest leaf, at `path`, which took `leaf_seconds` of them; None where no leaf is to blame.
     """
 
-    t: float
+    tag = "overrun"
     seconds: float
     period: float
     path: str = ""
@@ -100,42 +267,26 @@ class Overrun(Record):
     leaf_seconds: float = 0.0
 
 
-class PeriodPassed(Record):
-    """The time between two ticks is over, or one of the periods in which the robot comes to rest.
+class PeriodPassed(Event):
+    """The time between two ticks is over, or one of the periods in which the robot comes to rest. Not in logs.
 
-    The first one comes before the first tick. `ticks` and `overruns` count from the start of the run. A sink may read
-    the robot during the call, and at no other time.
+    The first one comes before the first tick. `ticks` and `overruns` count from the start of the run. `state` is what
+    the robot senses then. A sink that is called in the thread of the run may read the `robot` during the call.
     """
 
-    t: float
     ticks: int
     overruns: int
-    robot: Robot | None
+    state: RobotState | None
+    robot: Any
 
 
-class EventStream:
-    """Hands each event to all sinks, in the order they were added.
-
-    A sink that raises is dropped and its exception kept in `errors`: what watches a mission must not stop it.
-    `before` is called before an event of another sort than changes of statuses, to publish those that came earlier.
-    """
-
-    def __init__(self, *sinks: Sink) -> None:
-        self.sinks: list[Sink] = list(sinks)
-        self.errors: list[Exception] = []
-        self.before: Callable[[], object] | None = None
-
-    def add(self, sink: Sink) -> None:
-        """Adds a sink, which gets the events from now on."""
-        self.sinks.append(sink)
-
-    def publish(self, event: Event) -> None:
-        """Hands an event to all sinks."""
-        if self.before is not None and not isinstance(event, StatusesChanged):
-            self.before()
-        for sink in tuple(self.sinks):
-            try:
-                sink(event)
-            except Exception as problem:
-                self.sinks.remove(sink)
-                self.errors.append(problem)
+ROBOT_EVENTS: dict[str, type[Event]] = {
+    event.tag: event
+    for event in (
+        Said, Printed, NavigationStarted, Arrived, Bumped, Stuck, Stopped, Grasped, Released, Dropped, JointsMoved,
+        Docked, Undocked, BatteryEmpty, FaultInjected, Warned, Troubled,
+    )
+}  # fmt: skip
+"""What robots report, by the kinds of btlang.robots.robot.Robot.on_event."""
+LOGGED: tuple[type[Event], ...] = (StatusChanged, *ROBOT_EVENTS.values(), RobotEvent, Overrun, Ended)
+"""What a log has."""

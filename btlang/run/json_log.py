@@ -1,19 +1,17 @@
-"""A log for programs: one line of JSON for each event."""
+"""A log for programs: one line of JSON for each event. `schema` describes the lines."""
 
 from __future__ import annotations
 
 import json
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 
 from btlang.engine.status import NAMES
-from btlang.run.events import Overrun, RobotEvent, StatusChanged, StatusesChanged
+from btlang.run.events import LOGGED, Event, StatusesChanged
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, Protocol
-
-    from btlang.run.events import Event
 
     class TextOutput(Protocol):
         """A file, or what can be written to like one."""
@@ -21,6 +19,10 @@ if TYPE_CHECKING:
         def write(self, text: str, /) -> object: ...
 
         def flush(self) -> object: ...
+
+
+_NOT_WRITTEN = ("index",)
+_STATUSES = ("status", "before")
 
 
 class JsonLog:
@@ -33,33 +35,83 @@ class JsonLog:
     def __call__(self, event: Event) -> None:
         if isinstance(event, StatusesChanged):
             for change in event:
-                self._write(_status_fields(change, self._label(change.node)))
-        elif isinstance(event, RobotEvent):
-            self._write({**event.data, "t": _time(event.t), "event": event.kind})
-        elif isinstance(event, Overrun):
-            self._write(_overrun_fields(event, self._label))
+                self._write(change)
+        elif isinstance(event, LOGGED):
+            self._write(event)
 
-    def _write(self, fields: Mapping[str, Any]) -> None:
-        self._output.write(json.dumps(fields, ensure_ascii=False, default=str) + "\n")
+    def _write(self, event: Event) -> None:
+        self._output.write(json.dumps(as_json(event, self._label), ensure_ascii=False, default=str) + "\n")
         self._output.flush()
 
 
-def _status_fields(change: StatusChanged, name: str) -> Mapping[str, Any]:
-    node = change.node
-    fields = {"t": _time(change.t), "path": change.path, "id": node.id, "name": name, "ports": dict(node.ports)}
-    reason = {"reason": change.reason} if change.reason else {}
-    return {**fields, "status": NAMES[change.status], **reason}
+def as_json(event: Event, label: Callable[[Node], str]) -> dict[str, Any]:
+    """The fields of an event, without those that have their default. A node is written as its id, words and ports."""
+    written: dict[str, Any] = {"t": event.t}
+    if event.tag:
+        written["event"] = event.tag
+    defaults = event.field_defaults
+    for name in event.fields[len(Event.fields) :]:
+        value = getattr(event, name)
+        if name in _NOT_WRITTEN or (name in defaults and value == defaults[name]):
+            continue
+        if isinstance(value, Node):
+            written |= {"id": value.id, "name": label(value), "ports": dict(value.ports)}
+        else:
+            written[name] = NAMES[value] if name in _STATUSES else value
+    written |= {"number": event.number, "wall": event.wall, "run": event.run}
+    return {name: round(value, 6) if isinstance(value, float) else value for name, value in written.items()}
 
 
-def _overrun_fields(event: Overrun, label: Callable[[Node], str]) -> Mapping[str, Any]:
-    seconds = {"seconds": round(event.seconds, 6), "period": round(event.period, 6)}
-    fields = {"t": _time(event.t), "event": "overrun", **seconds}
-    node = event.node
-    if node is None:
-        return fields
-    blamed = {"path": event.path, "id": node.id, "name": label(node)}
-    return {**fields, **blamed, "leaf_seconds": round(event.leaf_seconds, 6)}
+def schema() -> dict[str, Any]:
+    """The JSON schema (draft 2020-12) of a line, made from the classes of events."""
+    kinds = [_described(kind) for kind in LOGGED]
+    common = {name: _types(Event)[name] for name in Event.fields}
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "An event of a run of btlang",
+        "type": "object",
+        "properties": common,
+        "required": list(common),
+        "oneOf": kinds,
+    }
 
 
-def _time(t: float) -> float:
-    return round(t, 6)
+def _described(kind: type[Event]) -> dict[str, Any]:
+    properties: dict[str, Any] = {"event": {"const": kind.tag}} if kind.tag else {}
+    required = list(properties)
+    for name, described in _types(kind).items():
+        if name in Event.fields or name in _NOT_WRITTEN:
+            continue
+        more = _NODE if described is _NODE else {name: described}
+        properties |= more
+        required += () if name in kind.field_defaults else more
+    no_event = {} if kind.tag else {"not": {"required": ["event"]}}
+    text = " ".join((kind.__doc__ or "").split())
+    return {"title": kind.__name__, "description": text, "properties": properties, "required": required, **no_event}
+
+
+_NODE = {
+    "id": {"type": "string"},
+    "name": {"type": "string"},
+    "ports": {"type": "object", "additionalProperties": {"type": "string"}},
+}
+_TYPES: dict[str, dict[str, Any]] = {
+    "str": {"type": "string"},
+    "int": {"type": "integer"},
+    "float": {"type": "number"},
+    "str | None": {"type": ["string", "null"]},
+    "bool | None": {"type": ["boolean", "null"]},
+    "Mapping[str, float]": {"type": "object", "additionalProperties": {"type": "number"}},
+    "Mapping[str, Any]": {"type": "object"},
+    "Node": _NODE,
+    "Node | None": _NODE,
+}
+"""By the annotations of the fields."""
+
+
+def _types(kind: type[Event]) -> dict[str, dict[str, Any]]:
+    annotations: dict[str, str] = {}
+    for base in reversed(kind.__mro__):
+        annotations |= vars(base).get("__annotations__", {})
+    statuses = {"enum": list(NAMES)}
+    return {name: statuses if name in _STATUSES else _TYPES[annotations[name]] for name in kind.fields}

@@ -5,7 +5,19 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED
-from btlang.run.events import Overrun, RobotEvent, StatusChanged, StatusesChanged
+from btlang.run.events import (
+    Bumped,
+    Dropped,
+    FaultInjected,
+    Overrun,
+    Printed,
+    Said,
+    StatusChanged,
+    StatusesChanged,
+    Stuck,
+    Troubled,
+    Warned,
+)
 from btlang.text.output import one_line
 from btlang.tree.catalogue import CATALOGUE
 from btlang.tree.node import Node
@@ -33,14 +45,22 @@ class Lines:
         self._slow: set[str] = set()  # paths of leaves
 
     def __call__(self, event: Event) -> None:
-        if isinstance(event, RobotEvent):
-            self._robot(event)
-        elif isinstance(event, StatusesChanged):
+        if isinstance(event, StatusesChanged):
             for change in event:
                 if is_asked_wait(change.node) or self._is_action(change.node):
                     self._action(change, event.valued.get(change.index, change.node))
         elif isinstance(event, Overrun):
             self._overrun(event)
+        elif isinstance(event, Said | Printed):
+            self._line(event.t, f"{event.tag}s", f'"{event.text}"')
+        elif isinstance(event, Bumped):
+            self._line(event.t, "bumps", event.into)
+        elif isinstance(event, Dropped):
+            self._line(event.t, "drops", event.name or "")
+        elif isinstance(event, Stuck):
+            self._line(event.t, event.tag, "")
+        elif isinstance(event, FaultInjected | Troubled | Warned):
+            self._line(event.t, event.tag, event.text)
 
     def _action(self, event: StatusChanged, node: Node) -> None:
         reason = f": {event.reason}" if event.reason else ""
@@ -51,20 +71,6 @@ class Lines:
             self._slow.add(event.path)
             took = f"took {brief(event.leaf_seconds)} s of a tick, which has {brief(event.period)} s"
             self._line(event.t, "slow", f"{self._label(event.node)}: {took}")
-
-    def _robot(self, event: RobotEvent) -> None:
-        if event.kind in ("say", "print"):
-            self._line(event.t, f"{event.kind}s", f'"{event.data.get("text", "")}"')
-        elif event.kind == "bump":
-            self._line(event.t, "bumps", str(event.data.get("into", "")))
-        elif event.kind == "drop":
-            self._line(event.t, "drops", str(event.data.get("name", "")))
-        elif event.kind == "stuck":
-            self._line(event.t, "stuck", "")
-        elif event.kind == "fault":
-            self._line(event.t, "fault", str(event.data.get("text", "")))
-        elif event.kind in ("error", "warning"):
-            self._line(event.t, event.kind, str(event.data.get("text", "")))
 
     def _line(self, t: float, word: str, rest: str) -> None:
         self._write(f"{t:7.2f}  {word:<6} {one_line(rest)}".rstrip())

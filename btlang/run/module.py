@@ -12,17 +12,24 @@ from btlang.text.output import show
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.run.command import Runnable
+    from collections.abc import Callable
+    from contextlib import AbstractContextManager
+
+    from btlang.run.command import Mission, Session
 
 
-def run_module(tree: Runnable, arguments: Sequence[str] | None = None) -> int:
-    """Runs the tree as `btc run` does, with its option --speed; returns its exit code."""
+def run_module(
+    mission: Mission,
+    open_session: Callable[[], AbstractContextManager[Session]],
+    arguments: Sequence[str] | None = None,
+) -> int:
+    """Runs the mission in a session as `btc run` does, with its option --speed; returns its exit code."""
     parser = argparse.ArgumentParser(description="Runs a behavior tree on the simulated robot.")
     parser.add_argument("--speed", default="real", help="real, max, or a factor of real time")
     speed = parser.parse_args(arguments).speed
     try:
         factor = speed if speed in ("real", "max") else float(speed)
-        return run_mission(tree, speed=factor, rate=20.0, time_limit=None, log=None, quiet=False)
+        return run_mission(mission, open_session, speed=factor, rate=20.0, time_limit=None, log=None, quiet=False)
     except MissionError as error:
         show(str(error), stream=sys.stderr)
         return 2

@@ -6,17 +6,19 @@ import math
 from collections.abc import Callable, Mapping
 
 from btlang.engine.blackboard import Blackboard
-from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine, Failure
 from btlang.engine.leaf import LeafBinding
 from btlang.engine.status import IDLE, NAMES, RUNNING
 from btlang.record import Record
+from btlang.run.bus import Bus
 from btlang.run.controls import Controls, disable
-from btlang.run.events import EventStream, Overrun, PeriodPassed, RobotEvent, StatusesChanged
+from btlang.run.events import Ended, PeriodPassed, StatusesChanged, Troubled, Warned
 from btlang.run.overruns import Overruns
 from btlang.run.pace import Pace
+from btlang.run.robot_state import read_robot
 from btlang.run.standstill import Standstill, standstill_of
-from btlang.tree.node import Tree
+from btlang.run.statuses import Status
+from btlang.tree.node import Node, Tree
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -51,49 +53,58 @@ _REST = 2.0  # seconds of the mission that a robot gets to come to rest
 _PATIENCE = 2.0  # seconds of real time that background leaves get to end after the last halt
 
 
-class Outcome(Record):
+class Outcome(Record, uncompared=("why", "statuses")):
     """How a run ended.
+
+    `why()` is why it failed, as `btc run` says it, "" where it did not; `statuses()` are those of the nodes at the end,
+    by their words.
 
     `stopped` is "" where the tree completed, else (status IDLE) "time limit", "interrupted" or "emergency stop".
     `seconds` are those of the mission, without the time in which the robot came to rest. `overruns` are the ticks that
-    took too long, `worst` the one of them with the slowest leaf; None where no leaf was to blame, or nobody looked.
+    took too long, `worst` the slowest leaf in one and its seconds; None where no leaf was to blame, or nobody looked.
     `standstill` says whether the robot came to rest.
     """
 
-    status: int
+    status: Status
     seconds: float
     ticks: int
     failure: Failure | None
     stopped: str = ""
     overruns: int = 0
-    worst: Overrun | None = None
+    worst: tuple[Node, float] | None = None
     standstill: Standstill = Standstill()
+    why: Callable[..., str] = str
+    statuses: Callable[[], Mapping[str, Status]] = dict
+
+    @property
+    def succeeded(self) -> bool:
+        """Whether the mission did what it should. One that had nothing to do did, too (status SKIPPED)."""
+        return self.status in (Status.SUCCESS, Status.SKIPPED)
 
 
 def traced_engine(
     tree: Tree,
     bind: Callable[[str], LeafBinding | None],
     *,
-    clock: Clock,
-    events: EventStream,
+    bus: Bus,
     services: Mapping[str, Any] = {},
     blackboard: Blackboard | None = None,
     stopwatch: Stopwatch | None = None,
     proxies: Mapping[str, Callable[..., Any]] = {},
 ) -> Engine:
-    """An engine whose status changes go into the stream, and once in a run each condition that is not known."""
+    """An engine whose status changes go on the bus, and once in a run each condition that is not known."""
 
     def changed(changes: Changes) -> None:
-        events.publish(StatusesChanged(clock.now, changes, engine, engine.valued(changes.indices)))
+        bus.emit(StatusesChanged, changes, engine, engine.valued(changes.indices))
 
     def unknown(failure: Failure) -> None:
         text = f"'{_words(failure)}' is not known: {failure.reason}"
-        events.publish(_trouble(clock.now, "warning", failure, text))
+        bus.emit(Warned, text, failure.path, _place(failure))
 
     engine = Engine(
         tree,
         bind,
-        clock=clock,
+        clock=bus.clock,
         services=services,
         blackboard=blackboard,
         listener=changed,
@@ -101,7 +112,7 @@ def traced_engine(
         on_unknown=unknown,
         proxies=proxies,
     )
-    events.before = engine.tell
+    bus.before = engine.tell
     return engine
 
 
@@ -121,30 +132,29 @@ class Runner:
         self,
         engine: Ticked,
         *,
-        clock: Clock,
+        bus: Bus | None = None,
         robot: Robot | None = None,
         rate: float = 20.0,
         speed: float = 1.0,
         time_limit: float | None = None,
-        events: EventStream | None = None,
         controls: Controls | None = None,
         pace: Callable[[float, Controls], Pace] = Pace,
     ) -> None:
         self._engine = engine
-        self._clock = clock
+        self._bus = Bus() if bus is None else bus
+        self._clock = self._bus.clock
         self._robot = robot
         self._period = 1 / rate
         self._pause = self._period / speed
         self._limit = math.inf if time_limit is None else time_limit
-        self._events = EventStream() if events is None else events
         self.controls = Controls() if controls is None else controls
         self._suspended = False
         self._disabled = True  # whether the robot has to be enabled before the next tick
-        self._began = clock.now
+        self._began = self._clock.now
         self._pace = pace(speed, self.controls)
         self._overruns: Overruns | None = None
         if isinstance(engine, Engine) and engine.stopwatch is not None and speed < math.inf:
-            self._overruns = Overruns(engine, engine.stopwatch, self._pause, clock, self._events)
+            self._overruns = Overruns(engine, engine.stopwatch, self._pause, self._bus)
         self.ticks = 0
         self.controls.robot = robot
         engine.on_wake = self._pace.wake
@@ -188,8 +198,8 @@ class Runner:
             status, stopped = IDLE, "emergency stop"
         failure = None if stopped else self._engine.failure
         count, worst = (self._overruns.count, self._overruns.worst) if self._overruns is not None else (0, None)
-        outcome = Outcome(status, seconds, self.ticks, failure, stopped, count, worst, standstill)
-        self._events.publish(RobotEvent(self._clock.now, "end", _ending(outcome)))
+        outcome = Outcome(Status(status), seconds, self.ticks, failure, stopped, count, worst, standstill)
+        self._bus.emit(Ended, *_ending(outcome))
         return outcome
 
     def _loop(self) -> tuple[int, str]:
@@ -252,7 +262,8 @@ class Runner:
         self._publish_period()
 
     def _publish_period(self) -> None:
-        self._events.publish(PeriodPassed(self._clock.now, self.ticks, self._pace.late, self._robot))
+        if self._bus.watched:
+            self._bus.emit(PeriodPassed, self.ticks, self._pace.late, read_robot(self._robot), self._robot)
 
     def _end(self) -> Standstill:
         """Another Ctrl-C cuts short only the wait for the robot, not the halting."""
@@ -292,12 +303,11 @@ class Runner:
             self._report(failure, f"{failure.node.id} did not halt: {failure.reason}")
 
     def _report(self, failure: Failure, text: str) -> None:
-        self._events.publish(_trouble(self._clock.now, "error", failure, text))
+        self._bus.emit(Troubled, text, failure.path, _place(failure))
 
 
-def _trouble(t: float, kind: str, failure: Failure, text: str) -> RobotEvent:
-    place = {"place": failure.span.place} if failure.span is not None else {}
-    return RobotEvent(t, kind, {"text": text, "path": failure.path, **place})
+def _place(failure: Failure) -> str:
+    return failure.span.place if failure.span is not None else ""
 
 
 def _nothing() -> None:
@@ -310,18 +320,10 @@ def _words(failure: Failure) -> str:
     return span.text if span is not None else failure.node.id
 
 
-def _ending(outcome: Outcome) -> Mapping[str, Any]:
-    """How a run ended, for programs."""
-    data: dict[str, Any] = {
-        "outcome": NAMES[outcome.status],
-        "stopped": outcome.stopped,
-        "seconds": round(outcome.seconds, 6),
-    }
-    data["still"] = outcome.standstill.still
-    if not outcome.standstill.still:
-        data["motion"] = str(outcome.standstill)
-    failure = outcome.failure
+def _ending(outcome: Outcome) -> tuple[Any, ...]:
+    """The fields of Ended."""
+    still, failure = outcome.standstill.still, outcome.failure
+    data = NAMES[outcome.status], outcome.stopped, outcome.seconds, still, "" if still else str(outcome.standstill)
     if failure is None:
         return data
-    place = {} if failure.span is None else {"place": failure.span.place}
-    return {**data, "path": failure.path, "id": failure.node.id, "reason": failure.reason, **place}
+    return *data, failure.path, failure.node.id, failure.reason, _place(failure)

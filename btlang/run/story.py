@@ -6,6 +6,7 @@ from collections.abc import Iterable
 
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SUCCESS
 from btlang.record import Record
+from btlang.run.bus import INLINE
 from btlang.run.events import StatusChanged, StatusesChanged
 from btlang.tree.catalogue import CATALOGUE, ON_FAILURE, SUBTREE, NodeKind
 
@@ -76,6 +77,9 @@ class Story:
     What is kept does not grow with the length of a mission: it is forgotten when a node succeeds, and handed to the
     node above when it fails or is halted.
     """
+
+    policy = INLINE
+    needs_periods = False
 
     def __init__(self, engine: Engine) -> None:
         self.engine = engine

@@ -259,7 +259,7 @@ class Include(Ast):
     """Another mission, whose definitions and facts hold here too; `path` as it was written."""
 
     path: str
-    mission: Mission
+    mission: Program
     span: Span
 
     @property
@@ -268,7 +268,7 @@ class Include(Ast):
         return self.path
 
 
-class Mission(Ast):
+class Program(Ast):
     """A whole text: the sequence of its commands (None where there are none), its definitions and facts in order.
 
     `name` is that of its tree, "" where it has none. `all_definitions` and `all_facts` also give those of what it
@@ -284,7 +284,7 @@ class Mission(Ast):
     parts = ("body", "definitions")
 
 
-def all_definitions(mission: Mission) -> list[Definition]:
+def all_definitions(mission: Program) -> list[Definition]:
     """Those of the included missions, then its own; of one name the last."""
     found: dict[str, Definition] = {}
     for part in _with_included(mission):
@@ -294,12 +294,12 @@ def all_definitions(mission: Mission) -> list[Definition]:
     return list(found.values())
 
 
-def all_facts(mission: Mission) -> list[Fact]:
+def all_facts(mission: Program) -> list[Fact]:
     """Those of the included missions, then its own; of one place the last."""
     return list({fact.name: fact for part in _with_included(mission) for fact in part.facts}.values())
 
 
-def _with_included(mission: Mission) -> Iterator[Mission]:
+def _with_included(mission: Program) -> Iterator[Program]:
     for include in mission.includes:
         yield from _with_included(include.mission)
     yield mission
@@ -317,7 +317,7 @@ def parts(node: Ast) -> list[Ast]:
     return found
 
 
-def exact_nodes(mission: Mission) -> list[Exact]:
+def exact_nodes(mission: Program) -> list[Exact]:
     """The nodes that a mission and its definitions say by their ids."""
     found: list[Exact] = []
     stack = [mission.body] if mission.body is not None else []

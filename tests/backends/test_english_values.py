@@ -61,7 +61,7 @@ def test_missions_that_ship(path: Path, monkeypatch: pytest.MonkeyPatch) -> None
 
 @searches(40, 1500)
 @given(trees.missions())
-def test_missions_with_values(mission: ast.Mission) -> None:
+def test_missions_with_values(mission: ast.Program) -> None:
     text = said_and_read(lower_mission(mission, letters()), letters())
     assert _BY_ID.search(text.replace("do sequence:", "")) is None  # a sequence with a rule, inside another one
 

@@ -35,13 +35,13 @@ ROOT = Path(__file__).parent.parent.parent
 MISSIONS = sorted([*(ROOT / "examples").glob("*.txt"), *(ROOT / "tests" / "samples" / "good").glob("*.txt")])
 
 
-def compiled(text: str, vocabulary: Vocabulary, parser: str, name: str = "<text>") -> tuple[ast.Mission, Tree]:
+def compiled(text: str, vocabulary: Vocabulary, parser: str, name: str = "<text>") -> tuple[ast.Program, Tree]:
     """`name` is the file beside which included ones lie."""
     mission = read_mission(Source(text, name), vocabulary, parser).mission
     return mission, compile_mission(mission, vocabulary)
 
 
-def keeps_its_tree(mission: ast.Mission, vocabulary: Vocabulary) -> None:
+def keeps_its_tree(mission: ast.Program, vocabulary: Vocabulary) -> None:
     """The property that everything hangs on."""
     tree = compile_mission(mission, vocabulary)
     for brackets in BRACKETS:
@@ -71,15 +71,15 @@ def test_sentences_keep_their_tree(words: str) -> None:
 
 @searches(80, 3000)
 @given(trees.missions())
-@example(ast.Mission(ast.Every("5", ast.Repeat("1", trees.phrase("u"), trees.SPAN), trees.SPAN), (), trees.SPAN))
-@example(ast.Mission(ast.Try(trees.phrase("u"), trees.either("v", "w"), trees.SPAN), (), trees.SPAN))
-def test_syntax_trees_keep_their_tree(mission: ast.Mission) -> None:
+@example(ast.Program(ast.Every("5", ast.Repeat("1", trees.phrase("u"), trees.SPAN), trees.SPAN), (), trees.SPAN))
+@example(ast.Program(ast.Try(trees.phrase("u"), trees.either("v", "w"), trees.SPAN), (), trees.SPAN))
+def test_syntax_trees_keep_their_tree(mission: ast.Program) -> None:
     keeps_its_tree(mission, letters())
 
 
 @searches(60, 2000)
 @given(trees.missions(), st.sampled_from([1, 20, 50]), st.sampled_from(BRACKETS))
-def test_blocks_keep_the_tree(mission: ast.Mission, width: int, brackets: str) -> None:
+def test_blocks_keep_the_tree(mission: ast.Program, width: int, brackets: str) -> None:
     tree = compile_mission(mission, letters())
     speaker = Speaker(letters(), mission.definitions, brackets)
     lines = [line for one in mission.definitions for line in blocks.lines_of(one, speaker, width, least=0)]
@@ -100,7 +100,7 @@ def test_missions_that_ship_keep_their_tree(path: Path, monkeypatch: pytest.Monk
 
 def test_every_class_of_node_can_be_said() -> None:
     """A new class needs a function in SAYS."""
-    assert set(SAYS) == {kind for kind in _subclasses(ast.Ast) if not kind.__name__.startswith("_")} - {ast.Mission}
+    assert set(SAYS) == {kind for kind in _subclasses(ast.Ast) if not kind.__name__.startswith("_")} - {ast.Program}
 
 
 def _subclasses(kind: type[ast.Ast]) -> Iterator[type[ast.Ast]]:
@@ -210,7 +210,7 @@ def test_depth_does_not_matter() -> None:
     node: ast.Ast = trees.phrase("u")
     for i in range(10_000):
         node = ast.Chain(("sequence", "parallel")[i % 2], (node, trees.phrase("v")), True, trees.SPAN)
-    mission = ast.Mission(node, (), trees.SPAN)
+    mission = ast.Program(node, (), trees.SPAN)
     text = english(mission, letters())
     assert compiled(text, letters(), "shunting-yard")[1] == compile_mission(mission, letters())
     assert len(blocks.lines_of(node, Speaker(letters()), 100)) == 3

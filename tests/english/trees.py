@@ -160,7 +160,7 @@ ruled: Trees = st.recursive(
 
 
 @st.composite
-def missions(draw: st.DrawFn) -> ast.Mission:
+def missions(draw: st.DrawFn) -> ast.Program:
     """Commands, and up to two definitions that they use."""
     bodies = draw(st.lists(st.one_of(commands, conditions, ruled), max_size=len(NAMES)))
     body = draw(st.one_of(commands, commands, ruled))
@@ -183,7 +183,7 @@ def missions(draw: st.DrawFn) -> ast.Mission:
     if rules:
         items = list(body.items) if isinstance(body, ast.Chain) and body.operator == "sequence" else [body]
         body = _chain("sequence", [*rules, *items], False)
-    return ast.Mission(body, tuple(definitions), SPAN)
+    return ast.Program(body, tuple(definitions), SPAN)
 
 
 def _use(name: str, body: ast.Ast) -> ast.Ast:

@@ -23,7 +23,7 @@ def letters() -> Vocabulary:
     return load_vocabulary(entries)
 
 
-def read(text: str, parser: str = "shunting-yard") -> ast.Mission:
+def read(text: str, parser: str = "shunting-yard") -> ast.Program:
     return read_mission(Source(text), letters(), parser).mission
 
 
@@ -32,7 +32,7 @@ def shown(node: ast.Ast | None) -> str:
     match node:
         case None:
             return "-"
-        case ast.Mission():
+        case ast.Program():
             definitions = [f"{d.name} = {shown(d.body)}; " for d in node.definitions]
             return "".join(definitions) + shown(node.body)
         case ast.Phrase():

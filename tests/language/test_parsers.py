@@ -26,7 +26,7 @@ BOTH = ("shunting-yard", "lark")
 GRAMMAR = Path(__file__).parents[2] / "grammar"
 
 
-def reading(text: str, parser: str) -> ast.Mission | tuple[str, ...]:
+def reading(text: str, parser: str) -> ast.Program | tuple[str, ...]:
     """The mission, or the codes of what is wrong."""
     try:
         return read(text, parser)
@@ -42,7 +42,7 @@ def reading(text: str, parser: str) -> ast.Mission | tuple[str, ...]:
 def test_parsers_agree(words: str) -> None:
     shunted, larked = (reading(english(words), parser) for parser in BOTH)
     assert shunted == larked
-    if isinstance(shunted, ast.Mission):
+    if isinstance(shunted, ast.Program):
         assert _spans(shunted) == _spans(larked)  # type: ignore[arg-type]
         assert all(span[0] < span[1] for span in _spans(shunted))
 
@@ -56,8 +56,8 @@ def test_a_stop_at_the_end_of_a_line_says_nothing(words: str, stop: str) -> None
     stopped = "\n".join(line if not line.strip() or line.endswith(":") else line + stop for line in text.split("\n"))
     for parser in BOTH:
         read, plain = reading(stopped, parser), reading(text, parser)
-        if isinstance(plain, ast.Mission):
-            assert isinstance(read, ast.Mission)
+        if isinstance(plain, ast.Program):
+            assert isinstance(read, ast.Program)
             assert _shape(read) == _shape(plain)
 
 
@@ -70,7 +70,7 @@ def _shape(value: object) -> object:
     return type(value), [(name, _shape(getattr(value, name))) for name in value.fields if not name.endswith("span")]
 
 
-def _spans(mission: ast.Mission) -> list[tuple[int, int]]:
+def _spans(mission: ast.Program) -> list[tuple[int, int]]:
     found, stack = [], ast.parts(mission)
     while stack:
         node = stack.pop()
@@ -185,7 +185,7 @@ def test_groups_as_the_oracle_does(words: str) -> None:
     if expected is None:
         return
     mission = reading(english(words), "shunting-yard")
-    assert isinstance(mission, ast.Mission), mission
+    assert isinstance(mission, ast.Program), mission
     assert ours(mission.body) == expected
 
 

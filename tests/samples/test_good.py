@@ -67,7 +67,7 @@ def keywords(sample: Path) -> list[str]:
     return [str(own)] if own.exists() else []
 
 
-def mission(sample: Path, vocabulary: Vocabulary, parser: str = "shunting-yard") -> ast.Mission:
+def mission(sample: Path, vocabulary: Vocabulary, parser: str = "shunting-yard") -> ast.Program:
     return read_mission(read_source(str(sample)), vocabulary, parser).mission
 
 
@@ -98,7 +98,7 @@ def below(root: ast.Ast) -> Iterator[ast.Ast]:
         node = stack.pop()
         yield node
         stack += ast.parts(node)
-        if isinstance(node, ast.Mission):
+        if isinstance(node, ast.Program):
             stack += [*node.facts, *node.includes]
 
 

@@ -71,7 +71,7 @@ class Known:
         """What is known in the body of a loop."""
         return self._kinds.around({**around.owners, loop.key: loop.name})
 
-    def refused_by(self, mission: ast.Mission, before: Refused, loops: Set[str]) -> Refused:
+    def refused_by(self, mission: ast.Program, before: Refused, loops: Set[str]) -> Refused:
         """`before` with what in this mission could not be read: `loops`, and values with which something is wrong."""
         given: set[str] = set()
         used: set[str] = set()

@@ -15,7 +15,7 @@ from btlang.frontends.mission import read_mission
 from btlang.passes import lower_mission
 from btlang.passes.order import used_first
 from btlang.text.source import NOWHERE, Source
-from btlang.tree.ast import Fact, Mission, exact_nodes
+from btlang.tree.ast import Fact, Program, exact_nodes
 from btlang.tree.dump import plain
 from btlang.tree.model import NodeModel
 from btlang.tree.node import Tree
@@ -60,7 +60,7 @@ def to_english(tree: Tree, vocabulary: Vocabulary, *, facts: Sequence[Fact] = ()
     raise _unsayable(tree, reason)
 
 
-def _said_both_ways(mission: Mission, vocabulary: Vocabulary) -> list[str]:
+def _said_both_ways(mission: Program, vocabulary: Vocabulary) -> list[str]:
     """Kinds of leaves that are conditions in one place and done in another: read again, they are conditions in all."""
     leaves = [node for node in exact_nodes(mission) if not node.items and node.id not in vocabulary.nodes]
     done = {node.id for node in leaves if not node.is_condition}
@@ -79,7 +79,7 @@ def _differing(tree: Tree, again: Tree) -> Iterator[str]:
             yield name
 
 
-def _lines(mission: Mission, speaker: Speaker, comments: Comments) -> Iterator[str]:
+def _lines(mission: Program, speaker: Speaker, comments: Comments) -> Iterator[str]:
     yield from (f"# {line}" for line in comments.head)
     yield from mission_lines(mission, speaker, WIDTH)
     yield from (f"# {line}" for line in comments.foot)
@@ -87,7 +87,7 @@ def _lines(mission: Mission, speaker: Speaker, comments: Comments) -> Iterator[s
 
 def _mission(
     tree: Tree, vocabulary: Vocabulary, level: str, refused: Refused, comments: Comments
-) -> tuple[Mission, Speaker]:
+) -> tuple[Program, Speaker]:
     """With what is refused, and whatever else turns out not to be read back, said in another way."""
     values = level in ("values", "sure values")
     for _ in range(_MOST_TRIES if values else 1):
@@ -96,7 +96,7 @@ def _mission(
         bodies = {loop.name for loop in known.loops.values()}
         named = [(name, root) for name, root in used_first(tree)[:-1] if name not in bodies]
         definitions = tuple(raiser.definition(name, root) for name, root in named)
-        mission = Mission(raiser.main(tree.root), definitions, NOWHERE, name=tree.name)
+        mission = Program(raiser.main(tree.root), definitions, NOWHERE, name=tree.name)
         before, refused = refused, known.refused_by(mission, refused, raiser.refused)
         if refused == before:
             break

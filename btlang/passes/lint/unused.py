@@ -8,7 +8,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
 from btlang.passes.names import names_in
 from btlang.text.source import Span
-from btlang.tree.ast import Assign, Ast, Mission, Remember, all_definitions, keys_of, parts
+from btlang.tree.ast import Assign, Ast, Program, Remember, all_definitions, keys_of, parts
 
 
 def unused_names(compilation: Compilation) -> Iterator[Diagnostic]:
@@ -32,7 +32,7 @@ def unused_names(compilation: Compilation) -> Iterator[Diagnostic]:
             yield diagnostic("BT051", definition.name_span, name=definition.name)
 
 
-def _values(mission: Mission) -> Iterator[Diagnostic]:
+def _values(mission: Program) -> Iterator[Diagnostic]:
     """Values that are given and never asked for, and parameters that stand nowhere in their body."""
     asked: set[str] = set()
     given: dict[str, Span] = {}

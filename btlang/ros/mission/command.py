@@ -7,7 +7,7 @@ from functools import partial
 from typing import Any
 
 from btlang.arguments import node_name
-from btlang.robots.stages import ROBOTS
+from btlang.robots.registry import ROBOTS
 from btlang.ros.available import require_interfaces, require_ros
 from btlang.ros.command import add_namespace
 from btlang.text.output import show

@@ -7,24 +7,21 @@ from collections.abc import Callable, Sequence
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 from std_srvs.srv import Trigger
 
-from btlang.api import RunnableTree
+from btlang.api import Mission
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.reading import read_included, read_source
 from btlang.ros.mission.progress import News, Progress
-from btlang.ros.mission.run import MissionRun, Report, problems
 from btlang.ros.mission.server import MissionServer
 from btlang.ros.mission.setup import Setup
+from btlang.ros.mission.thread import MissionThread, Report, problems
 from btlang.ros.mission.topics import ERROR, OK, WARN, Topics
-from btlang.run.controls import disable
-from btlang.run.lines import Lines
 from btlang.text.source import Source
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from btlang.run.events import Sink
-    from btlang.run.stage import Stage
+    from btlang.session import Run, Session
 
 _SUCCESS, _FAILURE = TransitionCallbackReturn.SUCCESS, TransitionCallbackReturn.FAILURE
 _END = 8.0  # seconds of real time that a mission gets to halt and to bring the robot to rest
@@ -40,9 +37,9 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
     def __init__(self, setup: Setup, show: Callable[[str], object], name: str, **options: Any) -> None:
         super().__init__(name, **options)
         self._setup = setup
-        self._stage: Stage | None = None
+        self._session: Session | None = None
         self._source: Source | None = None
-        self._run: MissionRun | None = None
+        self._run: MissionThread | None = None
         self._latest: Report | None = None
         self._running = ""
         self._active = False
@@ -59,7 +56,7 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
             self._source = self._own_mission()
             if self._source is not None:
                 self._setup.compiled(self._source)
-            self._stage = self._setup.stage()
+            self._session = self._setup.session()
         except MissionError as error:
             self.error = error
             self._topics.complain(problems(error))
@@ -107,19 +104,19 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
 
     def release(self) -> None:
         """Lets go of the robot, at rest. May be called twice."""
-        stage, self._stage = self._stage, None
-        if stage is not None:
-            stage.close()
+        session, self._session = self._session, None
+        if session is not None:
+            session.close()
 
     def emergency_stop(self) -> bool:
         """Stops the robot at once and ends the mission, from any thread; False where there is no robot yet."""
-        stage, run = self._stage, self._run
-        if stage is None:
+        session, run = self._session, self._run
+        if session is None:
             return False
         if run is not None and not run.over:
             run.emergency_stop()
         else:
-            disable(stage.robot)
+            session.emergency_stop()
         return True
 
     def _stop(self, request: Any, response: Any) -> Any:
@@ -139,7 +136,7 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
 
     def _begin_goal(
         self, request: Any, changed: Callable[[News], object], ended: Callable[[Report], object]
-    ) -> MissionRun:
+    ) -> MissionThread:
         return self._begin(self._setup.sent(request.mission), request.keywords, changed, ended)
 
     def _begin(
@@ -148,15 +145,11 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
         keywords: Sequence[str],
         changed: Callable[[News], object],
         ended: Callable[[Report], object],
-    ) -> MissionRun:
-        assert self._stage is not None
+    ) -> MissionThread:
+        assert self._session is not None
 
-        def watch(tree: RunnableTree) -> list[Sink]:
-            self._topics.tree(tree)
-            return [
-                Progress(tree.label, told, self._topics.status),
-                Lines(tree.label, tree.is_action, self._topics.log),
-            ]
+        def watch(run: Run) -> None:
+            run.bus.add(Progress(run.snapshot, told, self._topics.status))
 
         def told(news: News) -> None:
             self._running = news.running
@@ -167,11 +160,13 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
             self._topics.log(str(report))
             ended(report)
 
-        def compiled() -> RunnableTree:
+        def compiled() -> Mission:
             self._setup.check_keywords(keywords)
-            return self._setup.compiled(source, keywords)
+            mission = self._setup.compiled(source, keywords)
+            self._topics.tree(mission)
+            return mission
 
-        self._run = MissionRun(self._stage, compiled, watch, over, self._setup.speed)
+        self._run = MissionThread(self._session, compiled, watch, over, self._setup.speed)
         return self._run
 
     def _own_mission(self) -> Source | None:
@@ -186,7 +181,7 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
         values = {"robot": self._setup.robot, "active": str(self._active), "running": self._running}
         if self._busy:
             return OK, "a mission runs", values
-        if self._stage is None:
+        if self._session is None:
             return WARN, "not configured", values
         if self._latest is None:
             return OK, "no mission has run yet", values

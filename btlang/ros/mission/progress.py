@@ -1,21 +1,20 @@
-"""What a mission is doing now, from its stream of events."""
+"""What a mission is doing now, for other programs."""
 
 from __future__ import annotations
 
 import time
 from collections.abc import Callable
 
-from btlang.engine.status import RUNNING
 from btlang.record import Record
-from btlang.run.events import PeriodPassed, RobotEvent, StatusChanged, StatusesChanged
-from btlang.tree.catalogue import SUBTREE
-from btlang.tree.node import Node
+from btlang.run.bus import INLINE
+from btlang.run.events import Ended, PeriodPassed, StatusesChanged
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Mapping
 
     from btlang.run.events import Event
+    from btlang.run.snapshot import Snapshot
 
 _PAUSE = 0.1  # seconds of real time between two snapshots of all nodes
 
@@ -31,44 +30,39 @@ class News(Record):
 class Progress:
     """A sink that hands on, once a tick at most, the nodes with a new status, and now and then all of them.
 
-    `label` gives the words for a node. Both functions are called in the thread of the run, and at its end.
+    `snapshot` is that of the run. The other functions are called in the thread of the run, and at its end.
     """
+
+    policy = INLINE
 
     def __init__(
         self,
-        label: Callable[[Node], str],
+        snapshot: Callable[[], Snapshot],
         changed: Callable[[News], object],
-        snapshot: Callable[[News], object],
+        reached: Callable[[News], object],
     ) -> None:
-        self._label, self._tell_changed, self._tell_all = label, changed, snapshot
+        self._snapshot, self._changed, self._reached = snapshot, changed, reached
         self._new: dict[str, int] = {}
-        self._all: dict[str, int] = {}
         self._untold = False
-        self._running: dict[int, str] = {}
         self._told = -_PAUSE
 
     def __call__(self, event: Event) -> None:
         if isinstance(event, StatusesChanged):
             for change in event:
-                self._change(change)
+                self._new[change.path] = change.status
         elif isinstance(event, PeriodPassed):
-            self._tell(event.t, time.monotonic() - self._told >= _PAUSE)
-        elif isinstance(event, RobotEvent) and event.kind == "end":
-            self._tell(event.t, True)
+            self._report(time.monotonic() - self._told >= _PAUSE)
+        elif isinstance(event, Ended):
+            self._report(True)
 
-    def _change(self, change: StatusChanged) -> None:
-        self._new[change.path] = change.status
-        if change.status != RUNNING:
-            self._running.pop(change.index, None)
-        elif not change.node.children and change.node.id != SUBTREE:
-            self._running[change.index] = self._label(change.node)
-
-    def _tell(self, now: float, all_too: bool) -> None:
-        running = "; ".join(self._running.values())
+    def _report(self, all_too: bool) -> None:
+        if not (self._new or (self._untold and all_too)):
+            return
+        now = self._snapshot()
+        running = "; ".join(now.running)
         if self._new:
-            self._tell_changed(News(now, running, self._new))
-            self._all.update(self._new)
+            self._changed(News(now.t, running, self._new))
             self._new, self._untold = {}, True
-        if self._untold and all_too:
+        if all_too:
             self._untold, self._told = False, time.monotonic()
-            self._tell_all(News(now, running, self._all))
+            self._reached(News(now.t, running, now.statuses))

@@ -9,7 +9,7 @@ from rclpy.node import Node
 
 from btlang.ros.goals import GONE, GoalServer, HeldGoal
 from btlang.ros.lease import Leases
-from btlang.ros.mission.run import MissionRun, Report
+from btlang.ros.mission.thread import MissionThread, Report
 from btlang.ros.mission.topics import filled
 
 TYPE_CHECKING = False
@@ -29,7 +29,7 @@ class MissionServer:
         self,
         node: Node,
         hindrance: Callable[[], str],
-        begin: Callable[[Any, Callable[[News], object], Callable[[Report], object]], MissionRun],
+        begin: Callable[[Any, Callable[[News], object], Callable[[Report], object]], MissionThread],
         rejected: Callable[[str], object],
     ) -> None:
         self._hindrance, self._begin, self._rejected = hindrance, begin, rejected

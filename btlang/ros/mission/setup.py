@@ -6,16 +6,17 @@ import os
 from collections.abc import Callable, Sequence
 from functools import partial
 
-from btlang.api import RunnableTree, parse_tree, read_world
+from btlang.api import Mission, parse_tree
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.diagnostics.reading import is_below
 from btlang.record import Record
-from btlang.robots.stages import stage_maker
+from btlang.robots.registry import connector
+from btlang.session import Session
 from btlang.text.source import Source, Span
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.run.stage import Stage
+    from btlang.run.connection import Connection
 
 
 _NOT_ALLOWED = "other programs may not use it; the node allows it with --allow-keywords and its name or folder"
@@ -40,12 +41,12 @@ class Setup(Record):
     include_root: str | None = None
     allowed_keywords: Sequence[str] = ()
 
-    def stage(self) -> Stage:
+    def session(self) -> Session:
         """The robot in its world. Raises MissionError."""
-        make: Callable[..., Stage] = stage_maker(self.robot)
+        connect: Callable[..., Connection] = connector(self.robot)
         if self.robot != "simulated":
-            make = partial(make, sim_time=self.sim_time, namespace=self.namespace, name=f"{self.name}_robot")
-        return make(read_world(self.world))
+            connect = partial(connect, sim_time=self.sim_time, namespace=self.namespace, name=f"{self.name}_robot")
+        return Session(connect, world=self.world)
 
     def sent(self, text: str) -> Source:
         """A mission that another program sent."""
@@ -65,6 +66,6 @@ class Setup(Record):
         folders = [name for name in self.allowed_keywords if os.path.isdir(name)]
         return any(is_below(os.path.realpath(name), folder) for folder in folders)
 
-    def compiled(self, source: Source, keywords: Sequence[str] = ()) -> RunnableTree:
+    def compiled(self, source: Source, keywords: Sequence[str] = ()) -> Mission:
         """A mission, with further keyword files. Raises MissionError."""
         return parse_tree(source, parser=self.parser, keywords=[*self.keywords, *keywords], world=self.world)

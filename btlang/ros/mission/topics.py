@@ -10,7 +10,7 @@ from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from std_msgs.msg import String
 
-from btlang.api import RunnableTree
+from btlang.api import Mission
 from btlang.ros.node import LATCHED
 
 TYPE_CHECKING = False
@@ -40,9 +40,9 @@ class Topics:
         # of the machine's time, so that a simulated one that stands still is told of too
         node.create_timer(_PERIOD, self._tell_health, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
-    def tree(self, tree: RunnableTree) -> None:
+    def tree(self, mission: Mission) -> None:
         """The tree that runs now, as an outline."""
-        self._tree.publish(String(data=str(tree)))
+        self._tree.publish(String(data=str(mission)))
 
     def status(self, news: News) -> None:
         """The nodes that have been reached."""

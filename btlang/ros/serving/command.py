@@ -6,7 +6,7 @@ import argparse
 import sys
 from collections.abc import Sequence
 
-from btlang.api import RATES, world_vocabulary
+from btlang.api import world_vocabulary
 from btlang.arguments import between, node_name, real_speed
 from btlang.backends.engine import bind_leaf
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
@@ -16,6 +16,7 @@ from btlang.ros.command import add_namespace
 from btlang.ros.mission.setup import Setup
 from btlang.ros.serving.choosing import chosen, servable
 from btlang.ros.serving.names import FOLDER
+from btlang.run.limits import RATES
 from btlang.text.output import show
 from btlang.text.source import NOWHERE
 from btlang.tree.catalogue import SEQUENCE
@@ -23,7 +24,7 @@ from btlang.tree.node import Node, Tree
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.run.stage import Stage
+    from btlang.run.connection import Connection
     from btlang.vocabulary.vocabulary import Vocabulary
 
 _ANSWERS = 1.0  # seconds that the last answers to clients get
@@ -62,53 +63,53 @@ def serve(options: argparse.Namespace) -> int:
         options.refuse(str(problem))
     require_ros("std_srvs")
     require_interfaces()
-    stage = Setup(
+    setup = Setup(
         options.name, options.robot, options.sim_time, options.namespace,
         keywords=options.keywords, world=options.world,
-    ).stage()  # fmt: skip
-    try:
-        _check(stage, ids, vocabulary)
-        return _spin(stage, ids, vocabulary, options)
-    finally:
-        stage.close()
+    )  # fmt: skip
+    with setup.session() as session:
+        _check(session.connection, ids, vocabulary)
+        return _spin(session.connection, ids, vocabulary, options)
 
 
-def _check(stage: Stage, ids: Sequence[str], vocabulary: Vocabulary) -> None:
+def _check(connection: Connection, ids: Sequence[str], vocabulary: Vocabulary) -> None:
     """Tells what the robot lacks. Raises MissionError where an action cannot be bound."""
     everything = Tree(Node(SEQUENCE, tuple(Node(node_id) for node_id in ids)))
-    survey = getattr(stage, "survey", None)  # of a ROS 2 robot
+    survey = getattr(connection, "survey", None)  # of a ROS 2 robot
     for interface, (node, reason) in survey(everything, vocabulary).items() if survey is not None else ():
         if reason:
             user = f", which {node.id} needs" if node is not None else ""
             show(f"btlang serve-actions: no {interface.name}{user}: {reason}", stream=sys.stderr)
     for node_id in ids:
         try:
-            bind_leaf(node_id, vocabulary, stage.bind)
+            bind_leaf(node_id, vocabulary, connection.bind)
         except EngineError as error:
             span = error.node.span or NOWHERE
             raise MissionError([diagnostic("BT080", span, id=node_id, reason=error.message)]) from None
 
 
-def _spin(stage: Stage, ids: Sequence[str], vocabulary: Vocabulary, options: argparse.Namespace) -> int:
+def _spin(connection: Connection, ids: Sequence[str], vocabulary: Vocabulary, options: argparse.Namespace) -> int:
     from btlang.english.phrase import phrase_of
     from btlang.ros.ending import ending_signals
     from btlang.ros.node import SpunNode
     from btlang.ros.serving.server import serve_actions
     from btlang.ros.serving.work import Work
+    from btlang.run.bus import Bus
     from btlang.run.command import STILL_MOVING, warn_of_motion
     from btlang.run.controls import Controls
     from btlang.run.emergency import emergency_signal
     from btlang.run.lines import Lines
     from btlang.run.runner import Runner
 
-    stage.begin([Lines(lambda node: phrase_of(node, vocabulary), lambda node: True, show)])
+    bus = Bus("actions", queued=True)
+    bus.add(Lines(lambda node: phrase_of(node, vocabulary), lambda node: True, show))
+    connection.begin(bus)
     controls = Controls()
-    work = Work(stage, vocabulary)
+    work = Work(connection, vocabulary)
     moves = False
     runner = Runner(
-        work, clock=stage.clock, robot=stage.robot, rate=options.rate,
-        speed=1.0 if options.speed == "real" else options.speed,
-        events=stage.events, controls=controls, pace=stage.pace,
+        work, bus=bus, robot=connection.robot, rate=options.rate,
+        speed=1.0 if options.speed == "real" else options.speed, controls=controls, pace=connection.pace,
     )  # fmt: skip
     with ending_signals() as came, emergency_signal(controls.emergency_stop):
         came.on_arrival = controls.stop
@@ -126,4 +127,5 @@ def _spin(stage: Stage, ids: Sequence[str], vocabulary: Vocabulary, options: arg
             spun.settle(_ANSWERS)
         finally:
             spun.close()
+            bus.close()
     return STILL_MOVING if moves else 128 + came.numbers[0]

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from collections.abc import Callable
     from typing import Protocol
 
-    from btlang.run.stage import Stage
+    from btlang.run.connection import Connection
     from btlang.vocabulary.vocabulary import Vocabulary
 
     class Caller(Protocol):
@@ -42,19 +42,21 @@ class Job:
     `reason` is None as long as it is not over, then "" or why it failed.
     """
 
-    def __init__(self, node: Node, caller: Caller, stage: Stage, vocabulary: Vocabulary, patient_until: float) -> None:
+    def __init__(
+        self, node: Node, caller: Caller, connection: Connection, vocabulary: Vocabulary, patient_until: float
+    ) -> None:
         self.cancelled = ""
         self.reason: str | None = None
         self.engine: Engine | None = None
         self.patient_until = patient_until
         """The real time until which it waits for what another one uses."""
-        self.ended = stage.clock.now
+        self.ended = connection.bus.clock.now
         self.words = phrase_of(node, vocabulary)
         self.resources = frozenset(r for entry in vocabulary.entries[node.id] for r in entry.resources)
-        self._node, self._caller, self._stage, self._vocabulary = node, caller, stage, vocabulary
+        self._node, self._caller, self._connection, self._vocabulary = node, caller, connection, vocabulary
         self._news = (0.0, self.words)
         self._told: tuple[float, str] | None = None
-        self._told_at = stage.clock.now
+        self._told_at = connection.bus.clock.now
         self._repeats_at = 0.0
 
     @property
@@ -64,14 +66,13 @@ class Job:
 
     def start(self, wake: Callable[[], object]) -> None:
         """Begins with the next `tick`. It is over where the leaf cannot run."""
-        stage, vocabulary = self._stage, self._vocabulary
+        connection, vocabulary = self._connection, self._vocabulary
         try:
             self.engine = traced_engine(
                 Tree(self._node),
-                lambda node_id: bind_leaf(node_id, vocabulary, stage.bind),
-                clock=stage.clock,
-                events=stage.events,
-                services={"robot": stage.robot, "progress": self._progress},
+                lambda node_id: bind_leaf(node_id, vocabulary, connection.bind),
+                bus=connection.bus,
+                services={"robot": connection.robot, "progress": self._progress},
                 proxies={"robot": RobotProxy},
             )
             self.engine.on_wake = wake
@@ -83,7 +84,7 @@ class Job:
     def tick(self) -> None:
         """Goes on."""
         assert self.engine is not None
-        self._stage.events.before = self.engine.tell  # all engines publish into the same stream
+        self._connection.bus.before = self.engine.tell  # all engines publish into the same stream
         status = self.engine.tick()
         if status == RUNNING:
             self.tell()
@@ -104,11 +105,11 @@ class Job:
 
     def end(self, reason: str) -> None:
         """It is over; the caller does not know yet."""
-        self.reason, self.ended = reason, self._stage.clock.now
+        self.reason, self.ended = reason, self._connection.bus.clock.now
 
     def tell(self, waits_for: str = "") -> None:
         """Tells the caller what is new, and now and then that it still goes on."""
-        news, now = (0.0, waits_for) if waits_for else self._news, self._stage.clock.now
+        news, now = (0.0, waits_for) if waits_for else self._news, self._connection.bus.clock.now
         is_new = news != self._told and (self._told is None or now - self._told_at >= _PAUSE)
         if is_new or time.monotonic() >= self._repeats_at:
             self._told, self._told_at, self._repeats_at = news, now, time.monotonic() + WORD

@@ -15,7 +15,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.engine.engine import Failure
     from btlang.ros.serving.job import Caller
-    from btlang.run.stage import Stage
+    from btlang.run.connection import Connection
     from btlang.vocabulary.vocabulary import Vocabulary
 
 BUSY = 0.5
@@ -33,17 +33,19 @@ class Work:
 
     failure = None
 
-    def __init__(self, stage: Stage, vocabulary: Vocabulary, now: Callable[[], float] = time.monotonic) -> None:
+    def __init__(
+        self, connection: Connection, vocabulary: Vocabulary, now: Callable[[], float] = time.monotonic
+    ) -> None:
         self._now = now
         self.on_wake: Callable[[], object] | None = None
-        self._stage, self._vocabulary = stage, vocabulary
+        self._connection, self._vocabulary = connection, vocabulary
         self._new: deque[Job] = deque()
         self._jobs: list[Job] = []
         self._halt_failures: list[Failure] = []
 
     def begin(self, node: Node, caller: Caller) -> Callable[[str], None]:
         """Takes on a goal; returns what cancels it, for a reason."""
-        job = Job(node, caller, self._stage, self._vocabulary, self._now() + BUSY)
+        job = Job(node, caller, self._connection, self._vocabulary, self._now() + BUSY)
         self._new.append(job)
         self._wake()
 
@@ -125,10 +127,10 @@ class Work:
         taken_over = any(other.running and other.resources & job.resources for other in self._jobs)
         if taken_over:
             return True
-        standstill = standstill_of(self._stage.robot)
+        standstill = standstill_of(self._connection.robot)
         if not standstill.alarming:
             return True
-        if self._stage.clock.now - job.ended < REST:
+        if self._connection.bus.clock.now - job.ended < REST:
             return False
         job.reason = f"{job.reason}; {standstill}"
         return True

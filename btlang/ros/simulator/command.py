@@ -7,11 +7,12 @@ import os
 import sys
 from time import monotonic
 
-from btlang.api import RATES, read_world
 from btlang.arguments import between, real_speed
+from btlang.robots.world_problem import read_world
 from btlang.ros.command import add_namespace
 from btlang.ros.ending import ending_signals
 from btlang.run.emergency import emergency_signal
+from btlang.run.limits import RATES
 from btlang.text.output import show
 
 PACKAGES = (

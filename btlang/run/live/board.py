@@ -7,28 +7,25 @@ from collections import deque
 from collections.abc import Callable
 
 from btlang.engine.compile import outline
-from btlang.run.events import PeriodPassed, RobotEvent, StatusesChanged
+from btlang.run.events import PeriodPassed
 from btlang.run.lines import Lines
 from btlang.run.live import frame
-from btlang.run.live.shape import Shape
-from btlang.run.live.state import Reading, State, read_robot
+from btlang.run.shape import Shape
+from btlang.run.snapshot import State
 from btlang.text.output import one_line
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Protocol
 
-    from btlang.run.controls import Controls
     from btlang.run.events import Event
     from btlang.tree.node import Node, Tree
 
     class Viewed(Protocol):
         """What the live view asks of a mission."""
 
-        tree: Tree
-
         @property
-        def controls(self) -> Controls: ...
+        def tree(self) -> Tree: ...
 
         def label(self, node: Node) -> str: ...
 
@@ -56,12 +53,12 @@ class Board:
         self._lines: Callable[[Event], None] = Lines(mission.label, mission.is_action, self._above.append)
         self._waiting: deque[Event | str] = deque(maxlen=_MOST_WAITING)
         self._noted = self._taken = self._lost = 0  # events
-        self._period: tuple[PeriodPassed, Reading | None] | None = None
+        self._period: PeriodPassed | None = None
 
     def note(self, event: Event | str) -> None:
         """Keeps an event, or a line that was printed."""
         if isinstance(event, PeriodPassed):
-            self._period = event, read_robot(event.robot)
+            self._period = event
         else:
             self._waiting.append(event)
             self._noted += 1
@@ -76,7 +73,7 @@ class Board:
             self._take(self._waiting.popleft())
         self._taken += count
         if self._period is not None:
-            self.state.period(*self._period)
+            self.state.take(self._period)
         if lost > 0:
             self._lost += lost
             self._above.append(f"         ({lost} events came too fast for this terminal)")
@@ -103,9 +100,5 @@ class Board:
         if isinstance(event, str):
             self._above.append(event)
             return
-        if isinstance(event, StatusesChanged):
-            for change in event:
-                self.state.change(change.index, change.status, change.t, change.reason)
-        elif isinstance(event, RobotEvent) and event.kind == "say":
-            self.state.said = str(event.data.get("text", ""))
+        self.state.take(event)
         self._lines(event)

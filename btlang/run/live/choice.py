@@ -5,7 +5,7 @@ from __future__ import annotations
 from bisect import bisect_left
 from collections.abc import Sequence
 
-from btlang.run.live.shape import Shape
+from btlang.run.shape import Shape
 
 
 def hidden_from(shape: Shape, before: int, following: int) -> int:

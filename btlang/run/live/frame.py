@@ -10,7 +10,8 @@ from rich.cells import cell_len, set_cell_size
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 from btlang.record import Record
 from btlang.run.live.selection import LEAST_HEIGHT, Row, choose_rows
-from btlang.run.live.state import HALTED, SUSPENDED, Reading, State
+from btlang.run.robot_state import RobotState
+from btlang.run.snapshot import HALTED, SUSPENDED, State
 from btlang.text.output import one_line
 from btlang.tree.node import Node
 
@@ -99,7 +100,7 @@ def tree_lines(state: State, words: Words, height: int, width: int, over: bool, 
 
 def robot_line(state: State, signs: Signs) -> Line:
     """Pose, battery, what it holds, its last words."""
-    robot = state.robot or Reading()
+    robot = state.robot or RobotState()
     parts: list[str] = []
     if robot.pose is not None:
         pose = robot.pose

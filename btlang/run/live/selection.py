@@ -7,8 +7,8 @@ from collections.abc import Iterator, Sequence
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 from btlang.record import Record
 from btlang.run.live.choice import Choice, hidden_from
-from btlang.run.live.shape import Shape
-from btlang.run.live.state import HALTED, SUSPENDED
+from btlang.run.shape import Shape
+from btlang.run.snapshot import HALTED, SUSPENDED
 
 LEAST_HEIGHT = 3
 

@@ -8,6 +8,7 @@ import threading
 import time
 from contextlib import ExitStack, suppress
 
+from btlang.run.bus import INLINE
 from btlang.run.events import PeriodPassed
 from btlang.run.live import frame
 from btlang.run.live.board import Board
@@ -21,6 +22,7 @@ if TYPE_CHECKING:
     from types import TracebackType
     from typing import TextIO
 
+    from btlang.run.controls import Controls
     from btlang.run.events import Event
     from btlang.run.live.board import Viewed
 
@@ -43,13 +45,20 @@ class LiveView:
     terminal, comes above the tree. Raises EngineError for a tree that cannot be compiled.
     """
 
+    policy = INLINE
+
     def __init__(
-        self, mission: Viewed, output: TextIO, keyboard: TextIO | None = None, tree_stays: bool = True
+        self,
+        mission: Viewed,
+        controls: Controls,
+        output: TextIO,
+        keyboard: TextIO | None = None,
+        tree_stays: bool = True,
     ) -> None:
         unicode = (output.encoding or "").lower().startswith("utf")
         self._board = Board(mission, frame.UNICODE if unicode else frame.ASCII)
         self._tree_stays = tree_stays
-        self._controls = mission.controls
+        self._controls = controls
         self._output = output
         self._screen = Screen(output, lambda: os.get_terminal_size(output.fileno()))
         self._keys = self._open_keys(keyboard)

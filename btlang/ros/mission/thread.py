@@ -1,22 +1,21 @@
-"""One mission on a stage, in a thread of its own."""
+"""One mission of the node, in a thread of its own."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from threading import Thread
 
-from btlang.api import RunnableTree
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.render import render
-from btlang.engine.status import FAILURE, NAMES
+from btlang.engine.status import NAMES
 from btlang.record import Record
-from btlang.run.controls import disable
+from btlang.run.controls import Controls
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.run.events import Sink
+    from btlang.api import Mission
     from btlang.run.runner import Outcome
-    from btlang.run.stage import Stage
+    from btlang.session import Run, Session
 
 
 class Report(Record):
@@ -37,18 +36,18 @@ class Report(Record):
         return f"the mission {told[self.outcome]} after {self.seconds:.1f} s{reason}"
 
 
-class MissionRun:
-    """Begins at once, in its own thread, which compiles the mission too.
+class MissionThread:
+    """Runs one mission in a session; begins at once, in its own thread, which compiles the mission too.
 
-    `compiled` makes the tree, and `watch` what watches it. `ended` is told the report once the robot stands still.
-    All of them are called in the thread of the run; `stop` and the like come from any.
+    `compiled` makes the mission, and `watch` adds what watches its run. `ended` gets the report once the robot stands
+    still. All of them are called in the thread of the run; `stop` and the like come from any.
     """
 
     def __init__(
         self,
-        stage: Stage,
-        compiled: Callable[[], RunnableTree],
-        watch: Callable[[RunnableTree], list[Sink]],
+        session: Session,
+        compiled: Callable[[], Mission],
+        watch: Callable[[Run], object],
         ended: Callable[[Report], object],
         speed: float | str = "real",
     ) -> None:
@@ -56,26 +55,19 @@ class MissionRun:
         """Whether another mission may begin."""
         self.hangs = False
         """Whether it was told to end and did not."""
-        self._stage, self._speed = stage, speed
+        self._controls = Controls(session.robot)
+        self._session, self._speed = session, speed
         self._compiled, self._watch, self._ended = compiled, watch, ended
-        self._tree: RunnableTree | None = None
-        self._stopped = ""
         self._thread = Thread(target=self._work, name="btlang mission", daemon=True)
         self._thread.start()
 
     def stop(self) -> None:
         """Halts the mission and brings the robot to rest; waits for nothing."""
-        self._stopped = self._stopped or "interrupted"
-        if self._tree is not None:
-            self._tree.stop()
+        self._controls.stop()
 
     def emergency_stop(self) -> None:
         """Stops the robot at once, in the thread of who asks, then ends the mission."""
-        self._stopped = "emergency stop"
-        if self._tree is not None:
-            self._tree.emergency_stop()
-        else:
-            disable(self._stage.robot)
+        self._controls.emergency_stop()
 
     def join(self, seconds: float) -> bool:
         """Whether the run is over, `ended` included, within so many seconds."""
@@ -93,14 +85,12 @@ class MissionRun:
         self._ended(report)
 
     def _run(self) -> Report:
-        tree = self._compiled()
-        tree.stage = self._stage
-        tree.controls  # noqa: B018  # made by this thread, before others ask for them
-        self._tree = tree
-        sinks = self._watch(tree)
-        if self._stopped:  # while it was compiled
-            return Report("stopped", self._stopped)
-        return _report(tree, tree.run(speed=self._speed, sinks=sinks))
+        mission = self._compiled()
+        if self._controls.stopped:  # while it was compiled
+            return Report("stopped", "emergency stop" if self._controls.emergency else "interrupted")
+        run = self._session.prepare(mission, speed=self._speed, controls=self._controls)
+        self._watch(run)
+        return _report(run.execute())
 
 
 def problems(error: MissionError) -> str:
@@ -108,9 +98,9 @@ def problems(error: MissionError) -> str:
     return "\n".join(render(diagnostic) for diagnostic in error.diagnostics)
 
 
-def _report(tree: RunnableTree, outcome: Outcome) -> Report:
+def _report(outcome: Outcome) -> Report:
     ended = "stopped" if outcome.stopped else NAMES[outcome.status].lower()
-    reason = outcome.stopped or (tree.why() if outcome.status == FAILURE else "")
+    reason = outcome.stopped or outcome.why()
     if outcome.standstill.alarming:
         reason = f"{reason}\nWARNING: {outcome.standstill}".lstrip()
     return Report(ended, reason, outcome.seconds)

@@ -2,19 +2,22 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
+from threading import Lock
 
-from btlang.engine.leaf import ActionFailed
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 from btlang.engine.watch import repeats
 from btlang.record import Record
-from btlang.run.live.shape import Shape
+from btlang.run.bus import INLINE
+from btlang.run.events import PeriodPassed, Said, StatusesChanged
+from btlang.run.robot_state import RobotState
+from btlang.run.shape import Shape
+from btlang.run.statuses import Status
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any
-
-    from btlang.run.events import PeriodPassed
+    from btlang.engine.engine import Engine
+    from btlang.run.events import Event
     from btlang.tree.node import Node
 
 HALTED = IDLE + 1
@@ -23,29 +26,21 @@ SUSPENDED = HALTED + 1
 """Was halted by a pause, or by the end of the run."""
 
 
-class Reading(Record):
-    """What was read from a robot; None for what it does not tell."""
+class Snapshot(Record):
+    """A run after the event with this `number`, at `t` seconds of the mission: for who joins late.
 
-    pose: Any = None
-    battery: float | None = None
-    left: str | None = None
-    right: str | None = None
+    `statuses` are those of the nodes that were reached, by path; HALTED and SUSPENDED nodes count as IDLE. `running`
+    are the words of the commands under way, `said` what the robot said last.
+    """
 
-
-def read_robot(robot: Any) -> Reading | None:
-    """The reading of a robot, None where there is no robot. For the thread of the run."""
-    if robot is None:
-        return None
-    hands = (_told(lambda: robot.holding("left")), _told(lambda: robot.holding("right")))
-    return Reading(_told(lambda: robot.pose), _told(lambda: robot.battery), *hands)
-
-
-def _told(ask: Callable[[], Any]) -> Any:
-    """None where the robot has no such sensor, or it is silent."""
-    try:
-        return ask()
-    except (ActionFailed, AttributeError):
-        return None
+    run: str
+    number: int
+    t: float
+    status: Status
+    statuses: Mapping[str, Status]
+    running: tuple[str, ...]
+    said: str
+    robot: RobotState | None
 
 
 class State:
@@ -66,17 +61,22 @@ class State:
         self.now = 0.0
         self.ticks = 0
         self.overruns = 0
-        self.robot: Reading | None = None
+        self.robot: RobotState | None = None
         self._nodes = nodes
         self._over = bytearray(len(shape))  # 1: this run of the node is over, a new one clears what is below it
         self._seen = [0] * len(shape)  # the sweep in which a node was last found to need no clearing
         self._sweep = 1
         self._halted: list[int] = []  # by the halts that come in a row
 
-    def period(self, event: PeriodPassed, robot: Reading | None) -> None:
-        """A period is over."""
-        self.now, self.ticks, self.overruns = event.t, event.ticks, event.overruns
-        self.robot = robot
+    def take(self, event: Event) -> None:
+        """An event of the run."""
+        if isinstance(event, StatusesChanged):
+            for change in event:
+                self.change(change.index, change.status, change.t, change.reason)
+        elif isinstance(event, PeriodPassed):
+            self.now, self.ticks, self.overruns, self.robot = event.t, event.ticks, event.overruns, event.state
+        elif isinstance(event, Said):
+            self.said = event.text
 
     def change(self, index: int, status: int, t: float, reason: str = "") -> None:
         """A node has a new status."""
@@ -148,5 +148,61 @@ class State:
                 self.statuses[node] = IDLE
             node += 1
 
+    def is_leaf(self, index: int) -> bool:
+        """Whether nothing is below a node."""
+        return not self._has_children(index)
+
     def _has_children(self, index: int) -> bool:
         return self.shape.ends[index] > index + 1
+
+
+class Follower:
+    """A sink that follows the run of an engine, and gives snapshots of it to any thread."""
+
+    policy = INLINE
+
+    def __init__(self, engine: Engine) -> None:
+        self._engine = engine
+        self._lock = Lock()
+        self._state: State | None = None
+        self._latest: Event | None = None
+        self._nodes: Sequence[Node] = ()
+
+    def __call__(self, event: Event) -> None:
+        with self._lock:
+            if self._state is None:
+                count = self._engine.size
+                self._nodes = [self._engine.node(index) for index in range(count)]
+                self._state = State(Shape([self._engine.parent(index) for index in range(count)]), self._nodes)
+            self._state.take(event)
+            self._latest = event
+
+    def snapshot(self, label: Callable[[Node], str]) -> Snapshot:
+        """The state now; `label` gives the words of a command."""
+        with self._lock:
+            state, latest = self._state, self._latest
+            if state is None or latest is None:
+                return Snapshot("", -1, 0.0, Status.IDLE, {}, (), "", None)
+            codes = list(state.statuses)
+            leaves = [index for index, code in enumerate(codes) if code == RUNNING and state.is_leaf(index)]
+            number = latest.number + latest.count - 1
+            run, t, said, robot = latest.run, latest.t, state.said, state.robot
+        path = self._engine.path
+        reached = {path(index): _status(code) for index, code in enumerate(codes) if code != IDLE}
+        running = tuple(label(self._nodes[index]) for index in leaves)
+        return Snapshot(run, number, t, _status(codes[0]), reached, running, said, robot)
+
+    def statuses(self, label: Callable[[Node], str]) -> dict[str, Status]:
+        """The status of each node by its words."""
+        with self._lock:
+            codes = list(self._state.statuses) if self._state is not None else []
+        found: dict[str, Status] = {}
+        for node, code in zip(self._nodes, codes, strict=True):
+            words, status = label(node), _status(code)
+            if status != Status.IDLE or words not in found:
+                found[words] = status
+        return found
+
+
+def _status(code: int) -> Status:
+    return Status(min(code, IDLE))  # HALTED and SUSPENDED are IDLE for everybody else

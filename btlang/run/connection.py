@@ -1,38 +1,31 @@
-"""Where a mission runs: a robot in its world, the clock, and the stream of what happens there."""
+"""A robot that runs can use: itself, how it does words, and how its time passes."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
 from typing import Any, Protocol
 
-from btlang.engine.clock import Clock
+from btlang.run.bus import Bus
 from btlang.run.controls import Controls
-from btlang.run.events import EventStream
 from btlang.run.pace import Pace
 from btlang.tree.node import Tree
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.engine.leaf import LeafBinding
-    from btlang.run.events import Sink
     from btlang.vocabulary.entry import Entry
     from btlang.vocabulary.vocabulary import Vocabulary
 
 
-class Stage(Protocol):
+class Connection(Protocol):
     """One for a run, or for several that follow each other. Used by the thread of the run."""
-
-    @property
-    def clock(self) -> Clock:
-        """Time of the run under way."""
-
-    @property
-    def events(self) -> EventStream:
-        """What happens in the run under way."""
 
     @property
     def robot(self) -> Any:
         """The robot (btlang.robots.robot.Robot), which learns the places of the mission."""
+
+    @property
+    def bus(self) -> Bus:
+        """That of the run under way."""
 
     def bind(self, entry: Entry, vocabulary: Vocabulary) -> LeafBinding | None:
         """How the robot itself does what an entry says; None where its `call` does. Raises MissionError."""
@@ -40,11 +33,11 @@ class Stage(Protocol):
     def check(self, tree: Tree, vocabulary: Vocabulary) -> None:
         """Raises MissionError where the robot lacks what the leaves of the tree need."""
 
-    def begin(self, sinks: Iterable[Sink]) -> None:
-        """A new run: time starts at 0 and events go to these sinks."""
+    def begin(self, bus: Bus) -> None:
+        """A new run: what the robot reports goes on this bus."""
 
     def pace(self, speed: float, controls: Controls) -> Pace:
-        """What waits between two ticks. Raises ValueError for a speed that the stage cannot keep."""
+        """What waits between two ticks. Raises ValueError for a speed that the robot cannot keep."""
 
     def close(self) -> None:
         """Lets go of the robot, at rest, within a few seconds. May be called twice."""

@@ -1,4 +1,4 @@
-"""The stage of a mission on a ROS 2 robot: its node, its clock, and the end that leaves nothing behind."""
+"""The connection to a ROS 2 robot: its node, its clock, and the end that leaves nothing behind."""
 
 from __future__ import annotations
 
@@ -9,7 +9,6 @@ from typing import Any
 from rosgraph_msgs.msg import Clock as ClockMessage
 
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
-from btlang.engine.clock import Clock
 from btlang.robots.world import World
 from btlang.ros.available import require_ros
 from btlang.ros.binding import bind_ros
@@ -23,8 +22,8 @@ from btlang.ros.robot import RosRobot
 from btlang.ros.serving.names import served
 from btlang.ros.waiting import wait_until
 from btlang.ros.wire import CLOCK, VELOCITY, Interface, needs
+from btlang.run.bus import Bus
 from btlang.run.controls import Controls
-from btlang.run.events import EventStream, RobotEvent
 from btlang.run.pace import Pace
 from btlang.text.source import Source, Span
 from btlang.tree.node import Node, Tree
@@ -32,7 +31,6 @@ from btlang.tree.node import Node, Tree
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.engine.leaf import LeafBinding
-    from btlang.run.events import Sink
     from btlang.vocabulary.entry import Entry
     from btlang.vocabulary.vocabulary import Vocabulary
 
@@ -43,8 +41,8 @@ _AGAIN = 2.0  # seconds that an older node gets
 _LAST_ANSWERS = 2.0  # seconds that goals which were halted get to end
 
 
-class RosStage:
-    """See `btlang.run.stage.Stage`. Names and poses are those of the world file, whose map is the robot's.
+class RosConnection:
+    """See `btlang.run.connection.Connection`. Names and poses are those of the world file, whose map is the robot's.
 
     With `sim_time` the mission's clock follows the topic /clock, else the system's. Missions run in real time.
     `namespace` is that of the robot and of the node, `node`, whose name is `name`. With `servers` actions are done by
@@ -55,8 +53,7 @@ class RosStage:
         self, world: World, *, sim_time: bool = False, namespace: str = "", name: str = "btlang", servers: str = ""
     ) -> None:
         self.world = world
-        self.clock = Clock()
-        self.events = EventStream()
+        self.bus = Bus()
         self._sim_time = sim_time
         self._servers = servers
         self._discovers_until = time.monotonic() + _DISCOVERY
@@ -65,7 +62,7 @@ class RosStage:
         self._now = self._ros_time if sim_time else time.monotonic
         now = NodeClock(self._spun.node).now
         try:
-            self.robot = RosRobot(self._spun.node, world, on_event=self._publish, now=now)
+            self.robot = RosRobot(self._spun.node, world, on_event=self._report, now=now)
             if sim_time:
                 self.robot.inbox.listen(CLOCK.name, ClockMessage, "simulated time")
             self._clients = Clients(self._spun.node)
@@ -164,9 +161,9 @@ class RosStage:
             raise MissionError([_lack(*lack) for lack in lacking])
         self.robot.inbox.read()
 
-    def begin(self, sinks: Iterable[Sink]) -> None:
-        """A new run: time starts at 0 and events go to these sinks."""
-        self.clock, self.events = Clock(), EventStream(*sinks)
+    def begin(self, bus: Bus) -> None:
+        """A new run: what the robot reports goes on this bus."""
+        self.bus = bus
 
     def pace(self, speed: float, controls: Controls) -> Pace:
         """Raises ValueError for another speed than 1: the robot's time passes by itself."""
@@ -185,8 +182,8 @@ class RosStage:
     def _ros_time(self) -> float:
         return float(self._spun.node.get_clock().now().nanoseconds) * 1e-9
 
-    def _publish(self, kind: str, data: Mapping[str, Any]) -> None:
-        self.events.publish(RobotEvent(self.clock.now, kind, data))
+    def _report(self, kind: str, data: Mapping[str, Any]) -> None:
+        self.bus.emit_robot(kind, data)
 
 
 def _lack(interface: Interface, node: Node | None, reason: str) -> Any:

@@ -6,7 +6,7 @@ import os
 from collections.abc import Mapping, Sequence
 from textwrap import indent
 
-from btlang.api import RunnableTree, load_simulation, world_vocabulary
+from btlang.api import Mission, world_vocabulary
 from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.engine.blackboard import Blackboard
 from btlang.frontends.lexer import Lexer
@@ -14,15 +14,12 @@ from btlang.frontends.mission import DEFAULT_PARSER, lexed, read_mission
 from btlang.passes import compile_mission, errors_of, run_passes
 from btlang.passes.compilation import Compilation
 from btlang.record import Record
+from btlang.session import Session
 from btlang.text.source import Source
-from btlang.tree.ast import Ast, Chain, Definition, Fact, Include, Mission, parts
+from btlang.tree.ast import Ast, Chain, Definition, Fact, Include, Program, all_facts, parts
 from btlang.tree.node import Tree
 from btlang.tree.visit import used_subtrees
 from btlang.vocabulary.values import Known
-
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    from btlang.robots.simulation import Simulation
 
 ENTRY = "<entry>"
 """What messages call the source of an entry."""
@@ -37,13 +34,13 @@ class Entry(Record):
 
 
 class Compiled(Record):
-    """An entry, and its tree with the subtrees that it defines and uses; without a command the tree does nothing."""
+    """An entry, and its mission with the subtrees that it defines and uses; without a command its tree does nothing."""
 
     entry: Entry
-    tree: RunnableTree
+    mission: Mission
 
 
-class Session:
+class MissionDraft:
     """Entries, with undo and redo; the words; the simulated world and the values, which go on from entry to entry."""
 
     def __init__(
@@ -69,13 +66,13 @@ class Session:
     def use_world(self, world: str | None) -> None:
         """Puts the robot into a world of its own file, None for the one that ships. Raises MissionError."""
         vocabulary = world_vocabulary(self._keywords, world)
-        self.simulation: Simulation = load_simulation(world)
+        self.session = Session(world=world)
         self.vocabulary = vocabulary
         self.world = world
 
     def reset(self) -> None:
         """The same world, as it was at the start."""
-        self.simulation = load_simulation(self.world)
+        self.session = Session(world=self.world)
         self._blackboard = Blackboard()
 
     def _source(self, text: str, name: str = ENTRY) -> Source:
@@ -121,9 +118,9 @@ class Session:
         entry = Entry(text, tuple((d.name, d.span.text) for d in own), reading.mission.body is not None)
         shown = Tree(tree.root, used_subtrees(tree, [name for name, _ in entry.definitions]))
         own_warnings = [warning for warning in compilation.warnings if warning.span.start < len(text)]
-        return Compiled(entry, self._runnable(shown, reading.mission, own_warnings, self._values()))
+        return Compiled(entry, self._mission(shown, mission, own_warnings))
 
-    def _values(self) -> Blackboard:
+    def values(self) -> Blackboard:
         """What entries before have set, without what was computed on the way or belongs to another mission."""
         known = self._known()
         for key in [key for key in self._blackboard.keys() if key not in known]:  # noqa: SIM118 - it is no dict
@@ -136,12 +133,12 @@ class Session:
             self._known_of = self.text, lexed(self._source(self.text), self.vocabulary).names.known
         return self._known_of[1]
 
-    def compile_all(self) -> RunnableTree:
+    def compile_all(self) -> Mission:
         """The whole mission. Raises MissionError, also where it holds no command."""
         source = self._source(self.text, self.file or "<session>")
         reading = read_mission(source, self.vocabulary, self._parser, errors_of=errors_of)
         tree = compile_mission(reading.mission, self.vocabulary)
-        return self._runnable(tree, reading.mission, reading.warnings, Blackboard())
+        return self._mission(tree, reading.mission, reading.warnings)
 
     def add(self, entry: Entry) -> None:
         """A definition takes the place of an older one of the same name."""
@@ -199,7 +196,6 @@ class Session:
             begin = end
         return entries
 
-    def _runnable(
-        self, tree: Tree, mission: Mission, warnings: Sequence[Diagnostic], values: Blackboard
-    ) -> RunnableTree:
-        return RunnableTree(tree, self.vocabulary, self.world, warnings, self.simulation, mission, values)
+    def _mission(self, tree: Tree, program: Program, warnings: Sequence[Diagnostic]) -> Mission:
+        facts = tuple(all_facts(program))
+        return Mission(tree, self.vocabulary, self.world, tuple(warnings), program, facts)

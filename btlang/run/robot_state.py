@@ -1,0 +1,37 @@
+"""What a robot senses at one time, read once for all who watch."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from btlang.engine.leaf import ActionFailed
+from btlang.record import Record
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+
+class RobotState(Record):
+    """Pose, percent of the battery, and what the hands hold; None for what the robot does not know."""
+
+    pose: Any = None
+    battery: float | None = None
+    left: str | None = None
+    right: str | None = None
+
+
+def read_robot(robot: Any) -> RobotState | None:
+    """The state of a robot, None where there is no robot. For the thread of the run."""
+    if robot is None:
+        return None
+    hands = (_asked(lambda: robot.holding("left")), _asked(lambda: robot.holding("right")))
+    return RobotState(_asked(lambda: robot.pose), _asked(lambda: robot.battery), *hands)
+
+
+def _asked(ask: Callable[[], Any]) -> Any:
+    """None where the robot has no such sensor, or it is silent."""
+    try:
+        return ask()
+    except (ActionFailed, AttributeError):
+        return None

@@ -1,0 +1,362 @@
+"""Sessions: a robot that runs missions one after the other; and runs: one execution of a mission."""
+
+from __future__ import annotations
+
+import math
+import threading
+import uuid
+from collections import deque
+from collections.abc import Iterable, Iterator
+from functools import cache, partial
+from threading import Condition
+
+from btlang.backends.checking import tree_problems
+from btlang.backends.engine import bind_leaf
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
+from btlang.engine.blackboard import Blackboard
+from btlang.engine.clock import Clock
+from btlang.engine.engine import Engine, EngineError
+from btlang.engine.timing import Stopwatch
+from btlang.robots.proxy import RobotProxy
+from btlang.robots.registry import connector
+from btlang.robots.world import Place
+from btlang.robots.world_problem import read_world
+from btlang.run.bus import INLINE, Bus
+from btlang.run.controls import Controls, disable
+from btlang.run.events import PeriodPassed
+from btlang.run.limits import RATES, SLOWEST
+from btlang.run.report import failure_report
+from btlang.run.runner import Outcome, Runner, traced_engine
+from btlang.run.snapshot import Follower, Snapshot
+from btlang.run.statuses import Status
+from btlang.run.story import Story
+from btlang.text.output import RED
+from btlang.text.source import NOWHERE
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Sequence
+    from types import TracebackType
+    from typing import Any, Protocol
+
+    from btlang.robots.registry import Connect
+    from btlang.run.connection import Connection
+    from btlang.run.events import Event, Sink
+    from btlang.tree.ast import Fact
+    from btlang.tree.node import Node, Tree
+    from btlang.vocabulary.vocabulary import Vocabulary
+
+    class Runnable(Protocol):
+        """What a session asks of a mission; see btlang.api.Mission."""
+
+        @property
+        def tree(self) -> Tree: ...
+
+        @property
+        def vocabulary(self) -> Vocabulary: ...
+
+        @property
+        def facts(self) -> Sequence[Fact]: ...
+
+        @property
+        def says_ids(self) -> bool: ...
+
+        def label(self, node: Node) -> str: ...
+
+
+MOST_EVENTS = 10_000
+"""So many of the latest events are kept for `Run.events`."""
+
+
+class Session:
+    """A robot, for many runs one after the other. Its world goes on from run to run; what a mission names ends with it.
+
+    `robot` is "simulated", "ros", "actions", or a function of a World that gives a btlang.run.connection.Connection;
+    `world` is the path of a world file, by default the world that ships. Raises MissionError where the world cannot be
+    read (BT070) or the robot cannot be reached (BT100), ValueError for another name.
+    """
+
+    def __init__(self, robot: str | Connect = "simulated", *, world: str | None = None) -> None:
+        self.world = read_world(world)
+        self.connection: Connection = connector(robot)(self.world)
+        self.current: Run | None = None
+        """The latest run."""
+
+    @property
+    def robot(self) -> Any:
+        """See btlang.robots.robot.Robot; only for the thread of the run while one is under way."""
+        return self.connection.robot
+
+    def prepare(
+        self,
+        mission: Runnable,
+        *,
+        speed: float | str = "real",
+        rate: float = 20.0,
+        time_limit: float | None = None,
+        sinks: Iterable[Sink] = (),
+        values: Blackboard | None = None,
+        controls: Controls | None = None,
+    ) -> Run:
+        """A run that is not under way yet: for `Run.execute` and `Run.tick`.
+
+        `speed` is "real", "max" or a factor of real time; `rate` is in ticks a second of the mission, which ends after
+        `time_limit` seconds; `sinks` get every event (see btlang.run.events) by their policy (see btlang.run.bus);
+        `values` are those of the blackboard, by default none; `controls` may be made before the run.
+
+        Raises MissionError where a command cannot run (BT080) or the robot lacks what it needs (BT101), ValueError for
+        another speed or rate, RuntimeError while a run is under way.
+        """
+        if self.current is not None and self.current.is_under_way:
+            raise RuntimeError("a run is under way; a session has one at a time")
+        factor = {"real": 1.0, "max": math.inf}.get(speed) if isinstance(speed, str) else speed
+        if factor is None or not factor >= SLOWEST:
+            raise ValueError(f'speed is "real", "max" or a number from {SLOWEST} on: {speed!r}')
+        if not RATES[0] <= rate <= RATES[1]:
+            raise ValueError(f"rate is from {RATES[0]:g} to {RATES[1]:g} ticks a second: {rate!r}")
+        self.current = Run(mission, self.connection, factor, rate, time_limit, sinks, values, controls)
+        return self.current
+
+    def run(self, mission: Runnable, **options: Any) -> Run:
+        """Runs a mission to its end, in this thread; the options are those of `prepare`. Ctrl-C ends it."""
+        run = self.prepare(mission, **options)
+        run.execute()
+        return run
+
+    def start(self, mission: Runnable, **options: Any) -> Run:
+        """As `run`, in a thread of its own; returns at once."""
+        run = self.prepare(mission, **options)
+        run.start()
+        return run
+
+    def emergency_stop(self) -> None:
+        """Stops the robot at once, from any thread, and ends the run under way."""
+        if self.current is not None and self.current.is_under_way:
+            self.current.emergency_stop()
+        else:
+            disable(self.connection.robot)
+
+    def close(self) -> None:
+        """Ends the run under way and lets go of the robot, at rest. May be called twice."""
+        if self.current is not None and self.current.is_under_way:
+            self.current.stop()
+            self.current.wait()
+        self.connection.close()
+
+    def __enter__(self) -> Session:
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+
+class Run:
+    """One execution of a mission, made by a Session. All but `execute`, `tick` and `halt` may be called in any thread.
+
+    It ends once; after that only what it came to can be asked for.
+    """
+
+    def __init__(
+        self,
+        mission: Runnable,
+        connection: Connection,
+        speed: float,
+        rate: float,
+        time_limit: float | None,
+        sinks: Iterable[Sink],
+        values: Blackboard | None,
+        controls: Controls | None,
+    ) -> None:
+        self.id = uuid.uuid4().hex
+        self.mission = mission
+        self.controls = Controls() if controls is None else controls
+        """Pause, resume, single step and the stops, from any thread."""
+        self.controls.robot = connection.robot
+        self.outcome: Outcome | None = None
+        """How it ended; None until then."""
+        self.bus = Bus(self.id, Clock(), queued=speed < math.inf)
+        self._thread: threading.Thread | None = None
+        self._error: BaseException | None = None
+        self._under_way = False
+        self._engine = self._bound(connection, sinks, values, timed=speed < math.inf)
+        self._story = Story(self._engine)
+        self._follower = Follower(self._engine)
+        self._recent = _Recent()
+        for own in (self._story, self._follower, self._recent):
+            self.bus.add(own)
+        self._runner = Runner(
+            self._engine, bus=self.bus, robot=connection.robot, rate=rate, speed=speed, time_limit=time_limit,
+            controls=self.controls, pace=connection.pace,
+        )  # fmt: skip
+
+    @property
+    def is_under_way(self) -> bool:
+        """Whether it has begun and has not ended."""
+        return self._under_way
+
+    def execute(self) -> Outcome:
+        """Runs to the end, in this thread, and brings the robot to rest. Once for each run."""
+        self._under_way = True
+        try:
+            outcome: Outcome = self._runner.run().replace(why=self.why, statuses=self.statuses)
+            self.outcome = outcome
+            return outcome
+        finally:
+            self.bus.close()
+            self._under_way = False
+            self._recent.close()
+
+    def start(self) -> None:
+        """As `execute`, in a thread of its own; returns at once."""
+        self._under_way = True
+        self._thread = threading.Thread(target=self._work, name="btlang run", daemon=True)
+        self._thread.start()
+
+    def wait(self, seconds: float | None = None) -> Outcome | None:
+        """The outcome, once the run is over; None after so many seconds. Raises what ended the run otherwise."""
+        if self._thread is not None:
+            self._thread.join(seconds)
+        if self._error is not None:
+            raise self._error
+        return self.outcome
+
+    def tick(self) -> int:
+        """Ticks once and moves the world on by one period; returns the status (see btlang.engine.status)."""
+        return self._runner.tick()
+
+    def halt(self) -> None:
+        """Halts every running leaf and stops the robot; the next tick starts anew."""
+        self._runner.halt()
+
+    def pause(self) -> None:
+        """The robot comes to rest, and the time of the mission stands still."""
+        self.controls.pause()
+
+    def resume(self) -> None:
+        """Goes on; the commands that the pause interrupted start anew."""
+        self.controls.resume()
+
+    def step(self) -> None:
+        """Makes one more tick, then pauses."""
+        self.controls.step()
+
+    def stop(self) -> None:
+        """Ends it, where it has not begun before its first tick."""
+        self.controls.stop()
+
+    def emergency_stop(self) -> None:
+        """Stops the robot at once without waiting for the tick under way, then ends the run.
+
+        A leaf that hangs does not delay it, and what a leaf still commands in that tick is ignored. A `tick` halts the
+        tree and returns IDLE.
+        """
+        self.controls.emergency_stop()
+
+    def why(self, *, colour: bool = False) -> str:
+        """Why it failed, as `btc run` says it; "" where it did not fail.
+
+        Names the sentence, with `colour` underlined in red, the leaf and its reason, and what had been tried before.
+        """
+        failure = self._engine.failure
+        if failure is None:
+            return ""
+        return failure_report(failure, self._story, self.mission.label, RED if colour else "")
+
+    def events(self) -> Iterator[Event]:
+        """The latest events (MOST_EVENTS of them), then those that come, until the run is over."""
+        return self._recent.events()
+
+    def snapshot(self) -> Snapshot:
+        """The statuses of all nodes and what the robot does, after the event whose number it has."""
+        return self._follower.snapshot(self.mission.label)
+
+    def statuses(self) -> dict[str, Status]:
+        """The status that each node has now, or had at the end, by its words; nodes with equal words share the latest.
+
+        IDLE nodes were not reached, or were reset when something above them ended.
+        """
+        return self._follower.statuses(self.mission.label)
+
+    @property
+    def sink_errors(self) -> list[Exception]:
+        """What sinks raised; such a sink gets no more events, and the mission goes on."""
+        return self.bus.errors
+
+    def _work(self) -> None:
+        try:
+            self.execute()
+        except BaseException as error:  # for who waits
+            self._error = error
+
+    def _bound(
+        self, connection: Connection, sinks: Iterable[Sink], values: Blackboard | None, *, timed: bool
+    ) -> Engine:
+        mission = self.mission
+        connection.robot.name_places(Place(fact.name, fact.x, fact.y, fact.facing) for fact in mission.facts)
+        connection.check(mission.tree, mission.vocabulary)
+        for sink in sinks:
+            self.bus.add(sink)
+        connection.begin(self.bus)
+        bind = cache(partial(_bind, mission.vocabulary, connection))
+        try:
+            return traced_engine(
+                mission.tree, bind, bus=self.bus, services={"robot": connection.robot}, proxies={"robot": RobotProxy},
+                blackboard=values, stopwatch=Stopwatch() if timed else None,
+            )  # fmt: skip
+        except EngineError as error:
+            raise MissionError(self._refused(error, connection)) from None
+
+    def _refused(self, error: EngineError, connection: Connection) -> list[Diagnostic]:
+        """What to say of a tree that no engine runs: all that is wrong with it where it says nodes by their ids."""
+        mission = self.mission
+        span = error.node.span or NOWHERE
+        refused = diagnostic("BT080", span, id=error.node.id, reason=error.message)
+        if not mission.says_ids:
+            return [refused]
+        bind = cache(partial(_bind, mission.vocabulary, connection))
+        return tree_problems(mission.tree, mission.vocabulary, bind, {"robot": connection.robot}) or [refused]
+
+
+def _bind(vocabulary: Vocabulary, connection: Connection, node_id: str) -> Any:
+    return bind_leaf(node_id, vocabulary, connection.bind)
+
+
+class _Recent:
+    """Keeps the latest events for who asks later."""
+
+    policy = INLINE
+    needs_periods = False
+
+    def __init__(self) -> None:
+        self._events: deque[Event] = deque(maxlen=MOST_EVENTS)
+        self._count = 0
+        self._over = False
+        self._changed = Condition()
+
+    def __call__(self, event: Event) -> None:
+        if isinstance(event, PeriodPassed):
+            return
+        with self._changed:
+            self._events.append(event)
+            self._count += 1
+            self._changed.notify_all()
+
+    def close(self) -> None:
+        with self._changed:
+            self._over = True
+            self._changed.notify_all()
+
+    def events(self) -> Iterator[Event]:
+        given = 0
+        while True:
+            with self._changed:
+                while self._count == given and not self._over:
+                    self._changed.wait()
+                new = min(self._count - given, len(self._events))
+                batch = list(self._events)[len(self._events) - new :]
+                given = self._count
+            if not batch:
+                return
+            yield from batch
