@@ -5,11 +5,11 @@ from __future__ import annotations
 import pytest
 from hypothesis import given, settings
 
+from btlang.repl.draft import MissionDraft
 from btlang.repl.preview import continuations, preview
-from btlang.repl.session import Session
 from tests.language.sentences import broken_missions, english
 
-SESSION = Session()
+SESSION = MissionDraft()
 
 
 @pytest.mark.parametrize(
@@ -46,9 +46,9 @@ def test_marks() -> None:
 
 
 def test_names_of_the_session_are_offered() -> None:
-    session = Session()
-    session.add(session.compile("bow is nod").entry)
-    (offer,) = (option for option in continuations(session, "wave then bo") if option.kind == "name")
+    draft = MissionDraft()
+    draft.add(draft.compile("bow is nod").entry)
+    (offer,) = (option for option in continuations(draft, "wave then bo") if option.kind == "name")
     assert (offer.text, offer.start) == ("bow", 10)
 
 

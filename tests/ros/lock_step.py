@@ -15,11 +15,11 @@ from time import monotonic
 import pytest
 from std_msgs.msg import Float64
 
-from btlang.cli import read_world
+from btlang.robots.world_problem import read_world
+from btlang.ros.connection import RosConnection
 from btlang.ros.ending import ending_signals
 from btlang.ros.pace import RosPace
 from btlang.ros.simulator.simulator import Simulator
-from btlang.ros.stage import RosStage
 from btlang.run.controls import Controls
 
 _ALLOWED, _DONE = "/lock_step/allowed", "/lock_step/done"
@@ -32,7 +32,7 @@ _EXACT = 1e-6
 class LockStep(RosPace):
     """A period is over when the robot has come as far."""
 
-    def __init__(self, stage: RosStage, controls: Controls) -> None:
+    def __init__(self, stage: RosConnection, controls: Controls) -> None:
         self._clock = stage.node.get_clock()
         super().__init__(controls, lambda: float(self._clock.now().nanoseconds) * 1e-9)
         self._done = 0.0
@@ -59,7 +59,7 @@ class LockStep(RosPace):
 
 def in_lock_step(patch: pytest.MonkeyPatch) -> None:
     """From now on missions with `--robot ros --sim-time` in this process go in lock step with such a robot."""
-    patch.setattr(RosStage, "pace", lambda stage, speed, controls: LockStep(stage, controls))
+    patch.setattr(RosConnection, "pace", lambda stage, speed, controls: LockStep(stage, controls))
 
 
 def serve(world: str) -> int:
