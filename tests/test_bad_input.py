@@ -14,6 +14,7 @@ from btlang.frontends.mission import read_mission
 from btlang.passes import compile_mission
 from btlang.text.source import Source
 from tests.profiles import searches
+from tests.trial import Trial
 
 BOTH = pytest.mark.parametrize("parser", ["shunting-yard", "lark"])
 VOCABULARY = world_vocabulary()
@@ -114,7 +115,7 @@ def test_nesting_1000_deep(text: str, parser: str) -> None:
 
 
 def test_a_deep_tree_ticks_and_halts() -> None:
-    tree = parse_tree("(print x and " * 1000 + "wait 5 s" + ")" * 1000)
+    tree = Trial("(print x and " * 1000 + "wait 5 s" + ")" * 1000)
     assert tree.tick() == RUNNING
     tree.halt()
 

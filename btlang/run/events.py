@@ -53,7 +53,7 @@ class Event(Record):
     wall: float
 
     @classmethod
-    def stamped(cls, t: float, run: str, number: int, *data: Any, **more: Any) -> Event:
+    def stamped(cls, t: float, run: str, number: int, /, *data: Any, **more: Any) -> Event:
         """An event of this class that happens now. The one place that fills in what all events have."""
         return cls(t, run, number, time(), *data, **more)
 
