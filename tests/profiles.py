@@ -1,4 +1,4 @@
-"""How long property tests search: a while in each run of the suite, and much longer with `pytest -m long`."""
+"""How much tests do that search or repeat: a little in each run of the suite, and much with `pytest -m long`."""
 
 from __future__ import annotations
 
