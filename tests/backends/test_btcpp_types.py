@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 import btlang
@@ -20,6 +20,7 @@ from btlang.diagnostics.diagnostic import MissionError
 from btlang.engine.status import SUCCESS
 from btlang.tree.node import Node, Tree
 from tests.engine.scripted import n
+from tests.profiles import searches
 
 PORTS = {
     "Repeat": {"num_cycles": "int"},
@@ -185,7 +186,7 @@ def missions(draw: st.DrawFn) -> str:
     return "\n".join([*lines, _BEFORE, *rest])
 
 
-@settings(max_examples=400, deadline=None)
+@searches(100, 4000, deadline=None)
 @given(missions())
 def test_random_missions_are_taken(text: str) -> None:
     try:

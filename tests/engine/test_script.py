@@ -7,12 +7,13 @@ import re
 from fractions import Fraction
 
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.leaf import ActionFailed
 from btlang.engine.script import ScriptError, ScriptFailed, as_text, compile_script
+from tests.profiles import searches
 
 ENUMS = {"RED": 1, "BLUE": 3}
 
@@ -282,7 +283,7 @@ WORDS = "1 0.5 0x1F 1e9 'a' '' x @y RED true ' . é \\"
 PIECES = (*SIGNS.split(), *WORDS.split(), " ", "\n")
 
 
-@settings(max_examples=1500)
+@searches(500, 15000)
 @given(st.one_of(st.text(max_size=30), st.lists(st.sampled_from(PIECES), max_size=25).map("".join)))
 @example("+6e66>6666.6+66\r6>6;6e62=6+6e66>66666'; en';o';o'; en'; \x7fn\x7fr;6.6+66.H>6+6\x80")
 def test_any_text_runs_or_tells_why_not(code: str) -> None:

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 
 from btlang.repl.draft import MissionDraft
 from btlang.repl.preview import continuations, preview
 from tests.language.sentences import broken_missions, english
+from tests.profiles import searches
 
 SESSION = MissionDraft()
 
@@ -52,7 +53,7 @@ def test_names_of_the_session_are_offered() -> None:
     assert (offer.text, offer.start) == ("bow", 10)
 
 
-@settings(max_examples=100, deadline=None)
+@searches(30, 1000, deadline=None)
 @given(broken_missions().map(english))
 def test_any_text_has_a_preview(text: str) -> None:
     seen = preview(SESSION, text)

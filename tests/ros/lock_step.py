@@ -24,7 +24,7 @@ from btlang.run.controls import Controls
 
 _ALLOWED, _DONE = "/lock_step/allowed", "/lock_step/done"
 """Until which simulated second the robot may step, and how far it has come. Subscribed to last, so heard last."""
-_STEP = 0.05  # simulated seconds, and seconds of real time where no mission has ticked yet
+_STEP = 0.1  # simulated seconds, and seconds of real time where no mission has ticked yet
 _PATIENCE = 0.5  # real seconds after which the robot takes a step unasked: while a mission ends nothing ticks
 _EXACT = 1e-6
 
@@ -44,7 +44,7 @@ class LockStep(RosPace):
         self._controls.wake()
 
     def sleep(self, period: float, wait: float = inf) -> float:
-        due = self._last + min(period, wait)
+        due = self._last + max(_STEP, min(period, wait))
         self._allowed.publish(Float64(data=due))
         while (now := self._done) < due - _EXACT and not self._woken and not self._controls.stopped:
             self._controls.wait(None)

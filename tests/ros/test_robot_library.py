@@ -40,7 +40,9 @@ def test_an_emergency_stop_from_another_thread(sim: Command) -> None:
     run.emergency_stop()  # the robot is gone; nothing happens
 
 
-def test_a_robot_that_lacks_something(tmp_path: Path) -> None:
+def test_a_robot_that_lacks_something(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("btlang.ros.stage._DISCOVERY", 1.0)
+    monkeypatch.setattr("btlang.ros.stage._AGAIN", 1.0)
     with pytest.raises(btlang.MissionError, match="BT101"):
         btlang.parse_tree("move forward").run(robot="ros")
 

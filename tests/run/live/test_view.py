@@ -21,6 +21,7 @@ from btlang.run.live.capture import Capture
 from btlang.run.live.keys import Keys
 from btlang.run.live.view import LiveView
 from btlang.tree.node import Node, Tree
+from tests.profiles import amount
 from tests.trial import Trial
 
 
@@ -59,15 +60,17 @@ def terminal() -> Iterator[Pty]:
     made.close()
 
 
+@pytest.mark.long
 def test_a_tree_of_any_depth(terminal: Pty) -> None:
+    depth = amount(3000, 10_000)  # the paths of all nodes are told, which takes the square of it
     root = Node("AlwaysSuccess")
-    for _ in range(10_000):
+    for _ in range(depth):
         root = Node("ForceSuccess", (root,))
     trial = Trial(Mission(Tree(root), world_vocabulary()))
     with LiveView(trial.mission, trial.controls, terminal.file) as view:
         assert trial.run(speed="max", sinks=[view]).status == SUCCESS
     assert trial.sink_errors == []
-    assert re.search(r"✓ ForceSuccess  \(99\d\d nodes\)", terminal.close())
+    assert re.search(rf"✓ ForceSuccess  \({depth // 100 - 1}\d\d nodes\)", terminal.close())
 
 
 def test_from_another_thread(terminal: Pty) -> None:
