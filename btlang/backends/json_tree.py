@@ -25,6 +25,7 @@ SCHEMA = os.path.join(os.path.dirname(os.path.abspath(__file__)), "tree.schema.j
 
 FORMAT = 1
 _DEEPEST = 100  # brackets in each other: nodes are a list
+_MARKS = re.compile(r'"(?:[^"\\]|\\.)*+"?|[\[{]|[\]}]', re.DOTALL)  # a text that does not end is read once, too
 _LONGEST = 200  # characters of a sentence: that of the root is the whole mission
 _PORT_KEYS = {"name": str, "direction": str, "type": str, "default": str, "text": str}
 
@@ -115,7 +116,7 @@ class _Wrong(Exception):
 def _check_depth(text: str) -> None:
     """Python's reader would recurse, in C: where an engine has raised the limit of recursion, it would crash."""
     depth = 0
-    for found in re.finditer(r'"(?:[^"\\]|\\.)*"|[\[{]|[\]}]', text):
+    for found in _MARKS.finditer(text):
         mark = found[0]
         depth += (mark in "[{") - (mark in "]}")
         if depth > _DEEPEST:

@@ -222,6 +222,20 @@ def test_an_exception_in_a_leaf_is_its_failure(id: str, leaf: Callable[[World], 
 
 
 @every_type
+def test_an_exit_stays_within_the_tree_also_where_nobody_watches(id: str) -> None:
+    """Functions are then called by the node above them itself."""
+    world = World()
+    world.cls("Z", "r")
+    scripts = RUNS[id][0].split()
+    children = [exits(world) if script == "R" else child
+                for script, child in zip(scripts, leaves(world, scripts), strict=True)]  # fmt: skip
+    engine = world.engine(around(id, *children))
+    engine.blackboard.set("x", 1)
+    for _ in range(3):
+        engine.tick()
+
+
+@every_type
 @pytest.mark.parametrize("order", ["halt", "suspend"])
 def test_an_exception_in_halt_keeps_no_other_leaf_from_halting(id: str, order: str) -> None:
     def stubborn() -> Iterator[None]:

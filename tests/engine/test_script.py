@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.leaf import ActionFailed
 from btlang.engine.script import ScriptError, ScriptFailed, as_text, compile_script
+from btlang.engine.script_values import literal
 from tests.profiles import searches
 
 ENUMS = {"RED": 1, "BLUE": 3}
@@ -221,6 +222,11 @@ def test_enums_hide_keys_and_are_optional() -> None:
 def test_texts_for_people() -> None:
     values = (3, 3.0, 0.5, -2.0, True, 1e20, "3.0", None, math.nan)
     assert [as_text(value) for value in values] == ["3", "3", "0.5", "-2", "1", "1e+20", "3.0", "None", "nan"]
+
+
+def test_a_constant_with_more_digits_than_a_number_can_have_is_a_text() -> None:
+    assert literal("9" * 5000) == "9" * 5000
+    assert literal("-12") == -12
 
 
 def test_as_deep_as_allowed() -> None:

@@ -79,7 +79,7 @@ class MissionThread:
             report = self._run()
         except MissionError as error:
             report = Report("failure", problems(error))
-        except Exception as error:  # nothing may end the node but its user
+        except BaseException as error:  # nothing may end the node but its user, nor keep it busy for ever
             report = Report("failure", f"an error inside btlang: {error!r}")
         self.over = True
         self._ended(report)
