@@ -33,7 +33,7 @@ class Command(Record):
 
 
 COMMANDS = (
-    Command("help", "[PHRASE]", "tells about a phrase or word of the language, or about the REPL"),
+    Command("help", "[PHRASE]", "explains a phrase or word, or the prompt itself"),
     Command("words", "[SEARCH]", "lists what can be said"),
     Command("show", "[NAME|tree]", "shows the mission, one definition, or the tree of all"),
     Command("names", "", "lists what is defined"),

@@ -61,7 +61,7 @@ class Repl:
         from btlang.repl.screen import CONTINUED, PROMPT, Screen
 
         screen = Screen(self._draft, self._store)
-        show("btlang: type what the robot is to do. 'help' tells more; Ctrl-D twice leaves.")
+        show("btlang: type what the robot should do. 'help' explains more; press Ctrl-D twice to leave.")
         if self._store.problem:
             show(f"What you type is not kept: {self._store.problem}")
         left = self._store.left()

@@ -163,7 +163,7 @@ def _unknown(known: Sequence[Item], search: str) -> list[str]:
         said |= (item if item.sort == "value" else item.replace(names=())).words()
     near = [near for word in odd for near in nearest(word, said)] if odd else wanted
     lines = ["No phrase has the words: " + "".join(c if c.isprintable() else "?" for c in search)]
-    return [*lines, "The nearest: " + ", ".join(dict.fromkeys(near))] if near else lines
+    return [*lines, "Similar: " + ", ".join(dict.fromkeys(near))] if near else lines
 
 
 def _wrapped(text: str, first: str, then: str) -> list[str]:
