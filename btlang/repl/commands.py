@@ -7,7 +7,7 @@ from collections.abc import Callable
 
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.reading import read_source, unwritable
-from btlang.frontends.definitions import find_definitions
+from btlang.frontends.mission.symbols.definitions import find_definitions
 from btlang.record import Record
 from btlang.repl.draft import Entry, MissionDraft
 from btlang.repl.store import Store

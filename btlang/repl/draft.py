@@ -9,8 +9,8 @@ from textwrap import indent
 from btlang.api import Mission, world_vocabulary
 from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.engine.blackboard import Blackboard
-from btlang.frontends.lexer import Lexer
-from btlang.frontends.mission import DEFAULT_PARSER, lexed, read_mission
+from btlang.frontends.mission.reader import DEFAULT_PARSER, lexed, read_mission
+from btlang.frontends.mission.tokens.lexer import Lexer
 from btlang.passes import compile_mission, errors_of, run_passes
 from btlang.passes.compilation import Compilation
 from btlang.record import Record

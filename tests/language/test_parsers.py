@@ -10,10 +10,10 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from btlang.diagnostics.diagnostic import MissionError
-from btlang.frontends import lark_parser, shunting_yard
-from btlang.frontends.build import Builder
-from btlang.frontends.parse_error import ParseError
-from btlang.frontends.token import Token
+from btlang.frontends.mission.parsers import lark_parser, shunting_yard
+from btlang.frontends.mission.parsers.build import Builder
+from btlang.frontends.mission.parsers.parse_error import ParseError
+from btlang.frontends.mission.token import Token
 from btlang.record import Record
 from btlang.text.source import Source
 from btlang.tree import ast

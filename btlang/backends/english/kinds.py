@@ -11,7 +11,7 @@ from btlang.backends.english.code import Computed, compared_by, computed, given_
 from btlang.backends.english.loops import Loop
 from btlang.english.naming import spelt
 from btlang.english.phrase import value_of
-from btlang.frontends.heads import find_heads
+from btlang.frontends.mission.symbols.prefixes import find_heads
 from btlang.record import Record
 from btlang.text.source import Source
 from btlang.text.words import split

@@ -6,7 +6,7 @@ from collections.abc import Set
 
 from btlang.backends.english.kinds import Around, Kinds, parameters
 from btlang.backends.english.loops import Loop, find_loops
-from btlang.frontends.definitions import find_definitions
+from btlang.frontends.mission.symbols.definitions import find_definitions
 from btlang.record import Record
 from btlang.text.source import Source
 from btlang.text.words import split

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from btlang.frontends.token import Listed, Token
+from btlang.frontends.mission.token import Listed, Token
 from btlang.vocabulary.entry import Entry
 
 

@@ -18,13 +18,13 @@ from collections.abc import Callable, Iterable, Iterator
 from itertools import islice, product
 
 from btlang.diagnostics.diagnostic import Diagnostic
-from btlang.frontends.definitions import Header
-from btlang.frontends.heads import find_heads
-from btlang.frontends.lexer import Lexer
-from btlang.frontends.matching import Matcher
-from btlang.frontends.spelling_rule import is_respelling, words_of
-from btlang.frontends.token import Listed, Token
-from btlang.frontends.unknown import nearest_known
+from btlang.frontends.mission.explanations.spelling_rule import is_respelling, words_of
+from btlang.frontends.mission.explanations.unknown import nearest_known
+from btlang.frontends.mission.grouping.grouping import Matcher
+from btlang.frontends.mission.symbols.definitions import Header
+from btlang.frontends.mission.symbols.prefixes import find_heads
+from btlang.frontends.mission.token import Listed, Token
+from btlang.frontends.mission.tokens.lexer import Lexer
 from btlang.record import Record
 from btlang.text.source import Source, Span
 from btlang.text.spelling import distance, respellings

@@ -9,9 +9,9 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.frontends.definitions import Definitions
-from btlang.frontends.heads import Head
-from btlang.frontends.value_types import ValueTypes
+from btlang.frontends.mission.symbols.definitions import Definitions
+from btlang.frontends.mission.symbols.prefixes import Head
+from btlang.frontends.mission.symbols.value_types import ValueTypes
 from btlang.text.words import Words
 from btlang.vocabulary.entry import COMPARISONS, Entry, Meaning
 from btlang.vocabulary.trie import add

@@ -10,7 +10,7 @@ from collections.abc import Iterator, Sequence
 from itertools import takewhile
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.frontends.token import NodeCall
+from btlang.frontends.mission.token import NodeCall
 from btlang.text.source import Span
 from btlang.text.spelling import respellings
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, statements

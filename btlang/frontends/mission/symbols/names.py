@@ -5,11 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.frontends.definitions import find_definitions
-from btlang.frontends.facts import find_facts
-from btlang.frontends.heads import find_heads
-from btlang.frontends.includes import Included, find_includes
-from btlang.frontends.nodes import find_main_names
+from btlang.frontends.mission.symbols.definitions import find_definitions
+from btlang.frontends.mission.symbols.facts import find_facts
+from btlang.frontends.mission.symbols.includes import Included, find_includes
+from btlang.frontends.mission.symbols.nodes import find_main_names
+from btlang.frontends.mission.symbols.prefixes import find_heads
 from btlang.text.source import Span
 from btlang.text.words import Words
 from btlang.tree.ast import Include, all_definitions, all_facts
@@ -70,7 +70,7 @@ class Names:
             self._name_values(text)
 
     def _name_values(self, text: Words) -> None:
-        from btlang.frontends.variables import Variables  # most missions have none
+        from btlang.frontends.mission.symbols.variables import Variables  # most missions have none
 
         before = len(self.definitions.problems)
         self._variables = Variables(text, self.vocabulary, self.heads, self.definitions, self.known)

@@ -8,11 +8,11 @@ from importlib import import_module
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.diagnostics.reading import MOST_DEEP, TOO_DEEP, included_path, read_included
-from btlang.frontends.build import Builder
-from btlang.frontends.includes import Included
-from btlang.frontends.lexer import Lexer
-from btlang.frontends.matching import Matcher
-from btlang.frontends.names import Load
+from btlang.frontends.mission.grouping.grouping import Matcher
+from btlang.frontends.mission.parsers.build import Builder
+from btlang.frontends.mission.symbols.includes import Included
+from btlang.frontends.mission.symbols.names import Load
+from btlang.frontends.mission.tokens.lexer import Lexer
 from btlang.record import Record
 from btlang.text.source import Source, Span
 from btlang.tree.ast import Ast, Definition, Nothing, Program
@@ -26,8 +26,8 @@ if TYPE_CHECKING:
     ErrorsOf: TypeAlias = Callable[[Program, Vocabulary], Iterable[Diagnostic]]
 
 PARSERS = {
-    "shunting-yard": "btlang.frontends.shunting_yard",
-    "lark": "btlang.frontends.lark_parser",  # imported only when asked for
+    "shunting-yard": "btlang.frontends.mission.parsers.shunting_yard",
+    "lark": "btlang.frontends.mission.parsers.lark_parser",  # imported only when asked for
 }
 DEFAULT_PARSER = "shunting-yard"
 
@@ -115,7 +115,7 @@ class _Reader:
             problems = [diagnostic("BT005", Span(source, 0, 0), example="move forward 1 m")]
         is_broken = any(problem.is_error for problem in problems)
         if is_broken:
-            from btlang.frontends.corrections import corrected  # most missions need none
+            from btlang.frontends.mission.corrections import corrected  # most missions need none
 
             problems = corrected(lexer, problems, self._errors if self._errors_of is not None else None)
         self.problems += problems

@@ -1,6 +1,6 @@
 """What may follow at the end of a text: phrases, values, names and connectives.
 
-Phrases come from the trie, read ahead. Whether a phrase may stand at its place is asked of the matching stage itself,
+Phrases come from the trie, read ahead. Whether a phrase may stand at its place is asked of the grouping itself,
 so that what is offered here and what is accepted there cannot differ.
 """
 
@@ -9,12 +9,12 @@ from __future__ import annotations
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
 
-from btlang.frontends.heads import JOINTS
-from btlang.frontends.includes import ROLE
-from btlang.frontends.matching import Matcher
-from btlang.frontends.mission import lexed
-from btlang.frontends.token import Token
-from btlang.frontends.value_completion import value_options
+from btlang.frontends.mission.completion.value_completion import value_options
+from btlang.frontends.mission.grouping.grouping import Matcher
+from btlang.frontends.mission.reader import lexed
+from btlang.frontends.mission.symbols.includes import ROLE
+from btlang.frontends.mission.symbols.prefixes import JOINTS
+from btlang.frontends.mission.token import Token
 from btlang.record import Record
 from btlang.text.source import Source
 from btlang.text.spelling import nearest
@@ -34,7 +34,7 @@ _ALIKE = {
     "if_possible": "within", "retry": "try", "wait_until": "check", "delay": "every", "in_order": "in_parallel",
     **dict.fromkeys(("set", "increase", "decrease", "remember", "include"), "command"), "each": "every",
 }  # fmt: skip
-"""Roles that stand where others stand: the matching stage is asked for one of them."""
+"""Roles that stand where others stand: the grouping stage is asked for one of them."""
 _LOOK_AHEAD = frozenset(("and", "or"))  # whether these are in their place depends on what follows
 _MAY_FOLLOW = ((), ("command",), ("condition",), ("close",), ("colon",))
 _LINE_STARTS = frozenset(("newline", "semi", "indent", "dedent"))
@@ -202,7 +202,7 @@ class Completer:
         return self._accepted[key]
 
     def _is_accepted(self, at: int, kind: str) -> bool:
-        """The matching stage looks ahead, so what it says of a token depends on what follows."""
+        """The grouping stage looks ahead, so what it says of a token depends on what follows."""
         first = self._statement(at)
         for after in _MAY_FOLLOW:
             failed = [place for place in self._failures(at, kind, *after) if place >= first]

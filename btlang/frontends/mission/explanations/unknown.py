@@ -9,11 +9,11 @@ from functools import lru_cache
 from itertools import takewhile
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.frontends.definitions import Definitions
-from btlang.frontends.heads import span_of
-from btlang.frontends.nodes import misread_node
-from btlang.frontends.spelling_rule import is_respelling
-from btlang.frontends.token import Token
+from btlang.frontends.mission.explanations.spelling_rule import is_respelling
+from btlang.frontends.mission.symbols.definitions import Definitions
+from btlang.frontends.mission.symbols.nodes import misread_node
+from btlang.frontends.mission.symbols.prefixes import span_of
+from btlang.frontends.mission.token import Token
 from btlang.record import Record
 from btlang.text.source import Span
 from btlang.text.spelling import nearest, nearest_start

@@ -1,6 +1,6 @@
 """Tokens between the stages of reading English.
 
-Raw tokens (from `lexer`) have the kinds of connective roles and punctuation. The matching stage turns them into
+Raw tokens (from `lexer`) have the kinds of connective roles and punctuation. The grouping stage turns them into
 grouped tokens, which need no look-ahead any more:
 
     COMMAND CONDITION                      operands
@@ -72,7 +72,7 @@ class NodeCall(Record):
 class Token:
     """One token: `value` depends on its kind; `start` and `end` are characters of the source.
 
-    Mutable, for the matching stage learns later what a comma means and which count closes a `repeat`.
+    Mutable, for the grouping stage learns later what a comma means and which count closes a `repeat`.
     """
 
     __slots__ = ("end", "kind", "start", "value")

@@ -6,9 +6,9 @@ import json
 from collections.abc import Sequence
 from functools import cache
 
-from btlang.frontends.build import CHAINS, Builder
-from btlang.frontends.parse_error import ParseError
-from btlang.frontends.token import Token
+from btlang.frontends.mission.parsers.build import CHAINS, Builder
+from btlang.frontends.mission.parsers.parse_error import ParseError
+from btlang.frontends.mission.token import Token
 from btlang.tree.ast import Ast
 from btlang.vocabulary.shipped import shipped
 

@@ -1,4 +1,4 @@
-"""The matching stage: one scan with a stack, like the matching of brackets, over raw tokens.
+"""The grouping stage: one scan with a stack, like the matching of brackets, over raw tokens.
 
 It decides all that needs look-ahead: where conditions end and which connectives join them, what each bare comma means,
 which count, `for`, `until` or `while` closes an open `repeat` or `try`, who owns each `otherwise`, and which comma
@@ -11,11 +11,11 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from btlang.frontends.conditions import STARTS_OPERAND, ConditionScan
-from btlang.frontends.definitions import Header
-from btlang.frontends.frames import Frame
-from btlang.frontends.scan import ENDS
-from btlang.frontends.token import Token
+from btlang.frontends.mission.grouping.conditions import STARTS_OPERAND, ConditionScan
+from btlang.frontends.mission.grouping.scan import ENDS
+from btlang.frontends.mission.grouping.stack import Frame
+from btlang.frontends.mission.symbols.definitions import Header
+from btlang.frontends.mission.token import Token
 from btlang.record import Record
 from btlang.text.source import Source
 

@@ -1,12 +1,12 @@
-"""The state of the matching stage: what comes in, what goes out, what is open, and what is wrong."""
+"""The state of the grouping stage: what comes in, what goes out, what is open, and what is wrong."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.frontends.frames import Frame
-from btlang.frontends.token import Token
+from btlang.frontends.mission.grouping.stack import Frame
+from btlang.frontends.mission.token import Token
 from btlang.text.source import Source, Span
 
 ENDS = frozenset(("newline", "semi", "close", "dedent", "end"))

@@ -6,13 +6,13 @@ from bisect import bisect_right
 from collections.abc import Mapping
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.frontends.condition_names import called, condition_names
-from btlang.frontends.heads import JOINTS, Head, span_of
-from btlang.frontends.includes import ROLE as INCLUDE
-from btlang.frontends.includes import misplaced
-from btlang.frontends.names import Load, Names
-from btlang.frontends.nodes import Unreadable, read_node, unreadable
-from btlang.frontends.token import Listed, Token
+from btlang.frontends.mission.symbols.includes import ROLE as INCLUDE
+from btlang.frontends.mission.symbols.includes import misplaced
+from btlang.frontends.mission.symbols.names import Load, Names
+from btlang.frontends.mission.symbols.nodes import Unreadable, read_node, unreadable
+from btlang.frontends.mission.symbols.prefixes import JOINTS, Head, span_of
+from btlang.frontends.mission.token import Listed, Token
+from btlang.frontends.mission.tokens.condition_names import called, condition_names
 from btlang.text.source import Source, Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, split
 from btlang.vocabulary.entry import Entry, Meaning
@@ -152,7 +152,7 @@ class Lexer:
 
     def _why(self, at: int, end: int, match: Match | None) -> Diagnostic:
         """What is wrong with words that are no phrase, or one that stands where it cannot."""
-        from btlang.frontends import unknown  # most missions have nothing to explain
+        from btlang.frontends.mission.explanations import unknown  # most missions have nothing to explain
 
         if match is None:
             return unknown.explain_unknown(
@@ -218,13 +218,13 @@ class Lexer:
         return text
 
     def _unknown_value(self, span: Span, key: str) -> None:
-        from btlang.frontends.unknown import unknown_value
+        from btlang.frontends.mission.explanations.unknown import unknown_value
 
         self.problems.append(unknown_value(span, key, self.values.known or ()))
 
     def _statement(self, head: Head, at: int) -> int:
         """A statement about a value of the mission. Returns where to go on."""
-        from btlang.frontends.remembering import read_statement  # most missions have none
+        from btlang.frontends.mission.tokens.assignments import read_statement  # most missions have none
 
         read = read_statement(head, self.text, at, self.vocabulary, self.values, self._port_text)
         if read is None:

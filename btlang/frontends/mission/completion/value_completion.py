@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from btlang.frontends.heads import JOINTS
+from btlang.frontends.mission.symbols.prefixes import JOINTS
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.continuations import begun, ways_on
 from btlang.vocabulary.trie import longest

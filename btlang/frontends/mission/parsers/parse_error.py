@@ -4,4 +4,4 @@ from __future__ import annotations
 
 
 class ParseError(Exception):
-    """The tokens are no mission. The matching stage lets none such through: seeing one is a bug of ours."""
+    """The tokens are no mission. The grouping stage lets none such through: seeing one is a bug of ours."""

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from btlang.frontends.token import Token
+from btlang.frontends.mission.token import Token
 
 
 class Frame:

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from btlang.frontends.heads import Head
-from btlang.frontends.token import Assigned, Each, Remembered, Token
+from btlang.frontends.mission.symbols.prefixes import Head
+from btlang.frontends.mission.token import Assigned, Each, Remembered, Token
 from btlang.text.words import Words
 from btlang.vocabulary.trie import Match, SlotValue, longest, reaches_beyond
 from btlang.vocabulary.values import Known, Values

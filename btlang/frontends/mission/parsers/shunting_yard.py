@@ -7,9 +7,9 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from btlang.frontends.build import CHAINS, Builder
-from btlang.frontends.parse_error import ParseError
-from btlang.frontends.token import Token
+from btlang.frontends.mission.parsers.build import CHAINS, Builder
+from btlang.frontends.mission.parsers.parse_error import ParseError
+from btlang.frontends.mission.token import Token
 from btlang.tree.ast import Ast, Chain
 
 PRECEDENCE = {

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from btlang.frontends.token import Assigned, Listed, NodeCall, Remembered, Token
+from btlang.frontends.mission.token import Assigned, Listed, NodeCall, Remembered, Token
 from btlang.text.source import Source, Span
 from btlang.tree.ast import (
     Assign,

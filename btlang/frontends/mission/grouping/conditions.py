@@ -1,11 +1,11 @@
-"""The part of the matching stage that deals with conditions: where they end, and what follows their end."""
+"""The part of the grouping stage that deals with conditions: where they end, and what follows their end."""
 
 from __future__ import annotations
 
 from btlang.diagnostics.diagnostic import diagnostic
-from btlang.frontends.frames import Frame
-from btlang.frontends.scan import ENDS, Scan
-from btlang.frontends.token import Token
+from btlang.frontends.mission.grouping.scan import ENDS, Scan
+from btlang.frontends.mission.grouping.stack import Frame
+from btlang.frontends.mission.token import Token
 
 STARTS_OPERAND = frozenset((
     "command", "condition", "unknown", "wait", "nothing", "fail", "not", "open", "repeat", "try", "retry", "check",

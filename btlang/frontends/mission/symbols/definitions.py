@@ -7,7 +7,7 @@ from collections.abc import Container, Iterable, Mapping
 from itertools import takewhile
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.frontends.nodes import Unreadable, read_node
+from btlang.frontends.mission.symbols.nodes import Unreadable, read_node
 from btlang.record import Record
 from btlang.text.source import Span
 from btlang.text.words import END_OF_STATEMENT, Words, statements
