@@ -20,7 +20,7 @@ from itertools import islice, product
 from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.frontends.mission.explanations.spelling_rule import is_respelling, words_of
 from btlang.frontends.mission.explanations.unknown import nearest_known
-from btlang.frontends.mission.grouping.grouping import Matcher
+from btlang.frontends.mission.grouping.grouping import Grouped, group
 from btlang.frontends.mission.symbols.definitions import Header
 from btlang.frontends.mission.symbols.prefixes import find_heads
 from btlang.frontends.mission.token import Listed, Token
@@ -49,7 +49,7 @@ _MARKS_FAR = 8  # what marks around words count: farther than any other spelling
 _UNKNOWN = frozenset(("BT010", "BT013"))
 
 Change = tuple[int, int, str]
-Compile = Callable[[Lexer, Matcher], Iterable[Diagnostic]]
+Compile = Callable[[Lexer, Grouped], Iterable[Diagnostic]]
 """What is wrong with a text that can be read."""
 
 
@@ -291,7 +291,7 @@ class _Corrections:
             number = trial.statements.index(self._statements[self._at(place)])
             grown = len(change[2]) - (change[1] - change[0]) if change[1] <= place else 0
             places.append(ends[number] + place - trial.statements[number].start + grown)
-        lexer, matcher, faults = _read(self._lexer, "".join(pieces))
+        lexer, grouped, faults = _read(self._lexer, "".join(pieces))
         sentences = [_sentence(lexer.text, place) for place in places]
         if len(faults) >= trial.faults or any(first <= fault <= last for fault in faults for first, last in sentences):
             return None
@@ -299,8 +299,8 @@ class _Corrections:
         broken = {bisect_right(ends, fault) - 1 for fault in faults}
         if broken:  # what else is wrong keeps the text from being compiled
             pieces = ["" if number in broken else piece for number, piece in enumerate(pieces)]
-            lexer, matcher, faults = _read(self._lexer, "".join(pieces))
-        return None if not faults and any(p.is_error for p in self._compile(lexer, matcher)) else meaning
+            lexer, grouped, faults = _read(self._lexer, "".join(pieces))
+        return None if not faults and any(p.is_error for p in self._compile(lexer, grouped)) else meaning
 
     def _piece(self, statement: _Statement, change: Change | None) -> str:
         piece = self._source.text[statement.start : statement.end]
@@ -309,13 +309,13 @@ class _Corrections:
         return piece[: change[0] - statement.start] + change[2] + piece[change[1] - statement.start :]
 
 
-def _read(like: Lexer, text: str) -> tuple[Lexer, Matcher, list[int]]:
+def _read(like: Lexer, text: str) -> tuple[Lexer, Grouped, list[int]]:
     """A text as the lexer of another one reads it, and the characters at which something is wrong."""
     source = Source(text)
     lexer = like.again(source)
-    matcher = Matcher(source, lexer.tokens, lexer.conditions, lexer.vocabulary.word)
+    grouped = group(source, lexer.tokens, lexer.conditions, lexer.vocabulary.word)
     unknown = [token.start for token in lexer.tokens if token.kind == "unknown"]
-    return lexer, matcher, unknown + [p.span.start for p in (*lexer.problems, *matcher.problems) if p.is_error]
+    return lexer, grouped, unknown + [p.span.start for p in (*lexer.problems, *grouped.problems) if p.is_error]
 
 
 def _sentence(text: Words, at: int) -> tuple[int, int]:

@@ -8,7 +8,7 @@ from importlib import import_module
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.diagnostics.reading import MOST_DEEP, TOO_DEEP, included_path, read_included
-from btlang.frontends.mission.grouping.grouping import Matcher
+from btlang.frontends.mission.grouping.grouping import Grouped, group
 from btlang.frontends.mission.parsers.build import Builder
 from btlang.frontends.mission.symbols.includes import Included
 from btlang.frontends.mission.symbols.names import Load
@@ -109,8 +109,8 @@ class _Reader:
     def read(self, source: Source, within: tuple[str, ...]) -> Included:
         """The mission; of one that has something wrong only its names, so that their uses are not wrong, too."""
         lexer = Lexer(source, self._vocabulary, load=self.loader(source, within), known=self._known)
-        matcher = Matcher(source, lexer.tokens, lexer.conditions, self._vocabulary.word)
-        problems = lexer.problems + matcher.problems
+        grouped = group(source, lexer.tokens, lexer.conditions, self._vocabulary.word)
+        problems = lexer.problems + grouped.problems
         if not lexer.tokens and not lexer.names.ends and not problems:
             problems = [diagnostic("BT005", Span(source, 0, 0), example="move forward 1 m")]
         is_broken = any(problem.is_error for problem in problems)
@@ -121,22 +121,22 @@ class _Reader:
         self.problems += problems
         if is_broken:
             return Included(_names_only(source, lexer), frozenset(lexer.conditions), lexer.names.known)
-        return Included(self._mission(source, lexer, matcher), frozenset(lexer.conditions), lexer.names.known)
+        return Included(self._mission(source, lexer, grouped), frozenset(lexer.conditions), lexer.names.known)
 
-    def _errors(self, lexer: Lexer, matcher: Matcher) -> Iterable[Diagnostic]:
+    def _errors(self, lexer: Lexer, grouped: Grouped) -> Iterable[Diagnostic]:
         """What is wrong with a text that can be read, for the corrections of one that cannot."""
         assert self._errors_of is not None
         try:
-            return self._errors_of(self._mission(lexer.text.source, lexer, matcher), self._vocabulary)
+            return self._errors_of(self._mission(lexer.text.source, lexer, grouped), self._vocabulary)
         except MissionError as error:
             return error.diagnostics
 
-    def _mission(self, source: Source, lexer: Lexer, matcher: Matcher) -> Program:
+    def _mission(self, source: Source, lexer: Lexer, grouped: Grouped) -> Program:
         parse = import_module(PARSERS[self._parser]).parse
         build = Builder(source)
         body: Ast | None = None
         definitions: dict[str, Definition] = {}
-        for unit in matcher.units:
+        for unit in grouped.units:
             if unit.header is None:
                 body = parse(unit.tokens, build) if unit.tokens else None
                 continue

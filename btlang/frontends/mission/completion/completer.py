@@ -10,7 +10,7 @@ from collections.abc import Iterable, Iterator
 from functools import lru_cache
 
 from btlang.frontends.mission.completion.value_completion import value_options
-from btlang.frontends.mission.grouping.grouping import Matcher
+from btlang.frontends.mission.grouping.grouping import group
 from btlang.frontends.mission.reader import lexed
 from btlang.frontends.mission.symbols.includes import ROLE
 from btlang.frontends.mission.symbols.prefixes import JOINTS
@@ -215,7 +215,7 @@ class Completer:
     def _failures(self, at: int, *kinds: str) -> list[int]:
         end = self._tokens[at].start if at < len(self._tokens) else self._start
         added = [Token(kind, "1", end, end) for kind in kinds]
-        return Matcher(self._source, [*self._tokens[:at], *added], self._lexer.conditions).failed_at
+        return group(self._source, [*self._tokens[:at], *added], self._lexer.conditions).failed_at
 
     def _about(self, meaning: Meaning) -> tuple[str, str]:
         if meaning.entry is not None:

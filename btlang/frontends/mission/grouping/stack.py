@@ -5,34 +5,46 @@ from __future__ import annotations
 from btlang.frontends.mission.token import Token
 
 
-class Frame:
+class StackEntry:
     """One open thing. `kind` is "top", "block", "bracket", "body", "condition" or "condition bracket".
 
     The owners are the nearest open forms of the same bracket that a count, an `until` (or `while`, `for`) or an
     `otherwise` would belong to; `after` says what follows the end of a condition. `commas` are those whose meaning
     the next connective will tell; `last` is the latest connective. `statement` of a group is "", "open" or "ended";
-    `joint` is the token between its statements. `is_group`: it holds statements; `is_condition`: operands in it are
+    `separator` is the token between its statements. `is_group`: it holds statements; `is_condition`: operands in it are
     conditions.
     """
 
     __slots__ = (
-        "after", "commas", "count_owner", "else_owner", "is_condition", "is_group", "joint", "kind", "last", "opener",
-        "statement", "stop_owner",
+        "after",
+        "commas",
+        "count_owner",
+        "else_owner",
+        "is_condition",
+        "is_group",
+        "kind",
+        "last",
+        "opener",
+        "separator",
+        "statement",
+        "stop_owner",
     )  # fmt: skip
 
-    def __init__(self, kind: str, opener: Token | None = None, outer: Frame | None = None, after: str = "") -> None:
+    def __init__(
+        self, kind: str, opener: Token | None = None, outer: StackEntry | None = None, after: str = ""
+    ) -> None:
         self.kind = kind
         self.is_group = kind in ("top", "block", "bracket")
         self.is_condition = kind in ("condition", "condition bracket")
         self.opener = opener
         self.after = after
-        self.count_owner: Frame | None = outer.count_owner if outer else None
-        self.stop_owner: Frame | None = outer.stop_owner if outer else None
-        self.else_owner: Frame | None = outer.else_owner if outer else None
+        self.count_owner: StackEntry | None = outer.count_owner if outer else None
+        self.stop_owner: StackEntry | None = outer.stop_owner if outer else None
+        self.else_owner: StackEntry | None = outer.else_owner if outer else None
         self.commas: list[Token] = []
         self.last: Token | None = None
         self.statement = ""
-        self.joint = "SEMI"
+        self.separator = "SEMI"
 
     def connective(self, token: Token) -> None:
         """Notes a connective: the commas before it take its meaning if it is `and` or `or`, else they mean `then`.
