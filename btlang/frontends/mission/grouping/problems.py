@@ -39,6 +39,8 @@ def nothing_there(scan: Scan, token: Token, before: Token | None) -> None:
     elif before is not None and before.kind == "define":
         words = scan.words(before)
         scan.fail("BT020", scan.span(before), wanted="command", word=words, found="nothing does")
+    elif token.kind == "newline" and scan.at_otherwise():
+        scan.at += 1  # an empty line is nothing to which `otherwise` could be the other way
     else:
         scan.operand_due = False  # an empty line or sentence
 
