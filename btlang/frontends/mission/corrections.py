@@ -21,20 +21,14 @@ from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.frontends.mission.explanations.spelling_rule import is_respelling, words_of
 from btlang.frontends.mission.explanations.unknown import nearest_known
 from btlang.frontends.mission.grouping.grouping import Grouped, group
-from btlang.frontends.mission.symbols.definitions import Header
 from btlang.frontends.mission.symbols.prefixes import find_heads
-from btlang.frontends.mission.token import Listed, Token
+from btlang.frontends.mission.token import Called, Header, Listed, Token
 from btlang.frontends.mission.tokens.lexer import Lexer
 from btlang.record import Record
 from btlang.text.source import Source, Span
 from btlang.text.spelling import distance, respellings
 from btlang.text.words import END_OF_STATEMENT, Words
 from btlang.vocabulary.correct_words import correct_words
-from btlang.vocabulary.entry import Entry
-
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    from typing import Any
 
 _MOST_WORDS = 10_000  # that all tries for a text read
 _LEAST_COST = 50  # what a try costs at least, in words
@@ -334,16 +328,16 @@ def _sentence(text: Words, at: int) -> tuple[int, int]:
     return text.starts[first], text.starts[line.last]
 
 
-def _said(token: Token) -> Any:
+def _said(token: Token) -> object:
     """The value of a token without the places at which its words are."""
     value = token.value
     if isinstance(value, Header):
         return value.name
     if isinstance(value, Listed):
         return value.entry.id, value.arguments, value.joiner
-    if isinstance(value, tuple) and value and isinstance(value[0], Entry):
-        return value[0].id, *value[1:]
-    return value
+    if isinstance(value, Called):
+        return value.entry.id, value.arguments
+    return value or token.role
 
 
 def _letters(text: str) -> str:

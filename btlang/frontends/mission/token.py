@@ -21,11 +21,22 @@ grouped tokens, which need no look-ahead any more:
 from __future__ import annotations
 
 from btlang.record import Record
+from btlang.text.source import Span
 from btlang.vocabulary.entry import Entry
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any
+    from typing import TypeAlias
+
+    Said: TypeAlias = "Called | Listed | Assigned | Remembered | NodeCall"
+    Value: TypeAlias = "Said | Each | Header | str | None"
+
+
+class Called(Record):
+    """A phrase or a name with its arguments."""
+
+    entry: Entry
+    arguments: tuple[tuple[str, str], ...]
 
 
 class Listed(Record):
@@ -69,19 +80,40 @@ class NodeCall(Record):
     name: str
 
 
-class Token:
-    """One token: `value` depends on its kind; `start` and `end` are characters of the source.
+class Header(Record):
+    """The head of a definition: its name, the words of it, and the words `body` to `last` (exclusive) of its body.
 
-    Mutable, for the grouping stage learns later what a comma means and which count closes a `repeat`.
+    The name is a pattern: `greet {someone}`. `parameters` are its slots, each with the words as they were written.
+    One that `is_quoted` is no phrase, and only known as a subtree.
     """
 
-    __slots__ = ("end", "kind", "start", "value")
+    name: str
+    span: Span
+    body: int
+    last: int
+    parameters: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    is_quoted: bool = False
 
-    def __init__(self, kind: str, value: Any, start: int, end: int) -> None:
+
+class Token:
+    """One token; `start` and `end` are characters of the source.
+
+    The `value` of a command or condition is what it says, of a definition its header, of a loop what it goes through
+    or its amount; of a count or duration it is the amount. `role` is what the kind leaves open: the raw kind that a
+    form, loop, test or postfix was made of, or an operand that is no phrase, and what a connective means that has
+    another meaning between commands. An ELSE begins where what it is tried after ends.
+
+    Mutable, for grouping learns later what a comma means and which count closes a `repeat`.
+    """
+
+    __slots__ = ("end", "kind", "role", "start", "value")
+
+    def __init__(self, kind: str, start: int, end: int, value: Value = None, role: str = "") -> None:
         self.kind = kind
-        self.value = value
         self.start = start
         self.end = end
+        self.value: Value = value
+        self.role = role
 
     def __repr__(self) -> str:
-        return f"{self.kind}({self.value!r})" if self.value is not None else self.kind
+        return f"{self.kind}({self.role or self.value or ''})"

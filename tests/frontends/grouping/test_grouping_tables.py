@@ -16,8 +16,7 @@ import pytest
 
 from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.frontends.mission.grouping.grouping import group
-from btlang.frontends.mission.symbols.definitions import Header
-from btlang.frontends.mission.token import Token
+from btlang.frontends.mission.token import Header, Token
 from btlang.text.source import Source, Span
 from tests.conftest import matches_golden
 
@@ -34,12 +33,15 @@ def raw_tokens(line: str) -> tuple[Source, list[Token]]:
         kind, _, value = word.partition(":")
         if kind in _LINE_MARKS:
             text = text.rstrip() + "\n"
-            tokens.append(Token(kind, None, len(text), len(text)))
+            tokens.append(Token(kind, len(text), len(text)))
         elif kind == "define":
             span = Span(Source(word), 0, len(word))
-            tokens.append(Token(kind, Header(value, span, 0, 0), len(text), len(text) + len(word)))
+            tokens.append(Token(kind, len(text), len(text) + len(word), Header(value, span, 0, 0)))
         else:
-            tokens.append(Token(kind, value or None, len(text), len(text) + len(word)))
+            is_role = kind in ("and", "or")
+            made = Token(kind, len(text), len(text) + len(word), None if is_role else value or None)
+            made.role = value if is_role else ""
+            tokens.append(made)
         text += f"{word} " if kind not in _LINE_MARKS else ""
     return Source(text), tokens
 
@@ -50,18 +52,15 @@ def shown(line: str, places: bool) -> str:
 
     def place(start: int, end: int) -> str:
         wide = [(number, token) for number, token in enumerate(raw, 1) if token.end > token.start]
+        starts = {token.start: f"{number}" for number, token in wide}
+        ends = {token.end: f"{number}" for number, token in wide}
         if start == end:
-            behind = next((f"{number}>" for number, token in wide if token.end == start), "")
-            return behind or next((f"<{number}" for number, token in wide if token.start == start), "end")
-        first = next((number for number, token in wide if token.start == start), None)
-        last = next((number for number, token in wide if token.end == end), None)
-        return f"{first}" if first == last else f"{first}-{last}"
+            return f"{ends[start]}>" if start in ends else f"<{starts[start]}" if start in starts else "end"
+        first, last = starts.get(start) or f"{ends[start]}>", ends.get(end, "blank")
+        return first if first == last else f"{first}-{last}"
 
     def token_text(token: Token) -> str:
-        value = value_text(token)
-        if token.kind == "ELSE":
-            value = f"({place(token.value, token.value)})" if places else ""
-        return token.kind + value + (f"[{place(token.start, token.end)}]" if places else "")
+        return token.kind + value_text(token) + (f"[{place(token.start, token.end)}]" if places else "")
 
     def problem_text(problem: Diagnostic) -> str:
         span, fix = problem.span, problem.fix
@@ -85,10 +84,8 @@ def shown(line: str, places: bool) -> str:
 
 def value_text(token: Token) -> str:
     """What grouping gave a token beside its kind."""
-    value = token.value
-    if isinstance(value, tuple):
-        return f"({' '.join(str(part) for part in value if part is not None)})"
-    return f"({value})" if isinstance(value, str) else ""
+    said = [word for word in (token.role, token.value) if word and isinstance(word, str)]
+    return f"({' '.join(said)})" if said else ""
 
 
 @pytest.mark.parametrize("path", sorted(TABLES.glob("*.txt")), ids=lambda path: path.stem)

@@ -214,7 +214,7 @@ class Completer:
 
     def _failures(self, at: int, *kinds: str) -> list[int]:
         end = self._tokens[at].start if at < len(self._tokens) else self._start
-        added = [Token(kind, "1", end, end) for kind in kinds]
+        added = [Token(kind, end, end, "1") for kind in kinds]
         return group(self._source, [*self._tokens[:at], *added], self._lexer.conditions).failed_at
 
     def _about(self, meaning: Meaning) -> tuple[str, str]:

@@ -13,7 +13,7 @@ from btlang.frontends.mission.explanations.spelling_rule import is_respelling
 from btlang.frontends.mission.symbols.definitions import Definitions
 from btlang.frontends.mission.symbols.nodes import misread_node
 from btlang.frontends.mission.symbols.prefixes import span_of
-from btlang.frontends.mission.token import Token
+from btlang.frontends.mission.token import Called, Token
 from btlang.record import Record
 from btlang.text.source import Span
 from btlang.text.spelling import nearest, nearest_start
@@ -214,10 +214,10 @@ def _number_misfit(
 
 
 def _ends_in_a_bare_text(command: Token) -> bool:
-    if type(command.value) is not tuple or not command.value[1]:
-        return False
-    entry, arguments = command.value
-    return bool(entry.slot(arguments[-1][0]).type == "text")
+    value = command.value
+    return (
+        isinstance(value, Called) and bool(value.arguments) and value.entry.slot(value.arguments[-1][0]).type == "text"
+    )
 
 
 def _unknown_phrase(

@@ -27,7 +27,8 @@ def begin_otherwise(scan: Scan) -> None:
     if scan.raw[scan.at].kind != "otherwise":
         scan.at += 1  # a comma or the end of the line before it
     token = scan.raw[scan.at]
-    opener = scan.emit("ELSE", token, scan.last_end)
+    opener = scan.emit("ELSE", token)
+    opener.start = scan.last_end
     scan.stack.append(StackEntry("body", opener, scan.stack[-1]))
     scan.next(token, True)
     separator(scan)
@@ -41,9 +42,9 @@ def end_block(scan: Scan) -> None:
     block = scan.stack.pop()
     if not block.statement and block.opener is not None:  # there is nothing but politeness in it
         scan.problems.append(diagnostic("BT027", scan.span(block.opener)))
-    scan.out.append(Token("CLOSE", None, scan.last_end, scan.last_end))
+    scan.out.append(Token("CLOSE", scan.last_end, scan.last_end))
     body = scan.stack[-1]
-    is_rule = body.opener is not None and body.opener.value == "whenever"
+    is_rule = body.opener is not None and body.opener.role == "whenever"
     if body.kind == "body" and body.else_owner is not body and not (is_rule and scan.at_otherwise()):
         scan.stack.pop()  # an `otherwise` behind a rule is about what the rule does
         scan.emit_end()
@@ -55,9 +56,8 @@ def block_follows(scan: Scan) -> bool:
 
 def set_amount(scan: Scan, opener: Token, amount: Token) -> None:
     """A count or duration of a repeat or try, before or after its body."""
-    kind = opener.value[0]
     if amount.kind == "count":
-        kind = "repeat" if kind == "repeat" else "retry"
+        opener.role = "repeat" if opener.role == "repeat" else "retry"
     else:
-        kind = "for"
-    opener.value = (kind, amount.value)
+        opener.role = "for"
+    opener.value = amount.value

@@ -72,7 +72,7 @@ def end_condition(scan: Scan, entry: StackEntry, token: Token) -> None:
     if entry.after == "body":
         scan.emit("DO", token)
         body = StackEntry("body", entry.opener, scan.stack[-1])
-        body.else_owner = body if entry.opener is not None and entry.opener.value != "whenever" else None
+        body.else_owner = body if entry.opener is not None and entry.opener.role != "whenever" else None
         scan.stack.append(body)
         scan.operand_due = True
         if token.kind in ("and", "or"):
@@ -82,7 +82,7 @@ def end_condition(scan: Scan, entry: StackEntry, token: Token) -> None:
                 scan.fail("BT029", scan.span(following), words=scan.words(following), place=place)
                 return
         separator(scan)
-    elif entry.after == "postfix" and scan.at_otherwise() and entry.opener and entry.opener.value in ("if", "unless"):
+    elif entry.after == "postfix" and scan.at_otherwise() and entry.opener and entry.opener.role in ("if", "unless"):
         begin_otherwise(scan)
     elif entry.after != "definition":
         scan.emit_end()

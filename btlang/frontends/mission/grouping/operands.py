@@ -7,7 +7,7 @@ from btlang.frontends.mission.grouping.conditions import is_refused
 from btlang.frontends.mission.grouping.problems import no_operand, word_before
 from btlang.frontends.mission.grouping.scan import Scan
 from btlang.frontends.mission.grouping.stack import StackEntry
-from btlang.frontends.mission.token import Token
+from btlang.frontends.mission.token import Header, Token
 
 SEPARATORS = {"in_parallel": "BLOCK_AND", "in_order": "BLOCK_OR", "node": "BLOCK_CHILD"}
 """What begins a block with another token than SEMI between its lines."""
@@ -25,14 +25,13 @@ def operand(scan: Scan, token: Token) -> None:
             place = f"after '{scan.words(before)}'" if before.end > before.start else "here"
             scan.fail("BT029", scan.span(token), words=scan.words(token), place=place)
             return
-        scan.emit("CONDITION", token, token.value)
+        scan.emit("CONDITION", token)
     else:
         if token.kind == "condition":
             scan.fail("BT028", scan.span(token), word_before(scan, token, "check"), words=scan.words(token))
             return
         scan.begin_statement(token)
-        value = token.value if token.kind == "command" else (token.kind, token.value)
-        scan.emit("COMMAND", token, value)
+        scan.emit("COMMAND", token, token.kind if token.kind != "command" else "")
     scan.next(token, False)
 
 
@@ -90,11 +89,11 @@ def loop(scan: Scan, token: Token) -> None:
         return
     following = scan.raw[scan.at + 1]
     if token.kind == "repeat" and following.kind in ("until", "while"):
-        following.start = token.start  # `repeat until` is a word of `until`
-        scan.at += 1
+        scan.at += 1  # `repeat until` is a word of `until`
+        scan.raw[scan.at] = Token(following.kind, token.start, following.end, following.value, following.role)
         return
     scan.begin_statement(token)
-    opener = scan.emit("LOOP", token, (token.kind, token.value))
+    opener = scan.emit("LOOP", token, token.kind)
     body = StackEntry("body", opener, scan.stack[-1])
     scan.next(token, True)
     if token.kind in ("repeat", "try", "retry"):
@@ -116,7 +115,7 @@ def joined_block(scan: Scan, token: Token) -> None:
         return
     scan.begin_statement(token)
     if token.kind == "node":
-        opener = scan.emit("LOOP", token, ("node", token.value))
+        opener = scan.emit("LOOP", token, "node")
         scan.stack.append(StackEntry("body", opener, scan.stack[-1]))
     colon = scan.raw[scan.at + 1]
     body = scan.raw[scan.at + 2] if colon.kind == "colon" else colon
@@ -144,6 +143,7 @@ def leading_then(scan: Scan, token: Token) -> None:
 
 
 def definition(scan: Scan, token: Token) -> None:
+    assert isinstance(token.value, Header)
     scan.header = token.value
     scan.out, scan.stack = [], [StackEntry("top")]
     if token.value.name in scan.conditions:

@@ -13,7 +13,7 @@ _CONDITION_FORMS = frozenset(("if", "unless", "while", "until", "provided"))
 
 
 def connective(scan: Scan, token: Token) -> None:
-    scan.stack[-1].connective(scan.emit((token.value or token.kind).upper(), token))
+    scan.stack[-1].connective(scan.emit((token.role or token.kind).upper(), token))
     scan.next(token, True)
     if token.kind == "then" and scan.raw[scan.at].kind == "comma":
         scan.at += 1
@@ -21,7 +21,7 @@ def connective(scan: Scan, token: Token) -> None:
 
 def comma(scan: Scan, token: Token) -> None:
     following = scan.raw[scan.at + 1]
-    if following.kind in ("and", "or") and not following.value:
+    if following.kind in ("and", "or") and not following.role:
         scan.stack[-1].connective(scan.emit("WIDE_" + following.kind.upper(), following))
         scan.next(token, True)
         scan.next(following, True)
@@ -79,7 +79,7 @@ def close_loop(scan: Scan, owner: StackEntry, token: Token) -> None:
 
 
 def postfix(scan: Scan, token: Token) -> None:
-    scan.emit("POSTFIX", token, (token.kind, token.value))
+    scan.emit("POSTFIX", token, token.kind)
     scan.next(token, False)
 
 

@@ -6,8 +6,7 @@ from collections.abc import Callable
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.grouping.stack import StackEntry
-from btlang.frontends.mission.symbols.definitions import Header
-from btlang.frontends.mission.token import Token
+from btlang.frontends.mission.token import Header, Token
 from btlang.record import Record
 from btlang.text.source import Source, Span
 
@@ -33,7 +32,7 @@ class Scan:
 
     def __init__(self, source: Source, raw: list[Token], conditions: set[str], word: Callable[[str], str]) -> None:
         self.source = source
-        self.raw = [*_without_idle_stops(raw), Token("end", None, len(source.text), len(source.text))]
+        self.raw = [*_without_idle_stops(raw), Token("end", len(source.text), len(source.text))]
         self.conditions = conditions
         self.word = word
         self.at = 0
@@ -47,13 +46,14 @@ class Scan:
         self.problems: list[Diagnostic] = []
         self.failed_at: list[int] = []
 
-    def emit(self, kind: str, token: Token, value: object = None) -> Token:
-        made = Token(kind, value, token.start, token.end)
+    def emit(self, kind: str, token: Token, role: str = "") -> Token:
+        """One that covers the same words and has the same value."""
+        made = Token(kind, token.start, token.end, token.value, role)
         self.out.append(made)
         return made
 
     def emit_end(self) -> None:
-        self.out.append(Token("END", None, self.last_end, self.last_end))
+        self.out.append(Token("END", self.last_end, self.last_end))
 
     def next(self, token: Token, operand_due: bool) -> None:
         """The token is dealt with."""
@@ -72,7 +72,7 @@ class Scan:
         entry = self.stack[-1]
         if entry.is_group:
             if entry.statement == "ended":
-                self.out.append(Token(entry.separator, None, token.start, token.start))
+                self.out.append(Token(entry.separator, token.start, token.start))
             entry.statement = "open"
 
     def close_forms(self, down_to: StackEntry | None = None) -> None:
@@ -84,7 +84,7 @@ class Scan:
     def open_block(self, separator: str = "SEMI") -> None:
         """At an indent: the lines below are statements of a new group, with a token between them."""
         following = self.raw[self.at + 1]
-        self.out.append(Token("OPEN", None, following.start, following.start))
+        self.out.append(Token("OPEN", following.start, following.start))
         block = StackEntry("block", self.raw[self.at - 1])
         block.separator = separator
         self.stack.append(block)

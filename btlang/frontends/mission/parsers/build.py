@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from btlang.frontends.mission.token import Assigned, Listed, NodeCall, Remembered, Token
+from btlang.frontends.mission.token import Assigned, Called, Each, Listed, NodeCall, Remembered, Token
 from btlang.text.source import Source, Span
 from btlang.tree.ast import (
     Assign,
@@ -36,6 +36,10 @@ from btlang.tree.ast import (
 )
 from btlang.vocabulary.entry import Entry
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.frontends.mission.token import Value
+
 CHAINS = {
     "SEMI": "sequence", "BLOCK_AND": "parallel", "BLOCK_OR": "fallback", "BLOCK_CHILD": "children",
     "OR_ELSE": "fallback", "WIDE_AND": "parallel", "THEN": "sequence", "AFTER": "sequence",
@@ -57,22 +61,22 @@ class Builder:
     def leaf(self, token: Token) -> Ast:
         """COMMAND or CONDITION."""
         span, value = Span(self.source, token.start, token.end), token.value
-        if type(value) is not tuple:
-            return self._stated(value, token.kind == "CONDITION", span)
-        kind, amount = value
-        if type(kind) is Entry:
-            return _called(kind, amount, span)
-        if kind == "wait":
-            return Wait(amount, span)
-        return Nothing(span) if kind == "nothing" else Fail(span)
+        if type(value) is Called:
+            return _called(value.entry, value.arguments, span)
+        if token.role == "wait":
+            return Wait(_amount(token), span)
+        if token.role:
+            return Nothing(span) if token.role == "nothing" else Fail(span)
+        return self._stated(value, token.kind == "CONDITION", span)
 
-    def _stated(self, value: Listed | Assigned | Remembered | NodeCall, is_condition: bool, span: Span) -> Ast:
+    def _stated(self, value: Value, is_condition: bool, span: Span) -> Ast:
         if isinstance(value, Assigned):
             return Assign(value.key, value.operation, value.kind, value.text, span)
         if isinstance(value, Remembered):
             return Remember(value.key, value.entry, value.arguments, span)
         if isinstance(value, NodeCall):
             return Exact(value.id, value.ports, value.name, (), is_condition, span)
+        assert isinstance(value, Listed)
         operators = ("any", "all") if is_condition else ("fallback", "sequence")
         items = tuple(_called(value.entry, arguments, span) for arguments in value.arguments)
         return Chain(operators[value.joiner != "or"], items, True, span)
@@ -100,25 +104,25 @@ class Builder:
 
     def postfix(self, body: Ast, token: Token) -> Ast:
         """POSTFIX."""
-        kind, amount = token.value
-        return self._counted(kind, amount, body, Span(self.source, body.span.start, token.end))
+        return self._counted(token.role, _amount(token), body, Span(self.source, body.span.start, token.end))
 
     def loop(self, opener: Token, body: Ast, otherwise: Ast | None, end: int, tried_end: int) -> Ast:
         """LOOP body [ELSE otherwise] END; `tried_end` is where the part before `otherwise` ends."""
-        kind, amount = opener.value
+        kind, value = opener.role, opener.value
         span = Span(self.source, opener.start, end)
-        if kind == "each":
-            return ForEach(amount.key, amount.kind, amount.values, body, span)
-        if kind == "node":
+        if isinstance(value, Each):
+            return ForEach(value.key, value.kind, value.values, body, span)
+        if isinstance(value, NodeCall):
             children = body.items if isinstance(body, Chain) and body.operator == "children" else (body,)
-            return Exact(amount.id, amount.ports, amount.name, children, False, span)
+            return Exact(value.id, value.ports, value.name, children, False, span)
         if kind == "try":
             return Try(body, otherwise, span)
+        amount = _amount(opener)
         if otherwise is None:
             return self._counted(kind, amount, body, span)
         return Try(self._counted(kind, amount, body, Span(self.source, opener.start, tried_end)), otherwise, span)
 
-    def _counted(self, kind: str, amount: str | None, body: Ast, span: Span) -> Ast:
+    def _counted(self, kind: str, amount: str, body: Ast, span: Span) -> Ast:
         if kind in ("repeat", "count"):
             return Repeat(amount or "-1", body, span)
         if kind == "retry":
@@ -126,7 +130,7 @@ class Builder:
         if kind == "if_possible":
             return Try(body, None, span)
         timed = {"for": For, "within": Within, "every": Every, "delay": Delay}[kind]
-        return timed(str(amount), body, span)
+        return timed(amount, body, span)
 
     def form(self, kind: str, condition: Ast, body: Ast, otherwise: Ast | None, start: int, end: int) -> Ast:
         """if, unless, while, until, provided, whenever: before or after a command."""
@@ -142,7 +146,12 @@ class Builder:
     def test(self, opener: Token, condition: Ast, end: int) -> Ast:
         """check, wait until."""
         span = Span(self.source, opener.start, end)
-        return Check(condition, span) if opener.value == "check" else WaitUntil(condition, span)
+        return Check(condition, span) if opener.role == "check" else WaitUntil(condition, span)
+
+
+def _amount(token: Token) -> str:
+    """The count or duration of a token, "" where it has none."""
+    return token.value if isinstance(token.value, str) else ""
 
 
 def _called(entry: Entry, arguments: tuple[tuple[str, str], ...], span: Span) -> Ast:

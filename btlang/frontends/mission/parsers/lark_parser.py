@@ -101,14 +101,14 @@ class _ToAst:
     def form(self, children: list[Any]) -> Ast:
         opener, condition, _do, body, *rest = children
         otherwise = rest[1] if len(rest) == 3 else None
-        return self.build.form(opener.value, condition, body, otherwise, opener.start, rest[-1].end)
+        return self.build.form(opener.role, condition, body, otherwise, opener.start, rest[-1].end)
 
     form_else = form
 
     def after_form(self, children: list[Any]) -> Ast:
         body, opener, condition, *rest = children
         otherwise = rest[1] if len(rest) == 3 else None
-        return self.build.form(opener.value, condition, body, otherwise, body.span.start, rest[-1].end)
+        return self.build.form(opener.role, condition, body, otherwise, body.span.start, rest[-1].end)
 
     wide_form = after_form_else = after_form
 
@@ -117,13 +117,13 @@ class _ToAst:
         end = rest[-1].end
         if len(rest) == 1:
             return self.build.loop(opener, body, None, end, end)
-        return self.build.loop(opener, body, rest[1], end, rest[0].value)
+        return self.build.loop(opener, body, rest[1], end, rest[0].start)
 
     loop_else = loop
 
     def loop_stop(self, children: list[Any]) -> Ast:
         opener, body, stop, condition, end = children
-        return self.build.form(stop.value, condition, body, None, opener.start, end.end)
+        return self.build.form(stop.role, condition, body, None, opener.start, end.end)
 
     def test(self, children: list[Any]) -> Ast:
         opener, condition, end = children

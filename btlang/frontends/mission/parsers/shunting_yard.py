@@ -156,19 +156,19 @@ def _closed(level: _Level, closer: Token, build: Builder) -> Ast:
         case ("OPEN", "CLOSE") | ("COND_OPEN", "COND_CLOSE"):
             return build.group(parts[0], opener.start, end)
         case ("FORM", "END", "DO"):
-            return build.form(opener.value, parts[0], parts[1], None, opener.start, end)
+            return build.form(opener.role, parts[0], parts[1], None, opener.start, end)
         case ("FORM", "END", "DO", "ELSE"):
-            return build.form(opener.value, parts[0], parts[1], parts[2], opener.start, end)
+            return build.form(opener.role, parts[0], parts[1], parts[2], opener.start, end)
         case ("AFTER_FORM" | "WIDE_FORM", "END"):
-            return build.form(opener.value, parts[1], parts[0], None, parts[0].span.start, end)
+            return build.form(opener.role, parts[1], parts[0], None, parts[0].span.start, end)
         case ("AFTER_FORM", "END", "ELSE"):
-            return build.form(opener.value, parts[1], parts[0], parts[2], parts[0].span.start, end)
+            return build.form(opener.role, parts[1], parts[0], parts[2], parts[0].span.start, end)
         case ("LOOP", "END"):
             return build.loop(opener, parts[0], None, end, end)
         case ("LOOP", "END", "ELSE"):
-            return build.loop(opener, parts[0], parts[1], end, level.sections[0].value)
+            return build.loop(opener, parts[0], parts[1], end, level.sections[0].start)
         case ("LOOP", "END", "STOP"):
-            return build.form(level.sections[0].value, parts[1], parts[0], None, opener.start, end)
+            return build.form(level.sections[0].role, parts[1], parts[0], None, opener.start, end)
         case ("TEST", "END"):
             return build.test(opener, parts[0], end)
     raise ParseError(f"{opener} ends with {shape[1:]}")

@@ -8,7 +8,7 @@ from itertools import takewhile
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.symbols.nodes import Unreadable, read_node
-from btlang.record import Record
+from btlang.frontends.mission.token import Header
 from btlang.text.source import Span
 from btlang.text.words import END_OF_STATEMENT, Words, statements
 from btlang.tree.ast import Definition
@@ -23,21 +23,6 @@ _STARTS_NO_NAME = frozenset((
     "if", "unless", "while", "until", "whenever", "otherwise", "then", "check", "wait_until",
 ))  # fmt: skip
 _NOT_IN_A_NAME = frozenset(("if", "unless", "while", "until", "otherwise", "then", "and", "or", "after", "provided"))
-
-
-class Header(Record):
-    """The head of a definition: its name, the words of it, and the words `body` to `last` (exclusive) of its body.
-
-    The name is a pattern: `greet {someone}`. `parameters` are its slots, each with the words as they were written.
-    One that `is_quoted` is no phrase, and only known as a subtree.
-    """
-
-    name: str
-    span: Span
-    body: int
-    last: int
-    parameters: tuple[tuple[str, tuple[str, ...]], ...] = ()
-    is_quoted: bool = False
 
 
 class Definitions:

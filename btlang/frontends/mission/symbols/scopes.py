@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 
-from btlang.frontends.mission.symbols.definitions import Header, reach
+from btlang.frontends.mission.symbols.definitions import reach
 from btlang.frontends.mission.symbols.prefixes import Head
+from btlang.frontends.mission.token import Header
 from btlang.text.words import Words
 from btlang.vocabulary.values import Known
 

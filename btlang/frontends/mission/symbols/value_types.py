@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 
-from btlang.frontends.mission.symbols.definitions import Definitions, Header, add_name
+from btlang.frontends.mission.symbols.definitions import Definitions, add_name
 from btlang.frontends.mission.symbols.prefixes import Head
 from btlang.frontends.mission.symbols.scopes import Scopes
+from btlang.frontends.mission.token import Header
 from btlang.text.words import Words
 from btlang.vocabulary.pattern import Slot, name_form
 from btlang.vocabulary.trie import Match, TrieNode, longest

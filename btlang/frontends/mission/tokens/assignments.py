@@ -30,14 +30,14 @@ def read_statement(
         if quantity is not None and quantity.meaning.entry is not None and quantity.last >= head.value_end:
             made = Remembered(head.key, quantity.meaning.entry, _arguments(quantity, port_text))
             end = max(head.last, quantity.last)
-            return Token("command", made, start, text.ends[end - 1]), end
+            return Token("command", start, text.ends[end - 1], made), end
     found = _value(head, known, text, vocabulary, values)
     if found is None or (head.role == "remember" and found.last != head.value_end):
         return None
     operation = "set" if head.role == "remember" else head.role
     end = max(head.last, found.last)
     made_of = Assigned(head.key, operation, found.type, port_text(found))
-    return Token("command", made_of, start, text.ends[end - 1]), end
+    return Token("command", start, text.ends[end - 1], made_of), end
 
 
 def _arguments(match: Match, port_text: Callable[[SlotValue], str]) -> tuple[tuple[str, str], ...]:
@@ -77,7 +77,7 @@ def _each(
     made = Each(head.key, kind, tuple(port_text(value) for value in found))
     values.latest[kind] = f"{{{head.key}}}"
     last = found[-1].last
-    return Token("each", made, text.starts[at], text.ends[last - 1]), last
+    return Token("each", text.starts[at], text.ends[last - 1], made), last
 
 
 def _listed(kind: str, text: Words, at: int, vocabulary: Vocabulary, values: Values) -> list[SlotValue]:

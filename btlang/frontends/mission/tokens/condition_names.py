@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from btlang.frontends.mission.token import Listed, Token
+from btlang.frontends.mission.token import Called, Header, Listed, Token
 from btlang.vocabulary.entry import Entry
 
 
@@ -35,8 +35,8 @@ def condition_names(tokens: list[Token], included: Iterable[str]) -> set[str]:
 
 def called(token: Token) -> Entry:
     """The entry of a token that is a phrase or a name."""
-    entry: Entry = token.value.entry if type(token.value) is Listed else token.value[0]
-    return entry
+    assert isinstance(token.value, Called | Listed)
+    return token.value.entry
 
 
 def _bodies(tokens: list[Token]) -> Iterator[tuple[str, list[Token]]]:
@@ -51,6 +51,7 @@ def _bodies(tokens: list[Token]) -> Iterator[tuple[str, list[Token]]]:
             if depth < 0 or (depth == 0 and inner.kind in ("newline", "semi", "define")):
                 break
             body.append(inner)
+        assert isinstance(token.value, Header)
         yield token.value.name, body
 
 

@@ -11,7 +11,7 @@ from btlang.frontends.mission.symbols.includes import misplaced
 from btlang.frontends.mission.symbols.names import Load, Names
 from btlang.frontends.mission.symbols.nodes import Unreadable, read_node, unreadable
 from btlang.frontends.mission.symbols.prefixes import JOINTS, Head, span_of
-from btlang.frontends.mission.token import Listed, Token
+from btlang.frontends.mission.token import Called, Listed, Token
 from btlang.frontends.mission.tokens.condition_names import called, condition_names
 from btlang.text.source import Source, Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, split
@@ -110,11 +110,11 @@ class Lexer:
                     at = self.names.ends[at]
                 else:
                     header = headers[at]
-                    tokens.append(Token("define", header, starts[at], ends[header.body - 1]))
+                    tokens.append(Token("define", starts[at], ends[header.body - 1], header))
                     at = header.body
                 continue
             if word in _MARKS:
-                tokens.append(Token(_MARKS[word], None, starts[at], ends[at]))
+                tokens.append(Token(_MARKS[word], starts[at], ends[at]))
                 if word == END_OF_STATEMENT:
                     values.latest.clear()
                 at += 1
@@ -137,14 +137,14 @@ class Lexer:
                     end += words[end][0] == '"'
                 if self._explain:
                     self.problems.append(self._why(at, end, match))
-                tokens.append(Token("unknown", None, starts[at], ends[end - 1]))
+                tokens.append(Token("unknown", starts[at], ends[end - 1]))
                 at = end
             else:
                 if role == "politeness":
                     at = self._politeness(match, at)
                     continue
                 if role == "negated":
-                    tokens.append(Token("not", None, starts[at], starts[at]))
+                    tokens.append(Token("not", starts[at], starts[at]))
                 tokens.append(self._phrase(match, at))
                 for value in match.values:
                     values.latest[value.type] = value.text if not value.more else value.more[-1]
@@ -179,22 +179,21 @@ class Lexer:
             end = text.articles[match.last][1]
         if meaning.entry is not None:
             kind = "condition" if meaning.role == "negated" else meaning.role
-            return Token(kind, self._called(meaning.entry, match, at), start, end)
+            return Token(kind, start, end, self._called(meaning.entry, match, at))
         if values:
-            return Token(meaning.role, values[0].text, start, end)
-        value = str(meaning.value) if meaning.role == "count" else meaning.between or None
-        return Token(meaning.role, value, start, end)
+            return Token(meaning.role, start, end, values[0].text)
+        return Token(meaning.role, start, end, str(meaning.value) if meaning.role == "count" else None, meaning.between)
 
-    def _called(self, entry: Entry, match: Match, at: int) -> tuple[Entry, tuple[tuple[str, str], ...]] | Listed:
+    def _called(self, entry: Entry, match: Match, at: int) -> Called | Listed:
         """The entry with its arguments, or with several of them where one slot holds a list."""
         if entry.sort == "value" and not (self.values.known and entry.id in self.values.known):
             self._unknown_value(self.text.span(at, match.last), entry.id)
         if not match.values:
-            return entry, ()
+            return Called(entry, ())
         arguments = tuple([(value.name, self._port_text(value)) for value in match.values])
         lists = [place for place, value in enumerate(match.values) if value.more]
         if not lists:
-            return entry, arguments
+            return Called(entry, arguments)
         if len(lists) > 1:
             self.problems.append(
                 diagnostic("BT034", self.text.span(at, match.last), words=self.text.span(at, match.last).text)
@@ -233,7 +232,7 @@ class Lexer:
                 head.role in ("each", "remember") or head.key in self.names.known
             ):  # else that has been told
                 self.problems.append(self._why(at, at, Match(Meaning(head.role), at)))
-            self.tokens.append(Token("unknown", None, span.start, span.end))
+            self.tokens.append(Token("unknown", span.start, span.end))
             return bisect_right(self.text.starts, span.end - 1)
         self.tokens.append(read[0])
         return read[1]
@@ -246,13 +245,13 @@ class Lexer:
         except Unreadable as problem:
             self.problems.append(unreadable(text, at, problem))
             end = self._unknown_end(at, bisect_right(text.starts, span_of(text, at).end - 1))
-            self.tokens.append(Token("unknown", None, text.starts[at], text.ends[end - 1]))
+            self.tokens.append(Token("unknown", text.starts[at], text.ends[end - 1]))
             return end
         if read is None:
             return 0
         call, end = read
         kind = "condition" if head.meaning.role == "test" else "node" if text.words[end] == ":" else "command"
-        self.tokens.append(Token(kind, call, text.starts[at], text.ends[end - 1]))
+        self.tokens.append(Token(kind, text.starts[at], text.ends[end - 1], call))
         return end
 
     def _unknown_end(self, at: int, last: int) -> int:
@@ -274,7 +273,7 @@ class Lexer:
 
     def _mark(self, kind: str, at: int) -> None:
         start = self.text.starts[at] if at < len(self.text.starts) else len(self.text.source.text)
-        self.tokens.append(Token(kind, None, start, start))
+        self.tokens.append(Token(kind, start, start))
 
     def _last_span(self) -> Span:
         last = self.tokens[-1]
