@@ -114,6 +114,8 @@ class Values:
         """Words that stand for the latest value of a type, each with the types that it may be of."""
         self.latest: dict[str, str] = {}
         """Those values. Whoever reads a text sets them, on a copy of its own."""
+        self.lacked = False
+        """Whether a pronoun was met that stood for nothing: with other values before it, it might."""
         self.known: Mapping[str, Known] | None = {}
         """The values that the mission names itself, by key; None where any name in braces is one."""
         self._most_words = 0
@@ -375,8 +377,10 @@ class Values:
 
     def _referred(self, kind: str, word: str, at: int) -> tuple[str, int] | None:
         """What a pronoun stands for."""
-        if kind in self.pronouns.get(word, ()) and kind in self.latest:
-            return self.latest[kind], at + 1
+        if kind in self.pronouns.get(word, ()):
+            if kind in self.latest:
+                return self.latest[kind], at + 1
+            self.lacked = True
         return None
 
     def _quoted_name(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:

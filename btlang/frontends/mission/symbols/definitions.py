@@ -8,6 +8,7 @@ from itertools import takewhile
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.symbols.nodes import Unreadable, read_node
+from btlang.frontends.mission.symbols.phrases import Phrases
 from btlang.frontends.mission.token import Header
 from btlang.text.source import Span
 from btlang.text.words import END_OF_STATEMENT, Words, statements
@@ -40,8 +41,7 @@ class Definitions:
 
 
 def find_definitions(
-    text: Words,
-    vocabulary: Vocabulary,
+    phrases: Phrases,
     ends: Container[int] = (),
     variables: Container[tuple[str, ...]] = (),
     included: Iterable[Definition] = (),
@@ -52,6 +52,7 @@ def find_definitions(
     The `included` ones are known, too.
     """
     found = Definitions()
+    text, vocabulary = phrases.text, phrases.vocabulary
     quoted = {definition.name for definition in included if definition.is_quoted}
     for definition in included:
         if not definition.is_quoted:
@@ -63,7 +64,7 @@ def find_definitions(
     for indent, first, last in statements(text, defining):
         if first in ends or defining.isdisjoint(text.words[first:last]):
             continue
-        header = _header(text, first, last, vocabulary, variables, found.problems)
+        header = _header(phrases, first, last, variables, found.problems)
         if header is None:
             continue
         if indent > margin:
@@ -121,19 +122,19 @@ def reach(text: Words, at: int) -> int:
 
 
 def _header(
-    text: Words,
+    phrases: Phrases,
     first: int,
     last: int,
-    vocabulary: Vocabulary,
     variables: Container[tuple[str, ...]],
     problems: list[Diagnostic],
 ) -> Header | None:
-    at = _defining_word(text, first, last, vocabulary)
+    text = phrases.text
+    at = _defining_word(phrases, first, last)
     if at is None:
         return None
     start = first
     while start < at:
-        polite = longest(vocabulary.trie, text, start, vocabulary.values)
+        polite = phrases.at(start)
         if polite is None or polite.meaning.role != "politeness" or polite.last > at:
             break
         start = polite.last
@@ -145,13 +146,13 @@ def _header(
     if any(tuple(text.words[i:at]) in variables for i in range(start, at)):
         return None
     if text.words[at - 1] == "}" and any(tuple(text.words[i : at - 1]) in variables for i in range(start, at - 1)):
-        body = longest(vocabulary.trie, text, at + 1, vocabulary.values)
+        body = phrases.at(at + 1)
         if body is None or body.meaning.role != "command":
             return None
-    joined = _joining_word(text, start, at, vocabulary)
+    joined = _joining_word(phrases, start, at)
     if joined is not None and joined.text[0].isalpha() and text.words[at - 1] == "}":
         return None  # `wave until {counter} is 3` compares
-    if joined is not None and _starts_with_a_phrase(text, start, joined, vocabulary):
+    if joined is not None and _starts_with_a_phrase(phrases, start, joined):
         return None  # `charge until the battery is green` is a command that says something unknown
     if joined is not None:
         problems.append(diagnostic("BT015", joined, word=joined.text))
@@ -190,15 +191,16 @@ def _slot_end(words: list[str], at: int, last: int) -> int | None:
     return end + 1 if words[at] == "{" and end > at + 1 and end < last and words[end] == "}" else None
 
 
-def _defining_word(text: Words, first: int, last: int, vocabulary: Vocabulary) -> int | None:
+def _defining_word(phrases: Phrases, first: int, last: int) -> int | None:
     """The first `means`, else the first `is`, unless a condition phrase holds it or the line starts with a form."""
+    text, vocabulary = phrases.text, phrases.vocabulary
     for role in DEFINING:
         choices = vocabulary.roles[role]
         at = first
         while at < last:
             if text.words[at] in choices:
                 return None if _is_compared(text, first, at, vocabulary) else at
-            match = longest(vocabulary.trie, text, at, vocabulary.values)
+            match = phrases.at(at)
             if match is None:
                 at += 1
                 continue
@@ -233,19 +235,19 @@ def _stop(text: Words, at: int, last: int, choices: list[str]) -> int:
     return next((i for i in range(at, last) if text.words[i] in choices), last)
 
 
-def _starts_with_a_phrase(text: Words, start: int, joined: Span, vocabulary: Vocabulary) -> bool:
-    match = longest(vocabulary.trie, text, start, vocabulary.values)
-    return match is not None and match.meaning.entry is not None and text.starts[match.last] >= joined.start
+def _starts_with_a_phrase(phrases: Phrases, start: int, joined: Span) -> bool:
+    match = phrases.at(start)
+    return match is not None and match.meaning.entry is not None and phrases.text.starts[match.last] >= joined.start
 
 
-def _joining_word(text: Words, start: int, last: int, vocabulary: Vocabulary) -> Span | None:
-    at = start
+def _joining_word(phrases: Phrases, start: int, last: int) -> Span | None:
+    text, at = phrases.text, start
     while at < last:
         slot_end = _slot_end(text.words, at, last)
         if slot_end is not None:
             at = slot_end
             continue
-        match = longest(vocabulary.trie, text, at, vocabulary.values)
+        match = phrases.at(at)
         role = match.meaning.role if match else ""
         if not text.words[at][0].isalnum() or role in _NOT_IN_A_NAME:
             return text.span(at, match.last if match else at + 1)

@@ -9,6 +9,7 @@ from btlang.frontends.mission.symbols.definitions import find_definitions
 from btlang.frontends.mission.symbols.facts import find_facts
 from btlang.frontends.mission.symbols.includes import Included, find_includes
 from btlang.frontends.mission.symbols.nodes import find_main_names
+from btlang.frontends.mission.symbols.phrases import Phrases
 from btlang.frontends.mission.symbols.prefixes import find_heads
 from btlang.text.source import Span
 from btlang.text.words import Words
@@ -28,9 +29,10 @@ else:
 class Names:
     """The names of one text. `load` reads what it includes, `shared` are values that are named elsewhere and hold here.
 
-    `vocabulary` has the places of its facts; `known` are the values that hold in the whole text, by key; `others` are
-    the words at which something stands that is no phrase: `heads`, headers of `definitions`, and statements that end
-    at `ends`. `bounds` are the words at which other values begin to be known.
+    `vocabulary` has the places of its facts; `phrases` are those that were looked up on the way; `known` are the
+    values that hold in the whole text, by key; `others` are the words at which something stands that is no phrase:
+    `heads`, headers of `definitions`, and statements that end at `ends`. `bounds` are the words at which other values
+    begin to be known.
     """
 
     def __init__(
@@ -57,7 +59,8 @@ class Names:
         self.heads = find_heads(text, vocabulary)
         compared = {head.words for head in self.heads.values()}
         elsewhere = [definition for part in parts for definition in all_definitions(part.mission)]
-        self.definitions = find_definitions(text, vocabulary, self.ends, compared, elsewhere)
+        self.phrases = Phrases(text, vocabulary)
+        self.definitions = find_definitions(self.phrases, self.ends, compared, elsewhere)
         self.problems: list[Diagnostic] = [*facts.problems, *self.definitions.problems]
         if main_span is not None:
             defined = [header.name for header in self.definitions.headers.values()]

@@ -50,6 +50,8 @@ class Lexer:
         self.vocabulary = self.names.vocabulary
         self._bounds = [*self.names.bounds, len(self.text.words)]
         self.values = self.vocabulary.values.for_reading()
+        has_values = self.names.known or self.names.bounds  # a name in it may be longer than a phrase
+        self._found = {} if has_values else self.names.phrases.fixed
         self.tokens: list[Token] = []
         self._lines()
         self.conditions = condition_names(self.tokens, self.names.included_conditions())
@@ -97,6 +99,7 @@ class Lexer:
     def _line(self, at: int, last: int) -> None:
         text, names, trie, values = self.text, self.names.definitions.trie, self.vocabulary.trie, self.values
         words, starts, ends, tokens = text.words, text.starts, text.ends, self.tokens
+        found = self._found
         headers, heads, others = self.names.definitions.headers, self.names.heads, self.names.others
         while at < last:
             word = words[at]
@@ -119,7 +122,12 @@ class Lexer:
                     values.latest.clear()
                 at += 1
                 continue
-            match = longest(trie, text, at, values, names)
+            if at in found:
+                match = found[at]
+                if names and match is not None and any(value.more for value in match.values):
+                    match = longest(trie, text, at, values, names)  # a name may end the list
+            else:
+                match = longest(trie, text, at, values, names)
             if match is not None and match.meaning.role in NODE_ROLES:
                 end = self._node(match, at)
                 if end:
