@@ -114,8 +114,7 @@ class Values:
         """Words that stand for the latest value of a type, each with the types that it may be of."""
         self.latest: dict[str, str] = {}
         """Those values. Whoever reads a text sets them, on a copy of its own."""
-        self.lacked = False
-        """Whether a pronoun was met that stood for nothing: with other values before it, it might."""
+        self.lacked = False  # whether a pronoun stood for nothing: behind other values it might stand for one
         self.known: Mapping[str, Known] | None = {}
         """The values that the mission names itself, by key; None where any name in braces is one."""
         self._most_words = 0
@@ -368,20 +367,17 @@ class Values:
         if word[0] == '"':
             return word[1:], at + 1
         bare = word[0].isalnum() or (word[0] == "-" and len(word) > 1)
-        if at in text.articles and (
-            not bare or word in self._connectives
-        ):  # the article is all that there is: `print a`
+        ends_here = not bare or word in self._connectives
+        if at in text.articles and ends_here:  # the article is all that there is: `print a`
             start, end = text.articles[at]
             return text.source.text[start:end], at
         return (text.source.text[text.starts[at] : text.ends[at]], at + 1) if bare else None
 
     def _referred(self, kind: str, word: str, at: int) -> tuple[str, int] | None:
         """What a pronoun stands for."""
-        if kind in self.pronouns.get(word, ()):
-            if kind in self.latest:
-                return self.latest[kind], at + 1
-            self.lacked = True
-        return None
+        is_one = kind in self.pronouns.get(word, ())
+        self.lacked |= is_one and kind not in self.latest
+        return (self.latest[kind], at + 1) if is_one and kind in self.latest else None
 
     def _quoted_name(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
         word = text.words[at]
