@@ -71,7 +71,7 @@ def command_of(text: str, draft: MissionDraft) -> tuple[str, str] | None:
     words = split(source, draft.vocabulary.articles)
     definitions = find_definitions(Phrases(words, draft.vocabulary))
     at = words.lines[-1].first
-    known = (longest(trie, words, at, draft.vocabulary.values) for trie in (draft.vocabulary.trie, definitions.trie))
+    known = (longest(trie, words, at, draft.vocabulary.context) for trie in (draft.vocabulary.trie, definitions.trie))
     return None if any(known) else (name.lower(), rest.strip())
 
 

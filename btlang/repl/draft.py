@@ -19,7 +19,7 @@ from btlang.text.source import Source
 from btlang.tree.ast import Ast, Chain, Definition, Fact, Include, Program, all_facts, parts
 from btlang.tree.node import Tree
 from btlang.tree.visit import used_subtrees
-from btlang.vocabulary.values import Known
+from btlang.vocabulary.reading_context import Known
 
 ENTRY = "<entry>"
 """What messages call the source of an entry."""

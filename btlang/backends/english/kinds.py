@@ -19,8 +19,8 @@ from btlang.tree.catalogue import CATALOGUE, SUBTREE
 from btlang.tree.node import Node
 from btlang.vocabulary.entry import MEASURED
 from btlang.vocabulary.pattern import Slot, name_form
+from btlang.vocabulary.reading_context import Known
 from btlang.vocabulary.references import Reference, pieces
-from btlang.vocabulary.values import Known
 from btlang.vocabulary.vocabulary import Vocabulary
 
 TYPE_CHECKING = False

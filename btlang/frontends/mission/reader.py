@@ -16,7 +16,7 @@ from btlang.frontends.mission.tokens.lexer import Lexer
 from btlang.record import Record
 from btlang.text.source import Source, Span
 from btlang.tree.ast import Ast, Definition, Nothing, Program
-from btlang.vocabulary.values import Known
+from btlang.vocabulary.reading_context import Known
 from btlang.vocabulary.vocabulary import Vocabulary
 
 TYPE_CHECKING = False

@@ -74,5 +74,5 @@ def _scope(comment: Span, words: Words, vocabulary: Vocabulary) -> tuple[int, in
 
 
 def _continues(at: int, words: Words, vocabulary: Vocabulary) -> bool:
-    match = longest(vocabulary.trie, words, at, vocabulary.values)
+    match = longest(vocabulary.trie, words, at, vocabulary.context)
     return match is not None and match.meaning.role == "otherwise"

@@ -70,7 +70,7 @@ class Completer:
         self._start = len(text) - len(self._partial)
         self._source = Source(text[: self._start] + "(")  # the bracket stands for what is to come
         self._lexer = lexed(self._source, vocabulary)
-        self._values = self._lexer.values
+        self._context = self._lexer.context
         self._words = self._lexer.text
         self._last = len(self._words.words) - 3  # the bracket; line end and text end follow
         bracket = max((i for i, token in enumerate(self._lexer.tokens) if token.kind == "open"), default=0)
@@ -89,7 +89,7 @@ class Completer:
         return list(reversed(unique.values()))
 
     def _options(self, start: str) -> Iterator[Completion]:
-        for words, kind in value_options(self._words, self._last, start, self._vocabulary, self._values):
+        for words, kind in value_options(self._words, self._last, start, self._vocabulary, self._context):
             yield Completion(words, self._start, kind, "named in this mission" if kind == "value" else "")
         tokens = self._tokens
         joining: list[Completion] = []
@@ -125,8 +125,8 @@ class Completer:
         if self._is_broken(at):
             return
         first = self._last if at == len(tokens) else words.starts.index(tokens[at].start)
-        under_way = begun(self._vocabulary.trie, words, first, self._last, self._values)
-        names = begun(self._lexer.names.definitions.trie, words, first, self._last, self._values)
+        under_way = begun(self._vocabulary.trie, words, first, self._last, self._context)
+        names = begun(self._lexer.names.definitions.trie, words, first, self._last, self._context)
         yield from self._named(names, first, at, start)
         for node in under_way.nodes:
             if node is self._vocabulary.trie and not start:
@@ -156,7 +156,7 @@ class Completer:
         for kind, first, child in slots:
             if any(self._may_stand(at, meaning.role) for meaning in meanings(child)):
                 written = self._words.words[first : self._last]
-                for value in values_on(kind, self._values, written, start):
+                for value in values_on(kind, self._context.values, written, start):
                     yield Completion(value, self._start, "value", kind)
 
     def _named(self, names: Begun, first: int, at: int, start: str) -> Iterator[Completion]:

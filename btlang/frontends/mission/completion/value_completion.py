@@ -7,23 +7,24 @@ from collections.abc import Iterator, Mapping
 from btlang.frontends.mission.symbols.prefixes import JOINTS
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.continuations import begun, ways_on
+from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.trie import longest
-from btlang.vocabulary.values import END, Known, Values
+from btlang.vocabulary.values import END
 from btlang.vocabulary.vocabulary import Vocabulary
 
 
 def value_options(
-    text: Words, last: int, start: str, vocabulary: Vocabulary, values: Values
+    text: Words, last: int, start: str, vocabulary: Vocabulary, context: ReadingContext
 ) -> Iterator[tuple[str, str]]:
     """(words, kind) that may follow the words before `last`, the next of which begins with `start`."""
-    known: Mapping[str, Known] = values.known or {}
+    known: Mapping[str, Known] = context.known or {}
     names = [" ".join(value.words) for value in known.values()]
     if text.words[last - 1] == "{":
         yield from ((f"{name}}}", "value") for name in names if name.startswith(start))
         return
     at = last - 1
     while at >= 0 and text.words[at] not in (END_OF_STATEMENT, END_OF_TEXT):
-        match = longest(vocabulary.trie, text, at, values)
+        match = longest(vocabulary.trie, text, at, context)
         if match is not None and match.meaning.role in JOINTS and match.last <= last:
             yield from _inside(match.meaning.role, text, match.last, last, start, vocabulary, names)
             return
@@ -39,7 +40,7 @@ def _inside(
     if any(joint.split()[0] in written for joint in joints):
         return
     if role == "remember":
-        for node in begun(vocabulary.quantities, text, first, last, vocabulary.values).nodes:
+        for node in begun(vocabulary.quantities, text, first, last, vocabulary.context).nodes:
             for words, child in ways_on(node, start):
                 yield " ".join(words) + (" " if END not in child else ""), "value"
     elif not written:

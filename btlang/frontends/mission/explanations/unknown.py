@@ -19,8 +19,9 @@ from btlang.text.source import Span
 from btlang.text.spelling import nearest, nearest_start
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.pattern import Slot, forms
+from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.trie import SLOTS, TrieNode, longest
-from btlang.vocabulary.values import Known, Values, ValueType, with_unit
+from btlang.vocabulary.values import ValueType, with_unit
 from btlang.vocabulary.vocabulary import NODE_ROLES, Vocabulary
 
 _NOT_A_VALUE = frozenset((END_OF_TEXT, END_OF_STATEMENT, ",", ":", "(", ")"))
@@ -31,28 +32,30 @@ def explain_unknown(
     at: int,
     end: int,
     vocabulary: Vocabulary,
-    values: Values,
+    context: ReadingContext,
     definitions: Definitions,
     before: list[Token],
 ) -> Diagnostic:
     """The diagnostic (BT010 to BT014, BT019, BT038) for words `at` to `end`, which nothing in the vocabulary matches.
 
-    `values` read the values of this text, with its pronouns.
+    `context` is that of the lexer, with its pronouns.
     """
-    unnamed = next((i for i in range(at, end) if text.words[i] == "{" and values.named(text, i) == (None, i + 1)), None)
+    unnamed = next(
+        (i for i in range(at, end) if text.words[i] == "{" and context.named(text, i) == (None, i + 1)), None
+    )
     if unnamed is not None:
         last = next((i for i in range(unnamed, end) if text.words[i] == "}"), unnamed)
         name = " ".join(text.words[unnamed + 1 : last])
-        return unknown_value(text.span(unnamed, last + 1), name, values.known or ())
+        return unknown_value(text.span(unnamed, last + 1), name, context.known or ())
     roots = (vocabulary.trie, definitions.trie)
-    start, misfits = at, list(_misfits(text, at, roots, values))
+    start, misfits = at, list(_misfits(text, at, roots, context))
     if before and before[-1].kind not in ("comma", "newline", "indent", "dedent", "open", "semi"):
         phrase = bisect_left(text.starts, before[-1].start)  # `move forward 5 s`: read that far, and no further
-        longer = [found for found in _misfits(text, phrase, roots, values) if found.at >= at]
+        longer = [found for found in _misfits(text, phrase, roots, context) if found.at >= at]
         if longer and (not misfits or longer[0].at >= misfits[0].at):
             start, misfits = phrase, longer
     if misfits:
-        return _misfit(text, start, end, misfits, vocabulary, values, definitions)
+        return _misfit(text, start, end, misfits, vocabulary, context, definitions)
     number = vocabulary.values.number(text, at)
     for _, kind, child in vocabulary.trie.get(SLOTS, ()):
         if number is not None and text.words[number[1]] in child:  # `0 times`
@@ -101,7 +104,7 @@ class _Misfit(Record):
     following: frozenset[str]
 
 
-def _misfits(text: Words, at: int, roots: Iterable[TrieNode], values: Values) -> Iterator[_Misfit]:
+def _misfits(text: Words, at: int, roots: Iterable[TrieNode], context: ReadingContext) -> Iterator[_Misfit]:
     """The slots that a phrase would have at the furthest word that its own words reach."""
     furthest = at
     found: dict[str, set[str]] = {}
@@ -109,7 +112,7 @@ def _misfits(text: Words, at: int, roots: Iterable[TrieNode], values: Values) ->
     while paths:
         node, i = paths.pop()
         for _, kind, child in node.get(SLOTS, ()):
-            value = values.read(kind, text, i)
+            value = context.read(kind, text, i)
             if value is not None:
                 paths.append((child, value[1]))
             elif i > furthest:
@@ -128,7 +131,7 @@ def _misfit(
     end: int,
     misfits: list[_Misfit],
     vocabulary: Vocabulary,
-    values: Values,
+    context: ReadingContext,
     definitions: Definitions,
 ) -> Diagnostic:
     at = misfits[0].at
@@ -138,7 +141,7 @@ def _misfit(
     example = f"{head} {_value_example(types[0], vocabulary)}"
     if text.words[at] in _NOT_A_VALUE or _is_connective(text, at, vocabulary):
         return diagnostic("BT012", text.span(first, at), words=head, wanted=wanted, example=example)
-    mentioned = values.named(text, at)
+    mentioned = context.named(text, at)
     if mentioned is not None and mentioned[0] is not None:
         return _wrong_type(text.span(at, mentioned[1]), mentioned[0], wanted)
     quantity, number = vocabulary.values.quantity(text, at), vocabulary.values.number(text, at)
@@ -180,7 +183,7 @@ def _wrong_type(span: Span, known: Known, wanted: str) -> Diagnostic:
 
 
 def _is_connective(text: Words, at: int, vocabulary: Vocabulary) -> bool:
-    match = longest(vocabulary.trie, text, at, vocabulary.values)
+    match = longest(vocabulary.trie, text, at, vocabulary.context)
     return match is not None and match.meaning.entry is None and not match.values
 
 
@@ -231,7 +234,7 @@ def _unknown_phrase(
         advice = f"A text of more than one word needs quotes: {quoted}"
         whole = Span(text.source, start.start, span.end)
         return diagnostic("BT010", span, fix=(whole, quoted), words=span.text, help=advice)
-    meant = longest(vocabulary.trie, text, at + 1, vocabulary.values) if end > at + 1 else None
+    meant = longest(vocabulary.trie, text, at + 1, vocabulary.context) if end > at + 1 else None
     is_node = text.words[at] in (phrase for role in NODE_ROLES for phrase in vocabulary.roles[role])
     if is_node and meant is not None and meant.meaning.entry is not None:  # `do wave`
         rest = text.span(at + 1, meant.last).text

@@ -227,7 +227,7 @@ def _is_compared(text: Words, first: int, at: int, vocabulary: Vocabulary) -> bo
     """Whether a quantity ends right before a word: what follows compares it."""
     if not vocabulary.quantities:
         return False
-    matches = (longest(vocabulary.quantities, text, start, vocabulary.values) for start in range(first, at))
+    matches = (longest(vocabulary.quantities, text, start, vocabulary.context) for start in range(first, at))
     return any(match is not None and match.last == at for match in matches)
 
 

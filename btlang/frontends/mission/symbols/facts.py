@@ -86,7 +86,7 @@ def _metres(text: Words, at: int, vocabulary: Vocabulary) -> tuple[float, int] |
 
 def _after_politeness(text: Words, at: int, last: int, vocabulary: Vocabulary) -> int:
     while at < last:
-        polite = longest(vocabulary.trie, text, at, vocabulary.values)
+        polite = longest(vocabulary.trie, text, at, vocabulary.context)
         if polite is None or polite.meaning.role != "politeness":
             break
         at = polite.last + (text.words[polite.last] == _COMMA)

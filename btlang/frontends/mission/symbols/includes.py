@@ -7,8 +7,8 @@ from btlang.record import Record
 from btlang.text.source import Span
 from btlang.text.words import Words, statements
 from btlang.tree.ast import Program
+from btlang.vocabulary.reading_context import Known
 from btlang.vocabulary.trie import longest
-from btlang.vocabulary.values import Known
 from btlang.vocabulary.vocabulary import Vocabulary
 
 ROLE = "include"
@@ -37,7 +37,7 @@ def find_includes(text: Words, vocabulary: Vocabulary) -> Includes:
     if firsts.isdisjoint(text.words):
         return includes
     for indent, first, last in statements(text, firsts):
-        match = longest(vocabulary.trie, text, first, vocabulary.values) if text.words[first] in firsts else None
+        match = longest(vocabulary.trie, text, first, vocabulary.context) if text.words[first] in firsts else None
         if match is None or match.meaning.role != ROLE:
             continue
         word = text.words[match.last]

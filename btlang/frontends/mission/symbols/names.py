@@ -14,7 +14,7 @@ from btlang.frontends.mission.symbols.prefixes import find_heads
 from btlang.text.source import Span
 from btlang.text.words import Words
 from btlang.tree.ast import Include, all_definitions, all_facts
-from btlang.vocabulary.values import Known
+from btlang.vocabulary.reading_context import Known
 from btlang.vocabulary.vocabulary import Vocabulary
 
 TYPE_CHECKING = False

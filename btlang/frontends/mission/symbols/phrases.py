@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from btlang.text.words import Words
+from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import Match, longest
 from btlang.vocabulary.vocabulary import Vocabulary
 
@@ -18,15 +19,15 @@ class Phrases:
         self.vocabulary = vocabulary
         self.fixed: dict[int, Match | None] = {}
         self._others: dict[int, Match | None] = {}
-        self._values = vocabulary.values.for_reading()
+        self._context = ReadingContext(vocabulary.values)
 
     def at(self, word: int) -> Match | None:
         """The longest phrase that begins at a word."""
         for found in (self.fixed, self._others):
             if word in found:
                 return found[word]
-        self._values.lacked = False
-        match = longest(self.vocabulary.trie, self.text, word, self._values)
-        found = self._others if self._values.lacked else self.fixed
+        self._context.lacked = False
+        match = longest(self.vocabulary.trie, self.text, word, self._context)
+        found = self._others if self._context.lacked else self.fixed
         found[word] = match
         return match

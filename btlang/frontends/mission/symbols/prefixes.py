@@ -42,7 +42,7 @@ def find_heads(text: Words, vocabulary: Vocabulary) -> dict[int, Head]:
     vocabulary = vocabulary.with_references()
     for at, word in enumerate(text.words):
         if word in firsts:
-            match = longest(vocabulary.trie, text, at, vocabulary.values)
+            match = longest(vocabulary.trie, text, at, vocabulary.context)
             if match is not None and match.meaning.role in JOINTS:
                 head = _head(text, match.meaning.role, match.last, vocabulary)
                 if head is not None:
@@ -107,7 +107,7 @@ def _is_part(text: Words, at: int, vocabulary: Vocabulary) -> bool:
     word = text.words[at]
     if word in ("{", "}"):
         return True
-    match = longest(vocabulary.trie, text, at, vocabulary.values)
+    match = longest(vocabulary.trie, text, at, vocabulary.context)
     joins = match is not None and match.meaning.entry is None
     return word[0].isalpha() and not joins
 

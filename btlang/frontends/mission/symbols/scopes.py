@@ -8,7 +8,7 @@ from btlang.frontends.mission.symbols.definitions import reach
 from btlang.frontends.mission.symbols.prefixes import Head
 from btlang.frontends.mission.token import Header
 from btlang.text.words import Words
-from btlang.vocabulary.values import Known
+from btlang.vocabulary.reading_context import Known
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

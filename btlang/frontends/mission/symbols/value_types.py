@@ -10,8 +10,8 @@ from btlang.frontends.mission.symbols.scopes import Scopes
 from btlang.frontends.mission.token import Header
 from btlang.text.words import Words
 from btlang.vocabulary.pattern import Slot, name_form
+from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.trie import Match, TrieNode, longest
-from btlang.vocabulary.values import Known
 from btlang.vocabulary.vocabulary import Vocabulary
 
 
@@ -31,7 +31,7 @@ class ValueTypes:
         shared: Mapping[str, Known],
     ) -> None:
         self._text, self._vocabulary, self._definitions = text, vocabulary, definitions
-        self._values = vocabulary.values.for_reading()
+        self._context = ReadingContext(vocabulary.values)
         self._heads, self._shared = heads, shared
         self._headers = [header for header in definitions.headers.values() if header.parameters]
         self.types: dict[tuple[int, str], tuple[str, ...]] = {}
@@ -97,14 +97,14 @@ class ValueTypes:
             at = max(match.last, at + 1) if match is not None else at + 1
         for at, head in self._heads.items():
             if header.body <= at < header.last and head.role in ("increase", "decrease") and head.value >= 0:
-                named = self._values.named(self._text, head.value)
+                named = self._context.named(self._text, head.value)
                 if named is not None and named[0] is not None and named[0].key in open_keys and head.key in known:
                     found.setdefault(named[0].key, known[head.key].kinds)
         self.types |= {(header.body, key): kinds[:1] for key, kinds in found.items() if kinds}
 
     def _longest(self, at: int, known: Mapping[str, Known]) -> Match | None:
-        self._values.set_known(known)
-        matches = (longest(trie, self._text, at, self._values) for trie in self._tries())
+        self._context.set_known(known)
+        matches = (longest(trie, self._text, at, self._context) for trie in self._tries())
         return max((match for match in matches if match is not None), key=lambda match: match.last, default=None)
 
     def _tries(self) -> Iterator[TrieNode]:
@@ -125,7 +125,7 @@ class ValueTypes:
         places: dict[str, list[int]] = {}
         for at, word in enumerate(self._text.words):
             places.setdefault(word, []).append(at)
-        self._values.set_known(self.scopes().everywhere)
+        self._context.set_known(self.scopes().everywhere)
         for header in self._headers:
             open_keys = [key for key, _ in header.parameters if (header.body, key) not in self.types]
             form, own = name_form(header.name), header.span
@@ -142,7 +142,7 @@ class ValueTypes:
         found: dict[str, tuple[str, ...]] = {}
         for part in form:
             if isinstance(part, Slot):
-                value = self._values.any(self._text, at)
+                value = self._context.any(self._text, at)
                 if value is None:
                     return None
                 found[part.name], at = value[0], value[2]
@@ -159,14 +159,14 @@ class ValueTypes:
         if head.value < 0:
             return ()
         if head.role in ("set", "remember"):
-            quantity = longest(self._vocabulary.quantities, self._text, head.value, self._values)
+            quantity = longest(self._vocabulary.quantities, self._text, head.value, self._context)
             if quantity is not None and quantity.meaning.entry is not None:
                 return (quantity.meaning.entry.measures,)
-        self._values.set_known(scopes.at(at))
-        named = self._values.named(self._text, head.value)
+        self._context.set_known(scopes.at(at))
+        named = self._context.named(self._text, head.value)
         if named is not None:
             return named[0].kinds if named[0] is not None else ()
-        value = self._values.any(self._text, head.value)
+        value = self._context.any(self._text, head.value)
         if value is None or (value[0] == ("text",) and self._is_open(head)):
             return ()
         return value[0]

@@ -14,8 +14,8 @@ from btlang.frontends.mission.symbols.prefixes import Head
 from btlang.frontends.mission.symbols.value_types import ValueTypes
 from btlang.text.words import Words
 from btlang.vocabulary.entry import COMPARISONS, Entry, Meaning
+from btlang.vocabulary.reading_context import Known
 from btlang.vocabulary.trie import add
-from btlang.vocabulary.values import Known
 from btlang.vocabulary.vocabulary import Vocabulary
 
 

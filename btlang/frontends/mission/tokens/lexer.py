@@ -16,9 +16,10 @@ from btlang.frontends.mission.tokens.condition_names import called, condition_na
 from btlang.text.source import Source, Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, split
 from btlang.vocabulary.entry import Entry, Meaning
+from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.references import keys_in, renamed
 from btlang.vocabulary.trie import SLOTS, Match, SlotValue, longest
-from btlang.vocabulary.values import Known, key_of
+from btlang.vocabulary.values import key_of
 from btlang.vocabulary.vocabulary import NODE_ROLES, Vocabulary
 
 _MARKS = {",": "comma", ";": "semi", ":": "colon", "(": "open", ")": "close"}
@@ -49,7 +50,7 @@ class Lexer:
         self.problems += self.names.problems
         self.vocabulary = self.names.vocabulary
         self._bounds = [*self.names.bounds, len(self.text.words)]
-        self.values = self.vocabulary.values.for_reading()
+        self.context = ReadingContext(self.vocabulary.values)
         has_values = self.names.known or self.names.bounds  # a name in it may be longer than a phrase
         self._found = {} if has_values else self.names.phrases.fixed
         self.tokens: list[Token] = []
@@ -88,7 +89,7 @@ class Lexer:
             if number and not opens_block:
                 self._mark("newline", line.first)
             if line.indent <= indents[0]:
-                self.values.latest.clear()  # pronouns do not reach beyond a statement
+                self.context.latest.clear()  # pronouns do not reach beyond a statement
             self._line(line.first, line.last)
             opens_block = bool(self.tokens) and self.tokens[-1].kind == "colon"  # politeness may stand behind it
         if opens_block:
@@ -97,7 +98,7 @@ class Lexer:
             self._mark("dedent", len(self.text.words) - 1)
 
     def _line(self, at: int, last: int) -> None:
-        text, names, trie, values = self.text, self.names.definitions.trie, self.vocabulary.trie, self.values
+        text, names, trie, context = self.text, self.names.definitions.trie, self.vocabulary.trie, self.context
         words, starts, ends, tokens = text.words, text.starts, text.ends, self.tokens
         found = self._found
         headers, heads, others = self.names.definitions.headers, self.names.heads, self.names.others
@@ -105,7 +106,7 @@ class Lexer:
             word = words[at]
             if at >= self._bounds[0]:
                 self._bounds = self._bounds[bisect_right(self._bounds, at) :]
-                values.set_known(self.names.known_at(at))
+                context.set_known(self.names.known_at(at))
             if at in others:
                 if at in heads:
                     at = self._statement(heads[at], at)
@@ -119,15 +120,15 @@ class Lexer:
             if word in _MARKS:
                 tokens.append(Token(_MARKS[word], starts[at], ends[at]))
                 if word == END_OF_STATEMENT:
-                    values.latest.clear()
+                    context.latest.clear()
                 at += 1
                 continue
             if at in found:
                 match = found[at]
                 if names and match is not None and any(value.more for value in match.values):
-                    match = longest(trie, text, at, values, names)  # a name may end the list
+                    match = longest(trie, text, at, context, names)  # a name may end the list
             else:
-                match = longest(trie, text, at, values, names)
+                match = longest(trie, text, at, context, names)
             if match is not None and match.meaning.role in NODE_ROLES:
                 end = self._node(match, at)
                 if end:
@@ -135,7 +136,7 @@ class Lexer:
                     continue
                 match = None
             if names and (word in names or SLOTS in names):
-                named = longest(names, text, at, values, trie)
+                named = longest(names, text, at, context, trie)
                 if named is not None and (match is None or named.last >= match.last):
                     match = named
             role = match.meaning.role if match is not None else ""
@@ -155,7 +156,7 @@ class Lexer:
                     tokens.append(Token("not", starts[at], starts[at]))
                 tokens.append(self._phrase(match, at))
                 for value in match.values:
-                    values.latest[value.type] = value.text if not value.more else value.more[-1]
+                    context.latest[value.type] = value.text if not value.more else value.more[-1]
                 at = match.last
 
     def _why(self, at: int, end: int, match: Match | None) -> Diagnostic:
@@ -164,7 +165,7 @@ class Lexer:
 
         if match is None:
             return unknown.explain_unknown(
-                self.text, at, end, self.vocabulary, self.values, self.names.definitions, self.tokens
+                self.text, at, end, self.vocabulary, self.context, self.names.definitions, self.tokens
             )
         if match.meaning.role == INCLUDE:
             return misplaced(self.text.span(at, end), self.vocabulary)
@@ -194,7 +195,7 @@ class Lexer:
 
     def _called(self, entry: Entry, match: Match, at: int) -> Called | Listed:
         """The entry with its arguments, or with several of them where one slot holds a list."""
-        if entry.sort == "value" and not (self.values.known and entry.id in self.values.known):
+        if entry.sort == "value" and not (self.context.known and entry.id in self.context.known):
             self._unknown_value(self.text.span(at, match.last), entry.id)
         if not match.values:
             return Called(entry, ())
@@ -215,10 +216,10 @@ class Lexer:
     def _port_text(self, value: SlotValue) -> str:
         """The text of a value; the names in braces in it become keys (BT043 where nothing has such a name)."""
         text = value.text
-        if "{" not in text or self.values.types[value.type].kind != "text":
+        if "{" not in text or self.context.types[value.type].kind != "text":
             return text
         text = renamed(text, lambda name: key_of(w for w in name.lower().split() if w not in self.vocabulary.articles))
-        known = self.values.known or {}
+        known = self.context.known or {}
         for key in keys_in(text):
             if key not in known:
                 self._unknown_value(self.text.span(value.first, value.last), key)
@@ -227,13 +228,13 @@ class Lexer:
     def _unknown_value(self, span: Span, key: str) -> None:
         from btlang.frontends.mission.explanations.unknown import unknown_value
 
-        self.problems.append(unknown_value(span, key, self.values.known or ()))
+        self.problems.append(unknown_value(span, key, self.context.known or ()))
 
     def _statement(self, head: Head, at: int) -> int:
         """A statement about a value of the mission. Returns where to go on."""
         from btlang.frontends.mission.tokens.assignments import read_statement  # most missions have none
 
-        read = read_statement(head, self.text, at, self.vocabulary, self.values, self._port_text)
+        read = read_statement(head, self.text, at, self.vocabulary, self.context, self._port_text)
         if read is None:
             span = span_of(self.text, at)
             if self._explain and (
@@ -267,13 +268,13 @@ class Lexer:
 
         A value that nothing has the name of, and a pronoun, are read as values there: they may be another mistake.
         """
-        text, values = self.text, self.values.with_references()
-        values.latest = dict.fromkeys(values.types, "")
+        text, context = self.text, self.context.with_references()
+        context.latest = dict.fromkeys(context.types, "")
         while True:
             at += 1
             if at >= last or text.words[at] in _MARKS:
                 return at
-            match = longest(self.vocabulary.trie, text, at, values)
+            match = longest(self.vocabulary.trie, text, at, context)
             if match is not None and match.meaning.role in NODE_ROLES:
                 continue
             if match is not None and (match.meaning.entry is None or match.last > at + 1):
