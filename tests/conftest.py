@@ -25,6 +25,16 @@ def pytest_configure(config: pytest.Config) -> None:
         os.environ[LONG] = "1"
 
 
+def pytest_xdist_auto_num_workers() -> int | None:
+    """One more than there are cores: tests with ROS 2 wait more than they compute."""
+    return None if "PYTEST_XDIST_AUTO_NUM_WORKERS" in os.environ else (os.cpu_count() or 1) + 1
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Tests with ROS 2 come first: most of them share a worker, and none of the long ones is left for the end."""
+    items.sort(key=lambda item: not item.nodeid.startswith("tests/ros/"))
+
+
 def matches_golden(actual: str, path: Path) -> None:
     """Fails where a text is not the one in a file."""
     if os.environ.get("UPDATE_GOLDEN"):
@@ -50,6 +60,8 @@ def take_away_what_is_missed(code: str, patch: pytest.MonkeyPatch) -> None:
         return
     pytest.importorskip("rclpy", reason="ROS 2 is not installed")
     patch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF")
+    for waited in ("_DISCOVERY", "_AGAIN"):
+        patch.setattr(f"btlang.ros.connection.{waited}", 0.5)  # seconds: it finds nobody
 
 
 def _buggy(*_: object) -> list[str]:

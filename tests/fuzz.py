@@ -18,7 +18,7 @@ from collections import Counter
 from collections.abc import Callable
 from functools import partial
 
-from btlang.api import RunnableTree, world_vocabulary
+from btlang.api import Mission, world_vocabulary
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.english.layout import laid_out
 from btlang.examples import examples
@@ -156,7 +156,7 @@ def _check(text: str, parser: str) -> object:
 def _explain(text: str) -> None:
     reading = read_mission(Source(text), VOCABULARY)
     tree = compile_mission(reading.mission, VOCABULARY)
-    RunnableTree(tree, VOCABULARY, mission=reading.mission).explain()
+    Mission(tree, VOCABULARY, syntax=reading.mission).explain()
 
 
 def _format(text: str) -> None:

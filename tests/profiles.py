@@ -1,4 +1,4 @@
-"""How long property tests search: a while in each run of the suite, and much longer with `pytest -m long`."""
+"""How much tests do that search or repeat: a little in each run of the suite, and much with `pytest -m long`."""
 
 from __future__ import annotations
 
@@ -13,11 +13,15 @@ LONG = "BTLANG_LONG"
 """The environment variable that tests/conftest.py sets where the tests are those of `-m long`."""
 
 
+def amount(usual: int, long: int) -> int:
+    """A test that is marked `long` does so many in each run, and so many in a long one."""
+    return long if os.environ.get(LONG) else usual
+
+
 def searches(usual: int, long: int, **options: Any) -> Callable[[Any], Any]:
     """A property test draws so many examples in each run, and so many in a long one."""
 
     def decorate(test: Any) -> Any:
-        count = long if os.environ.get(LONG) else usual
-        return pytest.mark.long(settings(max_examples=count, **options)(test))
+        return pytest.mark.long(settings(max_examples=amount(usual, long), **options)(test))
 
     return decorate

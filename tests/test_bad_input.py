@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 
 import btlang
@@ -13,7 +13,8 @@ from btlang.engine.status import RUNNING, SUCCESS
 from btlang.frontends.mission.reader import read_mission
 from btlang.passes import compile_mission
 from btlang.text.source import Source
-from tests.profiles import searches
+from tests.profiles import amount, searches
+from tests.trial import Trial
 
 BOTH = pytest.mark.parametrize("parser", ["shunting-yard", "lark"])
 VOCABULARY = world_vocabulary()
@@ -32,7 +33,7 @@ def codes(text: str, parser: str = "shunting-yard") -> list[str]:
     return [problem.code for problem in found.diagnostics]
 
 
-@settings(max_examples=400)
+@searches(150, 4000)
 @given(st.binary(max_size=300))
 def test_any_bytes(data: bytes) -> None:
     text = data.decode("utf-8", "replace")
@@ -42,6 +43,8 @@ def test_any_bytes(data: bytes) -> None:
 WORDS = sorted({word for entries in VOCABULARY.entries.values() for e in entries for word in e.example.split()})
 PIECES = [*WORDS, "then", "and", "or", "after", "if", "unless", "until", "while", "repeat", "try", "otherwise", "not"]
 PIECES += [",", ".", ";", ":", "(", ")", '"', "\n", "\n  ", "\n    ", "is", "means", "patrol", "a", "the", "please"]
+LARGE = amount(250_000, 1_000_000)  # characters
+MANY = amount(2000, 10_000)  # messages, each of which looks for its sentence
 PIECES += ["3 times", "for 5 s", "within 2 min", "every 5 s", "5", "m", "%", "-", "twice", "wait", "# x"]
 
 
@@ -51,21 +54,22 @@ def test_any_words(text: str) -> None:
     assert codes(text) == codes(text, "lark")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(
     ("text", "code"),
     [
         ("", "BT005"),
         (" \n\t\n# nothing", "BT005"),
-        ("x" * 1_000_000, "BT010"),
-        ("foo bar " * 125_000, "BT010"),
-        ("wave, " * 170_000, "BT032"),
-        ("(" * 200_000, "BT023"),
-        (")" * 1_000_000, "BT024"),
-        ("," * 1_000_000, "BT032"),
-        ('say "' + "x" * 1_000_000, "BT004"),
-        ("5 " * 500_000, "BT019"),
-        ("5, " * 10_000, "BT019"),
-        ("x then " * 10_000, "BT010"),
+        ("x" * LARGE, "BT010"),
+        ("foo bar " * (LARGE // 8), "BT010"),
+        ("wave, " * (LARGE // 6), "BT032"),
+        ("(" * (LARGE // 5), "BT023"),
+        (")" * LARGE, "BT024"),
+        ("," * LARGE, "BT032"),
+        ('say "' + "x" * LARGE, "BT004"),
+        ("5 " * (LARGE // 2), "BT019"),
+        ("5, " * MANY, "BT019"),
+        ("x then " * MANY, "BT010"),
         ("".join(f"x{number} then " for number in range(1000)), "BT010"),
         ("\x00\x01\x02" * 1000, "BT003"),
         ("n0 is wave\n" + "".join(f"n{i} is n{i - 1} then n{i - 1}\n" for i in range(1, 100)) + "n99", "BT042"),
@@ -114,7 +118,7 @@ def test_nesting_1000_deep(text: str, parser: str) -> None:
 
 
 def test_a_deep_tree_ticks_and_halts() -> None:
-    tree = parse_tree("(print x and " * 1000 + "wait 5 s" + ")" * 1000)
+    tree = Trial("(print x and " * 1000 + "wait 5 s" + ")" * 1000)
     assert tree.tick() == RUNNING
     tree.halt()
 

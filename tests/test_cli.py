@@ -67,6 +67,9 @@ def test_the_log_ends_with_what_failed(btc: Screen, tmp_path: Path) -> None:
     assert btc(*command) == 1
     end = json.loads(log.read_text(encoding="utf-8").splitlines()[-1])
     assert end.pop("t") >= end.pop("seconds") > 1
+    assert end.pop("number") > 10
+    assert end.pop("wall") > 1.7e9
+    assert len(end.pop("run")) == 32
     told = {"path": "/1", "id": "Battery", "reason": "battery is 100%", "place": "<command line>:1:17"}
     assert end == {"event": "end", "outcome": "FAILURE", "stopped": "", "still": True, **told}
 

@@ -44,6 +44,7 @@ TEXTS = {
     "JSON digits": f'{{"format": {DIGITS}, "trees": []}}',
     "NUL": json.dumps({"format": 1, "trees": [{"nodes": [{"id": "Say", "ports": {"text": "a\0b"}}]}]}),
     "a lone surrogate": json.dumps({"format": 1, "trees": [{"nodes": [{"id": "Say", "ports": {"text": "\ud800"}}]}]}),
+    "JSON of escaped quotes": "{" + '"' + '\\"' * 500_000,
     "many ports": XML.format("<Foo " + " ".join(f'p{number}="1"' for number in range(3000)) + "/>"),
 }
 
@@ -69,6 +70,11 @@ def test_missions_and_trees(text: str, tmp_path: Path, capsys: pytest.CaptureFix
     said = capsys.readouterr().err
     assert "error BT" in said
     assert len(said) < 100_000
+
+
+def test_a_line_full_of_mistakes_takes_no_time_of_its_square(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", "-c", "frob. " * 15_000]) == 2  # half a minute, when each looked for its sentence
+    assert capsys.readouterr().err.count("error BT010") == 15_000
 
 
 def test_a_world_too_large_to_plan_in(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

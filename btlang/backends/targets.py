@@ -19,7 +19,7 @@ class Target(Record):
     """`make` names the function that makes it, "module:function" of (tree, vocabulary, **options) to str or bytes.
 
     A file that ends in one of the `suffixes` is of this target where none is named. `options` are the options that the
-    function takes from whoever asks, `given` those that a btlang.api.RunnableTree fills in: "world" and "facts".
+    function takes from whoever asks, `given` those that a btlang.api.Mission fills in: "world" and "facts".
     """
 
     make: str

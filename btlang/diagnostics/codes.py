@@ -96,6 +96,8 @@ _ALL = (
     Code("BT062", "'{first}' ({first_id}, {first_file}) and '{second}' ({second_id}, {second_file}) can match the same words.",
          "Change one of them, or give both the same id."),
     Code("BT063", "There is no keyword file or pack '{name}'.", "Give the path of a TOML file, or the name of an installed pack."),
+    Code("BT064", "'{id}' has a function already, from {file}, and only one can run.",
+         "To run yours in its place, write {fixed}; else give it another id."),
     Code("BT070", "This world file cannot be used: {reason}."),
     Code("BT080", "The command '{id}' cannot run: {reason}."),
     Code("BT081", "Pictures are drawn by matplotlib, which is not installed.", "Install it: pip install 'btlang[pictures]'"),

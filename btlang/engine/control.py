@@ -251,7 +251,9 @@ def _all_or_none(site: Site, children: Sequence[Compiled]) -> Compiled:
                 if status == RUNNING:
                     running = True
                     continue
-            except Exception as problem:
+            except KeyboardInterrupt:
+                raise
+            except BaseException as problem:
                 status = problem
             if status == SKIPPED:
                 skipped = True

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
 _SAME = 2.0**-23  # numbers that are no further apart are equal there: the epsilon of a C++ float
 _EXACT = 2.0**53  # below it a double holds every whole number
 _WHOLE = re.compile(r"-?[0-9]+")
+_LONGEST = 1000  # characters of a whole number, zeros in front included: Python reads 4300 at most
 _DECIMAL = re.compile(r"-?([0-9]+\.?[0-9]*|\.[0-9]+)([eE][+-]?[0-9]+)?")
 
 
@@ -59,7 +60,7 @@ def as_text(value: Any) -> str:
 
 def literal(text: str) -> int | float | str:
     """What a constant in a port of a SubTree is there since 4.9: a whole number of 64 bits, a double, or a text."""
-    if _WHOLE.fullmatch(text) and -(2**63) <= (whole := int(text)) < 2**63:
+    if len(text) <= _LONGEST and _WHOLE.fullmatch(text) and -(2**63) <= (whole := int(text)) < 2**63:
         return whole
     return float(text) if _DECIMAL.fullmatch(text) and abs(float(text)) < inf else text
 

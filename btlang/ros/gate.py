@@ -22,6 +22,7 @@ if TYPE_CHECKING:
 _FURTHEST = 1e8  # metres: more than the coordinates of any map
 _UNIT = 0.05  # how far the length of a quaternion may be from 1
 _JUMP = 1.0  # metres that a pose may jump, besides what the fastest robot drives meanwhile
+_TURNS = 100.0  # radians that no scanner turns
 _NOT_FINITE = "sends numbers that are not finite"
 
 
@@ -75,6 +76,6 @@ def pose_fault(pose: Any) -> str:
 
 
 def _scan(scan: Any) -> str:
-    if not isfinite(scan.angle_min) or not isfinite(scan.angle_increment) or scan.angle_increment == 0.0:
+    if not abs(scan.angle_min) <= _TURNS or not 0.0 < abs(scan.angle_increment) <= _TURNS:
         return "does not say where its beams point"
     return "has no valid beam" if np.isnan(echoes(scan)).all() else ""

@@ -22,22 +22,28 @@ class NodeClock:
     """The clock of a node in seconds, from any thread.
 
     Without simulated time those are real ones in which this process is awake. Where simulated time stands still because
-    nobody gives it, real time counts on, so that a limit is always reached.
+    nobody gives it, real time counts on, and where it begins anew it goes on from there: a limit is always reached.
     """
 
     def __init__(self, node: Any) -> None:
         self._clock = node.get_clock()
         self._simulated = getattr(self._clock, "ros_time_is_active", True)
-        self._seen = (-1.0, 0.0)  # what the clock said, and when it said so first; replaced as one
+        # what the clock said, when it said so first, and how far `now` is ahead of it; replaced as one
+        self._seen: tuple[float, float, float] | None = None
 
     def now(self) -> float:
         """Seconds of the node's clock."""
         if not self._simulated:
             return AWAKE.now()
         said = self._clock.now().nanoseconds * 1e-9
-        if said != self._seen[0]:
-            self._seen = (said, time.monotonic())
-        return float(said + max(0.0, time.monotonic() - self._seen[1] - _STANDING))
+        real = time.monotonic()
+        before, since, ahead = self._seen or (said, real, 0.0)
+        stood = max(0.0, real - since - _STANDING)
+        if said != before:
+            ahead += max(0.0, before + stood - said)  # never back: what is compared with it would be young for long
+            since, stood = real, 0.0
+        self._seen = said, since, ahead
+        return float(said + ahead + stood)
 
     def message(self) -> Any:
         """The time as builtin_interfaces/Time."""

@@ -224,6 +224,7 @@ class RosRobot:
     def navigate_to(self, name: str) -> Deed:
         """Sends NavigateToPose. Raises RobotError for an unknown name, and where nobody knows where the robot is."""
         known = self._places.known(name)
+        self._check_stop()  # a goal that is sent may be driven to, whatever becomes of its cancel
         goal = self._places.goal(known, self.pose)
         self.prepare_navigation()
         assert self._navigation is not None
@@ -231,7 +232,7 @@ class RosRobot:
             self._base.halt()
         journey = self._navigation.start(known, goal)
         if self._latch.refuses:
-            journey.end(_TOLD_TO_STOP)
+            journey.end(_TOLD_TO_STOP)  # `stop` came in between from another thread
         self._emit("navigate", name=known)
         return journey
 

@@ -81,7 +81,7 @@ class Bus:
         """A sink that is called in the thread of the run gets no more events."""
         self._sinks.remove(sink)
 
-    def emit(self, kind: type[Event], *data: Any, **more: Any) -> None:
+    def emit(self, kind: type[Event], /, *data: Any, **more: Any) -> None:
         """Makes an event of a class and hands it to all sinks."""
         if self.before is not None and kind is not StatusesChanged:
             self.before()

@@ -53,7 +53,7 @@ class Event(Record):
     wall: float
 
     @classmethod
-    def stamped(cls, t: float, run: str, number: int, *data: Any, **more: Any) -> Event:
+    def stamped(cls, t: float, run: str, number: int, /, *data: Any, **more: Any) -> Event:
         """An event of this class that happens now. The one place that fills in what all events have."""
         return cls(t, run, number, time(), *data, **more)
 
@@ -278,6 +278,11 @@ class PeriodPassed(Event):
     overruns: int
     state: RobotState | None
     robot: Any
+
+    @property
+    def count(self) -> int:
+        """It has the number of the next event: so the numbers of a log have no gaps."""
+        return 0
 
 
 ROBOT_EVENTS: dict[str, type[Event]] = {

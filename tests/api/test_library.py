@@ -12,29 +12,32 @@ from pathlib import Path
 import pytest
 
 import btlang
-from btlang.api import load_simulation, read_world
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
 from btlang.robots.robot import RobotError
+from btlang.robots.world_problem import read_world
+from btlang.run.events import Event, Printed
+from tests.trial import Trial
 
 
 def test_the_founding_sentence_moves_the_robot(capsys: pytest.CaptureFixture[str]) -> None:
     for parser in ("shunting-yard", "lark"):
-        tree = btlang.parse_tree("move forward then twist right and print hello", parser=parser)
-        assert [node.id for node in tree.tree.walk()] == ["Sequence", "MoveForward", "Parallel", "TurnRight", "Print"]
+        tree = Trial("move forward then twist right and print hello", parser=parser)
+        ids = [node.id for node in tree.mission.tree.walk()]
+        assert ids == ["Sequence", "MoveForward", "Parallel", "TurnRight", "Print"]
         start = tree.robot.pose
-        events = []
+        events: list[Event] = []
         outcome = tree.run(speed="max", sinks=[events.append])
         assert outcome.status == SUCCESS
         end = tree.robot.pose
         assert math.hypot(end.x - start.x, end.y - start.y) == pytest.approx(0.5, abs=0.02)
         assert end.heading - start.heading == pytest.approx(-90, abs=1)
-        assert [e.data["text"] for e in events if getattr(e, "kind", "") == "print"] == ["hello"]
-    tree.print()
+        assert [e.text for e in events if isinstance(e, Printed)] == ["hello"]
+    tree.mission.print()
     assert "TurnRight: turn right" in capsys.readouterr().out
 
 
 def test_ticking_by_hand() -> None:
-    tree = btlang.parse_tree("wait 0.2 s then fail")
+    tree = Trial("wait 0.2 s then fail")
     statuses = [tree.tick() for _ in range(5)]
     assert statuses == [RUNNING] * 4 + [FAILURE]
     tree.tick()
@@ -43,7 +46,7 @@ def test_ticking_by_hand() -> None:
 
 
 def test_halting_stops_the_robot() -> None:
-    tree = btlang.parse_tree("move forward 3 m")
+    tree = Trial("move forward 3 m")
     for _ in range(20):
         tree.tick()
     assert tree.robot.velocity[0] > 0.2
@@ -110,7 +113,7 @@ def test_a_leaf_that_raises_fails_with_a_reason() -> None:
 
 
 def test_why_it_failed() -> None:
-    tree = btlang.parse_tree("try grasp the cup up to 2 times, otherwise check not the battery is above 20%")
+    tree = Trial("try grasp the cup up to 2 times, otherwise check not the battery is above 20%")
     assert tree.why() == ""
     tree.run(speed="max")
     told = [
@@ -123,8 +126,9 @@ def test_why_it_failed() -> None:
         "    0.0 s  grasp cup: the cup is not within reach of the right hand (2 times, last at 0.1 s)",
     ]
     assert tree.why().splitlines() == told
-    assert tree.why(colour=True).splitlines()[3] == f"  {'':49}\x1b[1;31m{'^' * 28}\x1b[0m"
-    other = btlang.parse_tree("try grasp the cup up to 2 times, otherwise check not the battery is above 20%")
+    assert tree.latest is not None
+    assert tree.latest.why(colour=True).splitlines()[3] == f"  {'':49}\x1b[1;31m{'^' * 28}\x1b[0m"
+    other = Trial("try grasp the cup up to 2 times, otherwise check not the battery is above 20%")
     assert (other.tick(), other.why()) == (RUNNING, "")
     assert other.tick() == FAILURE
     assert other.why().splitlines() == told
@@ -146,7 +150,7 @@ def test_one_exception_holds_all_diagnostics() -> None:
 
 
 def test_every_run_starts_in_a_fresh_world_and_is_the_same() -> None:
-    tree = btlang.parse_tree("go to the lab then pick up the bottle, then look around")
+    tree = Trial("go to the lab then pick up the bottle, then look around")
     ends = []
     for _ in range(2):
         outcome = tree.run(speed="max")
@@ -165,16 +169,15 @@ def test_wrong_options(wrong: dict[str, object]) -> None:
 
 
 def test_a_place_of_one_mission_is_not_there_for_the_next() -> None:
-    simulation = load_simulation()
+    session = btlang.Session()
     first = btlang.parse_tree("the lobby is at (1.5, 2.5)\nbay is at (2, 2)\ngo to the lobby")
     second = btlang.parse_tree("go to the lobby")
-    for tree in (first, second):
-        tree.stage = simulation
-        assert tree.run(speed="max").status
+    for mission in (first, second):
+        assert session.prepare(mission, speed="max").execute().succeeded
     lobby = next(place for place in read_world().places if place.name == "lobby")
-    assert simulation.robot.pose.distance_to((lobby.x, lobby.y)) < 0.3
+    assert session.robot.pose.distance_to((lobby.x, lobby.y)) < 0.3
     with pytest.raises(RobotError):
-        simulation.robot.locate("bay")
+        session.robot.locate("bay")
 
 
 def test_words_are_compiled_once_and_shared() -> None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from btlang.api import parse_tree
-from btlang.run.events import RobotEvent
+from btlang.run.events import Said
 
 
 @pytest.mark.parametrize(
@@ -21,4 +21,4 @@ from btlang.run.events import RobotEvent
 def test_a_text_that_is_one_number(text: str, said: str) -> None:
     heard: list[object] = []
     parse_tree(text).run(speed="max", sinks=[heard.append])
-    assert [event.data["text"] for event in heard if isinstance(event, RobotEvent) and event.kind == "say"] == [said]
+    assert [event.text for event in heard if isinstance(event, Said)] == [said]

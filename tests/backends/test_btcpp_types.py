@@ -10,7 +10,7 @@ from __future__ import annotations
 import re
 
 import pytest
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 import btlang
@@ -18,8 +18,10 @@ from btlang.api import parse_tree
 from btlang.backends.btcpp import to_xml
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.engine.status import SUCCESS
+from btlang.run.events import Said
 from btlang.tree.node import Node, Tree
 from tests.engine.scripted import n
+from tests.profiles import searches
 
 PORTS = {
     "Repeat": {"num_cycles": "int"},
@@ -185,7 +187,7 @@ def missions(draw: st.DrawFn) -> str:
     return "\n".join([*lines, _BEFORE, *rest])
 
 
-@settings(max_examples=400, deadline=None)
+@searches(100, 4000, deadline=None)
 @given(missions())
 def test_random_missions_are_taken(text: str) -> None:
     try:
@@ -224,7 +226,7 @@ def test_what_is_written_runs_as_the_mission_does() -> None:
     def said(source: str) -> list[str]:
         words: list[str] = []
         tree = parse_tree(source)
-        hear = lambda event: words.append(event.data["text"]) if getattr(event, "kind", "") == "say" else None  # noqa: E731
+        hear = lambda event: words.append(event.text) if isinstance(event, Said) else None  # noqa: E731
         assert tree.run(speed="max", sinks=[hear]).status == SUCCESS
         return words
 

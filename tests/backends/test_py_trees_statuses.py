@@ -5,7 +5,7 @@ from __future__ import annotations
 from functools import cache
 from typing import Any
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from py_trees.behaviour import Behaviour
 from py_trees.common import Status
@@ -144,13 +144,13 @@ class Twins:
         return found
 
 
-@searches(400, 10000)
+@searches(200, 10000)
 @given(TREES, letters("ttttth", 3, 12))
 def test_statuses_are_the_same(shape: Node, orders: str) -> None:
     compare(Twins(shape, in_module=False), orders)
 
 
-@settings(max_examples=50, deadline=None)
+@searches(20, 1000, deadline=None)
 @given(TREES, letters("ttttth", 3, 12))
 def test_statuses_of_a_module_are_the_same(shape: Node, orders: str) -> None:
     compare(Twins(shape, in_module=True), orders)

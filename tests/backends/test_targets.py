@@ -15,7 +15,7 @@ import pydot
 import pytest
 
 import btlang
-from btlang.api import RunnableTree, format_mission, world_vocabulary
+from btlang.api import Mission, format_mission, world_vocabulary
 from btlang.backends.targets import TARGETS, compiled, target_of
 from btlang.cli import main
 from btlang.diagnostics.diagnostic import MissionError
@@ -33,17 +33,17 @@ if battery is above 20% go to the bay
 """
 
 
-def example(path: Path) -> RunnableTree:
+def example(path: Path) -> Mission:
     text = path.read_text(encoding="utf-8")
     world = re.search(r"--world (\S+)", text)
     return btlang.parse_tree(Source(text, str(path)), world=str(ROOT / world[1]) if world else None)
 
 
-def deep(levels: int = 10_000) -> RunnableTree:
+def deep(levels: int = 10_000) -> Mission:
     node = Node("Wave")
     for _ in range(levels):
         node = Node("Inverter", (node,))
-    return RunnableTree(Tree(node), world_vocabulary())
+    return Mission(Tree(node), world_vocabulary())
 
 
 @pytest.mark.parametrize("name", TARGETS)
@@ -145,9 +145,9 @@ def test_the_module_does_what_run_does(tmp_path: Path) -> None:
 
 
 def test_a_deep_module_makes_the_same_tree() -> None:
-    names: dict[str, RunnableTree] = {"__name__": "made"}  # type: ignore[dict-item]
+    names: dict[str, Mission] = {"__name__": "made"}  # type: ignore[dict-item]
     exec(str(deep().to("python")), names)
-    assert names["tree"].tree == deep().tree
+    assert names["mission"].tree == deep().tree
 
 
 def test_the_module_for_py_trees_needs_py_trees_only(tmp_path: Path) -> None:
@@ -185,7 +185,7 @@ def test_keyword_entries_make_the_tree_known(tmp_path: Path) -> None:
         "action", "condition", "action", "action", "action", "action", "condition"
     ]  # fmt: skip
     assert compiled(tree, vocabulary, "keywords").count("[[") == 0
-    RunnableTree(tree, vocabulary).check()
+    Mission(tree, vocabulary).check()
 
 
 def test_compile_writes_a_file_at_once(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
@@ -230,7 +230,7 @@ def test_all_that_is_wrong_is_told_at_once() -> None:
     tree = Tree(
         Node("Sequence", leaves), (("inner", Node("Foo", (Node("SubTree", ports=inner),))), ("free", leaves[0]))
     )
-    runnable = RunnableTree(tree, world_vocabulary())
+    runnable = Mission(tree, world_vocabulary())
     for attempt in (runnable.check, lambda: runnable.run(speed="max")):
         with pytest.raises(MissionError) as refused:
             attempt()

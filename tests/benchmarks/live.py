@@ -27,6 +27,8 @@ from statistics import median
 from typing import Any
 
 import btlang
+from btlang.run.bus import INLINE
+from btlang.run.controls import Controls
 from btlang.run.events import PeriodPassed
 from btlang.run.live.view import LiveView
 from btlang.run.runner import Runner
@@ -73,9 +75,11 @@ def watched_run(mission: str, view: bool, seconds: float, report: Path) -> None:
             marks.append((time.perf_counter(), time.process_time()))
 
     Runner.tick = timed_tick
-    live = LiveView(tree, sys.stdout, sys.stdin) if view else None
+    mark.policy = INLINE  # type: ignore[attr-defined]
+    controls = Controls()
+    live = LiveView(tree, controls, sys.stdout, sys.stdin) if view else None
     with live or nullcontext():
-        tree.run(rate=RATE, time_limit=seconds, sinks=[mark, live] if live else [mark])
+        tree.run(rate=RATE, time_limit=seconds, controls=controls, sinks=[mark, live] if live else [mark])
     (began, cpu_before), (ended, cpu_after) = marks[0], marks[-1]
     late = [abs(b[0] - a[0] - 1 / RATE) for a, b in pairwise(marks)]
     figures = {"share": (cpu_after - cpu_before) / (ended - began), "late": late, "overruns": runners[0].overruns}

@@ -27,7 +27,7 @@ from rclpy.task import Future
 from sensor_msgs.msg import BatteryState, JointState, LaserScan
 
 import btlang
-from btlang.ros.command import ros_stage
+from btlang.ros.command import connect_ros
 from btlang.ros.node import LATCHED, SpunNode
 
 RATE = 100.0
@@ -151,8 +151,9 @@ def mission(report: Path, seconds: float) -> None:
     words.write_text(WORDS, encoding="utf-8")
     for text in (STEADY, STARTS):
         tree = btlang.parse_tree(text, keywords=[str(words), keep_the_time, note_the_start])
-        if not tree.run(rate=RATE, time_limit=seconds, robot=ros_stage).stopped:
-            sys.exit(f"the mission ended: {tree.why()}")
+        outcome = tree.run(rate=RATE, time_limit=seconds, robot=connect_ros)
+        if not outcome.stopped:
+            sys.exit(f"the mission ended: {outcome.why()}")
     write(report, ticks=marks.ticks, starts=starts)
 
 

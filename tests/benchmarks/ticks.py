@@ -22,7 +22,7 @@ from py_trees.common import Status
 from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine
 from btlang.engine.leaf import LeafBinding
-from btlang.run.events import EventStream
+from btlang.run.bus import Bus
 from btlang.run.runner import traced_engine
 from btlang.tree.node import Node, Tree
 from tests.benchmarks.compile import medians, seconds
@@ -165,8 +165,9 @@ def compared(root: Node, rounds: int, fresh: bool) -> dict[str, float]:
     """Median seconds of a tick of each. `fresh`: each round is the only tick of a tree that was built for it."""
 
     def traced() -> Callable[[], object]:
-        stream = EventStream(told.append)
-        made = traced_engine(Tree(root), BINDINGS.get, clock=Clock(), events=stream)
+        bus = Bus()
+        bus.add(told.append)
+        made = traced_engine(Tree(root), BINDINGS.get, bus=bus)
         made.blackboard.set(KEY, 1.5)
         return made.tick
 

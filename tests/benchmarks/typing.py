@@ -17,8 +17,8 @@ from prompt_toolkit.data_structures import Size
 from prompt_toolkit.input import create_pipe_input
 from prompt_toolkit.output.vt100 import Vt100_Output
 
+from btlang.repl.draft import MissionDraft
 from btlang.repl.screen import Screen
-from btlang.repl.session import Session
 from btlang.repl.store import Store
 
 SENTENCE = "go to the lab then wave at Alice and say hello, then (dock and look around) if the battery is low, then "
@@ -32,12 +32,12 @@ def line_of(words: int) -> str:
 
 async def measure(words: int, keys: str, folder: Path) -> tuple[list[float], list[float]]:
     """Milliseconds from each key to the screen with its tree, and to the screen with its menu."""
-    session = Session()
+    draft = MissionDraft()
     drawn: list[float] = []
     menus: list[float] = []
     with create_pipe_input() as keyboard:
         output = Vt100_Output(io.StringIO(), get_size=lambda: Size(rows=40, columns=120), term="xterm")
-        screen = Screen(session, Store(folder), keyboard, output)
+        screen = Screen(draft, Store(folder), keyboard, output)
         rendered = asyncio.Event()
         screen.application.after_render += lambda _: rendered.set()
         screen.buffer.text = line_of(words)

@@ -10,8 +10,10 @@ from hypothesis import given
 from btlang.tree.node import Tree
 from tests.corpus.random_xml import trees
 from tests.corpus.same import content, read, written
+from tests.profiles import searches
 
 
+@searches(40, 2000)
 @pytest.mark.parametrize("dialect", [3, 4])
 @given(tree=trees())
 def test_written_and_read_it_is_the_same(dialect: int, tree: Tree) -> None:
@@ -23,6 +25,7 @@ def test_written_and_read_it_is_the_same(dialect: int, tree: Tree) -> None:
     assert written(again.replace(origin=None), dialect) == text
 
 
+@searches(40, 2000)
 @given(tree=trees())
 def test_the_other_dialect_keeps_the_tree(tree: Tree) -> None:
     there = read(written(tree, 4))

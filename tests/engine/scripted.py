@@ -93,7 +93,7 @@ class World:
         return self.bind(id, call)
 
     def engine(self, root: Node | Tree, watched: bool = False, **options: Any) -> Engine:
-        listener = (lambda told: self.changes.extend((index, status) for index, status, _ in told)) if watched else None
+        listener = (lambda told: self.changes.extend(change[:2] for change in told)) if watched else None
         tree = root if isinstance(root, Tree) else Tree(root)
         return Engine(tree, self.bindings.get, clock=self.clock, listener=listener, **options)
 

@@ -77,7 +77,7 @@ def test_a_halt_stops_nothing_that_does_not_run() -> None:
 # On random trees, where leaves raise exceptions and interrupts wherever they are called
 
 
-@searches(400, 15000)
+@searches(200, 15000)
 @given(BUSY | TREES, letters("ttttthpe", 3, 10), letters("................xi", 1, 12))
 def test_leaves_are_used_as_they_must_be(shape: Node, orders: str, trouble: str) -> None:
     """Started before they are ticked, halted once and only while they run, none next to what excludes it.
@@ -219,6 +219,20 @@ def test_an_exception_in_a_leaf_is_its_failure(id: str, leaf: Callable[[World], 
     assert starts == halts > 0
     assert world.log.count("start") == world.log.count("halt")
     assert engine.take_halt_failures() == []
+
+
+@every_type
+def test_an_exit_stays_within_the_tree_also_where_nobody_watches(id: str) -> None:
+    """Functions are then called by the node above them itself."""
+    world = World()
+    world.cls("Z", "r")
+    scripts = RUNS[id][0].split()
+    children = [exits(world) if script == "R" else child
+                for script, child in zip(scripts, leaves(world, scripts), strict=True)]  # fmt: skip
+    engine = world.engine(around(id, *children))
+    engine.blackboard.set("x", 1)
+    for _ in range(3):
+        engine.tick()
 
 
 @every_type

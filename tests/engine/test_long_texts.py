@@ -27,7 +27,7 @@ def test_too_long_a_text_fails(mission: str) -> None:
     tree = btlang.parse_tree(mission)
     outcome = tree.run(speed="max")
     assert not outcome.status
-    assert "more than 1,000,000 characters" in tree.why()
+    assert "more than 1,000,000 characters" in outcome.why()
 
 
 def test_a_value_of_a_leaf() -> None:

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from hypothesis import given, settings
+from hypothesis import given
 from hypothesis import strategies as st
 from py_trees import composites, decorators
 from py_trees.behaviour import Behaviour
 from py_trees.common import OneShotPolicy, ParallelPolicy, Status
 
 from btlang.tree.node import Node
+from tests.profiles import searches
 
 from .random_trees import letters
 from .scripted import World, n
@@ -121,7 +122,7 @@ class Twins:
 ORDERS = letters("ttttth", 3, 12)
 
 
-@settings(max_examples=500)
+@searches(200, 5000)
 @given(trees(actions(0), "Sequence Fallback"), ORDERS)
 def test_trees_that_ask_once(shape: Node, orders: str) -> None:
     twins = Twins(shape)
@@ -130,7 +131,7 @@ def test_trees_that_ask_once(shape: Node, orders: str) -> None:
         assert ours == theirs
 
 
-@settings(max_examples=1000)
+@searches(300, 10000)
 @given(trees(actions(1), "Sequence Fallback ReactiveSequence ReactiveFallback"), ORDERS)
 def test_trees_with_reactive_nodes(shape: Node, orders: str) -> None:
     """Here the halts of a tick come before the starts, there after them; otherwise all is the same."""

@@ -21,7 +21,7 @@ from .reference_board import Board
 from .scripted import LETTER, World
 
 
-@searches(800, 20000)
+@searches(300, 20000)
 @given(TREES | BUSY, letters("ttttthpe", 3, 12), st.booleans())
 def test_engine_equals_reference(shape: Node, orders: str, watched: bool) -> None:
     drawn, world = Drawn(shape), World()

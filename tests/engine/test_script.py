@@ -7,12 +7,14 @@ import re
 from fractions import Fraction
 
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.leaf import ActionFailed
 from btlang.engine.script import ScriptError, ScriptFailed, as_text, compile_script
+from btlang.engine.script_values import literal
+from tests.profiles import searches
 
 ENUMS = {"RED": 1, "BLUE": 3}
 
@@ -222,6 +224,11 @@ def test_texts_for_people() -> None:
     assert [as_text(value) for value in values] == ["3", "3", "0.5", "-2", "1", "1e+20", "3.0", "None", "nan"]
 
 
+def test_a_constant_with_more_digits_than_a_number_can_have_is_a_text() -> None:
+    assert literal("9" * 5000) == "9" * 5000
+    assert literal("-12") == -12
+
+
 def test_as_deep_as_allowed() -> None:
     assert run("(" * 199 + "1" + ")" * 199) == 1
     assert run("!" * 199 + "0") == 1
@@ -282,7 +289,7 @@ WORDS = "1 0.5 0x1F 1e9 'a' '' x @y RED true ' . é \\"
 PIECES = (*SIGNS.split(), *WORDS.split(), " ", "\n")
 
 
-@settings(max_examples=1500)
+@searches(500, 15000)
 @given(st.one_of(st.text(max_size=30), st.lists(st.sampled_from(PIECES), max_size=25).map("".join)))
 @example("+6e66>6666.6+66\r6>6;6e62=6+6e66>66666'; en';o';o'; en'; \x7fn\x7fr;6.6+66.H>6+6\x80")
 def test_any_text_runs_or_tells_why_not(code: str) -> None:

@@ -7,7 +7,7 @@ from pathlib import Path
 
 import pytest
 
-from btlang.api import RunnableTree, parse_tree
+from btlang.api import Mission, parse_tree
 from btlang.cli import main
 from btlang.text.source import Source
 from tests.conftest import matches_golden
@@ -73,7 +73,7 @@ def test_deep_missions() -> None:
 def test_a_tree_without_a_mission() -> None:
     """Its statements are those of its English."""
     tree = parse_tree("wave if bumped")
-    explained = RunnableTree(tree.tree, tree.vocabulary).explain()
+    explained = Mission(tree.tree, tree.vocabulary).explain()
     assert explained.startswith("line 1: if bumped, wave\n  read as: if bumped, wave\n\n  IfThenElse\n")
 
 

@@ -6,7 +6,7 @@ import re
 from pathlib import Path
 
 import pytest
-from hypothesis import example, given, settings
+from hypothesis import example, given
 from hypothesis import strategies as st
 
 from btlang.api import format_mission, parse_tree
@@ -22,6 +22,7 @@ from btlang.vocabulary.vocabulary import Vocabulary
 from tests.english.test_sentence import MISSIONS, ROOT
 from tests.language import sentences
 from tests.language.letters import letters
+from tests.profiles import searches
 
 _BLANKS = ["", " ", "  ", "\t", " \t ", "\u00a0", "\f", "\ufeff"]
 _COMMENTS = ["", "", "", "# one", "#", '#two "x', "# (;,.  a \t b", "# it's # here"]
@@ -83,7 +84,7 @@ def check_layout(text: str, vocabulary: Vocabulary) -> None:
     assert not done.endswith("\n\n")
 
 
-@settings(max_examples=300)
+@searches(100, 3000)
 @given(mangled())
 @example('u then(say"a"then say"b" );v.w')
 @example("if p:\n        # deep\n    u\n  # between\n    v\n# out\nw")

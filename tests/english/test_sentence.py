@@ -69,7 +69,7 @@ def test_sentences_keep_their_tree(words: str) -> None:
     keeps_its_tree(mission, letters())
 
 
-@searches(80, 3000)
+@searches(30, 3000)
 @given(trees.missions())
 @example(ast.Program(ast.Every("5", ast.Repeat("1", trees.phrase("u"), trees.SPAN), trees.SPAN), (), trees.SPAN))
 @example(ast.Program(ast.Try(trees.phrase("u"), trees.either("v", "w"), trees.SPAN), (), trees.SPAN))
@@ -77,7 +77,7 @@ def test_syntax_trees_keep_their_tree(mission: ast.Program) -> None:
     keeps_its_tree(mission, letters())
 
 
-@searches(60, 2000)
+@searches(30, 2000)
 @given(trees.missions(), st.sampled_from([1, 20, 50]), st.sampled_from(BRACKETS))
 def test_blocks_keep_the_tree(mission: ast.Program, width: int, brackets: str) -> None:
     tree = compile_mission(mission, letters())

@@ -7,15 +7,16 @@ from functools import cache
 from itertools import product
 
 import pytest
-from btlang.frontends.mission.completion.completer import Completion, completions
-from hypothesis import assume, given, settings
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from btlang.api import world_vocabulary
 from btlang.diagnostics.diagnostic import MissionError
+from btlang.frontends.mission.completion.completer import Completion, completions
 from btlang.vocabulary.vocabulary import Vocabulary
 from tests.language.letters import letters, read
 from tests.language.sentences import broken_missions, english, missions
+from tests.profiles import searches
 
 
 @cache
@@ -44,7 +45,7 @@ def places(text: str) -> list[int]:
     return [match.start() for match in re.finditer(r"[a-z]+", text)]
 
 
-@settings(max_examples=300, deadline=None)
+@searches(100, 3000, deadline=None)
 @given(missions.map(english), st.data())
 def test_what_is_accepted_is_offered(text: str, data: st.DataObject) -> None:
     assume(is_sound(text))
@@ -55,7 +56,7 @@ def test_what_is_accepted_is_offered(text: str, data: st.DataObject) -> None:
     assert word in units_and_rounds or word in {option.split()[0] for option in found}
 
 
-@settings(max_examples=80, deadline=None)
+@searches(12, 800, deadline=None)
 @given(st.one_of(missions, broken_missions()).map(english), st.data())
 def test_what_is_offered_is_accepted(text: str, data: st.DataObject) -> None:
     at = data.draw(st.sampled_from([*places(text), len(text)]))

@@ -6,11 +6,12 @@ import pytest
 
 import btlang
 from btlang.engine.status import FAILURE, SUCCESS
-from btlang.repl.session import Session
+from btlang.repl.draft import MissionDraft
+from tests.trial import Trial
 
 
 def test_a_place_may_be_used_before_it_is_given() -> None:
-    tree = btlang.parse_tree("go to the pantry\nthe pantry is at (3, 4) looking 90 degrees")
+    tree = Trial("go to the pantry\nthe pantry is at (3, 4) looking 90 degrees")
     assert tree.run(speed="max").status == SUCCESS
     pose = tree.robot.pose
     assert (round(pose.x, 1), round(pose.y, 1), round(pose.heading / 10) * 10) == (3.0, 4.0, 90)
@@ -27,15 +28,14 @@ def test_a_place_may_be_used_before_it_is_given() -> None:
 def test_facts(fact: str, x: float, y: float, facing: float | None) -> None:
     for parser in ("shunting-yard", "lark"):
         tree = btlang.parse_tree(f"{fact}.\nwave", parser=parser)
-        assert tree.mission is not None
-        (found,) = tree.mission.facts
+        (found,) = tree.facts
         assert (found.x, found.y) == (x, y)
         if facing is not None:
             assert found.facing == facing
 
 
 def test_a_fact_takes_the_place_of_a_place_of_the_world() -> None:
-    tree = btlang.parse_tree("the lab is at (3, 1.5); the lab is at (2.5, 1.5); go to the lab")
+    tree = Trial("the lab is at (3, 1.5); the lab is at (2.5, 1.5); go to the lab")
     tree.run(speed="max")
     assert round(tree.robot.pose.x, 1) == 2.5
 
@@ -54,10 +54,10 @@ def test_a_text_of_facts_alone_has_no_command() -> None:
 
 
 def test_a_session_keeps_facts() -> None:
-    session = Session()
+    session = MissionDraft()
     session.add(session.compile("corner is at (3, 4)").entry)
     compiled = session.compile("go to the corner")
-    assert compiled.tree.run(speed="max").status == SUCCESS
+    assert compiled.mission.run(speed="max").status == SUCCESS
     session.add(compiled.entry)
     session.add(session.compile("corner is at (3, 1.5)").entry)
     assert session.text == "go to the corner\ncorner is at (3, 1.5)\n"

@@ -11,7 +11,7 @@ from btlang.cli import main
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.reading import read_source
 from btlang.frontends.mission.completion.completer import completions
-from btlang.repl.session import Session
+from btlang.repl.draft import MissionDraft
 from btlang.tree.dump import plain
 from btlang.vocabulary.load import load_vocabulary
 
@@ -101,6 +101,6 @@ def test_completion_and_the_repl_know_the_names(tmp_path: Path, monkeypatch: pyt
     line = 'include "part.txt"\n'
     assert "dance " in {option.text for option in completions(line + "da", load_vocabulary())}
     assert "stove" in {option.text for option in completions(line + "go to the ", load_vocabulary())}
-    session = Session()
+    session = MissionDraft()
     session.add(session.compile(line.strip()).entry)
-    assert plain(session.compile("dance 3").tree.tree).startswith('SubTree ID="dance {n}" n=3')
+    assert plain(session.compile("dance 3").mission.tree).startswith('SubTree ID="dance {n}" n=3')

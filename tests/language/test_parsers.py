@@ -34,7 +34,7 @@ def reading(text: str, parser: str) -> ast.Program | tuple[str, ...]:
         return tuple(problem.code for problem in error.diagnostics)
 
 
-@searches(700, 30000)
+@searches(250, 30000)
 @given(st.one_of(missions, broken_missions()))
 @example("a repeat until p NL")
 @example("not ( p ) NL")
@@ -47,7 +47,7 @@ def test_parsers_agree(words: str) -> None:
         assert all(span[0] < span[1] for span in _spans(shunted))
 
 
-@searches(200, 5000)
+@searches(100, 5000)
 @given(missions, st.sampled_from([".", ";", "!", " ."]))
 @example("a NL otherwise b NL", ".")
 @example("if p : NL IN a NL DE NL otherwise : NL IN b NL DE NL", ".")
@@ -106,7 +106,7 @@ _command = st.recursive(
 )
 
 
-@searches(300, 10000)
+@searches(120, 10000)
 @given(_command)
 def test_each_parser_takes_all_that_the_matching_stage_may_write(kinds: str) -> None:
     """Also token streams that no sentence was drawn for."""
@@ -182,7 +182,7 @@ def ours(node: ast.Ast | None) -> object:
     return (kind, *map(ours, ast.parts(node)))
 
 
-@searches(700, 30000)
+@searches(250, 30000)
 @given(st.one_of(missions, broken_missions()))
 def test_groups_as_the_oracle_does(words: str) -> None:
     """The language takes a little more than the oracle (`then` at the start, empty lines); never anything else."""

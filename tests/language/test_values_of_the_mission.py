@@ -7,7 +7,7 @@ import pytest
 import btlang
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.engine.status import FAILURE, SUCCESS
-from btlang.run.events import RobotEvent
+from btlang.run.events import Said
 from btlang.tree.dump import plain
 
 PARSERS = ("shunting-yard", "lark")
@@ -36,8 +36,8 @@ def said(text: str) -> list[str]:
     words: list[str] = []
 
     def listen(event: object) -> None:
-        if isinstance(event, RobotEvent) and event.kind == "say":
-            words.append(event.data["text"])
+        if isinstance(event, Said):
+            words.append(event.text)
 
     outcome = btlang.parse_tree(text).run(speed="max", sinks=[listen])
     assert outcome.status == SUCCESS, outcome

@@ -1,6 +1,6 @@
 """Each pass alone: texts and trees with what the pass makes of them, in a file of its own in `fixtures/`.
 
-A block is a text, a line `=>` and what the pass finds; blocks are parted by `---`. UPDATE_GOLDEN=1 writes the files anew.
+A block is a text, a line `=>` and what the pass finds; `---` parts blocks. UPDATE_GOLDEN=1 writes the files anew.
 """
 
 from __future__ import annotations

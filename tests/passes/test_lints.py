@@ -5,7 +5,7 @@ from __future__ import annotations
 import pytest
 
 from btlang.api import parse_tree
-from btlang.repl.session import Session
+from btlang.repl.draft import MissionDraft
 from btlang.vocabulary.entry import Entry
 
 
@@ -300,11 +300,11 @@ def test_silencing(text: str, codes: list[str]) -> None:
 
 
 def test_a_session_has_lints_of_what_was_typed() -> None:
-    session = Session()
-    bow = session.compile("bow is wave then nod twice")
-    assert [warning.code for warning in bow.tree.warnings] == ["BT050"]
-    session.add(bow.entry)
-    assert session.compile("bow").tree.warnings == ()
+    draft = MissionDraft()
+    bow = draft.compile("bow is wave then nod twice")
+    assert [warning.code for warning in bow.mission.warnings] == ["BT050"]
+    draft.add(bow.entry)
+    assert draft.compile("bow").mission.warnings == ()
 
 
 def test_what_an_action_says_of_itself() -> None:

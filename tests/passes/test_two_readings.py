@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from itertools import combinations
 from typing import NamedTuple
 
-from hypothesis import example, given, reject, settings
+from hypothesis import example, given, reject
 from hypothesis import strategies as st
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError
@@ -22,6 +22,7 @@ from tests.english.trees import missions as trees
 from tests.language.letters import letters
 from tests.language.sentences import commands, missions
 from tests.language.sentences import english as text_of
+from tests.profiles import searches
 
 _joints = st.sampled_from(["and", "or", "then", "after", ",", ", and", ", or", ", then", "otherwise"])
 _behind = st.sampled_from(["3 times", "for 5 s", "if possible", "until p", "unless p and q or r", "within 9 s"])
@@ -83,13 +84,13 @@ def with_brackets(text: str) -> Iterator[str]:
         yield f"{text[:start]}({text[start:end]}){text[end:]}"
 
 
-@settings(max_examples=150, deadline=None)
+@searches(50, 1500, deadline=None)
 @given(trees(), st.sampled_from(["clear", "all"]))
 def test_what_is_said_with_more_brackets_has_one_reading(mission: object, brackets: str) -> None:
     assert read(english(mission, letters(), brackets=brackets)).warnings == []  # type: ignore[arg-type]
 
 
-@settings(max_examples=400, deadline=None)
+@searches(120, 4000, deadline=None)
 @given(missions.map(text_of))
 @example("u after v and w")
 @example("u and v after w")
@@ -105,7 +106,7 @@ def test_the_sentence_has_the_first_one(text: str) -> None:
             assert root(other) is not None
 
 
-@settings(max_examples=400, deadline=None)
+@searches(120, 4000, deadline=None)
 @given(st.one_of(crowded, missions.map(text_of)))
 def test_the_fix_keeps_the_tree_and_ends_the_warning(text: str) -> None:
     found = found_in(text)
@@ -118,7 +119,7 @@ def test_the_fix_keeps_the_tree_and_ends_the_warning(text: str) -> None:
             assert shown(warning) not in [shown(other) for other in mended.warnings if other.span == warning.span]
 
 
-@settings(max_examples=300, deadline=None)
+@searches(100, 3000, deadline=None)
 @given(st.one_of(crowded, commands.map(text_of)))
 @example("u then v and w")
 @example("u after v and w")

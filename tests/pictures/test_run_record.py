@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import btlang
 from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
@@ -12,13 +11,14 @@ from btlang.pictures.run_record import RunRecord
 from btlang.pictures.statuses import LastStatuses, by_definition
 from btlang.run.events import StatusesChanged
 from btlang.tree.node import Node, Tree
+from tests.trial import Trial
 
 
 def recorded(mission: str, time_limit: float | None = None) -> tuple[RunRecord, dict[str, int]]:
-    tree = btlang.parse_tree(mission)
-    record, statuses = RunRecord(tree.label, tree.is_action), LastStatuses()
-    tree.run(speed="max", sinks=[record, statuses], time_limit=time_limit)
-    assert tree.sink_errors == []
+    trial = Trial(mission)
+    record, statuses = RunRecord(trial.mission.label, trial.mission.is_action), LastStatuses()
+    trial.run(speed="max", sinks=[record, statuses], time_limit=time_limit)
+    assert trial.sink_errors == []
     return record, statuses.by_path
 
 
@@ -84,8 +84,8 @@ def test_a_reset_is_no_status() -> None:
     sink, engine = LastStatuses(), Engine(Tree(Node("AlwaysSuccess")), lambda id: None, clock=Clock())
     for status in (RUNNING, SUCCESS, IDLE):
         changes = Changes()
-        changes.indices, changes.statuses = [0], [status]
-        sink(StatusesChanged(0.0, changes, engine))
+        changes.indices, changes.statuses, changes.before = [0], [status], [IDLE]
+        sink(StatusesChanged(0.0, "", 0, 0.0, changes, engine))
     assert sink.by_path == {"/": SUCCESS}
 
 

@@ -8,8 +8,8 @@ import pytest
 
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.repl.commands import COMMANDS, Commands, Leave, command_of
+from btlang.repl.draft import MissionDraft
 from btlang.repl.entering import entries, needs_more
-from btlang.repl.session import Session
 from btlang.repl.store import Store
 
 
@@ -17,7 +17,7 @@ class Repl:
     """A session with commands, and what they wrote."""
 
     def __init__(self, *texts: str, store: Store | None = None) -> None:
-        self.session = Session()
+        self.session = MissionDraft()
         self.said: list[str] = []
         self.runs = 0
         self.commands = Commands(self.session, self.said.append, self._run, store)
@@ -183,7 +183,7 @@ def test_needs_more(text: str, more: bool) -> None:
 
 def test_entries_of_lines() -> None:
     lines = ["wave", "", "if stuck:", "  nod", "otherwise:", "  wave", "nod", "repeat:", "  nod", "", "say end"]
-    assert list(entries(lines, Session().vocabulary)) == [
+    assert list(entries(lines, MissionDraft().vocabulary)) == [
         "wave", "if stuck:\n  nod\notherwise:\n  wave", "nod", "repeat:\n  nod", "say end",
     ]  # fmt: skip
 

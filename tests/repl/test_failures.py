@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import pytest
 
+from btlang.repl.draft import MissionDraft
 from btlang.repl.loop import Repl
-from btlang.repl.session import Session
 from btlang.repl.store import Store
 
 
 def told(capsys: pytest.CaptureFixture[str], *lines: str) -> list[str]:
     """What is written to standard error while these lines are done."""
-    assert Repl(Session(), Store(None), "max").read(lines) == 1
+    assert Repl(MissionDraft(), Store(None), "max").read(lines) == 1
     return capsys.readouterr().err.splitlines()
 
 

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 import pytest
-from hypothesis import given, settings
+from hypothesis import given
 
+from btlang.repl.draft import MissionDraft
 from btlang.repl.preview import continuations, preview
-from btlang.repl.session import Session
 from tests.language.sentences import broken_missions, english
+from tests.profiles import searches
 
-SESSION = Session()
+SESSION = MissionDraft()
 
 
 @pytest.mark.parametrize(
@@ -46,13 +47,13 @@ def test_marks() -> None:
 
 
 def test_names_of_the_session_are_offered() -> None:
-    session = Session()
-    session.add(session.compile("bow is nod").entry)
-    (offer,) = (option for option in continuations(session, "wave then bo") if option.kind == "name")
+    draft = MissionDraft()
+    draft.add(draft.compile("bow is nod").entry)
+    (offer,) = (option for option in continuations(draft, "wave then bo") if option.kind == "name")
     assert (offer.text, offer.start) == ("bow", 10)
 
 
-@settings(max_examples=100, deadline=None)
+@searches(30, 1000, deadline=None)
 @given(broken_missions().map(english))
 def test_any_text_has_a_preview(text: str) -> None:
     seen = preview(SESSION, text)

@@ -16,7 +16,7 @@ from tests.ros.processes import LONG, wait_until
 
 LATCHED = QoSProfile(depth=1, durability=DurabilityPolicy.TRANSIENT_LOCAL)
 
-_ALL_FOUND = 2.0  # seconds: nodes of tests announce themselves every 0.1 s
+_ALL_FOUND = 1.0  # seconds: nodes of tests announce themselves every 0.1 s
 _SETTLE = 0.3  # seconds: a server that has not yet found the client's reader drops its answer, and no call tells when
 
 
@@ -60,6 +60,7 @@ class Client:
     def __init__(self, domain: int) -> None:
         self._spun = SpunNode("client", domain_id=domain)
         self.node = self._spun.node
+        self._found: dict[str, Any] = {}
         self._spun.start()
 
     def close(self) -> None:
@@ -77,16 +78,23 @@ class Client:
         return publisher
 
     def call(self, kind: type[Any], service: str, **fields: Any) -> Any:
-        client = self.node.create_client(kind, service)
+        client = self._settled(service, lambda: self.node.create_client(kind, service))
         assert client.wait_for_service(LONG), service
-        time.sleep(_SETTLE)
         return answer(client.call_async(kind.Request(**fields)))
 
     def action(self, kind: type[Any], name: str) -> ActionClient:
-        client = ActionClient(self.node, kind, name)
+        client: ActionClient = self._settled(name, lambda: ActionClient(self.node, kind, name))
         assert client.wait_for_server(LONG), name
-        time.sleep(_SETTLE)
         return client
+
+    def _settled(self, name: str, make: Callable[[], Any]) -> Any:
+        """The client of that name, which its server has found; a server lives as long as the test."""
+        if name not in self._found:
+            client = self._found[name] = make()
+            wait = client.wait_for_server if isinstance(client, ActionClient) else client.wait_for_service
+            assert wait(LONG), name
+            time.sleep(_SETTLE)
+        return self._found[name]
 
     def begin(self, question: Callable[[], Any]) -> Any:
         """The future of an action client, asked for by the thread that spins: rclpy notes a question after it has

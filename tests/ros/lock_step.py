@@ -15,16 +15,16 @@ from time import monotonic
 import pytest
 from std_msgs.msg import Float64
 
-from btlang.cli import read_world
+from btlang.robots.world_problem import read_world
+from btlang.ros.connection import RosConnection
 from btlang.ros.ending import ending_signals
 from btlang.ros.pace import RosPace
 from btlang.ros.simulator.simulator import Simulator
-from btlang.ros.stage import RosStage
 from btlang.run.controls import Controls
 
 _ALLOWED, _DONE = "/lock_step/allowed", "/lock_step/done"
 """Until which simulated second the robot may step, and how far it has come. Subscribed to last, so heard last."""
-_STEP = 0.05  # simulated seconds, and seconds of real time where no mission has ticked yet
+_STEP = 0.1  # simulated seconds, and seconds of real time where no mission has ticked yet
 _PATIENCE = 0.5  # real seconds after which the robot takes a step unasked: while a mission ends nothing ticks
 _EXACT = 1e-6
 
@@ -32,7 +32,7 @@ _EXACT = 1e-6
 class LockStep(RosPace):
     """A period is over when the robot has come as far."""
 
-    def __init__(self, stage: RosStage, controls: Controls) -> None:
+    def __init__(self, stage: RosConnection, controls: Controls) -> None:
         self._clock = stage.node.get_clock()
         super().__init__(controls, lambda: float(self._clock.now().nanoseconds) * 1e-9)
         self._done = 0.0
@@ -44,7 +44,7 @@ class LockStep(RosPace):
         self._controls.wake()
 
     def sleep(self, period: float, wait: float = inf) -> float:
-        due = self._last + min(period, wait)
+        due = self._last + max(_STEP, min(period, wait))
         self._allowed.publish(Float64(data=due))
         while (now := self._done) < due - _EXACT and not self._woken and not self._controls.stopped:
             self._controls.wait(None)
@@ -59,7 +59,7 @@ class LockStep(RosPace):
 
 def in_lock_step(patch: pytest.MonkeyPatch) -> None:
     """From now on missions with `--robot ros --sim-time` in this process go in lock step with such a robot."""
-    patch.setattr(RosStage, "pace", lambda stage, speed, controls: LockStep(stage, controls))
+    patch.setattr(RosConnection, "pace", lambda stage, speed, controls: LockStep(stage, controls))
 
 
 def serve(world: str) -> int:

@@ -3,28 +3,29 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from contextlib import closing
+from math import isfinite
 from pathlib import Path
 from typing import Any
 
 import pytest
+from sensor_msgs.msg import JointState
 from std_msgs.msg import String
 
 import btlang
-from btlang.api import read_world
-from btlang.ros.command import ros_stage
-from btlang.ros.stage import RosStage
-from btlang.run.events import RobotEvent
+from btlang.run.events import Warned
 from tests.ros.client import Client
 from tests.ros.declared import Peer, words
 from tests.ros.domains import free_domain
 
 
 class Lab:
-    """One such robot, and one stage for all missions on it."""
+    """One such robot, and one session for all missions on it."""
 
-    def __init__(self, folder: Path, peer: Peer, stage: RosStage, client: Client) -> None:
-        self._folder, self.peer, self._stage = folder, peer, stage
+    def __init__(self, folder: Path, peer: Peer, session: btlang.Session, client: Client) -> None:
+        self._folder, self.peer, self._session = folder, peer, session
         self._faults = client.publisher(String, "/misbehave")
+        self.joints = client.hear(JointState, "/joint_states")
         self.warnings: list[str] = []
 
     def misbehave(self, faults: str = "") -> None:
@@ -37,9 +38,8 @@ class Lab:
         self.peer.told.clear()
         file = self._folder / "words.toml"
         file.write_text(keywords, encoding="utf-8")
-        tree = btlang.parse_tree(mission, keywords=[str(file)])
-        tree.stage = self._stage
-        outcome = tree.run(time_limit=limit, sinks=[self._hear])
+        made = btlang.parse_tree(mission, keywords=[str(file)])
+        outcome = self._session.prepare(made, time_limit=limit, sinks=[self._hear]).execute()
         assert outcome.stopped == stopped
         assert outcome.failure is None or outcome.failure.exception is None
         drives = [line for line in self.peer.told if line.startswith("drive")]
@@ -50,8 +50,8 @@ class Lab:
         return "" if outcome.failure is None else outcome.failure.reason
 
     def _hear(self, event: Any) -> None:
-        if isinstance(event, RobotEvent) and event.kind == "warning":
-            self.warnings.append(event.data["text"])
+        if isinstance(event, Warned):
+            self.warnings.append(event.text)
 
 
 @pytest.fixture(scope="module")
@@ -61,12 +61,8 @@ def lab(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Lab]:
         peer = Peer("faulty_robot", domain=domain)
         try:
             peer.expect("ready")
-            stage, client = ros_stage(read_world(None)), Client(domain)
-            try:
-                yield Lab(tmp_path_factory.mktemp("lab"), peer, stage, client)
-            finally:
-                client.close()
-                stage.close()
+            with closing(Client(domain)) as client, btlang.Session("ros") as session:
+                yield Lab(tmp_path_factory.mktemp("lab"), peer, session, client)
         finally:
             peer.close()
 
@@ -145,7 +141,8 @@ def test_joints_without_positions(lab: Lab) -> None:
     reason = '/joint_states tells nothing of the joint "head_turn"'
     assert lab.run("look left") == reason
     lab.misbehave()
-    assert lab.run("look left then look ahead") == ""
+    lab.joints.wait(lambda state: all(map(isfinite, state.position)))  # one that was sent before may be the latest
+    assert lab.run("wait 0.3 s then look left then look ahead") == ""
 
 
 @pytest.mark.parametrize(

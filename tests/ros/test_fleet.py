@@ -29,6 +29,7 @@ def test_a_mission_is_for_the_robot_of_its_namespace(
     began = {name: heard.wait().pose.pose.position for name, heard in odometry.items()}
     words = tmp_path / "words.toml"
     words.write_text(SHOUT, encoding="utf-8")
+    absent = Command(_folder(tmp_path, "absent"), domain, "run", "-c", "nod", "--robot", "ros", "--namespace", "robot3")
     text = "shout hello then move forward 20 cm then close the hand"
     options = ["--keywords", str(words), "--robot", "ros", "--namespace", "robot2"]
     ready = Command(_folder(tmp_path, "ready"), domain, "run", "-c", text, *options, "--preflight")
@@ -42,7 +43,6 @@ def test_a_mission_is_for_the_robot_of_its_namespace(
     assert moved == {"robot1": 0.0, "robot2": pytest.approx(0.2, abs=0.02)}
     assert "hello!" in second.out
     assert "hello!" not in first.out
-    absent = Command(_folder(tmp_path, "absent"), domain, "run", "-c", "nod", *options[2:-1], "robot3")
     assert absent.process.wait(LONG) == 2
     assert "needs the topic /robot3/joint_states, but nobody publishes /robot3/joint_states" in absent.err
 

@@ -54,6 +54,8 @@ def scan(*ranges: float, step: float = 0.1, low: float = 0.1, high: float = 10.0
         (scan(1.0, high=0.0), ""),
         (scan(1.0, step=0.0), "does not say where its beams point"),
         (scan(1.0, step=NAN), "does not say where its beams point"),
+        (scan(1.0, step=1e30), "does not say where its beams point"),
+        (LaserScan(angle_min=1e30, angle_increment=0.1, ranges=[1.0]), "does not say where its beams point"),
         (Float64(data=NAN), ""),
     ],
 )

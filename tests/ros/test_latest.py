@@ -35,6 +35,23 @@ def test_a_message_grows_old() -> None:
     assert latest.take(None) == "message"
 
 
+def test_where_simulated_time_begins_anew_silence_still_counts(monkeypatch: pytest.MonkeyPatch) -> None:
+    real = [50.0]
+    monkeypatch.setattr(time, "monotonic", lambda: real[0])
+    node = Node()
+    clock = NodeClock(node)
+    latest = Latest("/odom", clock.now)
+    latest.store("message")
+    real[0] += 5.0  # 4 of them count
+    assert clock.now() == 104.0
+    node.said = 0.0  # another simulator
+    assert clock.now() == 104.0
+    node.said = 1.2
+    assert clock.now() == pytest.approx(105.2)
+    with pytest.raises(ActionFailed, match=r"nothing has come on /odom for 5\.2 s"):
+        latest.take(5.0)
+
+
 def test_a_clock_that_stands_still_goes_on_in_real_time(monkeypatch: pytest.MonkeyPatch) -> None:
     """The clock of a simulation that has died says nothing any more, and nothing may wait for it for ever."""
     real = [50.0]

@@ -62,7 +62,7 @@ def test_an_action_that_is_served_ends_with_its_client(start: Callable[..., Comm
     died = killed(mission)
     server.wait_for("halted move forward")
     assert time.monotonic() - died < SOON
-    several = "move forward 40 cm at 0.1 m/s then turn left 10 degrees then move backward 40 cm at 0.1 m/s"
+    several = "move forward 20 cm at 0.1 m/s then turn left 10 degrees then move backward 20 cm at 0.1 m/s"
     second = start("run", "--robot", "actions", "-c", several)  # longer goals than a lease, one after the other
     assert second.process.wait(LONG) == 0, second.err
     assert server.err == ""

@@ -7,10 +7,13 @@ import time
 from collections.abc import Callable
 from pathlib import Path
 
+import pytest
+
+from tests.profiles import amount
 from tests.ros.client import check_nodes
 from tests.ros.processes import LONG, Command
 
-RUNS = 20
+RUNS = amount(5, 20)
 
 
 def segments(process: int) -> set[str]:
@@ -25,7 +28,8 @@ def segments(process: int) -> set[str]:
     return set(re.findall(r"/dev/shm/fastrtps_[0-9a-f]{16}", maps))
 
 
-def test_twenty_missions_in_a_row(start_sim: Callable[..., Command], domain: int, tmp_path: Path) -> None:
+@pytest.mark.long
+def test_missions_in_a_row(start_sim: Callable[..., Command], domain: int, tmp_path: Path) -> None:
     sim = start_sim("--speed", "1")
     check_nodes(domain, "btlang_sim")
     used = segments(sim.process.pid)

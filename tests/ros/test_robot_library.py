@@ -11,7 +11,7 @@ import pytest
 
 import btlang
 from btlang.engine.status import SUCCESS
-from btlang.ros.command import ros_stage
+from btlang.ros.command import connect_ros
 from tests.ros.processes import LONG, Command, wait_until
 
 
@@ -29,22 +29,20 @@ def test_runs_leave_no_thread_behind(sim: Command) -> None:
 
 
 def test_an_emergency_stop_from_another_thread(sim: Command) -> None:
-    tree = btlang.parse_tree("turn left 99999 degrees")
-    began = threading.Event()
-
-    def stop() -> None:
-        began.wait(LONG)
-        tree.emergency_stop()
-
-    stopping = threading.Thread(target=stop)
-    stopping.start()
-    outcome = tree.run(robot=partial(ros_stage, sim_time=True), sinks=[lambda event: began.set()])
-    stopping.join()
+    mission = btlang.parse_tree("turn left 99999 degrees")
+    with btlang.Session(partial(connect_ros, sim_time=True)) as session:
+        run = session.start(mission)
+        assert next(run.events()).run == run.id
+        run.emergency_stop()
+        outcome = run.wait(LONG)
+    assert outcome is not None
     assert outcome.stopped == "emergency stop"
-    tree.emergency_stop()  # the robot is gone; nothing happens
+    run.emergency_stop()  # the robot is gone; nothing happens
 
 
-def test_a_robot_that_lacks_something(tmp_path: Path) -> None:
+def test_a_robot_that_lacks_something(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("btlang.ros.connection._DISCOVERY", 1.0)
+    monkeypatch.setattr("btlang.ros.connection._AGAIN", 1.0)
     with pytest.raises(btlang.MissionError, match="BT101"):
         btlang.parse_tree("move forward").run(robot="ros")
 

@@ -8,6 +8,7 @@ from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine
 from btlang.ros import pace as module
 from btlang.ros.pace import RosPace
+from btlang.run.bus import Bus
 from btlang.run.controls import Controls
 from btlang.run.runner import Runner
 from btlang.tree.node import Node, Tree
@@ -90,7 +91,9 @@ def test_a_robot_gets_its_time_to_come_to_rest_by_the_clock_of_the_run(monkeypat
     times, clock = Times(monkeypatch, factor=0.2), Clock()
     engine = Engine(Tree(Node("Sleep", (), (("msec", "5000"),))), lambda id: None, clock=clock)
     controls = times.controls
-    runner = Runner(engine, clock=clock, robot=Rolling(), controls=controls, pace=lambda speed, given: times.pace())
+    runner = Runner(
+        engine, bus=Bus(clock=clock), robot=Rolling(), controls=controls, pace=lambda speed, given: times.pace()
+    )
     controls.stop()
     assert runner.run().stopped == "interrupted"
     assert clock.now == pytest.approx(2.0, abs=0.1)

@@ -180,25 +180,25 @@ def test_a_server_is_missing_halted_and_killed(serve, tmp_path: Path, domain: in
     talker = serve("--only", "speech", **profile, ready=False)
     mover = serve("--only", "motion", "--name", "mover", **profile)
 
-    def run(text: str, *options: str) -> Command:
-        return Command(tmp_path, domain, "run", "-c", text, "--robot", "actions", *options, **profile)
+    def run(name: str, text: str, *options: str) -> Command:
+        (tmp_path / name).mkdir()
+        return Command(tmp_path / name, domain, "run", "-c", text, "--robot", "actions", *options, **profile)
 
-    lacking = run("move forward 10 cm then wave")
-    assert lacking.process.wait(LONG) == 2
-    assert "'wave' needs the action /actions/wave, but there is no action server /actions/wave." in lacking.err
-
+    lacking = run("lacking", "move forward 10 cm then wave")
     words = tmp_path / "words.toml"
     words.write_text(TABLE, encoding="utf-8")
-    told = run("tell hello", "--keywords", str(words))
+    told = run("told", "tell hello", "--keywords", str(words))
     assert told.process.wait(LONG) == 0, told.err
     talker.wait_for("done   say hello")
 
-    halted = run(LONG_WAY)
+    halted = run("halted", LONG_WAY)
     mover.wait_for("start  move forward")
     assert halted.end(signal.SIGINT) == 130
     mover.wait_for("halted move forward")
+    assert lacking.process.wait(LONG) == 2
+    assert "'wave' needs the action /actions/wave, but there is no action server /actions/wave." in lacking.err
 
-    going = run(f"{LONG_WAY}, otherwise say sorry")
+    going = run("going", f"{LONG_WAY}, otherwise say sorry")
     wait_until(lambda: mover.out.count("start  move forward") == 2, "the way")
     mover.process.send_signal(signal.SIGKILL)
     assert going.process.wait(LONG) == 0, going.err

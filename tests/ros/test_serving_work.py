@@ -7,13 +7,15 @@ from pathlib import Path
 
 import pytest
 
-from btlang.api import load_simulation, world_vocabulary
+from btlang import Session
+from btlang.api import world_vocabulary
 from btlang.backends.engine import bind_leaf
 from btlang.engine.leaf import ActionFailed
 from btlang.ros.serving.asked import asked_leaf
 from btlang.ros.serving.choosing import chosen, servable
 from btlang.ros.serving.names import action_name
 from btlang.ros.serving.work import BUSY, REST, Work
+from btlang.run.bus import Bus
 
 WORDS = """
 [[action]]
@@ -89,9 +91,9 @@ class Server:
 
     def __init__(self, *keywords: str) -> None:
         self.vocabulary = world_vocabulary(keywords)
-        self.stage = load_simulation()
-        self.stage.begin([])
-        self.work = Work(self.stage, self.vocabulary, lambda: self.stage.clock.now)
+        self.stage = Session().connection
+        self.stage.begin(Bus())
+        self.work = Work(self.stage, self.vocabulary, lambda: self.stage.bus.clock.now)
 
     def begin(self, node_id: str, **values: str) -> tuple[Caller, Callable[[], None]]:
         caller, entries = Caller(), self.vocabulary.entries[node_id]
@@ -100,10 +102,10 @@ class Server:
 
     def tick(self, seconds: float = 0.05) -> None:
         """Until so many seconds of the mission are over."""
-        until = self.stage.clock.now + seconds - 1e-9
-        while self.stage.clock.now < until:
+        until = self.stage.bus.clock.now + seconds - 1e-9
+        while self.stage.bus.clock.now < until:
             self.work.tick()
-            self.stage.clock.advance(0.05)
+            self.stage.bus.clock.advance(0.05)
             self.stage.robot.step(0.05)
 
 

@@ -15,7 +15,8 @@ from btlang.engine.status import FAILURE, IDLE, RUNNING, SUCCESS
 from btlang.ros import pace as ros_pace
 from btlang.ros.pace import RosPace
 from btlang.run import pace
-from btlang.run.events import EventStream, PeriodPassed
+from btlang.run.bus import Bus
+from btlang.run.events import PeriodPassed
 from btlang.run.runner import Outcome, Runner
 from btlang.tree.node import Node, Tree
 from tests.engine.scripted import n
@@ -33,7 +34,7 @@ def run(root: Node, *, rate: float = 1.0, limit: float = 10.0, **leaves: Callabl
     clock, robot = Clock(), Steps()
     bindings = {id: LeafBinding(call) for id, call in {"Forever": forever, "Yes": lambda: True, **leaves}.items()}
     engine = Engine(Tree(root), bindings.get, clock=clock)
-    runner = Runner(engine, clock=clock, robot=robot, rate=rate, speed=math.inf, time_limit=limit)
+    runner = Runner(engine, bus=Bus(clock=clock), robot=robot, rate=rate, speed=math.inf, time_limit=limit)
     outcome = runner.run()
     robot.steps.pop()  # the one in which it comes to rest
     assert sum(robot.steps) == pytest.approx(outcome.seconds)
@@ -193,8 +194,9 @@ def driven(monkeypatch: pytest.MonkeyPatch, root: Node, takes: float = 0.0) -> t
             late[0] = event.late
 
     engine = Engine(Tree(root), {"Work": LeafBinding(work)}.get, clock=clock)
-    stream = EventStream(hear)
-    Runner(engine, clock=clock, robot=robot, controls=controls, rate=1, speed=1.0, events=stream).run()
+    bus = Bus(clock=clock)
+    bus.add(hear)
+    Runner(engine, bus=bus, robot=robot, controls=controls, rate=1, speed=1.0).run()
     return robot.steps[:-1], made[:-1], late[0]
 
 
@@ -246,7 +248,9 @@ class Times:
 def test_over_ros_as_well_by_whatever_clock(monkeypatch: pytest.MonkeyPatch, factor: float) -> None:
     times, clock, robot = Times(monkeypatch, factor), Clock(), Steps()
     engine = Engine(Tree(n("Timeout", n("Sleep", msec=150), msec=500)), lambda id: None, clock=clock)
-    outcome = Runner(engine, clock=clock, robot=robot, rate=10, pace=lambda speed, controls: times.pace()).run()
+    outcome = Runner(
+        engine, bus=Bus(clock=clock), robot=robot, rate=10, pace=lambda speed, controls: times.pace()
+    ).run()
     assert (outcome.status, outcome.ticks) == (SUCCESS, 3)
     assert robot.steps[:2] == pytest.approx([0.1, 0.05], abs=0.01)
 

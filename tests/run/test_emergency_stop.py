@@ -14,9 +14,10 @@ from typing import Any
 import pytest
 
 import btlang
-from btlang.api import load_simulation
+from btlang import Session
 from btlang.engine.status import IDLE, RUNNING, SUCCESS
 from btlang.run.events import PeriodPassed, StatusesChanged
+from tests.trial import Trial
 
 REPOSITORY = Path(__file__).parent.parent.parent
 PATIENCE = 20.0  # seconds of real time, for what takes none
@@ -43,7 +44,7 @@ class Hanging:
             while True:
                 yield
 
-        self.tree = btlang.parse_tree("pick up the cup then charge ahead", keywords=[charge_ahead])
+        self.tree = Trial("pick up the cup then charge ahead", keywords=[charge_ahead])
 
 
 def test_the_robot_stops_before_a_hanging_leaf_returns() -> None:
@@ -54,7 +55,7 @@ def test_the_robot_stops_before_a_hanging_leaf_returns() -> None:
     assert hanging.entered.wait(PATIENCE)
     robot = tree.robot
     assert (robot.moving, robot.stops) == (True, 0)
-    tree.emergency_stop()
+    tree.controls.emergency_stop()
     assert robot.stops == 1
     assert thread.is_alive()
     place, facing = robot.pose, robot.pose.heading
@@ -75,9 +76,9 @@ def test_the_tree_is_halted_as_in_an_emergency(monkeypatch: pytest.MonkeyPatch) 
     monkeypatch.setattr(
         Engine, "halt", lambda self, emergency=False: (halts.append(emergency), halt(self, emergency=emergency))
     )
-    tree = btlang.parse_tree("move forward 2 m")
-    tree.run(speed="max", sinks=[lambda event: tree.stop() if event.t > 1 else None])
-    tree.run(speed="max", sinks=[lambda event: tree.emergency_stop() if event.t > 1 else None])
+    tree = Trial("move forward 2 m")
+    tree.run(speed="max", sinks=[lambda event: tree.controls.stop() if event.t > 1 else None])
+    tree.run(speed="max", sinks=[lambda event: tree.controls.emergency_stop() if event.t > 1 else None])
     assert halts == [False, True]
 
 
@@ -89,70 +90,70 @@ def test_nothing_is_ticked_after_it() -> None:
         while True:
             ticked.append(robot.stops)
             if len(ticked) == 5:
-                tree.emergency_stop()
+                tree.controls.emergency_stop()
             yield
 
-    tree = btlang.parse_tree("count", keywords=[count])
+    tree = Trial("count", keywords=[count])
     outcome = tree.run(speed="max")
     assert (outcome.stopped, outcome.ticks, ticked) == ("emergency stop", 5, [0] * 5)
 
 
 def test_while_the_run_is_paused() -> None:
-    tree = btlang.parse_tree("go to the lab")
+    tree = Trial("go to the lab")
 
     def watch(event: object) -> None:
         if isinstance(event, PeriodPassed) and event.t >= 2:
             if tree.controls.paused:
-                tree.emergency_stop()
-            tree.pause()
+                tree.controls.emergency_stop()
+            tree.controls.pause()
 
     outcome = tree.run(speed="max", sinks=[watch])
     assert (outcome.stopped, tree.robot.moving) == ("emergency stop", False)
 
 
 def test_while_the_robot_comes_to_rest() -> None:
-    tree = btlang.parse_tree("wave")
+    tree = Trial("wave")
     over: list[object] = []
 
     def watch(event: object) -> None:
         if isinstance(event, StatusesChanged):
             over.extend(change for change in event if change.path == "/" and change.status == SUCCESS)
         elif over and isinstance(event, PeriodPassed):
-            tree.emergency_stop()
+            tree.controls.emergency_stop()
 
     outcome = tree.run(speed="max", sinks=[watch])
     assert (outcome.status, outcome.stopped) == (IDLE, "emergency stop")
 
 
 def test_without_a_run_the_robot_stops_and_the_next_run_does_not_begin() -> None:
-    mission = btlang.parse_tree("move forward 1 m")
-    stage = load_simulation()
-    tree = btlang.RunnableTree(mission.tree, mission.vocabulary, stage=stage)
-    stage.robot.drive(0.5, 0.0)
-    stage.robot.step(1.0)
-    tree.emergency_stop()
-    assert stage.robot.stops == 1
+    session = Session()
+    tree = Trial("move forward 1 m", session)
+    tree.controls.robot = session.robot
+    session.robot.drive(0.5, 0.0)
+    session.robot.step(1.0)
+    tree.controls.emergency_stop()
+    assert session.robot.stops == 1
     outcome = tree.run(speed="max")
-    assert (outcome.stopped, outcome.ticks, stage.robot.moving) == ("emergency stop", 0, False)
+    assert (outcome.stopped, outcome.ticks, session.robot.moving) == ("emergency stop", 0, False)
     assert tree.run(speed="max").status == SUCCESS
 
 
 def test_between_ticks_by_hand() -> None:
-    tree = btlang.parse_tree("move forward 1 m")
+    tree = Trial("move forward 1 m")
     for _ in range(20):
         assert tree.tick() == RUNNING
-    tree.emergency_stop()
+    tree.controls.emergency_stop()
     assert tree.tick() == IDLE
     assert not tree.robot.moving
     assert tree.tick() == RUNNING  # anew
     tree.run(speed="max", time_limit=1)
     assert tree.tick() == RUNNING
-    tree.emergency_stop()
+    tree.controls.emergency_stop()
     assert tree.tick() == IDLE
 
 
 def test_a_stop_in_the_middle_of_a_step_is_not_overwritten(monkeypatch: pytest.MonkeyPatch) -> None:
-    robot = load_simulation().robot
+    robot = Session().robot
     robot.drive(0.5, 0.0)
     robot.step(1.0)
     pieces: list[int] = []

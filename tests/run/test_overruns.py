@@ -18,7 +18,8 @@ from btlang.engine.leaf import LeafBinding
 from btlang.engine.status import RUNNING, SUCCESS
 from btlang.engine.timing import Stopwatch
 from btlang.run import command, overruns
-from btlang.run.events import EventStream, Overrun
+from btlang.run.bus import Bus
+from btlang.run.events import Overrun
 from btlang.run.json_log import JsonLog
 from btlang.run.lines import Lines
 from btlang.run.runner import Runner
@@ -47,10 +48,10 @@ class Time:
 def run(root: Node, leaves: dict[str, LeafBinding], speed: float = 10.0) -> tuple[Any, list[Overrun]]:
     """Runs with 1 tick a second, which 10 times real time makes 0.1 s; returns the outcome and what was told."""
     told: list[Overrun] = []
-    events = EventStream(lambda event: told.append(event) if isinstance(event, Overrun) else None)
-    clock = Clock()
-    engine = Engine(Tree(root), leaves.get, clock=clock, stopwatch=Stopwatch())
-    outcome = Runner(engine, clock=clock, rate=1, speed=speed, events=events).run()
+    bus = Bus()
+    bus.add(lambda event: told.append(event) if isinstance(event, Overrun) else None)
+    engine = Engine(Tree(root), leaves.get, clock=bus.clock, stopwatch=Stopwatch())
+    outcome = Runner(engine, bus=bus, rate=1, speed=speed).run()
     assert outcome.status == SUCCESS
     return outcome, told
 
@@ -69,7 +70,7 @@ def test_the_slowest_leaf_is_blamed(monkeypatch: pytest.MonkeyPatch) -> None:
     ]
     assert [event.leaf_seconds for event in told] == [pytest.approx(0.2), pytest.approx(0.4)]
     assert {event.period for event in told} == {0.1}
-    assert (outcome.overruns, outcome.worst, outcome.ticks) == (2, told[1], 4)
+    assert (outcome.overruns, outcome.worst, outcome.ticks) == (2, (B, pytest.approx(0.4)), 4)
 
 
 def test_no_leaf_is_blamed_that_took_less_than_half_a_period(monkeypatch: pytest.MonkeyPatch) -> None:
@@ -123,27 +124,33 @@ def test_no_wrapper_is_compiled_in_without_a_stopwatch(monkeypatch: pytest.Monke
     assert engine.tick() == SUCCESS
 
 
-SLOW = Overrun(2.0, 0.4, 0.05, "/1", A, 0.31)
+SLOW = Overrun(2.0, "r1", 7, 1.5, 0.4, 0.05, "/1", A, 0.31)
 
 
 def test_the_log_has_it() -> None:
     output = io.StringIO()
     log = JsonLog(output, lambda node: "look around")
     log(SLOW)
-    log(Overrun(3.0, 0.06, 0.05))
+    log(Overrun(3.0, "r1", 8, 1.5, 0.06, 0.05))
     assert [json.loads(line) for line in output.getvalue().splitlines()] == [
         {
             "t": 2.0, "event": "overrun", "seconds": 0.4, "period": 0.05,
-            "path": "/1", "id": "A", "name": "look around", "leaf_seconds": 0.31,
+            "path": "/1", "id": "A", "name": "look around", "ports": {}, "leaf_seconds": 0.31,
+            "number": 7, "wall": 1.5, "run": "r1",
         },
-        {"t": 3.0, "event": "overrun", "seconds": 0.06, "period": 0.05},
+        {"t": 3.0, "event": "overrun", "seconds": 0.06, "period": 0.05, "number": 8, "wall": 1.5, "run": "r1"},
     ]  # fmt: skip
 
 
 def test_one_line_a_leaf() -> None:
     lines: list[str] = []
     sink = Lines(lambda node: "look around", lambda node: True, lines.append)
-    for event in (Overrun(1.0, 0.06, 0.05), SLOW, SLOW.replace(t=3.0), SLOW.replace(t=4.0, path="/2", period=0.0025)):
+    for event in (
+        SLOW.replace(t=1.0, node=None, path=""),
+        SLOW,
+        SLOW.replace(t=3.0),
+        SLOW.replace(t=4.0, path="/2", period=0.0025),
+    ):
         sink(event)
     assert lines == [
         "   2.00  slow   look around: took 0.31 s of a tick, which has 0.05 s",
@@ -157,7 +164,7 @@ def test_the_end_of_a_run_names_it(capsys: pytest.CaptureFixture[str]) -> None:
         time.sleep(0.12)
 
     tree = btlang.parse_tree("peer about then wait 1 s then peer about", keywords=[peer_about])
-    assert command.run_mission(tree, speed=10, rate=100, time_limit=None, log=None, quiet=False) == 0
+    assert command.run_mission(tree, btlang.Session, speed=10, rate=100, time_limit=None, log=None, quiet=False) == 0
     lines = capsys.readouterr().out.splitlines()
     assert [line[:28] for line in lines if " slow " in line] == [
         "   0.00  slow   peer about: ",

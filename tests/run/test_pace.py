@@ -15,6 +15,7 @@ from btlang.engine.engine import Engine
 from btlang.engine.leaf import LeafBinding
 from btlang.engine.status import RUNNING, SUCCESS
 from btlang.run import pace
+from btlang.run.bus import Bus
 from btlang.run.controls import Controls
 from btlang.run.runner import Runner
 from btlang.tree.node import Node, Tree
@@ -66,7 +67,9 @@ def run_driven(
     controls = Driven({seconds: lambda what=what: what(runner) for seconds, what in at.items()})
     monkeypatch.setattr(pace.time, "monotonic", lambda: controls.now)
     monkeypatch.setattr(time, "sleep", lambda _: None)
-    runner = Runner(engine, clock=clock, robot=robot, controls=controls, **{"rate": 1, "speed": 1.0, **options})
+    runner = Runner(
+        engine, bus=Bus(clock=clock), robot=robot, controls=controls, **{"rate": 1, "speed": 1.0, **options}
+    )
     runner.run()
     return times, robot.steps, runner
 
@@ -125,7 +128,7 @@ def test_a_wake_during_a_tick_means_the_next_one(monkeypatch: pytest.MonkeyPatch
     controls = Driven({})
     monkeypatch.setattr(pace.time, "monotonic", lambda: controls.now)
     engine = Engine(Tree(Node("A")), {"A": LeafBinding(leaf)}.get, clock=clock)
-    Runner(engine, clock=clock, controls=controls, rate=1, speed=1.0).run()
+    Runner(engine, bus=Bus(clock=clock), controls=controls, rate=1, speed=1.0).run()
     assert times == [0.0, 0.0, 1.0]
 
 
@@ -152,7 +155,7 @@ def test_a_leaf_wakes_the_run_from_another_thread() -> None:
 
     clock = Clock()
     engine = Engine(Tree(Node("Look")), {"Look": LeafBinding(look)}.get, clock=clock)
-    outcome = Runner(engine, clock=clock, rate=1, speed=1.0).run()
+    outcome = Runner(engine, bus=Bus(clock=clock), rate=1, speed=1.0).run()
     assert (outcome.status, outcome.ticks) == (SUCCESS, 2)
     assert ended[1] - ended[0] < 0.3
     assert 0.04 < outcome.seconds < 0.4

@@ -15,7 +15,8 @@ from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine
 from btlang.engine.leaf import ActionFailed, LeafBinding
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
-from btlang.run.events import EventStream, PeriodPassed, RobotEvent, StatusChanged, StatusesChanged
+from btlang.run.bus import Bus
+from btlang.run.events import Ended, PeriodPassed, StatusChanged, StatusesChanged, Troubled
 from btlang.run.runner import Runner, traced_engine
 from btlang.tree.node import Node, Tree
 
@@ -52,10 +53,11 @@ SLEEP = Node("Sleep", ports=(("msec", "1000"),))
 def make(
     root: Node, calls: dict[str, Callable[..., Any]] | None = None, **options: Any
 ) -> tuple[Runner, Engine, Clock]:
-    clock = Clock()
+    bus = options.pop("bus", None) or Bus()
+    clock = bus.clock
     bindings = {id: LeafBinding(call) for id, call in {"Forever": forever, **(calls or {})}.items()}
     engine = Engine(Tree(root), bindings.get, clock=clock)
-    return Runner(engine, clock=clock, **{"speed": math.inf, **options}), engine, clock
+    return Runner(engine, bus=bus, **{"speed": math.inf, **options}), engine, clock
 
 
 def test_a_mission_runs_to_its_end() -> None:
@@ -176,8 +178,7 @@ def test_overruns_are_counted() -> None:
         return RUNNING
 
     seen: list[Any] = []
-    events = EventStream(seen.append)
-    runner, _, _ = make(Node("Slow"), {"Slow": slow}, speed=1.0, rate=1000, time_limit=0.005, events=events)
+    runner, _, _ = make(Node("Slow"), {"Slow": slow}, speed=1.0, rate=1000, time_limit=0.005, bus=bus_to(seen.append))
     runner.run()
     assert [event.overruns for event in seen if isinstance(event, PeriodPassed)] == [0, 1, 2, 3, 4, 5]
 
@@ -192,29 +193,34 @@ def test_step() -> None:
 # Events
 
 
+def bus_to(*sinks: Callable[[Any], object]) -> Bus:
+    bus = Bus()
+    for sink in sinks:
+        bus.add(sink)
+    return bus
+
+
 def changes(events: list[Any]) -> list[StatusChanged]:
     return [change for event in events if isinstance(event, StatusesChanged) for change in event]
 
 
 def test_status_changes_go_into_the_stream() -> None:
-    events = EventStream()
     seen: list[Any] = []
-    events.add(seen.append)
-    clock = Clock()
+    bus = bus_to(seen.append)
 
     def lost() -> None:
         raise ActionFailed("lost")
 
     root = Node("Sequence", (SLEEP, Node("Lost")))
-    engine = traced_engine(Tree(root), {"Lost": LeafBinding(lost)}.get, clock=clock, events=events)
-    Runner(engine, clock=clock, speed=math.inf, events=events).run()
-    told = [(round(e.t, 6), e.index, e.path, e.node.id, e.status, e.reason) for e in changes(seen)]
+    engine = traced_engine(Tree(root), {"Lost": LeafBinding(lost)}.get, bus=bus)
+    Runner(engine, bus=bus, speed=math.inf).run()
+    told = [(round(e.t, 6), e.index, e.path, e.node.id, e.before, e.status, e.reason) for e in changes(seen)]
     assert told == [
-        (0.0, 1, "/0", "Sleep", RUNNING, ""),
-        (0.0, 0, "/", "Sequence", RUNNING, ""),
-        (1.0, 1, "/0", "Sleep", SUCCESS, ""),
-        (1.0, 2, "/1", "Lost", FAILURE, "lost"),
-        (1.0, 0, "/", "Sequence", FAILURE, ""),
+        (0.0, 1, "/0", "Sleep", IDLE, RUNNING, ""),
+        (0.0, 0, "/", "Sequence", IDLE, RUNNING, ""),
+        (1.0, 1, "/0", "Sleep", RUNNING, SUCCESS, ""),
+        (1.0, 2, "/1", "Lost", IDLE, FAILURE, "lost"),
+        (1.0, 0, "/", "Sequence", RUNNING, FAILURE, ""),
     ]
 
 
@@ -225,11 +231,10 @@ def test_a_sink_that_raises_is_dropped_and_the_mission_goes_on() -> None:
         raise problem
 
     seen: list[Any] = []
-    events = EventStream(full, seen.append)
-    clock = Clock()
-    engine = traced_engine(Tree(SLEEP), lambda id: None, clock=clock, events=events)
-    assert Runner(engine, clock=clock, speed=math.inf, events=events).run().status == SUCCESS
-    assert events.errors == [problem]
+    bus = bus_to(full, seen.append)
+    engine = traced_engine(Tree(SLEEP), lambda id: None, bus=bus)
+    assert Runner(engine, bus=bus, speed=math.inf).run().status == SUCCESS
+    assert bus.errors == [problem]
     assert [change.status for change in changes(seen)] == [RUNNING, SUCCESS]
 
 
@@ -240,10 +245,9 @@ def test_exceptions_while_halting_are_events() -> None:
         finally:
             raise ValueError("stuck")
 
-    events = EventStream()
     seen: list[Any] = []
-    events.add(seen.append)
-    runner, _, _ = make(Node("Stubborn"), {"Stubborn": stubborn}, time_limit=0.05, events=events)
+    runner, _, _ = make(Node("Stubborn"), {"Stubborn": stubborn}, time_limit=0.05, bus=bus_to(seen.append))
     runner.run()
-    told = [event for event in seen if isinstance(event, RobotEvent) and event.kind != "end"]
-    assert told == [RobotEvent(0.05, "error", {"text": "Stubborn did not halt: ValueError: stuck", "path": "/"})]
+    told = [(event.t, event.text, event.path) for event in seen if isinstance(event, Troubled)]
+    assert told == [(0.05, "Stubborn did not halt: ValueError: stuck", "/")]
+    assert isinstance(seen[-1], Ended)

@@ -9,7 +9,7 @@ import btlang
 from btlang.engine.build import Fault, Site
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 from btlang.engine.watch import Changes
-from btlang.run.events import RobotEvent, StatusesChanged
+from btlang.run.events import Bumped, Dropped, Event, FaultInjected, Printed, RobotEvent, Said, StatusesChanged, Stuck
 from btlang.run.json_log import JsonLog
 from btlang.run.lines import Lines
 from btlang.text.source import Source, Span
@@ -41,8 +41,13 @@ class One:
 
 def changed(t: float, node: Node, status: int, reason: str = "") -> StatusesChanged:
     changes = Changes()
-    changes.indices, changes.statuses, changes.faults = [3], [status], {0: Fault(3, reason)} if reason else {}
-    return StatusesChanged(t, changes, One(node))
+    changes.indices, changes.statuses, changes.before = [3], [status], [IDLE]
+    changes.faults = {0: Fault(3, reason)} if reason else {}
+    return StatusesChanged(t, "r1", 7, 1.5, changes, One(node))
+
+
+def happened(t: float, kind: type[Event], *data: object) -> Event:
+    return kind(t, "r1", 7, 1.5, *data)
 
 
 class Output(io.StringIO):
@@ -59,15 +64,16 @@ def test_json_lines() -> None:
     log = JsonLog(output, label)
     log(changed(0.1 + 0.2, GO, RUNNING))
     log(changed(9.8, GO, FAILURE, "the way is blocked"))
-    log(RobotEvent(2.0, "say", {"text": "héllo\nyou"}))
-    log(RobotEvent(2.5, "pose", {"where": complex(1, 2)}))
+    log(happened(2.0, Said, "héllo\nyou"))
+    log(happened(2.5, RobotEvent, "pose", {"where": complex(1, 2)}))
     where = {"path": "/0/1", "id": "GoTo", "name": "go to the lab", "ports": {"place": "the lab"}}
+    common = {"number": 7, "wall": 1.5, "run": "r1"}
     lines = output.getvalue().splitlines()
     assert [json.loads(line) for line in lines] == [
-        {"t": 0.3, **where, "status": "RUNNING"},
-        {"t": 9.8, **where, "status": "FAILURE", "reason": "the way is blocked"},
-        {"t": 2.0, "event": "say", "text": "héllo\nyou"},
-        {"t": 2.5, "event": "pose", "where": "(1+2j)"},
+        {"t": 0.3, **where, "status": "RUNNING", "before": "IDLE", **common},
+        {"t": 9.8, **where, "status": "FAILURE", "before": "IDLE", "reason": "the way is blocked", **common},
+        {"t": 2.0, "event": "say", "text": "héllo\nyou", **common},
+        {"t": 2.5, "event": "robot", "kind": "pose", "data": {"where": "(1+2j)"}, **common},
     ]
     assert lines[0].startswith('{"t": 0.3, "path": "/0/1", "id": "GoTo"')
     assert output.flushes == 4
@@ -88,13 +94,13 @@ def test_human_lines() -> None:
         (1235.0, Node("Sleep"), RUNNING, ""),  # the timer of a form
     ]:
         sink(changed(t, node, status, reason))
-    sink(RobotEvent(2.0, "say", {"text": "hello"}))
-    sink(RobotEvent(2.0, "print", {"text": "hello"}))
-    sink(RobotEvent(2.1, "bump", {"into": "a wall"}))
-    sink(RobotEvent(2.1, "pose", {"x": 1}))
-    sink(RobotEvent(2.2, "drop", {"hand": "right", "name": "cup"}))
-    sink(RobotEvent(2.3, "stuck", {}))
-    sink(RobotEvent(2.4, "fault", {"text": "the laser scanner is silent"}))
+    sink(happened(2.0, Said, "hello"))
+    sink(happened(2.0, Printed, "hello"))
+    sink(happened(2.1, Bumped, "a wall"))
+    sink(happened(2.1, RobotEvent, "pose", {"x": 1}))
+    sink(happened(2.2, Dropped, "right", "cup"))
+    sink(happened(2.3, Stuck))
+    sink(happened(2.4, FaultInjected, "laser", "the laser scanner is silent"))
     assert written == [
         "   1.35  start  go to the lab",
         "   9.80  done   go to the lab",

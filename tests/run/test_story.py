@@ -7,10 +7,9 @@ from typing import Any
 
 import pytest
 
-from btlang.engine.clock import Clock
 from btlang.engine.leaf import ActionFailed, LeafBinding
 from btlang.engine.status import FAILURE, RUNNING
-from btlang.run.events import EventStream
+from btlang.run.bus import Bus
 from btlang.run.report import failure_report
 from btlang.run.runner import traced_engine
 from btlang.run.story import MOST, Story
@@ -36,12 +35,11 @@ class Run:
     """
 
     def __init__(self, root: Node, **scripts: str) -> None:
-        self.clock, events = Clock(), EventStream()
-        engine = traced_engine(
-            Tree(root), {id: self._leaf(script) for id, script in scripts.items()}.get, clock=self.clock, events=events
-        )
+        bus = Bus()
+        self.clock = bus.clock
+        engine = traced_engine(Tree(root), {id: self._leaf(script) for id, script in scripts.items()}.get, bus=bus)
         self.engine, self.story = engine, Story(engine)
-        events.add(self.story)
+        bus.add(self.story)
 
     def _leaf(self, script: str) -> LeafBinding:
         letters = cycle(script)

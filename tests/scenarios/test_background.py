@@ -18,7 +18,8 @@ import btlang
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.engine.status import FAILURE, SUCCESS
 from btlang.run import runner
-from btlang.run.events import RobotEvent
+from btlang.run.events import Troubled
+from tests.trial import Trial
 
 REPOSITORY = Path(__file__).parent.parent.parent
 PATIENCE = 20.0
@@ -169,15 +170,15 @@ def test_its_end_is_noticed_well_before_the_period_is_over() -> None:
 
 def test_a_pause_cancels_it_and_resuming_starts_it_anew() -> None:
     thought = Thought()
-    tree = btlang.parse_tree("ponder", keywords=[thought.word])
+    tree = Trial("ponder", keywords=[thought.word])
     outcomes: list[Any] = []
     thread = threading.Thread(target=lambda: outcomes.append(tree.run()))
     thread.start()
     assert thought.begun.wait(PATIENCE)
-    tree.pause()
+    tree.controls.pause()
     assert thought.ended.wait(PATIENCE)
     thought.begun.clear()
-    tree.resume()
+    tree.controls.resume()
     assert thought.begun.wait(PATIENCE)
     thought.done.set()
     thread.join(PATIENCE)
@@ -187,15 +188,15 @@ def test_a_pause_cancels_it_and_resuming_starts_it_anew() -> None:
 @pytest.mark.parametrize("how", ["stop", "emergency_stop"])
 def test_the_end_of_a_run_halts_it(how: str) -> None:
     thought = Thought()
-    tree = btlang.parse_tree("ponder", keywords=[thought.word])
-    errors: list[RobotEvent] = []
+    tree = Trial("ponder", keywords=[thought.word])
+    errors: list[Troubled] = []
     outcomes: list[Any] = []
-    sink = lambda event: errors.append(event) if isinstance(event, RobotEvent) and event.kind == "error" else None  # noqa: E731
+    sink = lambda event: errors.append(event) if isinstance(event, Troubled) else None  # noqa: E731
     thread = threading.Thread(target=lambda: outcomes.append(tree.run(rate=1, sinks=[sink])))
     thread.start()
     assert thought.begun.wait(PATIENCE)
     began = time.monotonic()
-    getattr(tree, how)()
+    getattr(tree.controls, how)()
     assert thought.ended.wait(PATIENCE)
     thread.join(PATIENCE)
     assert time.monotonic() - began < runner._PATIENCE  # nobody waited for a straggler; one period of rest is 1 s
@@ -211,7 +212,7 @@ def test_a_time_limit_halts_it() -> None:
 
 def test_ticks_by_hand_and_a_halt_between_them() -> None:
     thought = Thought()
-    tree = btlang.parse_tree("ponder", keywords=[thought.word])
+    tree = Trial("ponder", keywords=[thought.word])
     tree.tick()
     assert thought.begun.wait(PATIENCE)
     tree.halt()

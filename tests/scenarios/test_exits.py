@@ -40,4 +40,4 @@ def test_an_exit_is_a_failure_with_a_reason(call: Callable[..., Any], thread: bo
     tree = btlang.parse_tree("leave then wave", keywords=[btlang.action("leave", thread=thread)(call)])
     outcome = tree.run(speed="max", time_limit=600)
     assert (outcome.status, outcome.failure and outcome.failure.reason) == (FAILURE, "SystemExit: 0")
-    assert "leave" in tree.why()
+    assert "leave" in outcome.why()

@@ -8,7 +8,8 @@ import pytest
 
 import btlang
 from btlang.engine.status import SUCCESS
-from btlang.run.events import PeriodPassed, RobotEvent
+from btlang.run.events import PeriodPassed, Said
+from tests.trial import Trial
 
 LAB = (6.0, 6.2)
 
@@ -16,7 +17,7 @@ LAB = (6.0, 6.2)
 class Interrupter:
     """Pauses at given times; once the robot rests it notes where, and resumes."""
 
-    def __init__(self, tree: btlang.RunnableTree, *times: float) -> None:
+    def __init__(self, tree: Trial, *times: float) -> None:
         self.tree = tree
         self.times = list(times)
         self.before: Any = None
@@ -33,23 +34,23 @@ class Interrupter:
             if self.times and event.t >= self.times[0] - 1e-9:
                 self.times.pop(0)
                 self.before, self.periods = (event.t, robot.pose), 0
-                self.tree.pause()
+                self.tree.controls.pause()
             return
         self.periods += 1
         if not robot.moving:
             began, pose = self.before
             self.rests.append((began, event.t, pose.distance_to((robot.pose.x, robot.pose.y))))
-            self.tree.resume()
+            self.tree.controls.resume()
 
 
-def run(text: str, *times: float, limit: float | None = 300) -> tuple[Any, btlang.RunnableTree, Interrupter, list[str]]:
-    tree = btlang.parse_tree(text)
+def run(text: str, *times: float, limit: float | None = 300) -> tuple[Any, Trial, Interrupter, list[str]]:
+    tree = Trial(text)
     interrupter = Interrupter(tree, *times)
     told: list[str] = []
     outcome = tree.run(
         speed="max",
         time_limit=limit,
-        sinks=[interrupter, lambda event: told.append(event.kind) if isinstance(event, RobotEvent) else None],
+        sinks=[interrupter, lambda event: told.append(getattr(event, "tag", ""))],
     )
     assert not tree.sink_errors
     assert len(interrupter.rests) == len(times)
@@ -100,13 +101,13 @@ def test_the_timer_of_within_stands_still() -> None:
 
 def test_counts_and_positions_are_kept() -> None:
     told: list[str] = []
-    tree = btlang.parse_tree("repeat 3 times: say one then wait 1 s then say two")
+    tree = Trial("repeat 3 times: say one then wait 1 s then say two")
     interrupter = Interrupter(tree, 0.8, 2.9)
     tree.run(
         speed="max",
         sinks=[
             interrupter,
-            lambda e: told.append(e.data["text"]) if isinstance(e, RobotEvent) and e.kind == "say" else None,
+            lambda e: told.append(e.text) if isinstance(e, Said) else None,
         ],
     )
     assert told == ["one", "two"] * 3
@@ -120,15 +121,15 @@ def test_the_time_limit_does_not_count_a_pause() -> None:
 
 def test_single_steps_add_up() -> None:
     """A simulated world stands still between two single steps, so that stepping is the same run in slow motion."""
-    plain = btlang.parse_tree("move forward 1 m then turn left")
+    plain = Trial("move forward 1 m then turn left")
     plain.run(speed="max")
-    tree = btlang.parse_tree("move forward 1 m then turn left")
+    tree = Trial("move forward 1 m then turn left")
     seen: list[float] = []
 
     def stepping(event: object) -> None:
         if isinstance(event, PeriodPassed):
             seen.append(event.t)
-            tree.step()
+            tree.controls.step()
 
     outcome = tree.run(speed="max", sinks=[stepping])
     assert outcome.status == SUCCESS
@@ -137,13 +138,13 @@ def test_single_steps_add_up() -> None:
 
 
 def test_stop_while_paused() -> None:
-    tree = btlang.parse_tree("go to the lab")
+    tree = Trial("go to the lab")
 
     def stops(event: object) -> None:
         if isinstance(event, PeriodPassed) and event.t >= 2:
             if tree.controls.paused:
-                tree.stop()
-            tree.pause()
+                tree.controls.stop()
+            tree.controls.pause()
 
     outcome = tree.run(speed="max", sinks=[stops])
     assert (outcome.stopped, round(outcome.seconds, 6)) == ("interrupted", 2)
@@ -151,7 +152,7 @@ def test_stop_while_paused() -> None:
 
 
 def test_controls_before_a_run_are_those_of_the_next() -> None:
-    tree = btlang.parse_tree("go to the lab")
-    tree.stop()
+    tree = Trial("go to the lab")
+    tree.controls.stop()
     assert tree.run(speed="max").stopped == "interrupted"
     assert tree.run(speed="max").status == SUCCESS

@@ -11,11 +11,13 @@ from typing import Any
 import pytest
 
 import btlang
-from btlang.api import load_simulation
+from btlang import Session
 from btlang.engine.status import SUCCESS
 from btlang.robots.robot import RobotError
 from btlang.run import runner
-from btlang.run.events import PeriodPassed, RobotEvent
+from btlang.run.bus import INLINE
+from btlang.run.events import PeriodPassed, Said
+from tests.trial import Trial
 
 PATIENCE = 20.0  # seconds of real time, for what takes a moment
 
@@ -71,7 +73,7 @@ def straggler() -> Iterator[Straggler]:
     straggler.done.set()
 
 
-def once_moving(tree: btlang.RunnableTree, do: Callable[[], object]) -> Callable[[object], None]:
+def once_moving(tree: Trial, do: Callable[[], object]) -> Callable[[object], None]:
     """A sink that does something once, when the robot of a tree moves."""
     asked: list[object] = []
 
@@ -88,9 +90,8 @@ def test_a_robot_that_was_stopped_stays_where_it_is(
     straggler: Straggler, command: str, how: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(runner, "_PATIENCE", 0.1)  # for commands that never end
-    tree = btlang.parse_tree(command, keywords=straggler.words)
-    tree.stage = load_simulation()
-    outcome = tree.run(rate=100, sinks=[once_moving(tree, getattr(tree, how))])
+    tree = Trial(command, keywords=straggler.words)
+    outcome = tree.run(rate=100, sinks=[once_moving(tree, getattr(tree.controls, how))])
     assert outcome.stopped == {"stop": "interrupted", "emergency_stop": "emergency stop"}[how]
     robot = tree.robot
     assert not robot.moving
@@ -106,7 +107,7 @@ def test_a_robot_that_was_stopped_stays_where_it_is(
 def test_a_pause_holds_and_the_end_lets_go() -> None:
     """The robot takes commands again when the run goes on, and not after its end."""
     straggler = Straggler()
-    tree = btlang.parse_tree("run away", keywords=straggler.words)
+    tree = Trial("run away", keywords=straggler.words)
     speeds: list[float] = []
 
     def watch(event: object) -> None:
@@ -114,14 +115,14 @@ def test_a_pause_holds_and_the_end_lets_go() -> None:
             return
         speed = tree.robot.velocity[0]
         if not speeds and speed > 0.3:
-            tree.pause()
+            tree.controls.pause()
             speeds.append(speed)
         elif len(speeds) == 1 and not tree.robot.moving:
             speeds.append(speed)
-            threading.Timer(0.05, tree.resume).start()
+            threading.Timer(0.05, tree.controls.resume).start()
         elif len(speeds) == 2 and speed > 0.3:
             speeds.append(speed)
-            tree.stop()
+            tree.controls.stop()
 
     outcome = tree.run(rate=100, sinks=[watch], time_limit=60)
     straggler.done.set()
@@ -129,10 +130,9 @@ def test_a_pause_holds_and_the_end_lets_go() -> None:
 
 
 def test_between_two_runs_nothing_moves() -> None:
-    stage = load_simulation()
-    tree = btlang.parse_tree("pick up the cup")
-    tree.stage = stage
-    robot = stage.robot
+    session = Session()
+    tree = Trial("pick up the cup", session)
+    robot = session.robot
     robot.drive(0.3, 0.0)  # before the first run it obeys
     robot.step(0.1)
     assert robot.moving
@@ -146,8 +146,7 @@ def test_between_two_runs_nothing_moves() -> None:
         robot.grasp("left")
     robot.step(1.0)
     assert (robot.pose, robot.joint("head turn"), robot.holding("right")) == (place, 0.0, "cup")
-    again = btlang.parse_tree("move forward 10 cm then put down the cup")
-    again.stage = stage
+    again = Trial("move forward 10 cm then put down the cup", session)
     assert again.run(speed="max").status == SUCCESS
     assert robot.holding("right") is None
 
@@ -160,7 +159,7 @@ def test_a_halt_ends_what_a_thread_has_set_about() -> None:
         robot.say("a sentence that takes longer than the time that there is")
         halted.wait()
 
-    tree = btlang.parse_tree("wander within 0.5 s, otherwise wait 2 s", keywords=[wander])
+    tree = Trial("wander within 0.5 s, otherwise wait 2 s", keywords=[wander])
     seen: list[tuple[float, bool]] = []
     tree.run(speed=2, sinks=[lambda event: seen.append((event.t, tree.robot.moving or tree.robot.speaking))])
     assert any(moving for t, moving in seen)
@@ -178,11 +177,12 @@ def test_what_a_thread_asks_of_the_robot_is_done_by_the_thread_that_ticks() -> N
         found.extend([robot.battery, len(robot.scan()), threading.get_ident() != ticking])
         robot.navigate_to("nowhere")
 
-    tree = btlang.parse_tree("study the room", keywords=[study])
-    outcome = tree.run(
-        rate=1,
-        sinks=[lambda event: did.append(threading.get_ident()) if isinstance(event, RobotEvent) else None],
-    )
+    def note(event: object) -> None:
+        if isinstance(event, Said):
+            did.append(threading.get_ident())
+
+    note.policy = INLINE  # type: ignore[attr-defined]
+    outcome = btlang.parse_tree("study the room", keywords=[study]).run(rate=1, sinks=[note])
     assert outcome.failure is not None
     assert outcome.failure.reason == 'I do not know where "nowhere" is'
     assert found == [pytest.approx(100.0, abs=0.1), 360, True]
@@ -196,7 +196,7 @@ def test_a_thread_that_fails_leaves_nothing_moving() -> None:
         robot.drive(0.3, 0.0)
         raise ValueError("oops")
 
-    tree = btlang.parse_tree("trip, otherwise wait 2 s", keywords=[trip])
+    tree = Trial("trip, otherwise wait 2 s", keywords=[trip])
     late: list[bool] = []
     outcome = tree.run(speed=5, sinks=[lambda event: late.append(tree.robot.moving) if event.t > 1.5 else None])
     assert (outcome.status, any(late), len(late) > 5) == (SUCCESS, False, True)

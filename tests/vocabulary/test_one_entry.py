@@ -7,8 +7,8 @@ from pathlib import Path
 import pytest
 
 from btlang.cli import main
+from btlang.repl.draft import MissionDraft
 from btlang.repl.preview import continuations
-from btlang.repl.session import Session
 
 ENTRY = """
 [[action]]
@@ -50,13 +50,13 @@ def test_it_is_listed(pack: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert "circus:\n  juggle {count} ball(s)" in printed(capsys, "words", "--keywords", pack)
 
 
-def offers(session: Session, text: str) -> list[str]:
+def offers(draft: MissionDraft, text: str) -> list[str]:
     """The completions of a text, each with what the REPL says about it."""
-    return [f"{offer.text.strip()}: {offer.help}" for offer in continuations(session, text)]
+    return [f"{offer.text.strip()}: {offer.help}" for offer in continuations(draft, text)]
 
 
 def test_it_is_completed(pack: str) -> None:
-    before, after = Session(), Session([pack])
+    before, after = MissionDraft(), MissionDraft([pack])
     for text in ("wave then ju", "if bumped, ju"):
         assert offers(before, text) == []
         assert offers(after, text) == ["juggle: Keeps balls in the air."]

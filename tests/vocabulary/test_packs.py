@@ -10,6 +10,7 @@ import pytest
 from btlang.api import parse_tree
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.engine.status import SUCCESS
+from btlang.run.events import Printed
 from btlang.tree.dump import plain
 from btlang.vocabulary.listing import listing
 from btlang.vocabulary.load import load_vocabulary
@@ -111,7 +112,7 @@ def test_packs_may_have_modules_of_the_same_name(tmp_path: Path) -> None:
     said: list[str] = []
     packs = [str(tmp_path / name / "hops.toml") for name in "ab"]
     tree = parse_tree("hop a then hop b", keywords=packs)
-    tree.run(speed="max", sinks=[lambda e: said.append(e.data["text"]) if getattr(e, "kind", "") == "print" else None])
+    tree.run(speed="max", sinks=[lambda e: said.append(e.text) if isinstance(e, Printed) else None])
     assert said == ["hop from a", "hop from b"]
 
 

@@ -17,6 +17,7 @@ from btlang.engine.leaf import Failed, told
 from btlang.engine.status import FAILURE, SUCCESS
 from btlang.tree.dump import plain
 from btlang.tree.node import Node, Tree
+from tests.trial import Trial
 
 
 @pytest.mark.parametrize(
@@ -131,7 +132,7 @@ def test_a_reading_is_rounded_so_that_it_still_fails(ports: dict[str, float], va
 
 
 def test_they_stop_a_loop() -> None:
-    tree = btlang.parse_tree("move forward 5 m until the distance ahead is less than 2 m")
+    tree = Trial("move forward 5 m until the distance ahead is less than 2 m")
     assert tree.run(speed="max").status == SUCCESS
     assert 1.7 < 6.0 - 0.2 - tree.robot.pose.x < 2.0  # the wall is at x = 6
 
@@ -140,7 +141,7 @@ def measured(id: str, **ports: str) -> Engine:
     """An engine of one condition, over the robot of a mission."""
     mission = btlang.parse_tree("wave")
     tree = Tree(Node(id, ports=tuple(ports.items())))
-    services = {"robot": mission.robot}
+    services = {"robot": btlang.Session().robot}
     return Engine(tree, lambda id: bind_leaf(id, mission.vocabulary), clock=Clock(), services=services)
 
 

@@ -93,7 +93,8 @@ class _Reader:
             if folder is None:
                 self._not_included(span, path=path, reason=_no_package(attributes["ros_pkg"]))
                 return
-            source = Source("", folder=folder)  # an installed package may be included from anywhere
+            # an installed package may be included from anywhere
+            source = Source("", folder=folder, hides_includes=source.hides_includes)
         _, real = included_path(path, source)
         if real in within:
             circle = " -> ".join(map(os.path.basename, (*within[within.index(real) :], real)))
@@ -170,7 +171,7 @@ def _package_folder(package: str) -> str | None:
     """The folder of a ROS 2 package, None where it is not installed."""
     for prefix in os.environ.get(_ROS_FOLDERS, "").split(os.pathsep):
         found = os.path.join(prefix, "share", package)
-        if prefix and os.path.isdir(found) and package == os.path.basename(package):
+        if prefix and os.path.isdir(found) and package == os.path.basename(package) and package.strip("."):
             return found
     return None
 

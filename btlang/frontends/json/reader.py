@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 FORMAT = 1
 PORT_KEYS = ("name", "direction", "type", "default", "text")
 _DEEPEST = 100  # brackets in each other: nodes are a list
+_MARKS = re.compile(r'"(?:[^"\\]|\\.)*+"?|[\[{]|[\]}]', re.DOTALL)  # a text that does not end is read once, too
 
 
 def read_json(text: str | Source, main: str = "") -> Tree:
@@ -62,7 +63,7 @@ class _Wrong(Exception):
 def _check_depth(text: str) -> None:
     """Python's reader would recurse, in C: where an engine has raised the limit of recursion, it would crash."""
     depth = 0
-    for found in re.finditer(r'"(?:[^"\\]|\\.)*"|[\[{]|[\]}]', text):
+    for found in _MARKS.finditer(text):
         mark = found[0]
         depth += (mark in "[{") - (mark in "]}")
         if depth > _DEEPEST:

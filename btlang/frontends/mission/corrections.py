@@ -90,10 +90,11 @@ class _Corrections:
         self._strange = [word for words in names for word in words if self._text.words[word] not in known]
         self._known = known | {self._text.words[word] for words in names for word in words}
         self._written = Counter(self._text.words) if self._strange else Counter()
+        self._sentences = _Sentences(self._text)
         self._beside: dict[tuple[int, int], list[Diagnostic]] = {}
         for problem in problems:
             if problem.is_error:
-                self._beside.setdefault(_sentence(self._text, problem.span.start), []).append(problem)
+                self._beside.setdefault(self._sentences.around(problem.span.start), []).append(problem)
         for beside in self._beside.values():
             beside.sort(key=lambda problem: problem.span.start)
 
@@ -172,7 +173,7 @@ class _Corrections:
 
         For the first problem of a sentence also those that mend several problems, as one change.
         """
-        beside = self._beside[_sentence(self._text, problem.span.start)]
+        beside = self._beside[self._sentences.around(problem.span.start)]
         found = self._changes_for(problem, trial)
         if len(beside) > 1 and problem is beside[0] and len(beside) <= _MOST_BESIDE:
             each = [self._changes_for(other, trial)[:_MOST_EACH] for other in beside]
@@ -286,7 +287,7 @@ class _Corrections:
             grown = len(change[2]) - (change[1] - change[0]) if change[1] <= place else 0
             places.append(ends[number] + place - trial.statements[number].start + grown)
         lexer, grouped, faults = _read(self._lexer, "".join(pieces))
-        sentences = [_sentence(lexer.text, place) for place in places]
+        sentences = [*map(_Sentences(lexer.text).around, places)]
         if len(faults) >= trial.faults or any(first <= fault <= last for fault in faults for first, last in sentences):
             return None
         meaning = [(token.kind, _said(token)) for token in lexer.tokens]
@@ -312,20 +313,33 @@ def _read(like: Lexer, text: str) -> tuple[Lexer, Grouped, list[int]]:
     return lexer, grouped, unknown + [p.span.start for p in (*lexer.problems, *grouped.problems) if p.is_error]
 
 
-def _sentence(text: Words, at: int) -> tuple[int, int]:
-    """The characters of the sentence at a place: a line, or a part of one between stops in no brackets."""
-    if not text.lines:
-        return 0, at
-    line = text.lines[max(bisect_right(text.lines, at, key=lambda line: text.starts[line.first]) - 1, 0)]
-    first, depth = line.first, 0
-    for word in range(line.first, line.last):
-        depth += (text.words[word] == "(") - (text.words[word] == ")")
-        is_stop = text.words[word] == END_OF_STATEMENT and not text.source.text[text.ends[word] :][:1].strip()
-        if is_stop and depth <= 0:
-            if at <= text.starts[word]:
-                return text.starts[first], text.starts[word]
-            first = word + 1
-    return text.starts[first], text.starts[line.last]
+class _Sentences:
+    """The sentences of a text; the stops of a line are looked for once, since each problem asks where it is."""
+
+    def __init__(self, text: Words) -> None:
+        self._text = text
+        self._stops: dict[int, list[int]] = {}  # by the first word of a line
+
+    def around(self, at: int) -> tuple[int, int]:
+        """The characters of the one at a place: a line, or a part of one between stops in no brackets."""
+        text = self._text
+        if not text.lines:
+            return 0, at
+        line = text.lines[max(bisect_right(text.lines, at, key=lambda line: text.starts[line.first]) - 1, 0)]
+        if line.first not in self._stops:
+            self._stops[line.first] = list(self._found(line.first, line.last))
+        stops = self._stops[line.first]
+        number = bisect_left(stops, at, key=lambda word: text.starts[word])
+        first = stops[number - 1] + 1 if number else line.first
+        return text.starts[first], text.starts[stops[number] if number < len(stops) else line.last]
+
+    def _found(self, first: int, last: int) -> Iterator[int]:
+        text, depth = self._text, 0
+        for word in range(first, last):
+            depth += (text.words[word] == "(") - (text.words[word] == ")")
+            end = text.ends[word]
+            if depth <= 0 and text.words[word] == END_OF_STATEMENT and not text.source.text[end : end + 1].strip():
+                yield word
 
 
 def _said(token: Token) -> object:

@@ -19,7 +19,8 @@ from btlang.run.live.frame import (
     robot_line,
     tree_lines,
 )
-from btlang.run.live.state import HALTED, SUSPENDED, Reading, State
+from btlang.run.robot_state import RobotState
+from btlang.run.snapshot import HALTED, SUSPENDED, State
 from btlang.text.source import Source, Span
 from btlang.tree.node import Node
 
@@ -129,7 +130,7 @@ def test_narrow_terminals_crop_the_sentence_and_keep_the_time() -> None:
 def test_the_robot() -> None:
     state, _ = made("all")
     assert text(robot_line(state, UNICODE)) == "robot -"
-    state.robot = Reading(Pose(1.0, -0.001, 90.4), 87.4, None, "red cup")
+    state.robot = RobotState(Pose(1.0, -0.001, 90.4), 87.4, None, "red cup")
     state.said = "Hello\x1b[2J!"
     assert text(robot_line(state, UNICODE)) == (
         'robot x 1.00 m  y 0.00 m  heading 90° · battery 87% · holds red cup (right) · said "Hello\\x1b[2J!"'

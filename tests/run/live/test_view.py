@@ -15,13 +15,14 @@ from collections.abc import Callable, Iterator
 import pytest
 
 import btlang
-from btlang.api import RunnableTree, world_vocabulary
+from btlang.api import Mission, world_vocabulary
 from btlang.engine.status import SUCCESS
-from btlang.run.controls import Controls
 from btlang.run.live.capture import Capture
 from btlang.run.live.keys import Keys
 from btlang.run.live.view import LiveView
 from btlang.tree.node import Node, Tree
+from tests.profiles import amount
+from tests.trial import Trial
 
 
 class Pty:
@@ -59,23 +60,25 @@ def terminal() -> Iterator[Pty]:
     made.close()
 
 
+@pytest.mark.long
 def test_a_tree_of_any_depth(terminal: Pty) -> None:
+    depth = amount(3000, 10_000)  # the paths of all nodes are told, which takes the square of it
     root = Node("AlwaysSuccess")
-    for _ in range(10_000):
+    for _ in range(depth):
         root = Node("ForceSuccess", (root,))
-    mission = RunnableTree(Tree(root), world_vocabulary())
-    with LiveView(mission, terminal.file) as view:
-        assert mission.run(speed="max", sinks=[view]).status == SUCCESS
-    assert mission.sink_errors == []
-    assert re.search(r"✓ ForceSuccess  \(99\d\d nodes\)", terminal.close())
+    trial = Trial(Mission(Tree(root), world_vocabulary()))
+    with LiveView(trial.mission, trial.controls, terminal.file) as view:
+        assert trial.run(speed="max", sinks=[view]).status == SUCCESS
+    assert trial.sink_errors == []
+    assert re.search(rf"✓ ForceSuccess  \({depth // 100 - 1}\d\d nodes\)", terminal.close())
 
 
 def test_from_another_thread(terminal: Pty) -> None:
-    mission = btlang.parse_tree("wave then nod")
+    trial = Trial("wave then nod")
 
     def run() -> None:
-        with LiveView(mission, terminal.file) as view:
-            mission.run(speed="max", sinks=[view])
+        with LiveView(trial.mission, trial.controls, terminal.file) as view:
+            trial.run(speed="max", sinks=[view])
 
     thread = threading.Thread(target=run)
     thread.start()
@@ -87,11 +90,11 @@ def test_from_another_thread(terminal: Pty) -> None:
 
 def test_a_terminal_that_goes_away_does_not_stop_the_mission() -> None:
     terminal = Pty()
-    mission = btlang.parse_tree("wave then nod")
-    view = LiveView(mission, terminal.file)
+    trial = Trial("wave then nod")
+    view = LiveView(trial.mission, trial.controls, terminal.file)
     with view:
         terminal.file.close()
-        assert mission.run(speed="max", sinks=[view]).status == SUCCESS
+        assert trial.run(speed="max", sinks=[view]).status == SUCCESS
     terminal.close()
 
 
@@ -125,10 +128,9 @@ def test_a_terminal_that_cannot_be_read() -> None:
 
 
 def test_the_view_has_keys_only_where_there_is_a_keyboard(terminal: Pty) -> None:
-    mission = btlang.parse_tree("wave")
-    with LiveView(mission, terminal.file, io.StringIO()) as view:
-        mission.run(speed="max", sinks=[view])
-    assert isinstance(mission.controls, Controls)
+    trial = Trial("wave")
+    with LiveView(trial.mission, trial.controls, terminal.file, io.StringIO()) as view:
+        trial.run(speed="max", sinks=[view])
     assert "✓ wave" in terminal.close()
 
 
@@ -150,8 +152,8 @@ def test_a_slow_action_is_told_above_the_tree(terminal: Pty) -> None:
     def dawdle() -> None:
         threading.Event().wait(0.12)
 
-    mission = btlang.parse_tree("dawdle", keywords=[dawdle])
-    with LiveView(mission, terminal.file) as view:
-        mission.run(sinks=[view])
-    assert mission.sink_errors == []
+    trial = Trial("dawdle", keywords=[dawdle])
+    with LiveView(trial.mission, trial.controls, terminal.file) as view:
+        trial.run(sinks=[view])
+    assert trial.sink_errors == []
     assert "slow   dawdle: took 0.1" in terminal.close()

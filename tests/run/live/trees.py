@@ -12,8 +12,8 @@ from btlang.engine.engine import Engine
 from btlang.engine.leaf import LeafBinding
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
 from btlang.run.events import StatusesChanged
-from btlang.run.live.shape import Shape
-from btlang.run.live.state import State
+from btlang.run.shape import Shape
+from btlang.run.snapshot import State
 from btlang.tree.node import Node, Tree
 
 TYPE_CHECKING = False
@@ -67,7 +67,7 @@ class Run:
         return bytes(self.state.statuses)
 
     def _changed(self, changes: Changes) -> None:
-        for change in StatusesChanged(self.clock.now, changes, self.engine):
+        for change in StatusesChanged(self.clock.now, "", 0, 0.0, changes, self.engine):
             self.latest[change.index] = change.status
             self.state.change(change.index, change.status, change.t, change.reason)
 
