@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 import btlang
 from btlang.arguments import between, duration, picture, speed
 from btlang.diagnostics.report import FORMATS
-from btlang.frontends.mission import DEFAULT_PARSER, PARSERS
+from btlang.frontends.mission.reader import DEFAULT_PARSER, PARSERS
 from btlang.run.limits import RATES
 from btlang.text.output import show
 

@@ -20,7 +20,7 @@ from typing import NamedTuple
 import pytest
 
 from btlang.cli import main
-from btlang.frontends.mission import PARSERS
+from btlang.frontends.mission.reader import PARSERS
 
 ROOT = Path(__file__).parent.parent
 README = ROOT / "README.md"

@@ -10,7 +10,7 @@ from contextlib import contextmanager, nullcontext
 from btlang.api import Mission
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.render import has_colour, render
-from btlang.frontends.mission import DEFAULT_PARSER
+from btlang.frontends.mission.reader import DEFAULT_PARSER
 from btlang.repl.commands import Commands, Leave, command_of
 from btlang.repl.draft import MissionDraft
 from btlang.repl.entering import entries

@@ -82,13 +82,13 @@ def _said_so(known: Sequence[Item], text: str, vocabulary: Vocabulary) -> list[I
     found += [item for item in known if item not in found and bare in _spoken(item, vocabulary.articles)]
     if found:
         return found
-    match = longest(vocabulary.trie, words, 0, vocabulary.values)
+    match = longest(vocabulary.trie, words, 0, vocabulary.context)
     return _begun_so(known, text, vocabulary) if match is not None and match.last >= len(bare) else []
 
 
 def _begun_so(known: Sequence[Item], text: str, vocabulary: Vocabulary) -> list[Item]:
     """The phrase that the text begins with."""
-    match = longest(vocabulary.trie, split(Source(text), vocabulary.articles), 0, vocabulary.values)
+    match = longest(vocabulary.trie, split(Source(text), vocabulary.articles), 0, vocabulary.context)
     if match is None:
         return []
     name = match.meaning.entry.id if match.meaning.entry else match.meaning.role

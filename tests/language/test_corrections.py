@@ -16,7 +16,7 @@ import btlang
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError
 from btlang.diagnostics.render import render
 from btlang.diagnostics.report import as_data
-from btlang.frontends.completion import completions
+from btlang.frontends.mission.completion.completer import completions
 from btlang.repl.draft import MissionDraft
 from btlang.repl.screen import Screen
 from btlang.repl.store import Store
