@@ -148,7 +148,7 @@ def test_check_and_tree_read_files_and_standard_input(
 def test_worlds_bring_their_names(btc: Screen) -> None:
     museum = str(REPOSITORY / "examples" / "worlds" / "museum.toml")
     assert btc("check", "-c", "go to the kitchen", "--world", museum) == 2
-    assert "I know no place" in btc.err
+    assert "There's no place" in btc.err
     assert btc("check", "-c", "wave", "--world", str(REPOSITORY / "pyproject.toml")) == 2
     assert "BT070" in btc.err
     assert btc("check", "-c", "wave", "--world", "no_such_world.toml") == 2

@@ -147,11 +147,11 @@ def test_another_tree_may_be_the_main_one(name: str) -> None:
     document = f'{{"format": 1, "trees": [{trees}]}}'
     others = (("Main", Node("Wave")),) if name else ()
     assert parse_tree(document, main="B").tree == Tree(Node("Nod"), others, "B")
-    with pytest.raises(MissionError, match="BT126: There is no tree 'C'"):
+    with pytest.raises(MissionError, match="BT126: There's no tree called 'C'"):
         parse_tree(document, main="C")
 
 
 def test_a_mission_has_no_other_tree() -> None:
-    with pytest.raises(MissionError, match="BT126: There is no tree 'B'") as refused:
+    with pytest.raises(MissionError, match="BT126: There's no tree called 'B'") as refused:
         parse_tree("wave", main="B")
     assert "A mission in English is one tree." in str(refused.value)

@@ -262,7 +262,7 @@ def test_a_port_that_is_missing_is_no_number_out_of_range() -> None:
 
 def test_py_trees_tells_of_nodes_with_children_that_are_not_there() -> None:
     tree = btlang.parse_tree('do "DistanceController" with distance 1:\n  wave')
-    with pytest.raises(MissionError, match="BT131: There is no node 'DistanceController' that has children"):
+    with pytest.raises(MissionError, match="BT131: There's no node 'DistanceController' that takes children"):
         tree.to("py_trees")
 
 
@@ -286,5 +286,5 @@ def test_a_run_tells_of_all_nodes_that_a_mission_says_by_unknown_ids() -> None:
 
 @pytest.mark.parametrize("text", ["<root/>", '{"format": 1}'])
 def test_what_is_no_english_has_no_layout(text: str) -> None:
-    with pytest.raises(MissionError, match="BT001: I cannot read <text>: this is no English"):
+    with pytest.raises(MissionError, match="BT001: I can't read <text>: this is no English"):
         format_mission(text)

@@ -73,7 +73,7 @@ def test_a_file_that_cannot_be_written(
     path = mission(tmp_path, "one.txt", MESSY)
     monkeypatch.setattr("os.replace", full)
     assert main(["format", str(path)]) == 2
-    assert "BT009: I cannot write" in capsys.readouterr().err
+    assert "BT009: I can't write" in capsys.readouterr().err
     assert path.read_bytes() == MESSY
     assert list(tmp_path.iterdir()) == [path]
 

@@ -123,8 +123,8 @@ def test_what_two_readings_shows() -> None:
     assert warning.message == "This can be read in two ways."
     assert warning.hint.splitlines() == [
         "I read: go to lobby then (go to lab and look around)",
-        "It could also be read: (go to lobby then go to lab) and look around",
-        "A comma or brackets decide, for example: go to the lobby, then go to the lab and look around",
+        "It could also mean: (go to lobby then go to lab) and look around",
+        "Decide with a comma or brackets, for example: go to the lobby, then go to the lab and look around",
     ]
 
 

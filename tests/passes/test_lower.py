@@ -68,7 +68,7 @@ def test_texts_of_one_meaning_print_the_same(one: str, other: str) -> None:
 
 def test_resources_are_found_through_names_and_forms() -> None:
     text = "spin is turn left\nslow spin is after 1 s, spin\nif bumped, ((slow spin twice) and wave and go to the lab)"
-    with pytest.raises(MissionError, match="need the base at the same time: 'slow spin' and 'go to the lab'"):
+    with pytest.raises(MissionError, match="'slow spin' and 'go to the lab' both need the base at the same time"):
         parse_tree(text)
     parse_tree("wave and go to the lab and say hello and look around")
 

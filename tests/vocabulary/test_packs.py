@@ -31,7 +31,7 @@ def test_a_pack_adds_a_phrase_and_a_type(tmp_path: Path) -> None:
     )
     tree = parse_tree("sing the national anthem for Alice then play La Paloma", keywords=[str(pack)]).tree
     assert plain(tree) == 'Sequence\n  Play person=Alice song=hymn\n  Play song="la paloma"'
-    with pytest.raises(MissionError, match=r"I know no song 'yesterday'"):
+    with pytest.raises(MissionError, match=r"There's no song called 'yesterday'"):
         parse_tree("sing yesterday", keywords=[str(pack)])
 
 

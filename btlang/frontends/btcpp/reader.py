@@ -163,7 +163,7 @@ class _Reader:
 def no_tree(span: Span, name: str, trees: Collection[str]) -> Diagnostic:
     """That none of the trees has this name (BT126)."""
     near = nearest(name, trees)
-    told = f"The nearest: {', '.join(near)}" if near else f"There are: {', '.join(list(trees)[:8])}"
+    told = f"Similar: {', '.join(near)}" if near else f"There are: {', '.join(list(trees)[:8])}"
     return diagnostic("BT126", span, name=name, help=told)
 
 

@@ -257,7 +257,7 @@ def _unknown_phrase(
 
 def nearest_known(words: Iterable[str]) -> str:
     """The advice that lists what was probably meant."""
-    return "The nearest that I know: " + ", ".join(words)
+    return "Similar: " + ", ".join(words)
 
 
 @lru_cache(maxsize=4)  # a text full of unknown words asks for them at each
@@ -288,7 +288,7 @@ def _nearest_phrases(
 
 def _near_names(near: list[str], known: list[str]) -> str:
     if near:
-        return "The nearest: " + ", ".join(near)
+        return "Similar: " + ", ".join(near)
     return "Known: " + ", ".join(known) if known else "None is known in this world."
 
 
