@@ -61,11 +61,11 @@ def watched_run(mission: str, view: bool, seconds: float, report: Path) -> None:
     work: list[float] = []
     marks: list[tuple[float, float]] = []  # real and CPU time at the end of each period
     runners: list[Runner] = []
-    plain_tick = Runner.tick
+    plain_tick = Runner._tick
 
-    def timed_tick(runner: Runner) -> int:
+    def timed_tick(runner: Runner, ticking: Any) -> int:
         began = time.perf_counter()
-        status = plain_tick(runner)
+        status = plain_tick(runner, ticking)
         work.append(time.perf_counter() - began)
         runners[:] = [runner]
         return status
@@ -74,7 +74,7 @@ def watched_run(mission: str, view: bool, seconds: float, report: Path) -> None:
         if isinstance(event, PeriodPassed) and LEFT_OUT <= event.t < seconds:
             marks.append((time.perf_counter(), time.process_time()))
 
-    Runner.tick = timed_tick
+    Runner._tick = timed_tick  # type: ignore[method-assign]
     mark.policy = INLINE  # type: ignore[attr-defined]
     controls = Controls()
     live = LiveView(tree, controls, sys.stdout, sys.stdin) if view else None
@@ -82,7 +82,7 @@ def watched_run(mission: str, view: bool, seconds: float, report: Path) -> None:
         tree.run(rate=RATE, time_limit=seconds, controls=controls, sinks=[mark, live] if live else [mark])
     (began, cpu_before), (ended, cpu_after) = marks[0], marks[-1]
     late = [abs(b[0] - a[0] - 1 / RATE) for a, b in pairwise(marks)]
-    figures = {"share": (cpu_after - cpu_before) / (ended - began), "late": late, "overruns": runners[0].overruns}
+    figures = {"share": (cpu_after - cpu_before) / (ended - began), "late": late, "overruns": runners[0]._pace.late}
     report.write_text(json.dumps({**figures, "work": work[int(LEFT_OUT * RATE) :]}), encoding="utf-8")
 
 
