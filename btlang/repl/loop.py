@@ -61,7 +61,7 @@ class Repl:
         from btlang.repl.screen import CONTINUED, PROMPT, Screen
 
         screen = Screen(self._draft, self._store)
-        show("btlang: type what the robot should do. 'help' explains more; press Ctrl-D twice to leave.")
+        show("btlang: type what the robot should do. 'help' explains; Ctrl-D twice leaves.")
         if self._store.problem:
             show(f"What you type is not kept: {self._store.problem}")
         left = self._store.left()

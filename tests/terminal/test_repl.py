@@ -172,7 +172,7 @@ def test_blocks_take_several_lines(repl: Callable[..., Terminal]) -> None:
 def test_what_cannot_run_stays_in_the_line(repl: Callable[..., Terminal]) -> None:
     user = repl()
     user.type("wave nod")
-    golden(user, "Two commands stand side by side", "refused")
+    golden(user, "There's no word between these two commands", "refused")
     user.press("C-f")
     user.wait_for("> wave then nod")
 
@@ -214,7 +214,7 @@ def test_without_a_terminal_lines_are_read(tmp_path: Path) -> None:
         **os.environ, "PYTHONPATH": str(Path(__file__).parents[2]), "XDG_STATE_HOME": str(tmp_path),
     })  # fmt: skip
     assert done.returncode == 2
-    assert "I do not know how to 'flarp'" in done.stderr
+    assert "I don't know the command 'flarp'" in done.stderr
     assert done.stdout.endswith("bow is nod\nrepeat 2 times:\n  bow\nsay done\n")
     assert done.stdout.count("start  nod") == 2
     assert list(tmp_path.iterdir()) == []  # nothing is kept
