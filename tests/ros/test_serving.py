@@ -115,7 +115,7 @@ def test_goals_of_a_program_that_knows_rclpy_alone(serve, client: Client, tmp_pa
     status, _, reason = end_of(failed)
     assert status == aborted
     assert reason.startswith("bumped into something after")
-    assert "failed move forward 50 m: bumped" in server.out
+    server.wait_for("failed move forward 50 m: bumped")
 
 
 def test_cancelled_half_way_the_robot_stands(start_sim, serve, client: Client):
