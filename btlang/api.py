@@ -111,9 +111,9 @@ def _names_by_type(world: str | None) -> dict[str, tuple[str, ...]]:
     try:
         names = world_names(world)
     except WorldError as error:
-        from btlang.robots.world_problem import world_problem
+        from btlang.robots.data_file import as_mission_error
 
-        raise world_problem(error) from None
+        raise as_mission_error(error) from None
     return {"place": names.places, "person": names.people, "object": names.objects}
 
 

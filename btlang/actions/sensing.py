@@ -11,7 +11,8 @@ if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
-NEAR_WALL = 0.8
+NEAR_WALL = 0.6
+"""Metres before the robot: after "no wall in front" it can drive 0.5 m."""
 NEAR_PERSON = 1.5
 AT_PLACE = 0.5
 LOW_BATTERY = 20.0
@@ -48,14 +49,15 @@ def path_is_clear(robot: Robot) -> bool:
 def is_blocked(robot: Robot, direction: float) -> bool:
     """Whether a scan point lies in the strip that the robot would sweep in a direction (degrees left of its heading).
 
-    The strip is as wide as the robot and a margin, and NEAR_WALL metres long from its centre: after False, 0.5 m in
+    The strip is as wide as the robot and a margin, and NEAR_WALL metres beyond its rim: after False, 0.5 m in
     that direction cannot bump. What a silent scanner does not see counts as blocked.
     """
     try:
         along, across = _points(robot, direction)
     except RobotError:
         return True  # a failed condition would read as "no wall" under `not` and `until`, and the robot drive blind
-    return bool(((along > 0.0) & (along < NEAR_WALL) & (abs(across) < robot.radius + _SIDE_MARGIN)).any())
+    near = robot.radius + NEAR_WALL
+    return bool(((along > 0.0) & (along < near) & (abs(across) < robot.radius + _SIDE_MARGIN)).any())
 
 
 def distance_ahead(robot: Robot) -> float:

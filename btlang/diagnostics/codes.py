@@ -97,6 +97,8 @@ _ALL = (
          "Change one of them, or give both the same id."),
     Code("BT063", "There is no keyword file or pack '{name}'.", "Give the path of a TOML file, or the name of an installed pack."),
     Code("BT070", "This world file cannot be used: {reason}."),
+    Code("BT071", "This robot file cannot be used: {reason}."),
+    Code("BT072", "'{words}' needs something that the robot '{robot}' does not have: {part}.", "Leave it out, or choose another robot with --robot."),
     Code("BT080", "The command '{id}' cannot run: {reason}."),
     Code("BT081", "Pictures are drawn by matplotlib, which is not installed.", "Install it: pip install 'btlang[pictures]'"),
     Code("BT090", "There is no code '{name}'.", "All of them: btc explain"),

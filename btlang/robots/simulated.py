@@ -6,9 +6,9 @@ from collections.abc import Iterable, Mapping
 from math import ceil
 from typing import Any
 
-from btlang.robots import base as wheels
-from btlang.robots import navigation
 from btlang.robots.base import Base
+from btlang.robots.body import Body, Voice
+from btlang.robots.body_file import standard_body
 from btlang.robots.faults import Faults, describe
 from btlang.robots.geometry import Point, Pose
 from btlang.robots.hands import Hands
@@ -18,7 +18,7 @@ from btlang.robots.navigation import Journey, Navigator
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.power import Power
 from btlang.robots.robot import Done, Hand, OnEvent, RobotError, SensorSilent
-from btlang.robots.world import ROBOT_RADIUS, Place, World, said
+from btlang.robots.world import Place, World, said
 from btlang.run.standstill import Standstill
 
 TYPE_CHECKING = False
@@ -28,30 +28,31 @@ if TYPE_CHECKING:
 _CONTROL_PERIOD = 0.05
 _SAME_SPOT = 0.01  # metres
 _HANDS: tuple[Hand, Hand] = ("left", "right")
+_MUTE = Voice(0.0, 0.0)
 
 
 class SimulatedRobot:
     """Implements `btlang.robots.robot.Robot`. Nothing in it is random: the same commands give the same run."""
 
     moves_by_itself = False
-    radius = ROBOT_RADIUS
-    normal_speed = navigation.SPEED
-    max_speed = wheels.MAX_SPEED
-    normal_turn = navigation.TURN
 
-    def __init__(self, world: World, on_event: OnEvent | None = None) -> None:
+    def __init__(self, world: World, on_event: OnEvent | None = None, body: Body | None = None) -> None:
+        self.body = body = body or standard_body()
+        self.radius = body.radius
+        self.normal_speed, self.max_speed = body.driving.speed, body.driving.top_speed
+        self.normal_turn = body.turning.speed
         self.world = self._given_world = world
         self.on_event = on_event
         self.time = 0.0
         self.stops = 0
         self._obstacles = Obstacles(world)
-        self._base = Base(world.start, self._obstacles)
+        self._base = Base(world.start, self._obstacles, body)
         self._faults = Faults(world.faults)
         self._navigator = Navigator(world, self._base, self._obstacles, self._faults)
-        self._power = Power(world.battery, world.dock)
+        self._power = Power(world.battery, world.dock, body)
         self._scanner: Scanner | None = None
-        self._joints = Joints()
-        self._hands = Hands(self._obstacles, world.names.objects)
+        self._joints = Joints(body)
+        self._hands = Hands(self._obstacles, world.names.objects, body)
         self._speech_left = 0.0
         self._latch = Latch()
         self._bumps_told = 0
@@ -178,12 +179,15 @@ class SimulatedRobot:
     # Senses
     def scan(self) -> Array:
         """360 distances, computed when first read after a step. Raises RobotError when the scanner is silent."""
+        sensor = self.body.sensor("scanner")
+        if sensor is None:
+            raise RobotError("the robot has no scanner")
         if self._faults.scanner_silent:
             raise SensorSilent("the laser scanner is silent")
         if self._scanner is None:
             from btlang.robots.scan import Scanner  # brings numpy, which takes longer to import than many missions
 
-            self._scanner = Scanner(self._obstacles)
+            self._scanner = Scanner(self._obstacles, sensor.range)
         return self._scanner.read(self.pose)
 
     def locate(self, name: str) -> Point:
@@ -297,9 +301,10 @@ class SimulatedRobot:
 
     # Voice
     def say(self, text: str) -> None:
-        """Starts to speak: 0.35 s and 0.06 s a character."""
+        """Starts to speak, for as long as the body says."""
         if not self._latch.refuses:
-            self._speech_left = 0.35 + 0.06 * len(text)
+            voice = self.body.voice or _MUTE
+            self._speech_left = voice.text + voice.character * len(text)
             self._emit("say", text=text)
 
     @property

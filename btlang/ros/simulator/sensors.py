@@ -12,9 +12,7 @@ from std_msgs.msg import Bool
 from std_srvs.srv import Trigger
 
 from btlang.robots.robot import RobotError
-from btlang.robots.scan import RANGE
 from btlang.robots.simulated import SimulatedRobot
-from btlang.ros.poses import BASE
 from btlang.ros.simulator.inbox import Inbox
 from btlang.ros.simulator.publishing import COMMANDS, Every, Latched, Moment
 
@@ -51,14 +49,17 @@ class Sensors:
             self._publish_scan(now)
 
     def _publish_scan(self, now: Moment) -> None:
+        sensor = self._robot.body.sensor("scanner")
+        if sensor is None:
+            return
         try:
             ranges = self._robot.scan()
         except RobotError:
             return
         step = radians(1)
         scan = LaserScan(angle_min=0.0, angle_max=359 * step, angle_increment=step, scan_time=1 / _SCANS)
-        scan.range_min, scan.range_max, scan.ranges = 0.0, RANGE, array("f", ranges)
-        scan.header.stamp, scan.header.frame_id = now.stamp, BASE
+        scan.range_min, scan.range_max, scan.ranges = 0.0, sensor.range, array("f", ranges)
+        scan.header.stamp, scan.header.frame_id = now.stamp, sensor.frame
         self._scan.publish(scan)
 
     def _publish_battery(self, now: Moment) -> None:
