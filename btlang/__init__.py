@@ -14,14 +14,14 @@ if TYPE_CHECKING:
     from btlang.api import Mission, parse_file, parse_tree
     from btlang.diagnostics.diagnostic import Diagnostic, MissionError
     from btlang.engine.leaf import ActionFailed, Unknown
-    from btlang.own_words import action, condition
+    from btlang.own_words import action, condition, quantity
     from btlang.run.runner import Outcome
     from btlang.run.statuses import Status
     from btlang.session import Run, Session
 
 __all__ = [
     "ActionFailed", "Diagnostic", "Mission", "MissionError", "Outcome", "Run", "Session", "Status", "Unknown", "action",
-    "condition", "parse_file", "parse_tree",
+    "condition", "parse_file", "parse_tree", "quantity",
 ]  # fmt: skip
 
 _HOMES = {
@@ -35,6 +35,7 @@ _HOMES = {
     "Unknown": "btlang.engine.leaf",
     "action": "btlang.own_words",
     "condition": "btlang.own_words",
+    "quantity": "btlang.own_words",
 }
 
 

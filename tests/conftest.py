@@ -61,7 +61,7 @@ def take_away_what_is_missed(code: str, patch: pytest.MonkeyPatch) -> None:
     pytest.importorskip("rclpy", reason="ROS 2 is not installed")
     patch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF")
     for waited in ("_DISCOVERY", "_AGAIN"):
-        patch.setattr(f"btlang.ros.stage.{waited}", 0.5)  # seconds: it finds nobody
+        patch.setattr(f"btlang.ros.connection.{waited}", 0.5)  # seconds: it finds nobody
 
 
 def _buggy(*_: object) -> list[str]:

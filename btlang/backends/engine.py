@@ -29,16 +29,17 @@ def bind_leaf(
     """None where no keyword entry has the id. Raises EngineError where its `call` leads nowhere or is of no use.
 
     `own` is how the robot of the run binds an entry; what it leaves is bound by `call`. The latest entry that it binds
-    counts, so that a keyword file can bind words that ship.
+    counts, so that a keyword file can bind words that ship. An entry that replaces the others goes before the robot.
     """
     entries = vocabulary.entries.get(node_id, ())
-    for entry in reversed(entries) if own is not None else ():
+    replacing = [entry for entry in entries if entry.replaces]
+    for entry in reversed(entries) if own is not None and not replacing else ():
         binding = own(entry, vocabulary)  # type: ignore[misc]
         if binding is not None:
             return binding
     if not entries:
         return None
-    entry = entries[0]
+    entry = (replacing or entries)[-1 if replacing else 0]
     slots = {slot.name: slot for other in entries for slot in other.slots}
     return leaf_binding(entry, vocabulary, _imported(entry), tuple(slots.values()))
 

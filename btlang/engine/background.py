@@ -109,10 +109,12 @@ class Background:
         self._proxies = shared.proxies
         self._loop: EventLoop | None = None
         self._halted: list[tuple[int, Work]] = []  # with the index of its leaf
+        self._going: set[Work] = set()
 
     def work(self, services: Mapping[str, Any]) -> Work:
         """What is about to begin, with proxies of services that have one."""
         work, made = Work(self._wake), self._proxies
+        self._going.add(work)
         work.proxies = {name: made[name](service, work.in_tick) for name, service in services.items()}
         return work
 
@@ -139,8 +141,14 @@ class Background:
     def over(self, work: Work) -> None:
         """The work has ended; from any thread."""
         work.ended.set()
+        self._going.discard(work)
         work.refuse()
         self._wake()
+
+    @property
+    def is_working(self) -> bool:
+        """Whether anything works that was not halted."""
+        return any(not work.halted.is_set() for work in tuple(self._going))
 
     def halt(self, index: int, work: Work) -> None:
         """Asks the work of a leaf to end, and ends what it has set about."""

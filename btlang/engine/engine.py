@@ -166,6 +166,12 @@ class Engine:
         return [self._failure(Fault(index, "it did not end")) for index in background.close(patience)]
 
     @property
+    def works_beside(self) -> bool:
+        """Whether a leaf works in a thread or on the event loop."""
+        background = self._shared.background
+        return background is not None and background.is_working
+
+    @property
     def nodes(self) -> list[tuple[str, Node]]:
         """Path and node of all nodes in preorder, after expansion of subtrees; made at each call."""
         paths: list[str] = []

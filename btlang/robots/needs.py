@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.robots.body import Body
@@ -18,7 +18,8 @@ if TYPE_CHECKING:
 def needs_of(node: Node, vocabulary: Vocabulary) -> tuple[str, ...]:
     """What a leaf needs, by the keyword entry that does its work."""
     entries = vocabulary.entries.get(node.id, ())
-    return entries[0].needs if entries else ()
+    chosen = next((entry for entry in reversed(entries) if entry.replaces), entries[0] if entries else None)
+    return chosen.needs if chosen is not None else ()
 
 
 def lacking(body: Body, tree: Tree, vocabulary: Vocabulary, but: Collection[str] = ()) -> dict[str, Node]:
@@ -33,12 +34,15 @@ def lacking(body: Body, tree: Tree, vocabulary: Vocabulary, but: Collection[str]
 
 
 def check_body(body: Body, tree: Tree, vocabulary: Vocabulary, but: Collection[str] = ()) -> None:
-    """Raises MissionError with all parts that the body lacks (BT072)."""
-    lacks = lacking(body, tree, vocabulary, but)
-    if lacks:
-        raise MissionError([_lack(body, part, node) for part, node in lacks.items()])
+    """Raises MissionError with all parts that the body lacks, each at the first leaf that needs it (BT072)."""
+    by_leaf: dict[int, tuple[Node, list[str]]] = {}
+    for part, node in lacking(body, tree, vocabulary, but).items():
+        by_leaf.setdefault(id(node), (node, []))[1].append(part)
+    if by_leaf:
+        raise MissionError([_lack(body, parts, node) for node, parts in by_leaf.values()])
 
 
-def _lack(body: Body, part: str, node: Node) -> Diagnostic:
+def _lack(body: Body, parts: Sequence[str], node: Node) -> Diagnostic:
     words = node.span.text if node.span is not None else node.id
-    return diagnostic("BT072", node.span or NOWHERE, words=words, part=part, robot=body.name)
+    said = [part for part in parts if not any(other.endswith(f" {part}") for other in parts)]  # a right hand is a hand
+    return diagnostic("BT072", node.span or NOWHERE, words=words, parts=" and no ".join(said), robot=body.name)

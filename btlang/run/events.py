@@ -279,6 +279,11 @@ class PeriodPassed(Event):
     state: RobotState | None
     robot: Any
 
+    @property
+    def count(self) -> int:
+        """It has the number of the next event: so the numbers of a log have no gaps."""
+        return 0
+
 
 ROBOT_EVENTS: dict[str, type[Event]] = {
     event.tag: event

@@ -12,6 +12,7 @@ class Pace:
     """Sleeps between ticks. `speed` is seconds of the mission per second of real time; math.inf does not sleep at all.
 
     `late` counts the periods that were over before their sleep began. Time after a late tick is not caught up with.
+    While it is `real`, what would not sleep at all keeps step with real time: something works beside the mission.
     """
 
     def __init__(self, speed: float, controls: Controls) -> None:
@@ -20,6 +21,8 @@ class Pace:
         self._due = 0.0
         self._woken = False
         self.late = 0
+        self.real = False
+        self._kept_step = speed < math.inf
 
     def begin(self) -> None:
         """A period begins now."""
@@ -45,22 +48,28 @@ class Pace:
 
         Those are all of them unless it is to `wait` less from the tick's beginning on, is woken, or the run is stopped.
         """
-        seconds = min(period, wait)
-        if self._speed == math.inf:
-            return seconds
+        seconds, speed = min(period, wait), self._speed
+        if speed == math.inf:
+            if not self.real:
+                self._kept_step = False
+                return seconds
+            speed = 1.0
+            if not self._kept_step:
+                self.begin()
+                self._kept_step = True
         began, now = self._due, time.monotonic()
-        self._due += seconds / self._speed
-        if now >= began + period / self._speed:
+        self._due += seconds / speed
+        if now >= began + period / speed:
             self.late += 1
             self._due = now
             return period
         if now > self._due:
             self._due = now
-            return (now - began) * self._speed
+            return (now - began) * speed
         while (left := self._due - now) > 0:
             if self._woken or self._controls.stopped:
                 self._due = now
-                return max(0.0, seconds - left * self._speed)
+                return max(0.0, seconds - left * speed)
             self._controls.wait(left)
             now = time.monotonic()
         return seconds

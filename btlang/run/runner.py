@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     class Ticked(Protocol):
         """What a run ticks: an Engine, or several that count as one. `idle` may be missing: whether there is nothing to
-        tick now, so that the robot need not be enabled yet.
+        tick now, so that the robot need not be enabled yet. So may `works_beside`: whether anything works in a thread.
         """
 
         on_wake: Callable[[], object] | None
@@ -119,7 +119,8 @@ def traced_engine(
 class Runner:
     """Ticks an engine `rate` times a second of the mission until the tree completes.
 
-    `speed` is seconds of the mission per second of real time; math.inf does not wait at all. `pace` makes what waits
+    `speed` is seconds of the mission per second of real time; math.inf waits only for leaves that work beside the tick,
+    in real time. `pace` makes what waits
     between two ticks, and says how much time has passed. The next tick comes sooner where a node has told the clock
     that it is due before the period is over (Clock.due), and at once where the service `wake` of the engine is called.
     Where the engine has a stopwatch, ticks that take longer than their period are events (Overrun).
@@ -217,6 +218,7 @@ class Runner:
             if status != RUNNING:
                 return status, ""
             if self._clock.due > self._clock.now:
+                self._pace.real = getattr(self._engine, "works_beside", False)
                 self._advance(self._pace.sleep(self._period_left(), self._clock.due - self._clock.now))
         return IDLE, "interrupted"
 

@@ -19,9 +19,7 @@ _OTHER = re.compile(r"[^,\]}#\n]+")  # numbers, dates, true and false
 def positions(text: str) -> dict[Path, int]:
     """The offset of each table, key and item of a text that tomllib reads; of a table its header."""
     scan = _Scan(text)
-    with suppress(
-        RecursionError, ValueError, AssertionError
-    ):  # too deep, or no TOML: until there
+    with suppress(RecursionError, ValueError, AssertionError):  # too deep, or no TOML: until there
         scan.document()
     return scan.found
 

@@ -36,8 +36,9 @@ class Entry(Record, uncompared=("span",)):
     `instant` and `uninterruptible` are what an action says of itself: that it ends in the tick in which it starts, and
     that it should not be halted half-way. Warnings are made of them; they change nothing in a run. With `thread` the
     `call`, a plain function, works in a thread of its own, beside the tick. `ros` stands in place of `call` on a robot
-    that speaks ROS 2. `needs` names capabilities and parts of the robot (btlang.vocabulary.capabilities); what an
-    action takes of them for itself is among its `resources`.
+    that speaks ROS 2. With `replaces` its `call` is what runs, whatever other entries of its id say, on any robot.
+    `needs` names capabilities and parts of the robot (btlang.vocabulary.capabilities); what an action takes of them for
+    itself is among its `resources`.
     """
 
     sort: str  # "action" or "condition"
@@ -55,6 +56,7 @@ class Entry(Record, uncompared=("span",)):
     uninterruptible: bool = False
     thread: bool = False
     ros: RosBinding | None = None
+    replaces: bool = False
     needs: tuple[str, ...] = ()
     span: Span | None = None
 

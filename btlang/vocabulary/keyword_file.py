@@ -24,7 +24,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-_TOP = {"language", "action", "condition", "quantity", "type", *WORD_LISTS, *TABLES}
+_TOP = {"language", "replaces", "action", "condition", "quantity", "type", *WORD_LISTS, *TABLES}
 _ENTRY = {"phrase", "id", "call", "ros", "slots", "resources", "needs", "topic", "help", "example"}
 _FLAGS = ("instant", "uninterruptible", "thread")
 _MORE = {"action": set(_FLAGS), "condition": set[str](), "quantity": {"type"}}
@@ -113,6 +113,15 @@ class _Reader:
             needs=tuple(needs),
         )  # fmt: skip
         return self.quantity(made, table, near) if sort == "quantity" else made
+
+    def replacing(self, ids: object, entries: list[Entry]) -> list[Entry]:
+        """The entries, where those with these ids replace what is known."""
+        if not isinstance(ids, list) or not _strings(ids):
+            self.wrong('replaces is a list of ids, such as replaces = ["GoTo"]', "replaces")
+            return entries
+        for name in [name for name in ids if not any(entry.id == name and entry.call for entry in entries)]:
+            self.wrong(f"no entry of this file has the id '{name}' and a call to replace the known one with", name)
+        return [entry.replace(replaces=entry.id in ids) for entry in entries]
 
     def ros(self, table: object, sort: str, slots: tuple[SlotSpec, ...], near: str) -> RosBinding | None:
         binding, wrong = read_ros(table, sort)
@@ -249,7 +258,9 @@ def read_keyword_file(source: Source) -> KeywordFile:
             types.append(declared[0])
             names += declared[1]
     reader.start = 0
-    language = {k: v for k, v in document.items() if k not in ("action", "condition", "quantity", "type")}
+    entries = reader.replacing(document.get("replaces", []), entries)
+    own = ("action", "condition", "quantity", "type", "replaces")
+    language = {k: v for k, v in document.items() if k not in own}
     for key, value in language.items():
         if key in _TOP:
             for reason, near in problems(key, value):

@@ -165,6 +165,8 @@ class Vocabulary:
             self._problems.append(diagnostic("BT060", Span(Source(phrase, "words"), 0, len(phrase)), reason=str(error)))
 
     def _add_entry(self, entry: Entry) -> None:
+        if entry.replaces and not entry.id:
+            entry = entry.replace(id=self._replaced_id(entry))
         if entry.measures:
             entry = self._with_comparisons(entry)
         types = {slot.name: slot.type for slot in entry.slots}
@@ -178,6 +180,7 @@ class Vocabulary:
         same = self.entries.setdefault(entry.id, [])
         if same and same[0].sort != entry.sort:
             self._wrong(entry, f"the id {entry.id} is already that of the {same[0].sort} in {same[0].file}")
+        self._check_call(entry, same)
         same.append(entry)
         for phrase in entry.phrases:
             try:
@@ -186,6 +189,28 @@ class Vocabulary:
                     self._add_negations(phrase, Meaning("negated", entry), types)
             except PatternError as error:
                 self._wrong(entry, str(error))
+
+    def _replaced_id(self, entry: Entry) -> str:
+        """That of the word whose phrase it has."""
+        own = self._forms_of(entry)
+        for node_id, known in self.entries.items():
+            if any(not own.isdisjoint(self._forms_of(other)) for other in known):
+                return node_id
+        self._wrong(entry, "no known word has this phrase, so there is nothing to replace; give the id of the word")
+        return ""
+
+    def _forms_of(self, entry: Entry) -> set[Form]:
+        phrases = (*entry.phrases, *entry.quantity) if not entry.measures else entry.quantity
+        return {form for phrase in phrases for form in forms(phrase, self.articles)}
+
+    def _check_call(self, entry: Entry, same: Sequence[Entry]) -> None:
+        """BT064 where an id has two functions and nothing says which one is meant."""
+        other = next((one for one in same if one.call and entry.call and one.call != entry.call), None)
+        if other is None or entry.replaces:
+            return
+        span = entry.span or Span(Source(entry.id, "Python"), 0, len(entry.id))
+        fix = f'replaces = ["{entry.id}"]' if entry.span else "replace=True"
+        self._problems.append(diagnostic("BT064", span, id=entry.id, file=other.file, fixed=fix))
 
     def _with_comparisons(self, entry: Entry) -> Entry:
         """`battery` becomes `battery is below {below}` and so on, for each way to compare."""

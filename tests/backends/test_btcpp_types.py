@@ -18,6 +18,7 @@ from btlang.api import parse_tree
 from btlang.backends.btcpp import to_xml
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.engine.status import SUCCESS
+from btlang.run.events import Said
 from btlang.tree.node import Node, Tree
 from tests.engine.scripted import n
 from tests.profiles import searches
@@ -225,7 +226,7 @@ def test_what_is_written_runs_as_the_mission_does() -> None:
     def said(source: str) -> list[str]:
         words: list[str] = []
         tree = parse_tree(source)
-        hear = lambda event: words.append(event.data["text"]) if getattr(event, "kind", "") == "say" else None  # noqa: E731
+        hear = lambda event: words.append(event.text) if isinstance(event, Said) else None  # noqa: E731
         assert tree.run(speed="max", sinks=[hear]).status == SUCCESS
         return words
 

@@ -7,6 +7,7 @@ from py_trees import composites, decorators
 from py_trees.behaviours import Success
 from py_trees.common import Status
 
+import btlang
 from btlang.api import parse_tree, world_vocabulary
 from btlang.backends.py_trees.build import to_py_trees
 from btlang.backends.py_trees.in_order import SkippableSequence
@@ -43,7 +44,7 @@ def test_nodes_of_py_trees_are_used_where_they_mean_the_same() -> None:
 
 def test_leaves_do_what_their_keyword_entries_name() -> None:
     tree = parse_tree('set count to 2; increase count by 1\nif {count} is above 2, print "more"')
-    root = to_py_trees(tree.tree, tree.vocabulary, services={"robot": tree.robot})
+    root = to_py_trees(tree.tree, tree.vocabulary, services={"robot": btlang.Session().robot})
     root.tick_once()
     assert root.status == Status.SUCCESS
 

@@ -128,7 +128,7 @@ def test_a_tree_of_xml_runs() -> None:
         '<BehaviorTree ID="Talk"><Say text="{what}"/></BehaviorTree></root>'
     )
     outcome = tree.run(speed="max")
-    assert outcome.status is True
+    assert outcome.status is btlang.Status.SUCCESS
 
 
 def test_a_failure_shows_the_tag(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:

@@ -17,7 +17,7 @@ FILE = (
 
 
 def test_it_runs() -> None:
-    assert btlang.parse_tree(FILE).run(speed="max").status is True
+    assert btlang.parse_tree(FILE).run(speed="max").status is btlang.Status.SUCCESS
 
 
 def test_it_runs_after_json_and_english() -> None:
@@ -25,7 +25,7 @@ def test_it_runs_after_json_and_english() -> None:
     for target in ("json", "english"):
         again = btlang.parse_tree(str(tree.to(target)))
         assert plain(again.tree) == plain(tree.tree)
-        assert again.run(speed="max").status is True
+        assert again.run(speed="max").status is btlang.Status.SUCCESS
 
 
 def test_the_file_is_written_as_it_was() -> None:

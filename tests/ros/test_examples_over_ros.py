@@ -60,7 +60,8 @@ def ending(path: Path) -> dict[str, Any]:
     """What is told of the end."""
     end: dict[str, Any] = json.loads(path.read_text(encoding="utf-8").splitlines()[-1])
     assert end.pop("event") == "end"
-    del end["t"]
+    for own in ("t", "run", "number", "wall"):
+        del end[own]
     return end
 
 

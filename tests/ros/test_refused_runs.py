@@ -41,7 +41,7 @@ def test_a_robot_that_was_stopped_sends_no_goal(domain: int, monkeypatch: pytest
 def test_a_mission_that_exits_while_it_is_compiled_keeps_no_node_busy() -> None:
     """As a keyword pack that calls sys.exit where it is imported."""
     reports: list[Report] = []
-    run = MissionThread(SimpleNamespace(robot=None), sys.exit, lambda run: None, reports.append)  # type: ignore[arg-type]
+    run = MissionThread(SimpleNamespace(robot=None), sys.exit, lambda mission: [], lambda run: None, reports.append)  # type: ignore[arg-type]
     assert run.join(10.0)
     assert run.over
     assert [(report.outcome, report.reason) for report in reports] == [

@@ -15,12 +15,14 @@ from btlang.ros.mission.server import MissionServer
 from btlang.ros.mission.setup import Setup
 from btlang.ros.mission.thread import MissionThread, Report, problems
 from btlang.ros.mission.topics import ERROR, OK, WARN, Topics
+from btlang.run.lines import Lines
 from btlang.text.source import Source
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+    from btlang.run.events import Sink
     from btlang.session import Run, Session
 
 _SUCCESS, _FAILURE = TransitionCallbackReturn.SUCCESS, TransitionCallbackReturn.FAILURE
@@ -148,6 +150,9 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
     ) -> MissionThread:
         assert self._session is not None
 
+        def sinks(mission: Mission) -> list[Sink]:
+            return [Lines(mission.label, mission.is_action, self._topics.log)]
+
         def watch(run: Run) -> None:
             run.bus.add(Progress(run.snapshot, told, self._topics.status))
 
@@ -166,7 +171,7 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
             self._topics.tree(mission)
             return mission
 
-        self._run = MissionThread(self._session, compiled, watch, over, self._setup.speed)
+        self._run = MissionThread(self._session, compiled, sinks, watch, over, self._setup.speed)
         return self._run
 
     def _own_mission(self) -> Source | None:

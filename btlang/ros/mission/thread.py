@@ -14,6 +14,7 @@ from btlang.run.controls import Controls
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.api import Mission
+    from btlang.run.events import Sink
     from btlang.run.runner import Outcome
     from btlang.session import Run, Session
 
@@ -39,14 +40,16 @@ class Report(Record):
 class MissionThread:
     """Runs one mission in a session; begins at once, in its own thread, which compiles the mission too.
 
-    `compiled` makes the mission, and `watch` adds what watches its run. `ended` gets the report once the robot stands
-    still. All of them are called in the thread of the run; `stop` and the like come from any.
+    `compiled` makes the mission, `sinks` what hears of its run from the start, and `watch` gets the run before it is
+    under way. `ended` gets the report once the robot stands still. All of them are called in the thread of the run;
+    `stop` and the like come from any.
     """
 
     def __init__(
         self,
         session: Session,
         compiled: Callable[[], Mission],
+        sinks: Callable[[Mission], list[Sink]],
         watch: Callable[[Run], object],
         ended: Callable[[Report], object],
         speed: float | str = "real",
@@ -57,7 +60,7 @@ class MissionThread:
         """Whether it was told to end and did not."""
         self._controls = Controls(session.robot)
         self._session, self._speed = session, speed
-        self._compiled, self._watch, self._ended = compiled, watch, ended
+        self._compiled, self._sinks, self._watch, self._ended = compiled, sinks, watch, ended
         self._thread = Thread(target=self._work, name="btlang mission", daemon=True)
         self._thread.start()
 
@@ -88,7 +91,8 @@ class MissionThread:
         mission = self._compiled()
         if self._controls.stopped:  # while it was compiled
             return Report("stopped", "emergency stop" if self._controls.emergency else "interrupted")
-        run = self._session.prepare(mission, speed=self._speed, controls=self._controls)
+        sinks = self._sinks(mission)
+        run = self._session.prepare(mission, speed=self._speed, controls=self._controls, sinks=sinks)
         self._watch(run)
         return _report(run.execute())
 

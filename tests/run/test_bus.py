@@ -1,0 +1,161 @@
+"""Events with identity, on a bus whose sinks delay no tick; sessions, snapshots and the schema of the log."""
+
+from __future__ import annotations
+
+import io
+import json
+import threading
+import time
+from pathlib import Path
+
+import pytest
+
+import btlang
+from btlang.run import bus as buses
+from btlang.run.bus import BLOCK, DROP_OLDEST, INLINE, NEWEST, Bus
+from btlang.run.events import LOGGED, Ended, Event, Printed, Said, StatusesChanged
+from btlang.run.json_log import JsonLog, as_json, schema
+
+SCHEMA = Path(btlang.__file__).parent / "run" / "events.schema.json"
+
+
+class Slow:
+    """A sink that takes a tenth of a second for each event, or stands still until it is let go."""
+
+    def __init__(self, policy: str, seconds: float = 0.1) -> None:
+        self.policy = policy
+        self.seconds = seconds
+        self.heard: list[Event] = []
+        self.go_on = threading.Event()
+
+    def __call__(self, event: Event) -> None:
+        self.heard.append(event)
+        self.go_on.wait(self.seconds)
+
+
+@pytest.mark.parametrize("policy", [BLOCK, DROP_OLDEST, NEWEST])
+def test_a_slow_sink_delays_no_tick(policy: str) -> None:
+    """It had made a mission of 1 s take 2.3 s."""
+    slow, ends = Slow(policy), []
+
+    def watch(event: Event) -> None:
+        if isinstance(event, Ended):
+            ends.append(time.monotonic())
+            slow.go_on.set()
+
+    began = time.monotonic()
+    outcome = btlang.parse_tree("wait 1 s").run(sinks=[slow, watch])
+    assert (outcome.succeeded, outcome.overruns) == (True, 0)
+    assert ends[0] - began < 1.5
+    if policy == BLOCK:
+        numbers = [number for event in slow.heard for number in range(event.number, event.number + event.count)]
+        assert numbers == list(range(numbers[-1] + 1))
+    assert slow.heard[-1].tag == "end" or policy == BLOCK
+
+
+def test_who_waits_for_a_sink_is_told(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(buses, "MOST_WAITING", 2)
+    bus, stuck = Bus(queued=True), Slow(BLOCK, 0.02)
+    bus.add(stuck)
+    for number in range(6):
+        bus.emit(Said, str(number))
+    bus.close()
+    assert [event.text for event in stuck.heard if isinstance(event, Said)] == list("012345")
+    assert bus.slow[0].sink is stuck
+    assert bus.slow[0].seconds > 0.01
+
+
+def test_what_is_lost_is_counted(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(buses, "MOST_WAITING", 2)
+    bus, stuck = Bus(queued=True), Slow(DROP_OLDEST, 10)
+    bus.add(stuck)
+    bus.emit(Said, "first")
+    while not stuck.heard:
+        time.sleep(0.001)
+    for number in range(5):
+        bus.emit(Said, str(number))
+    stuck.go_on.set()
+    bus.close()
+    assert [event.text for event in stuck.heard if isinstance(event, Said)] == ["first", "3", "4"]
+    assert bus.slow[0].lost == 3
+
+
+def test_a_queued_sink_that_raises_is_dropped() -> None:
+    problem = OSError("disk full")
+
+    def full(event: Event) -> None:
+        raise problem
+
+    bus = Bus(queued=True)
+    bus.add(full)
+    for _ in range(3):
+        bus.emit(Said, "x")
+    bus.close()
+    assert bus.errors == [problem]
+
+
+def test_numbers_have_no_gaps_whoever_emits() -> None:
+    bus, heard = Bus("r"), []
+
+    def note(event: Event) -> None:
+        heard.append(event.number)
+
+    note.policy = INLINE  # type: ignore[attr-defined]
+    bus.add(note)
+    threads = [threading.Thread(target=lambda: [bus.emit(Printed, "x") for _ in range(200)]) for _ in range(4)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert sorted(heard) == list(range(800))
+
+
+def test_a_session_runs_many_missions_and_late_joiners_see_the_state() -> None:
+    with btlang.Session() as session:
+        first = session.run(btlang.parse_tree("go to the lab"), speed="max")
+        assert first.outcome is not None
+        assert first.outcome.succeeded
+        second = session.start(btlang.parse_tree("say hello then wait 100 s then wave"), speed=1)
+        with pytest.raises(RuntimeError, match="under way"):
+            session.run(btlang.parse_tree("wave"))
+        while not (now := second.snapshot()).running or "wait" not in now.running[0]:
+            time.sleep(0.01)
+        assert (now.run, now.status, now.said) == (second.id, btlang.Status.RUNNING, "hello")
+        assert now.statuses == {"/": btlang.Status.RUNNING, "/0": btlang.Status.SUCCESS, "/1": btlang.Status.RUNNING}
+        assert now.robot is not None
+        assert now.robot.pose.distance_to((6.0, 6.2)) < 0.4  # where the mission before has left it
+        second.stop()
+        outcome = second.wait(10)
+        assert outcome is not None
+        assert outcome.stopped == "interrupted"
+        events = list(second.events())
+    assert second.id != first.id
+    assert {event.run for event in events} == {second.id}
+    assert isinstance(events[-1], Ended)
+    changes = [change for event in events if isinstance(event, StatusesChanged) for change in event]
+    assert [(c.path, c.before, c.status) for c in changes if c.path == "/0"] == [("/0", 4, 2), ("/0", 2, 1)]
+
+
+def test_the_published_schema_is_that_of_the_classes() -> None:
+    assert json.loads(SCHEMA.read_text(encoding="utf-8")) == schema()
+
+
+def test_every_line_of_a_log_fits_the_schema() -> None:
+    jsonschema = pytest.importorskip("jsonschema")
+    output = io.StringIO()
+    mission = btlang.parse_tree("say hi, print ho, grasp the cup if possible, move forward 9 m then fail")
+    mission.run(speed="max", sinks=[JsonLog(output, mission.label)], time_limit=30)
+    validator = jsonschema.Draft202012Validator(schema())
+    lines = [json.loads(line) for line in output.getvalue().splitlines()]
+    assert len(lines) > 10
+    for line in lines:
+        validator.validate(line)
+
+
+@pytest.mark.parametrize("kind", LOGGED, ids=lambda kind: kind.__name__)
+def test_every_event_has_its_place_in_the_schema(kind: type[Event]) -> None:
+    [described] = [one for one in schema()["oneOf"] if one["title"] == kind.__name__]
+    assert described["description"]
+    event = kind(1.0, "r", 0, 2.0, *["x"] * (len(kind.fields) - len(Event.fields) - len(kind.field_defaults)))
+    if kind.__name__ != "StatusChanged":
+        assert set(as_json(event, str)) <= {*described["properties"], "t", "event", "number", "wall", "run"}
