@@ -31,9 +31,9 @@ class Limits(Record):
 class Base(Record):
     """Two wheels, `wheel_gap` metres apart."""
 
-    driving: Limits = Limits()
-    turning: Limits = Limits()
-    wheel_gap: float = 0.3
+    driving: Limits
+    turning: Limits
+    wheel_gap: float
 
 
 class Navigation(Record):
@@ -131,6 +131,12 @@ class Body(Record):
     def sensor(self, kind: str) -> Sensor | None:
         """The first of a kind."""
         return next((sensor for sensor in self.sensors if sensor.kind == kind), None)
+
+    @property
+    def range(self) -> float:
+        """Metres that the scanner sees, 0 without one."""
+        scanner = self.sensor("scanner")
+        return scanner.range if scanner is not None else 0.0
 
     def hand(self, name: str) -> HandPart | None:
         """The hand of a name."""

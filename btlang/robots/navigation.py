@@ -11,6 +11,7 @@ from btlang.robots.body import Body, Limits
 from btlang.robots.faults import Faults
 from btlang.robots.geometry import Point, Pose, wrap
 from btlang.robots.obstacles import Obstacles
+from btlang.robots.robot import RobotError
 from btlang.robots.world import Place, Thing, World, said
 
 TYPE_CHECKING = False
@@ -180,7 +181,8 @@ def turn_rate(error: float, turning: Limits) -> float:
 
 
 def stand_off(body: Body, thing: Thing, is_person: bool) -> float:
-    """Metres from an object or a person at which a robot that goes there stops, from centre to centre."""
-    assert body.navigation is not None
+    """Metres from an object or a person at which a robot that goes there stops. Raises RobotError."""
+    if body.navigation is None:
+        raise RobotError("the robot finds no ways")
     near = body.navigation.people if is_person else body.navigation.objects
     return max(near, thing.radius + body.radius + ROOM)

@@ -7,7 +7,7 @@ from math import ceil
 from typing import Any
 
 from btlang.robots.base import Base
-from btlang.robots.body import Body, Voice
+from btlang.robots.body import Body
 from btlang.robots.body_file import standard_body
 from btlang.robots.faults import Faults, describe
 from btlang.robots.geometry import Point, Pose
@@ -20,6 +20,7 @@ from btlang.robots.power import Power
 from btlang.robots.robot import Done, Hand, OnEvent, RobotError, SensorSilent
 from btlang.robots.world import Place, World, said
 from btlang.run.standstill import Standstill
+from btlang.vocabulary.capabilities import part_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -28,7 +29,6 @@ if TYPE_CHECKING:
 _CONTROL_PERIOD = 0.05
 _SAME_SPOT = 0.01  # metres
 _HANDS: tuple[Hand, Hand] = ("left", "right")
-_MUTE = Voice(0.0, 0.0)
 
 
 class SimulatedRobot:
@@ -168,6 +168,7 @@ class SimulatedRobot:
         return self._set_out(f"({pose.x:.2f}, {pose.y:.2f})", pose)
 
     def _set_out(self, name: str, pose: Pose | None = None) -> Journey:
+        self._need("navigation")
         journey = self._navigator.start(name, pose)
         if self._latch.refuses:
             journey.end("the robot was told to stop")
@@ -179,15 +180,13 @@ class SimulatedRobot:
     # Senses
     def scan(self) -> Array:
         """360 distances, computed when first read after a step. Raises RobotError when the scanner is silent."""
-        sensor = self.body.sensor("scanner")
-        if sensor is None:
-            raise RobotError("the robot has no scanner")
+        self._need("scanner")
         if self._faults.scanner_silent:
             raise SensorSilent("the laser scanner is silent")
         if self._scanner is None:
             from btlang.robots.scan import Scanner  # brings numpy, which takes longer to import than many missions
 
-            self._scanner = Scanner(self._obstacles, sensor.range)
+            self._scanner = Scanner(self._obstacles, self.body.range)
         return self._scanner.read(self.pose)
 
     def locate(self, name: str) -> Point:
@@ -251,6 +250,7 @@ class SimulatedRobot:
 
     def dock(self) -> Done:
         """Connects to the charger at once. Raises RobotError where the robot does not stand at the dock."""
+        self._need("docking")
         self._power.connect(self.pose)
         self._emit("dock")
         return Done()
@@ -302,8 +302,9 @@ class SimulatedRobot:
     # Voice
     def say(self, text: str) -> None:
         """Starts to speak, for as long as the body says."""
-        if not self._latch.refuses:
-            voice = self.body.voice or _MUTE
+        self._need("voice")
+        voice = self.body.voice
+        if voice is not None and not self._latch.refuses:
             self._speech_left = voice.text + voice.character * len(text)
             self._emit("say", text=text)
 
@@ -318,7 +319,13 @@ class SimulatedRobot:
 
     def print(self, text: str) -> None:
         """Shows text at once."""
+        self._need("screen")
         self._emit("print", text=text)
+
+    def _need(self, need: str) -> None:
+        """Raises RobotError where the body lacks it."""
+        if not self.body.has(need):
+            raise RobotError(f"the robot has no {part_of(need)}")
 
     def _begin_faults(self) -> None:
         for fault in self._faults.advance(self.time):

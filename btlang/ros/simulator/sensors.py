@@ -26,7 +26,7 @@ class Sensors:
         self._robot = robot
         self._scan = node.create_publisher(LaserScan, "scan", qos_profile_sensor_data)
         self._battery = node.create_publisher(BatteryState, "battery_state", COMMANDS)
-        self._docked = Latched(node, Bool, "docked", robot.docked)
+        self._docked = Latched(node, Bool, "docked", robot.docked) if robot.body.dock is not None else None
         self._scan_due, self._battery_due = Every(_SCANS), Every(2)
 
         def dock(request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
@@ -37,13 +37,15 @@ class Sensors:
             response.success, response.message = inbox.ask(robot.undock)
             return response
 
-        node.create_service(Trigger, "dock", dock)
-        node.create_service(Trigger, "undock", undock)
+        if robot.body.dock is not None:
+            node.create_service(Trigger, "dock", dock)
+            node.create_service(Trigger, "undock", undock)
 
     def publish(self, now: Moment) -> None:
         """Tells what the robot senses."""
-        self._docked.set(self._robot.docked)
-        if self._battery_due.is_due(now.seconds):
+        if self._docked is not None:
+            self._docked.set(self._robot.docked)
+        if self._robot.body.battery is not None and self._battery_due.is_due(now.seconds):
             self._publish_battery(now)
         if self._scan_due.is_due(now.seconds):
             self._publish_scan(now)

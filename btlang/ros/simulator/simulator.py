@@ -57,7 +57,7 @@ class Simulator:
             Sensors(node, self.robot, self._inbox),
             Body(node, self.robot, self._inbox),
         ]
-        if can_navigate():
+        if can_navigate() and self.robot.body.has("navigation"):
             from btlang.ros.simulator.navigation import Navigation
 
             self._parts.append(Navigation(node, self.robot, self._inbox, self._wheels))
