@@ -27,6 +27,8 @@ def robot_on(platforms: Sequence[str]) -> Callable[[str], str]:
         from btlang.robots.body_file import shipped_bodies
         from btlang.robots.platforms import ROBOTS
 
+        if text in platforms:
+            return text
         names = (*platforms, *shipped_bodies())
         if text in names or text.endswith(".toml") or (os.path.exists(text) and text not in ROBOTS):
             return text

@@ -22,7 +22,7 @@ from btlang.robots.body import (
 from btlang.robots.data_file import DataFileError, as_mission_error, load_data
 from btlang.robots.platforms import ROBOTS
 from btlang.text.toml_table import Problem, Table
-from btlang.vocabulary.shipped import BODIES
+from btlang.vocabulary.shipped import BODIES, STANDARD_BODY
 
 _HANDS = ("left", "right")
 _SENSORS = ("scanner", "bumper")
@@ -51,7 +51,7 @@ def read_body(path: str) -> Body:
 @cache
 def standard_body() -> Body:
     """The robot that a mission runs on where none is named."""
-    return load_body(os.path.join(BODIES, "standard.toml"))
+    return load_body(STANDARD_BODY)
 
 
 def shipped_bodies() -> list[str]:

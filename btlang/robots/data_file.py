@@ -7,7 +7,6 @@ from collections.abc import Callable
 
 from btlang.diagnostics.reading import read_bytes
 from btlang.text.toml import line_of, parse_toml
-from btlang.text.toml_positions import nearest, positions
 from btlang.text.toml_table import Problem, Table
 from btlang.vocabulary.shipped import PACKAGE
 
@@ -45,6 +44,8 @@ def load_data(path: str, what: str, make: Callable[[Table], T], error: type[Data
     except tomllib.TOMLDecodeError as problem:
         raise error(f"this is no TOML: {problem}", path, line_of(problem)) from None
     except Problem as problem:
+        from btlang.text.toml_positions import nearest, positions
+
         at = nearest(positions(text), problem.path)
         raise error(problem.message, path, None if at is None else text.count("\n", 0, at) + 1) from None
 

@@ -11,6 +11,8 @@ DEFAULT_WORLD = os.path.join(PACKAGE, "robots", "worlds", "default.toml")
 """The world that a mission runs in where none is named."""
 BODIES = os.path.join(PACKAGE, "robots", "bodies")
 """The folder of the robot files that ship."""
+STANDARD_BODY = os.path.join(BODIES, "standard.toml")
+"""The robot that a mission runs on where none is named."""
 
 
 def shipped(*parts: str) -> str:

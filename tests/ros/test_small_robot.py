@@ -12,6 +12,11 @@ from tests.ros.client import Client
 SMALL = ["--robot", "small", "--over", "ros", "--sim-time"]
 
 
+@pytest.fixture(autouse=True)
+def _in_domain(domain: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
+
+
 def test_the_simulated_robot_is_that_of_the_file(start_sim, client: Client) -> None:
     states, scans = client.hear(JointState, "/joint_states"), client.hear(LaserScan, "/scan", qos_profile_sensor_data)
     start_sim("--robot", "small")
