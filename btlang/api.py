@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from functools import partial
 
-from btlang.backends.data import data_mark, read_tree
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
-from btlang.frontends.mission import DEFAULT_PARSER, read_mission
+from btlang.frontends.mission.reader import DEFAULT_PARSER, read_mission
+from btlang.frontends.table import frontend_of, read_text
 from btlang.garbage import no_collection
 from btlang.passes import compile_mission, errors_of, lower_mission, run_passes
 from btlang.passes.compilation import Compilation
@@ -48,15 +48,12 @@ def parse_tree(
     source = Source(text) if isinstance(text, str) else text
     with no_collection:
         vocabulary = world_vocabulary(keywords, world)
-        if data_mark(source):
-            compilation = run_passes(Compilation(vocabulary, tree=read_tree(source, main)))
+        read = read_text(source, main, vocabulary=vocabulary, parser=parser, errors_of=errors_of)
+        if isinstance(read, Tree):
+            compilation = run_passes(Compilation(vocabulary, tree=read))
             return Mission(compilation.tree, vocabulary, world, tuple(compilation.warnings))
-        if main:
-            place = Span(source, 0, 0)
-            raise MissionError([diagnostic("BT126", place, name=main, help="A mission in English is one tree.")])
-        reading = read_mission(source, vocabulary, parser, errors_of=errors_of)
-        compilation = run_passes(Compilation(vocabulary, reading.mission, warnings=reading.warnings))
-    program = reading.mission
+        compilation = run_passes(Compilation(vocabulary, read.mission, warnings=read.warnings))
+    program = read.mission
     return Mission(compilation.tree, vocabulary, world, tuple(compilation.warnings), program, tuple(all_facts(program)))
 
 
@@ -90,7 +87,7 @@ def format_mission(
     from btlang.english.layout import laid_out
 
     source = Source(text) if isinstance(text, str) else text
-    if data_mark(source):
+    if frontend_of(source) != "english":
         raise MissionError([diagnostic("BT001", Span(source, 0, 1), file=source.name, reason="this is no English")])
     with no_collection:
         vocabulary = world_vocabulary(keywords, world)

@@ -91,7 +91,7 @@ def _run(options: argparse.Namespace) -> int:
 def _check(options: argparse.Namespace) -> int:
     _mission(options).check()
     if not options.report.is_json:
-        show("The mission is fine.")
+        show("No problems found.")
     return SUCCESS
 
 
@@ -121,7 +121,7 @@ def _compile(options: argparse.Namespace) -> int:
 
     name = options.to or (target_of(options.out) if options.out is not None else "")
     if not name:
-        options.usage_error(f"--to says what to compile to: {', '.join(TARGETS)}")
+        options.usage_error(f"--to says target: {', '.join(TARGETS)}")
     if options.out is None and TARGETS[name].binary and sys.stdout.isatty():
         options.usage_error(f"{name} is no text for a terminal: -o FILE writes it to a file")
     if options.dialect is not None and "dialect" not in TARGETS[name].options:
@@ -211,7 +211,7 @@ def _format_one(source: Source, options: argparse.Namespace) -> bool:
         from btlang.backends.files import replace_text
 
         replace_text(source.name, text)
-        show(f"{source.name} is laid out anew.")
+        show(f"Formatted {source.name}.")
     return False
 
 

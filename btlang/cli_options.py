@@ -9,7 +9,7 @@ from collections.abc import Callable, Sequence
 import btlang
 from btlang.arguments import between, duration, picture, speed
 from btlang.diagnostics.report import FORMATS
-from btlang.frontends.mission import DEFAULT_PARSER, PARSERS
+from btlang.frontends.mission.reader import DEFAULT_PARSER, PARSERS
 from btlang.run.limits import RATES
 from btlang.text.output import show
 
@@ -57,13 +57,11 @@ def _world_option(parser: argparse.ArgumentParser) -> None:
 def _reading_options(parser: argparse.ArgumentParser) -> None:
     _words_options(parser)
     parser.add_argument("--parser", choices=list(PARSERS), default=DEFAULT_PARSER, help="(default: %(default)s)")
-    parser.add_argument(
-        "--include-root", metavar="DIR", help="a mission may include files below DIR too, not only below its own folder"
-    )
+    parser.add_argument("--include-root", metavar="DIR", help="let missions include files below DIR, too")
 
 
 def _main_option(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--main", default="", metavar="ID", help="tree to take of an XML or JSON file that has several")
+    parser.add_argument("--main", default="", metavar="ID", help="which tree to use if the file holds several")
 
 
 def _mission_options(parser: argparse.ArgumentParser) -> None:
@@ -101,7 +99,10 @@ def _run_options(parser: argparse.ArgumentParser) -> None:
         "--picture", type=picture(".svg", ".png", ".gif"), metavar="FILE", help="draw the run: .svg, .png or .gif"
     )
     parser.add_argument(
-        "--tree-picture", type=picture(".svg", ".png"), metavar="FILE", help="draw the tree and how its nodes ended"
+        "--tree-picture",
+        type=picture(".svg", ".png"),
+        metavar="FILE",
+        help="draw the tree with the final status of every node",
     )
     parser.add_argument("--lines", action="store_true", help="plain lines also where the output is a terminal")
     parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
@@ -119,10 +120,8 @@ def _compile_options(parser: argparse.ArgumentParser) -> None:
     from btlang.backends.targets import TARGETS
 
     _mission_options(parser)
-    parser.add_argument(
-        "--to", choices=list(TARGETS), metavar="TARGET", help="what to compile to: " + ", ".join(TARGETS)
-    )
-    parser.add_argument("-o", dest="out", metavar="OUT", help="file to write, whose ending may tell the target")
+    parser.add_argument("--to", choices=list(TARGETS), metavar="TARGET", help="target: " + ", ".join(TARGETS))
+    parser.add_argument("-o", dest="out", metavar="OUT", help="file to write; its ending may select the target")
     parser.add_argument("--dialect", type=int, choices=(3, 4), help="version of BehaviorTree.CPP, of XML (default: 4)")
     parser.set_defaults(usage_error=parser.error)
 
@@ -183,7 +182,7 @@ _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "compile": ("write the tree of a mission as XML, English, JSON, a picture ...", _compile_options),
     "words": ("list what can be said", _listing_options),
     "examples": ("list the missions that ship, print them or copy them", _examples_options),
-    "explain": ("show how a mission is read, or tell of a message", _explain_options),
+    "explain": ("show how a mission is understood, or explain a message code", _explain_options),
     "format": ("lay out missions: indentation, spaces, empty lines", _format_options),
     "sim-ros": ("offer the simulated robot over ROS 2", _sim_ros_options),
     "ros-node": ("run missions as a ROS 2 node, for other programs", _ros_node_options),

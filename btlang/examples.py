@@ -116,4 +116,4 @@ def _unknown(name: str, known: Iterable[str]) -> Diagnostic:
     from btlang.text.spelling import nearest
 
     near = ", ".join(nearest(name.lower(), known))
-    return diagnostic("BT008", Span(Source("", name), 0, 0), name=name, help=f"The nearest: {near}" if near else "")
+    return diagnostic("BT008", Span(Source("", name), 0, 0), name=name, help=f"Similar: {near}" if near else "")

@@ -22,8 +22,8 @@ from btlang.api import Mission, world_vocabulary
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.english.layout import laid_out
 from btlang.examples import examples
-from btlang.frontends.completion import completions
-from btlang.frontends.mission import read_mission
+from btlang.frontends.mission.completion.completer import completions
+from btlang.frontends.mission.reader import read_mission
 from btlang.passes import compile_mission
 from btlang.text.source import Source
 

@@ -10,7 +10,7 @@ import btlang
 from btlang.api import parse_tree, world_vocabulary
 from btlang.cli import main
 from btlang.engine.status import RUNNING, SUCCESS
-from btlang.frontends.mission import read_mission
+from btlang.frontends.mission.reader import read_mission
 from btlang.passes import compile_mission
 from btlang.text.source import Source
 from tests.profiles import amount, searches

@@ -137,7 +137,7 @@ def test_check_and_tree_read_files_and_standard_input(
     mission = tmp_path / "mission.txt"
     mission.write_text("wave then nod\n", encoding="utf-8")
     assert btc("check", str(mission)) == 0
-    assert btc.out == "The mission is fine.\n"
+    assert btc.out == "No problems found.\n"
     assert btc("tree", str(mission), "--plain") == 0
     assert btc.out == "Sequence\n  Wave\n  Nod\n"
     monkeypatch.setattr("sys.stdin", io.TextIOWrapper(io.BytesIO(b"wave and nod")))
@@ -210,7 +210,7 @@ def test_check_loads_nothing_heavy() -> None:
         "print(sorted({'lark', 'rich', 'asyncio', 'numpy', 'rclpy', 'rapidfuzz', 'dataclasses'} & set(sys.modules)))"
     )
     done = subprocess.run([sys.executable, "-c", script], cwd=REPOSITORY, text=True, capture_output=True, check=True)
-    assert done.stdout.splitlines() == ["The mission is fine.", "[]"]
+    assert done.stdout.splitlines() == ["No problems found.", "[]"]
 
 
 def test_a_second_check_reads_no_keyword_file(tmp_path: Path) -> None:
@@ -225,7 +225,7 @@ def test_a_second_check_reads_no_keyword_file(tmp_path: Path) -> None:
         done = subprocess.run(
             [sys.executable, "-c", script], cwd=REPOSITORY, env=environment, text=True, capture_output=True, check=True
         )
-    assert done.stdout.splitlines() == ["The mission is fine.", "[]"]
+    assert done.stdout.splitlines() == ["No problems found.", "[]"]
 
 
 def test_a_log_that_cannot_be_written_is_told(btc: Screen) -> None:
@@ -282,4 +282,4 @@ def test_a_log_on_a_full_disk_does_not_hide_how_the_mission_ended(
 ) -> None:
     assert btc("run", "-c", mission, "--speed", "max", "--log", "/dev/full") == code
     assert f"The mission {told}" in btc.out + btc.err
-    assert "error BT009: I cannot write /dev/full: no space left on device" in btc.err
+    assert "error BT009: I can't write /dev/full: no space left on device" in btc.err

@@ -55,7 +55,7 @@ def test_unknown_names_are_told_all_at_once(capsys: pytest.CaptureFixture[str]) 
     shown = capsys.readouterr()
     assert shown.out == ""
     assert shown.err.count("BT008") == 2
-    assert "The nearest: hello" in shown.err
+    assert "Similar: hello" in shown.err
 
 
 def test_a_copy_has_all_missions_and_worlds(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

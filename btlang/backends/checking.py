@@ -92,7 +92,7 @@ def _defining(name: str, span: Span) -> str:
 
 
 def _near(names: list[str]) -> str:
-    return f"The nearest: {', '.join(names)}" if names else ""
+    return f"Similar: {', '.join(names)}" if names else ""
 
 
 def _entry(node: Node, entries: dict[str, Draft | None]) -> str:

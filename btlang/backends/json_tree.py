@@ -1,4 +1,4 @@
-"""Trees as JSON and back. The form is told by `tree.schema.json` beside this module; docs/targets.md tells it to users.
+"""Trees as JSON. The form is told by `tree.schema.json` beside this module; docs/targets.md tells it to users.
 
 The nodes of a tree are a list, in which a node names its children by their numbers: programs that read JSON do not
 have to nest as deep as a tree does.
@@ -11,8 +11,9 @@ import re
 
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.english.phrase import phrase_of
-from btlang.text.source import NOWHERE, Source, Span
-from btlang.tree.model import NodeModel, PortModel
+from btlang.frontends.json.reader import FORMAT, PORT_KEYS
+from btlang.text.source import NOWHERE
+from btlang.tree.model import NodeModel
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.vocabulary import Vocabulary
 
@@ -23,11 +24,8 @@ if TYPE_CHECKING:
 SCHEMA = os.path.join(os.path.dirname(os.path.abspath(__file__)), "tree.schema.json")
 """The file of the JSON Schema."""
 
-FORMAT = 1
-_DEEPEST = 100  # brackets in each other: nodes are a list
-_MARKS = re.compile(r'"(?:[^"\\]|\\.)*+"?|[\[{]|[\]}]', re.DOTALL)  # a text that does not end is read once, too
 _LONGEST = 200  # characters of a sentence: that of the root is the whole mission
-_PORT_KEYS = {"name": str, "direction": str, "type": str, "default": str, "text": str}
+_UNFIT_WRITTEN = re.compile(r"(?<!\\)(?:\\\\)*\\u0000|[\ud800-\udfff]")
 
 
 def to_json(tree: Tree, vocabulary: Vocabulary) -> str:
@@ -85,133 +83,8 @@ def _items(root: Node, vocabulary: Vocabulary) -> list[dict[str, Any]]:
 def _model(model: NodeModel) -> dict[str, Any]:
     ports = []
     for port in model.ports:
-        told = {key: getattr(port, key) for key in _PORT_KEYS}
+        told = {key: getattr(port, key) for key in PORT_KEYS}
         ports.append({key: value for key, value in told.items() if value or key == "name"})
         if port.default == "":
             ports[-1]["default"] = ""
     return {"kind": model.kind, "id": model.id, "ports": ports, **({"text": model.text} if model.text else {})}
-
-
-def read_json(text: str | Source) -> Tree:
-    """The tree of a document, with spans of the ids there. Raises MissionError (BT133) where it is no such document."""
-    import json
-
-    source = Source(text) if isinstance(text, str) else text
-    try:
-        _check_depth(source.text)
-        return _tree(json.loads(source.text), _Places(source))
-    except json.JSONDecodeError as error:
-        at, reason = error.pos, f"it is not JSON: {error.msg}"
-    except ValueError:
-        at, reason = 0, "a number is too long"
-    except _Wrong as error:
-        at, reason = 0, str(error)
-    raise MissionError([diagnostic("BT133", Span(source, at, at), reason=reason)])
-
-
-class _Wrong(Exception):
-    """The document does not hold a tree; the message says where and why."""
-
-
-def _check_depth(text: str) -> None:
-    """Python's reader would recurse, in C: where an engine has raised the limit of recursion, it would crash."""
-    depth = 0
-    for found in _MARKS.finditer(text):
-        mark = found[0]
-        depth += (mark in "[{") - (mark in "]}")
-        if depth > _DEEPEST:
-            raise _Wrong("it is nested too deep")
-
-
-class _Places:
-    """Finds where the ids of nodes stand, one after the other: readers of JSON give no places."""
-
-    def __init__(self, source: Source) -> None:
-        self._source = source
-        self._at = 0
-
-    def next(self, id: str) -> Span | None:
-        """None where it is spelled with escapes, or the keys stand in an order in which it is not found."""
-        found = re.compile(rf'"id"\s*:\s*"{re.escape(id)}"').search(self._source.text, self._at)
-        if found is None:
-            self._at = len(self._source.text)  # else each node after it would search the rest again
-            return None
-        self._at = found.end()
-        return Span(self._source, found.start(), found.end())
-
-
-def _tree(document: Any, places: _Places) -> Tree:
-    if _of(document, dict, "the document").get("format") != FORMAT:
-        raise _Wrong(f'"format" is not {FORMAT}')
-    trees = _of(document.get("trees"), list, '"trees"')
-    if not trees:
-        raise _Wrong('"trees" holds no tree')
-    read = [_root(item, f"tree {at}", places) for at, item in enumerate(trees)]
-    names: set[str] = set()
-    for name, _ in read:
-        if name in names:
-            raise _Wrong(f"two trees have the name {name!r}")
-        names.add(name)
-    models = [
-        _read_model(item, f"model {at}") for at, item in enumerate(_of(document.get("models", []), list, "models"))
-    ]
-    return Tree(read[0][1], tuple(read[1:]), read[0][0], tuple(models))
-
-
-def _root(item: Any, where: str, places: _Places) -> tuple[str, Node]:
-    """The name and the root of a tree. Children come after their parents, so that the last node is made first."""
-    name = _of(_of(item, dict, where).get("name", ""), str, f"the name of {where}")
-    nodes = _of(item.get("nodes"), list, f'"nodes" of {where}')
-    ids = [
-        _of(_of(node, dict, f"node {at} of {where}").get("id"), str, f"the id of node {at} of {where}")
-        for at, node in enumerate(nodes)
-    ]
-    spans = [places.next(id) for id in ids]
-    made: dict[int, Node] = {}
-    for at in range(len(nodes) - 1, -1, -1):
-        place = f"node {at} of {where}"
-        node = nodes[at]
-        children = _of(node.get("children", []), list, f"children of {place}")
-        below: list[Node] = []
-        for child in children:
-            if type(child) is not int or not at < child < len(nodes):
-                raise _Wrong(f"{place} has the child {child!r}, and children are nodes after it in the list")
-            if child not in made:
-                raise _Wrong(f"node {child} of {where} is the child of two nodes")
-            below.append(made.pop(child))
-        ports = _of(node.get("ports", {}), dict, f"ports of {place}")
-        made[at] = Node(
-            ids[at],
-            tuple(below),
-            tuple((port, _of(text, str, f"the port {port} of {place}")) for port, text in ports.items()),
-            _of(node.get("name", ""), str, f"the name of {place}"),
-            spans[at],
-        )
-    if len(made) != 1:
-        raise _Wrong(f"{where} has {len(made)} roots instead of one")
-    return name, made[0]
-
-
-def _read_model(item: Any, where: str) -> NodeModel:
-    _of(item, dict, where)
-    kind, id, text = (_of(item.get(key, ""), str, f"{key} of {where}") for key in ("kind", "id", "text"))
-    ports = []
-    for port in _of(item.get("ports", []), list, f"ports of {where}"):
-        known = {key: _of(value, str, key) for key, value in _of(port, dict, where).items() if key in _PORT_KEYS}
-        ports.append(PortModel(**{"name": "", **known}))
-    return NodeModel(kind, id, tuple(ports), text)
-
-
-def _of(value: Any, kind: type, what: str) -> Any:
-    if not isinstance(value, kind):
-        raise _Wrong(f"{what} is no {_KINDS[kind]}")
-    if isinstance(value, str) and (unfit := _UNFIT.search(value)) is not None:
-        raise _Wrong(f"{what} has a character that no text can hold: {unfit[0]!a}")
-    return value
-
-
-_UNFIT = re.compile("[\0\ud800-\udfff]")  # NUL and lone surrogates, which XML and UTF-8 do not have either
-_UNFIT_WRITTEN = re.compile(r"(?<!\\)(?:\\\\)*\\u0000|[\ud800-\udfff]")
-
-
-_KINDS: dict[type, str] = {dict: "object", list: "array", str: "text"}

@@ -57,5 +57,5 @@ def _unknown(written: str) -> Diagnostic:
     else:
         number = int(match[1][:9])  # int() refuses thousands of digits
         near = sorted(CODES, key=lambda code: (abs(int(code[2:]) - number), code))[:2]
-        advice = f"The nearest: {', '.join(near)}"
+        advice = f"Similar: {', '.join(near)}"
     return diagnostic("BT090", Span(Source("", written), 0, 0), name=written, help=advice)

@@ -20,10 +20,10 @@ _WIDEST = 120
 def render(diagnostic: Diagnostic, colour: bool = False) -> str:
     """Several lines without a last line end; colour changes nothing but the colour.
 
-    mission.txt:1:7: error BT013: I know no place 'labb'.
+    mission.txt:1:7: error BT013: There's no place called 'labb'.
       go to labb then wave
             ^^^^
-      The nearest: lab
+      Similar: lab
       Perhaps: go to lab then wave
     """
     severity = diagnostic.kind.severity

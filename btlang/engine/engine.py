@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import sys
 from _thread import get_ident  # `threading` takes longer to import
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.build import EngineError, Fault, Shared, Site, blackboard_key
@@ -13,7 +13,7 @@ from btlang.engine.compile import compile_sites, expand
 from btlang.engine.leaf import REFUSED, LeafBinding, told, unheard
 from btlang.engine.script_values import as_text
 from btlang.engine.status import FAILURE, IDLE
-from btlang.engine.watch import Trace
+from btlang.engine.watch import Changes, Trace
 from btlang.garbage import no_collection
 from btlang.record import Record
 from btlang.text.source import Span
@@ -196,14 +196,14 @@ class Engine:
         ports = tuple((port, text if key is None else _argument(scope, key, text)) for port, text, key in keys)
         return node if ports == node.ports else node.replace(ports=ports)
 
-    def valued(self, indices: Iterable[int]) -> dict[int, Node]:
-        """Those of these nodes whose ports name keys, with the texts and numbers that are under them now.
+    def valued(self, changes: Changes) -> dict[int, Node]:
+        """Those of the changed nodes whose ports name keys, with the texts and numbers that are under them now.
 
         None in an engine without a listener.
         """
         if not self._keyed:
             return {}
-        return {index: self._with_values(self._sites[index]) for index in indices if index in self._keyed}
+        return {index: self._with_values(self._sites[index]) for index in changes.indices if index in self._keyed}
 
     def path(self, index: int) -> str:
         """Where a node is: `/` is the root, `/0/1` the second child of its first child; a SubTree's tree is child 0."""

@@ -6,7 +6,7 @@ from _thread import get_ident  # `threading` takes longer to import
 from collections.abc import Callable, Iterator
 
 from btlang.engine.leaves import FunctionLeaf, as_function, status_of, unanswered
-from btlang.engine.status import FAILURE, IDLE, RUNNING, SUCCESS
+from btlang.engine.status import FAILURE, IDLE, NAMES, RUNNING, SUCCESS
 from btlang.tree.catalogue import CATALOGUE, ON_SUCCESS
 
 TYPE_CHECKING = False
@@ -29,6 +29,9 @@ def repeats(node: Node) -> bool:
     return kind is not None and bool(kind.again) and (kind.again == ON_SUCCESS or not kind.is_endless(node))
 
 
+_SUCCESS = tuple(before << 3 | SUCCESS for before in range(len(NAMES)))  # the code of a success, by the status before
+
+
 class Changes:
     """Changes of statuses, oldest first. Iterating gives for each the index of the node in preorder, its new status,
     the one before (IDLE in a new run of its parent), and for a FAILURE what had failed latest then: this node or one
@@ -38,20 +41,27 @@ class Changes:
     objects call for, took longer than the rest of a tick.
     """
 
-    __slots__ = ("before", "faults", "indices", "statuses")
+    __slots__ = ("codes", "faults", "indices")
 
     def __init__(self) -> None:
         self.indices: list[int] = []
-        self.before: list[int] = []
-        self.statuses: list[int] = []
+        self.codes: list[int] = []
+        """The status before and the new one, in 3 bits each from the right."""
         self.faults: dict[int, Fault | Site | None] = {}  # by the position of the change
 
+    def add(self, index: int, before: int, status: int, fault: Fault | Site | None = None) -> None:
+        """One more. `fault` counts where it is a FAILURE."""
+        if status is FAILURE:
+            self.faults[len(self.codes)] = fault
+        self.indices.append(index)
+        self.codes.append(before << 3 | status)
+
     def __len__(self) -> int:
-        return len(self.indices)
+        return len(self.codes)
 
     def __iter__(self) -> Iterator[tuple[int, int, int, Fault | Site | None]]:
-        for position, (index, status, before) in enumerate(zip(self.indices, self.statuses, self.before, strict=True)):
-            yield index, status, before, self.faults.get(position)
+        for position, (index, code) in enumerate(zip(self.indices, self.codes, strict=True)):
+            yield index, code & 7, code >> 3, self.faults.get(position)
 
 
 class Trace:
@@ -72,7 +82,7 @@ class Trace:
 
     def tell(self) -> None:
         """Hands the changes so far to the listener, oldest first."""
-        if self.changes.indices:
+        if self.changes.codes:
             told, self.changes = self.changes, Changes()
             self.listener(told)
 
@@ -121,13 +131,8 @@ class Watch:
     def note(self, before: int = IDLE) -> None:
         """Its status is news; `before` is what it was."""
         trace = self.trace
-        changes = trace.changes
         self.told = trace.tick
-        if self.last is FAILURE:
-            changes.faults[len(changes.indices)] = trace.shared.fault
-        changes.indices.append(self.index)
-        changes.statuses.append(self.last)
-        changes.before.append(before)
+        trace.changes.add(self.index, before, self.last, trace.shared.fault)
 
     def wrap(self, compiled: Compiled) -> Compiled:
         """The same node, watched. The root counts the ticks."""
@@ -157,7 +162,9 @@ class Watch:
         """A wrapper around the function itself, which does what FunctionLeaf.tick does: the two calls become one."""
 
         # defaults and not cells, as in control.py: there are many of them
-        def watched_tick(self: Watch = self, call: Call = leaf.call, trace: Trace = self.trace) -> int:
+        def watched_tick(
+            self: Watch = self, call: Call = leaf.call, trace: Trace = self.trace, after: tuple[int, ...] = _SUCCESS
+        ) -> int:
             try:
                 status = call()
             except KeyboardInterrupt:
@@ -171,13 +178,12 @@ class Watch:
                     status = status_of(leaf.site, status)
             self.reached = now = trace.tick
             if status is not self.last:
-                before = self.last
-                self.last = status
+                before, self.last = self.last, status
                 if status is SUCCESS:
                     self.told = now
-                    trace.changes.indices.append(self.index)
-                    trace.changes.statuses.append(SUCCESS)
-                    trace.changes.before.append(before)
+                    changes = trace.changes
+                    changes.indices.append(self.index)
+                    changes.codes.append(after[before])
                 else:
                     self.note(before)
             return status

@@ -1,6 +1,6 @@
 """Nodes that no phrase says, by their ids: `do "OpenGripper" called "first" with width 0.05`, `do recovery node:`.
 
-What is said is read back as it stands, by btlang/frontends/nodes.py.
+What is said is read back as it stands, by btlang/frontends/mission/symbols/nodes.py.
 """
 
 from __future__ import annotations

@@ -93,14 +93,14 @@ def _reads_back(
     words: str, entry: Entry, spoken: Mapping[str, str], vocabulary: Vocabulary, names: TrieNode | None
 ) -> bool:
     text = split(Source(words), vocabulary.articles)
-    match = longest(vocabulary.trie, text, 0, vocabulary.values)
+    match = longest(vocabulary.trie, text, 0, vocabulary.context)
     if match is None or match.meaning.entry is None or match.meaning.role == "negated":
         return False
     if match.last != len(text.words) - 2 or match.meaning.entry.id != entry.id:
         return False
     if {value.name: value.text for value in match.values if _default(entry, value.name) != value.text} != spoken:
         return False
-    named = longest(names, text, 0, vocabulary.values) if names else None
+    named = longest(names, text, 0, vocabulary.context) if names else None
     return named is None or named.last < match.last
 
 
@@ -141,5 +141,5 @@ def holds_definer(words: str, vocabulary: Vocabulary) -> bool:
     text = split(Source(words), vocabulary.articles)
     if not any(word in vocabulary.roles[role] for role in DEFINING for word in text.words):
         return False
-    match = longest(vocabulary.trie, text, 0, vocabulary.values)
+    match = longest(vocabulary.trie, text, 0, vocabulary.context)
     return match is None or match.meaning.role != "condition" or match.last < len(text.words) - 2

@@ -129,6 +129,6 @@ def _end(words: Words, at: int, vocabulary: Vocabulary, names: TrieNode) -> int:
 
 def _matches(words: Words, at: int, vocabulary: Vocabulary, names: TrieNode) -> Iterator[Any]:
     for trie in (vocabulary.trie, names):
-        match = longest(trie, words, at, vocabulary.values) if trie else None
+        match = longest(trie, words, at, vocabulary.context) if trie else None
         if match is not None:
             yield match

@@ -1,1 +1,1 @@
-"""Texts to trees: words become tokens, a matching stage groups them, one of two parsers builds the AST."""
+"""Texts to trees: English by way of a syntax tree, XML and JSON at once. `table.py` lists them."""

@@ -7,7 +7,8 @@ from collections.abc import Callable
 
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.reading import read_source, unwritable
-from btlang.frontends.definitions import find_definitions
+from btlang.frontends.mission.symbols.definitions import find_definitions
+from btlang.frontends.mission.symbols.phrases import Phrases
 from btlang.record import Record
 from btlang.repl.draft import Entry, MissionDraft
 from btlang.repl.store import Store
@@ -33,7 +34,7 @@ class Command(Record):
 
 
 COMMANDS = (
-    Command("help", "[PHRASE]", "tells about a phrase or word of the language, or about the REPL"),
+    Command("help", "[PHRASE]", "explains a phrase or word, or the prompt itself"),
     Command("words", "[SEARCH]", "lists what can be said"),
     Command("show", "[NAME|tree]", "shows the mission, one definition, or the tree of all"),
     Command("names", "", "lists what is defined"),
@@ -68,9 +69,9 @@ def command_of(text: str, draft: MissionDraft) -> tuple[str, str] | None:
         return "show", rest
     source = Source(f"{draft.context()}{line}")
     words = split(source, draft.vocabulary.articles)
-    definitions = find_definitions(words, draft.vocabulary)
+    definitions = find_definitions(Phrases(words, draft.vocabulary))
     at = words.lines[-1].first
-    known = (longest(trie, words, at, draft.vocabulary.values) for trie in (draft.vocabulary.trie, definitions.trie))
+    known = (longest(trie, words, at, draft.vocabulary.context) for trie in (draft.vocabulary.trie, definitions.trie))
     return None if any(known) else (name.lower(), rest.strip())
 
 

@@ -9,8 +9,8 @@ from textwrap import indent
 from btlang.api import Mission, world_vocabulary
 from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.engine.blackboard import Blackboard
-from btlang.frontends.lexer import Lexer
-from btlang.frontends.mission import DEFAULT_PARSER, lexed, read_mission
+from btlang.frontends.mission.reader import DEFAULT_PARSER, lexed, read_mission
+from btlang.frontends.mission.tokens.lexer import Lexer
 from btlang.passes import compile_mission, errors_of, run_passes
 from btlang.passes.compilation import Compilation
 from btlang.record import Record
@@ -19,7 +19,7 @@ from btlang.text.source import Source
 from btlang.tree.ast import Ast, Chain, Definition, Fact, Include, Program, all_facts, parts
 from btlang.tree.node import Tree
 from btlang.tree.visit import used_subtrees
-from btlang.vocabulary.values import Known
+from btlang.vocabulary.reading_context import Known
 
 ENTRY = "<entry>"
 """What messages call the source of an entry."""

@@ -10,7 +10,7 @@ from contextlib import contextmanager, nullcontext
 from btlang.api import Mission
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.render import has_colour, render
-from btlang.frontends.mission import DEFAULT_PARSER
+from btlang.frontends.mission.reader import DEFAULT_PARSER
 from btlang.repl.commands import Commands, Leave, command_of
 from btlang.repl.draft import MissionDraft
 from btlang.repl.entering import entries
@@ -62,7 +62,7 @@ class Repl:
         from btlang.repl.screen import CONTINUED, PROMPT, Screen
 
         screen = Screen(self._draft, self._store)
-        show("btlang: type what the robot is to do. 'help' tells more; Ctrl-D twice leaves.")
+        show("btlang: type what the robot should do. 'help' explains more; press Ctrl-D twice to leave.")
         if self._store.problem:
             show(f"What you type is not kept: {self._store.problem}")
         left = self._store.left()

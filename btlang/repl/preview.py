@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError
-from btlang.frontends.completion import Completion, completions
-from btlang.frontends.lexer import Lexer
-from btlang.frontends.token import Token
+from btlang.frontends.mission.completion.completer import Completion, completions
+from btlang.frontends.mission.token import Token
+from btlang.frontends.mission.tokens.lexer import Lexer
 from btlang.record import Record
 from btlang.repl.draft import Compiled, MissionDraft
 from btlang.text.source import Source

@@ -225,7 +225,7 @@ class SimulatedRobot:
         for known in (*names.places, *names.objects, *names.people):
             if known.lower() == name.lower():
                 return known
-        raise RobotError(f'I do not know where "{name}" is')
+        raise RobotError(f"I don't know where '{name}' is")
 
     # Power
     @property

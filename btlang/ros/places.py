@@ -33,7 +33,7 @@ class Places:
         for known in (*names.places, *names.objects, *names.people):
             if known.lower() == name.lower():
                 return known
-        raise RobotError(f'I do not know where "{name}" is')
+        raise RobotError(f"I don't know where '{name}' is")
 
     def locate(self, name: str, robot: Pose) -> Point:
         """Where it is; what the robot carries is where the robot is. Raises RobotError for an unknown name."""

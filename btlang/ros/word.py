@@ -109,7 +109,7 @@ class Word:
         try:
             return self._locate(name)
         except KeyError:
-            raise ActionFailed(f"I do not know where {name} is") from None
+            raise ActionFailed(f"I don't know where {name} is") from None
 
 
 def type_name(cls: Any) -> str:
@@ -124,5 +124,5 @@ def _suggestion(written: str, known: Iterable[str]) -> str:
     known = list(known)
     near = nearest(written.lower(), known)
     if near:
-        return f"The nearest: {', '.join(near)}"
+        return f"Similar: {', '.join(near)}"
     return f"It has {', '.join(known)}." if len(known) <= 12 else ""

@@ -210,5 +210,5 @@ def _ending(outcome: Outcome) -> str:
     if outcome.stopped:
         return f"Stopped after {seconds}, as asked{rest}."
     if outcome.status == SKIPPED:
-        return f"The mission had nothing to do ({seconds}): every command was skipped."
+        return f"Nothing to do ({seconds}): every command was skipped."
     return f"The mission succeeded in {seconds}."

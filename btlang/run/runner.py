@@ -95,7 +95,7 @@ def traced_engine(
     """An engine whose status changes go on the bus, and once in a run each condition that is not known."""
 
     def changed(changes: Changes) -> None:
-        bus.emit(StatusesChanged, changes, engine, engine.valued(changes.indices))
+        bus.emit(StatusesChanged, changes, engine, engine.valued(changes))
 
     def unknown(failure: Failure) -> None:
         text = f"'{_words(failure)}' is not known: {failure.reason}"

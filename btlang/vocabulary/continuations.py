@@ -8,6 +8,7 @@ from collections.abc import Iterator, Sequence
 from btlang.record import Record
 from btlang.text.words import Words
 from btlang.vocabulary.entry import Meaning
+from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import SLOTS, TrieNode
 from btlang.vocabulary.values import END, Values, WordTree, with_unit
 
@@ -24,7 +25,7 @@ class Begun(Record):
     slots: tuple[tuple[str, int, TrieNode], ...]
 
 
-def begun(root: TrieNode, text: Words, first: int, last: int, values: Values) -> Begun:
+def begun(root: TrieNode, text: Words, first: int, last: int, context: ReadingContext) -> Begun:
     """All ways to read the words `first` to `last` (exclusive) as the start of phrases."""
     nodes: list[TrieNode] = []
     slots: list[tuple[str, int, TrieNode]] = []
@@ -35,10 +36,10 @@ def begun(root: TrieNode, text: Words, first: int, last: int, values: Values) ->
             nodes.append(node)
             continue
         for _, kind, child in node.get(SLOTS, ()):
-            value = values.read(kind, text, at)
+            value = context.read(kind, text, at)
             if value is not None and value[1] <= last:
                 paths.append((child, value[1]))
-                if value[1] < last and values.joiners.issuperset(text.words[value[1] : last]):
+                if value[1] < last and context.joiners.issuperset(text.words[value[1] : last]):
                     slots.append((kind, last, child))  # the next value of a list
             slots.append((kind, at, child))
         child = node.get(text.words[at])

@@ -82,13 +82,13 @@ def _said_so(known: Sequence[Item], text: str, vocabulary: Vocabulary) -> list[I
     found += [item for item in known if item not in found and bare in _spoken(item, vocabulary.articles)]
     if found:
         return found
-    match = longest(vocabulary.trie, words, 0, vocabulary.values)
+    match = longest(vocabulary.trie, words, 0, vocabulary.context)
     return _begun_so(known, text, vocabulary) if match is not None and match.last >= len(bare) else []
 
 
 def _begun_so(known: Sequence[Item], text: str, vocabulary: Vocabulary) -> list[Item]:
     """The phrase that the text begins with."""
-    match = longest(vocabulary.trie, split(Source(text), vocabulary.articles), 0, vocabulary.values)
+    match = longest(vocabulary.trie, split(Source(text), vocabulary.articles), 0, vocabulary.context)
     if match is None:
         return []
     name = match.meaning.entry.id if match.meaning.entry else match.meaning.role
@@ -163,7 +163,7 @@ def _unknown(known: Sequence[Item], search: str) -> list[str]:
         said |= (item if item.sort == "value" else item.replace(names=())).words()
     near = [near for word in odd for near in nearest(word, said)] if odd else wanted
     lines = ["No phrase has the words: " + "".join(c if c.isprintable() else "?" for c in search)]
-    return [*lines, "The nearest: " + ", ".join(dict.fromkeys(near))] if near else lines
+    return [*lines, "Similar: " + ", ".join(dict.fromkeys(near))] if near else lines
 
 
 def _wrapped(text: str, first: str, then: str) -> list[str]:

@@ -11,6 +11,7 @@ from btlang.record import Record
 from btlang.text.words import Words
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.pattern import Form, Slot
+from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.values import END, Values, ValueType
 
 TYPE_CHECKING = False
@@ -68,7 +69,7 @@ def add(root: TrieNode, form: Form, types: Mapping[str, str], meaning: Meaning) 
 
 
 def longest(
-    root: TrieNode, text: Words, at: int, values: Values, names: TrieNode | None = None, lists: bool = True
+    root: TrieNode, text: Words, at: int, context: ReadingContext, names: TrieNode | None = None, lists: bool = True
 ) -> Match | None:
     """The longest phrase at a word; where two are equally long, the one with words in place of slots.
 
@@ -78,7 +79,7 @@ def longest(
     words = text.words
     if words[at] not in root and SLOTS not in root:
         return None
-    openers = values.openers
+    openers = context.openers
     best: Meaning | None = None
     best_last = at
     best_values: tuple[SlotValue, ...] = ()
@@ -98,13 +99,13 @@ def longest(
                 for name, kind, child in node[SLOTS]:
                     if plain and kind in openers and word not in openers[kind]:
                         continue  # as nearly always, without reading
-                    value = values.read(kind, text, i)
+                    value = context.read(kind, text, i)
                     if value is None:
                         continue
                     one = SlotValue(name, kind, value[0], i, value[1])
                     paths.append((child, value[1], (*found, one)))
-                    if lists and words[value[1]] in values.joiners and _may_go_on(child, text):
-                        listed = _listed(root, text, one, values, names)
+                    if lists and words[value[1]] in context.joiners and _may_go_on(child, text):
+                        listed = _listed(root, text, one, context, names)
                         if listed is not None:
                             paths.append((child, listed.last, (*found, listed)))
             node = node.get(word)
@@ -120,9 +121,11 @@ def _may_go_on(node: TrieNode, text: Words) -> bool:
     return END in node or SLOTS in node or not text.distinct.isdisjoint(node)
 
 
-def _listed(root: TrieNode, text: Words, first: SlotValue, values: Values, names: TrieNode | None) -> SlotValue | None:
+def _listed(
+    root: TrieNode, text: Words, first: SlotValue, context: ReadingContext, names: TrieNode | None
+) -> SlotValue | None:
     """The list that a value begins. It goes on while a value of the type follows that starts no longer phrase."""
-    if values.types[first.type].kind == "text":
+    if context.types[first.type].kind == "text":
         return None
     more: list[str] = []
     last, joiner = first.last, ""
@@ -130,36 +133,36 @@ def _listed(root: TrieNode, text: Words, first: SlotValue, values: Values, names
         at = last
         comma = text.words[at] == ","
         at += comma
-        joined = _joiner(root, names, text, at, values) if text.words[at] in values.joiners else None
+        joined = _joiner(root, names, text, at, context) if text.words[at] in context.joiners else None
         role = joined.meaning.role if joined is not None and joined.meaning.role in ("and", "or") else ""
         if (joiner and role != joiner) or not (role or comma):
             break
         if joined is not None and role:
             at = joined.last
-        value = values.read(first.type, text, at)
-        if value is None or any(reaches_beyond(trie, text, at, value[1], values) for trie in (root, names or {})):
+        value = context.read(first.type, text, at)
+        if value is None or any(reaches_beyond(trie, text, at, value[1], context) for trie in (root, names or {})):
             break
-        if comma and not role and _is_command(root, text, at, value[1], values):
+        if comma and not role and _is_command(root, text, at, value[1], context):
             break
         more.append(value[0])
         last, joiner = value[1], role
     return first.replace(more=tuple(more), joiner=joiner, last=last) if more else None
 
 
-def _joiner(root: TrieNode, names: TrieNode | None, text: Words, at: int, values: Values) -> Match | None:
-    joiner = longest(root, text, at, values, lists=False)
-    return joiner or (longest(names, text, at, values, lists=False) if names else None)
+def _joiner(root: TrieNode, names: TrieNode | None, text: Words, at: int, context: ReadingContext) -> Match | None:
+    joiner = longest(root, text, at, context, lists=False)
+    return joiner or (longest(names, text, at, context, lists=False) if names else None)
 
 
-def _is_command(root: TrieNode, text: Words, at: int, last: int, values: Values) -> bool:
+def _is_command(root: TrieNode, text: Words, at: int, last: int, context: ReadingContext) -> bool:
     """Whether words without an article are a whole command, too: `if you are at the door, dock`."""
-    match = longest(root, text, at, values, lists=False) if at not in text.articles else None
+    match = longest(root, text, at, context, lists=False) if at not in text.articles else None
     return match is not None and match.last == last and match.meaning.role == "command"
 
 
-def reaches_beyond(root: TrieNode, text: Words, at: int, last: int, values: Values) -> bool:
+def reaches_beyond(root: TrieNode, text: Words, at: int, last: int, context: ReadingContext) -> bool:
     """Whether a phrase starts at a word that goes on behind `last`."""
-    match = longest(root, text, at, values, lists=False)  # each list would look at all that follow it
+    match = longest(root, text, at, context, lists=False)  # each list would look at all that follow it
     return match is not None and match.last > last
 
 

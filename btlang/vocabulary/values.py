@@ -1,4 +1,4 @@
-"""Values in slots: numbers in figures and words, units, and names from a list.
+"""Values in slots: numbers in figures and words, units, and names from a list. `reading_context.py` has the others.
 
 A value becomes the text of a port, in the unit whose factor is 1: `half a meter` is "0.5", `two minutes` is "120".
 """
@@ -72,17 +72,6 @@ def insert(tree: WordTree, words: Sequence[str], value: object) -> None:
     tree[END] = value
 
 
-class Known(Record):
-    """A value that the mission names itself: its key on the blackboard, and the types that it can be used as.
-
-    Without types it can be used as any: nothing has told yet.
-    """
-
-    key: str
-    words: tuple[str, ...]
-    kinds: tuple[str, ...] = ()
-
-
 def find(tree: WordTree, words: Sequence[str], at: int) -> tuple[Any, int] | None:
     """The value of the longest sequence of the tree at a place, and where it ends."""
     found = None
@@ -97,7 +86,10 @@ def find(tree: WordTree, words: Sequence[str], at: int) -> tuple[Any, int] | Non
 
 
 class Values:
-    """Reads values at a place in a text. `types` by name; `language` holds the word tables of english.toml."""
+    """Reads values at a place in a text. `types` by name; `language` holds the word tables of english.toml.
+
+    Nothing of it changes once the names are added, so all missions of a process share it.
+    """
 
     def __init__(self, types: Mapping[str, ValueType], language: Mapping[str, Any]) -> None:
         self.types = dict(types)
@@ -112,11 +104,6 @@ class Values:
         """The first words of what stands between the values of a list."""
         self.pronouns: Mapping[str, Sequence[str]] = language["pronouns"]
         """Words that stand for the latest value of a type, each with the types that it may be of."""
-        self.latest: dict[str, str] = {}
-        """Those values. Whoever reads a text sets them, on a copy of its own."""
-        self.known: Mapping[str, Known] | None = {}
-        """The values that the mission names itself, by key; None where any name in braces is one."""
-        self._most_words = 0
         self._fractions: WordTree = {}
         for phrase, value in language["fractions"].items():
             insert(self._fractions, phrase.split(), value)
@@ -138,38 +125,20 @@ class Values:
 
     def with_names(self, names: Mapping[str, Iterable[tuple[str, str]]]) -> Values:
         """The same with further names of types, each with its words."""
-        made = self.for_reading()
+        made = Values.__new__(Values)  # what `copy` does, which takes long to import
+        made.__dict__.update(self.__dict__)
         made._names = {**self._names, **{kind: loads(dumps(self._names[kind])) for kind in names}}
         for kind, pairs in names.items():
             for words, name in pairs:
                 made.add_name(kind, words, name)
         return made
 
-    def for_reading(self) -> Values:
-        """The same with pronouns of its own."""
-        made = Values.__new__(Values)  # what `copy` does, which takes long to import
-        made.__dict__.update(self.__dict__, latest={})
-        return made
-
-    def with_references(self) -> Values:
-        """The same, where any name in braces is a value of any type."""
-        made = self.for_reading()
-        made.known = None
-        return made
-
-    def set_known(self, known: Mapping[str, Known]) -> None:
-        """The values that the mission names where reading goes on. For a copy from `for_reading`."""
-        self.known = known
-        self._most_words = max((len(value.words) for value in known.values()), default=0)
-
     @property
     def openers(self) -> Mapping[str, frozenset[str]]:
         """The words of letters alone, and the marks, at which a value of a type may begin: at no other one does it.
 
-        A type that is not in it may begin at any, as all may where the mission names values itself.
+        A type that is not in it may begin at any.
         """
-        if self.known != {}:
-            return {}
         if self._openers is None:
             numbers = self._number_starts
             quantities = numbers | self._joiner | self._units.keys()
@@ -220,10 +189,6 @@ class Values:
     def read(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
         """The port text of a value of the type and where it ends, or None where there is none."""
         value_type = self.types[kind]
-        if self.known != {}:
-            known = self._known(kind, text, at)
-            if known is not None:
-                return known
         if value_type.kind == "quantity":
             quantity = self.quantity(text, at)
             if quantity is None or quantity[1] != kind or _too_small(quantity[0], value_type):
@@ -236,74 +201,8 @@ class Values:
             found = find(self._names[kind], text.words, at)
             if found is None and word[0] == '"':
                 found = self._quoted_name(kind, text, at)
-            return self._referred(kind, word, at) if found is None and word in self.pronouns else found
+            return found
         return self._text(text, at)
-
-    def any(self, text: Words, at: int) -> tuple[tuple[str, ...], str, int] | None:
-        """A value of any type: the types that it can be, its port text, and where it ends."""
-        reference = self._reference(text, at)
-        if reference is not None and self.known and reference[0] in self.known:
-            return self.known[reference[0]].kinds, f"{{{reference[0]}}}", reference[1]
-        quantity = self.quantity(text, at)
-        if quantity is not None:
-            return (quantity[1],), format_number(quantity[0]), quantity[2]
-        kinds = [name for sort in ("number", "names", "text") for name, kind in self.types.items() if kind.kind == sort]
-        read = [(kind, self.read(kind, text, at)) for kind in kinds]
-        found = [(kind, value) for kind, value in read if value is not None]
-        if not found:
-            return None
-        if len(found) > 1 and self.types[found[0][0]].kind == "number":
-            found.pop()  # figures are a text only where one is wanted
-        best, end = max((value for _, value in found), key=lambda value: value[1])
-        return tuple(kind for kind, (other, last) in found if last == end and other.lower() == best.lower()), best, end
-
-    def named(self, text: Words, at: int) -> tuple[Known | None, int] | None:
-        """The value that the mission names at a place, None for an unknown one in braces, and where its name ends."""
-        reference = self._reference(text, at)
-        if reference is not None:
-            known = self.known.get(reference[0]) if self.known else None
-            return known, reference[1] if known is not None else at + 1
-        return self._bare(text.words, at)
-
-    def _known(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
-        """A value that the mission names: in braces, or bare where no text is wanted and no name is longer."""
-        reference = self._reference(text, at)
-        if reference is not None:
-            key, end = reference
-            if self.known is None or (key in self.known and self._fits(kind, self.known[key])):
-                return f"{{{key}}}", end
-        elif self.known and self.types[kind].kind != "text":
-            found = self._bare(text.words, at)
-            if found is not None and self._fits(kind, found[0]):
-                named = find(self._names[kind], text.words, at) if kind in self._names else None
-                if named is None or named[1] <= found[1]:
-                    return f"{{{found[0].key}}}", found[1]
-        return None
-
-    def _bare(self, words: Sequence[str], at: int) -> tuple[Known, int] | None:
-        """The value with the longest name that stands at a place without braces, and where it ends."""
-        for end in range(at + self._most_words if self.known else at, at, -1):
-            named = tuple(words[at:end])
-            known = self.known.get(key_of(named)) if self.known else None
-            if known is not None and known.words == named:
-                return known, end
-        return None
-
-    def _fits(self, kind: str, known: Known) -> bool:
-        """Whether a slot of the type takes the value; one of text takes any, and a number may be a count."""
-        if not known.kinds or kind in known.kinds or kind == "text":
-            return True
-        return self.types[kind].kind == self.types[known.kinds[0]].kind == "number"
-
-    def _reference(self, text: Words, at: int) -> tuple[str, int] | None:
-        """The key of a name in braces, and where it ends."""
-        words = text.words
-        if words[at] != "{":
-            return None
-        end = at + 1
-        while words[end][0].isalnum() or words[end][0] == "_":
-            end += 1
-        return (key_of(words[at + 1 : end]), end + 1) if end > at + 1 and words[end] == "}" else None
 
     def quantity(self, text: Words, at: int) -> tuple[float, str, int] | None:
         """A number with a unit: its value in the base unit, the name of the type, and where it ends."""
@@ -366,18 +265,11 @@ class Values:
         if word[0] == '"':
             return word[1:], at + 1
         bare = word[0].isalnum() or (word[0] == "-" and len(word) > 1)
-        if at in text.articles and (
-            not bare or word in self._connectives
-        ):  # the article is all that there is: `print a`
+        ends_here = not bare or word in self._connectives
+        if at in text.articles and ends_here:  # the article is all that there is: `print a`
             start, end = text.articles[at]
             return text.source.text[start:end], at
         return (text.source.text[text.starts[at] : text.ends[at]], at + 1) if bare else None
-
-    def _referred(self, kind: str, word: str, at: int) -> tuple[str, int] | None:
-        """What a pronoun stands for."""
-        if kind in self.pronouns.get(word, ()) and kind in self.latest:
-            return self.latest[kind], at + 1
-        return None
 
     def _quoted_name(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
         word = text.words[at]

@@ -12,8 +12,9 @@ from btlang.vocabulary.cache import recent
 from btlang.vocabulary.entry import COMPARISONS, About, Entry, Meaning, SlotSpec
 from btlang.vocabulary.language_tables import EXPLAINED
 from btlang.vocabulary.pattern import Form, PatternError, Slot, forms
+from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.trie import TrieNode, add, collisions
-from btlang.vocabulary.values import Known, Values, ValueType
+from btlang.vocabulary.values import Values, ValueType
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -50,6 +51,8 @@ class Vocabulary:
         self.articles = frozenset(language["articles"])
         self._with_names: dict[tuple[tuple[str, tuple[str, ...]], ...], Vocabulary] = {}
         self.values = Values(self._types_of(files), language)
+        self.context = ReadingContext(self.values)
+        """What is known without a mission; whoever reads one has a context of its own."""
         for file in files:
             for kind, words, name in file.names:
                 if self.types[kind].kind == "names":
@@ -93,7 +96,8 @@ class Vocabulary:
 
         def made() -> Vocabulary:
             pairs = {kind: [(self._bare(name), name) for name in listed] for kind, listed in names.items()}
-            return self._with(self.values.with_names(pairs))
+            values = self.values.with_names(pairs)
+            return self._with(values=values, context=ReadingContext(values))
 
         return recent(self._with_names, tuple((kind, tuple(listed)) for kind, listed in names.items()), made)
 
@@ -107,23 +111,21 @@ class Vocabulary:
 
     def with_references(self) -> Vocabulary:
         """The same words, where any name in braces is read as a value."""
-        return self._with(self.values.with_references())
+        return self._with(context=self.context.with_references())
 
     def with_known(self, known: Mapping[str, Known]) -> Vocabulary:
         """The same words, where these values are known by their keys."""
-        values = self.values.for_reading()
-        values.set_known(known)
-        return self._with(values)
+        return self._with(context=ReadingContext(self.values, known))
 
-    def _with(self, values: Values) -> Vocabulary:
+    def _with(self, **changed: object) -> Vocabulary:
         made = Vocabulary.__new__(Vocabulary)  # what `copy` does, which takes long to import
-        made.__dict__.update(self.__dict__, values=values, _with_names={})
+        made.__dict__.update(self.__dict__, _with_names={}, **changed)
         return made
 
     def value(self, kind: str, written: str) -> str | None:
         """The port text of a text that as a whole is a value of the type (`half an hour`), None where it is none."""
         text = split(Source(written), self.articles)
-        found = self.values.read(kind, text, 0)
+        found = self.context.read(kind, text, 0)
         return found[0] if found and found[1] >= len(text.words) - 2 else None
 
     def first(self, role: str) -> str:

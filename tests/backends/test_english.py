@@ -11,7 +11,7 @@ from btlang.api import parse_tree, world_vocabulary
 from btlang.backends.english import to_english
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.reading import read_source
-from btlang.frontends.mission import read_mission
+from btlang.frontends.mission.reader import read_mission
 from btlang.passes import lower_mission
 from btlang.passes.compilation import Compilation
 from btlang.passes.lint.two_readings import two_readings

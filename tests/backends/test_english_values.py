@@ -11,7 +11,7 @@ from hypothesis import given
 
 from btlang.api import parse_tree, world_vocabulary
 from btlang.backends.english import to_english
-from btlang.frontends.mission import read_mission
+from btlang.frontends.mission.reader import read_mission
 from btlang.passes import lower_mission
 from btlang.text.source import Source
 from btlang.tree import ast

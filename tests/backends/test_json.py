@@ -12,8 +12,9 @@ from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 from btlang.api import parse_tree, world_vocabulary
-from btlang.backends.json_tree import SCHEMA, read_json, to_json
+from btlang.backends.json_tree import SCHEMA, to_json
 from btlang.diagnostics.diagnostic import MissionError
+from btlang.frontends.json.reader import read_json
 from btlang.record import Record
 from btlang.tree.model import NodeModel, PortModel
 from btlang.tree.node import Node, Tree

@@ -22,11 +22,11 @@ from btlang.api import world_vocabulary
 from btlang.backends.engine import bind_leaf
 from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine
-from btlang.frontends.build import Builder
-from btlang.frontends.lexer import Lexer
-from btlang.frontends.matching import Matcher
-from btlang.frontends.mission import PARSERS, read_mission
-from btlang.frontends.token import Token
+from btlang.frontends.mission.grouping.grouping import group
+from btlang.frontends.mission.parsers.build import Builder
+from btlang.frontends.mission.reader import PARSERS, read_mission
+from btlang.frontends.mission.token import Token
+from btlang.frontends.mission.tokens.lexer import Lexer
 from btlang.garbage import no_collection
 from btlang.text.source import Source
 from tests.benchmarks.missions import mission
@@ -71,7 +71,7 @@ def parsers(rounds: int) -> None:
     """From text, where both do the same before their part (words, phrases, matching), and that part alone."""
     vocabulary, source = world_vocabulary(), Source(mission(LINES))
     lexer = Lexer(source, vocabulary)
-    units = [unit.tokens for unit in Matcher(source, lexer.tokens, lexer.conditions, vocabulary.word).units]
+    units = [unit.tokens for unit in group(source, lexer.tokens, lexer.conditions, vocabulary.word).units]
     build = Builder(source)
 
     def grouped(parse: Callable[[Sequence[Token], Builder], object]) -> None:

@@ -24,7 +24,7 @@ from typing import NamedTuple
 from btlang.api import world_vocabulary
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError
 from btlang.examples import examples
-from btlang.frontends.mission import read_mission
+from btlang.frontends.mission.reader import read_mission
 from btlang.passes import compile_mission, errors_of
 from btlang.text.source import Source
 from btlang.tree.dump import plain

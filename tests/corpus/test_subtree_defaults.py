@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import btlang
-from btlang.backends.json_tree import read_json
+from btlang.frontends.json.reader import read_json
 from btlang.tree.dump import plain
 from tests.corpus.same import content, read, written
 

@@ -10,7 +10,7 @@ from btlang.api import world_vocabulary
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError
 from btlang.diagnostics.reading import read_source
 from btlang.frontends.btcpp.reader import read_xml
-from btlang.frontends.mission import DEFAULT_PARSER, read_mission
+from btlang.frontends.mission.reader import DEFAULT_PARSER, read_mission
 from btlang.passes import errors_of, run_passes
 from btlang.passes.compilation import Compilation
 from btlang.text.source import Source

@@ -27,8 +27,8 @@ def test_a_diagnostic_of_a_misspelt_name(capsys: pytest.CaptureFixture[str]) -> 
         {
             "code": "BT013",
             "severity": "error",
-            "message": "I know no place or person or object 'ktichen'.",
-            "hint": "The nearest: kitchen",
+            "message": "There's no place or person or object called 'ktichen'.",
+            "hint": "Similar: kitchen",
             **place,
             "words": "ktichen",
             "fix": {"text": "kitchen", **place},

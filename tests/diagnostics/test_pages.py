@@ -113,9 +113,9 @@ def test_explain_lists_all_codes(capsys: pytest.CaptureFixture[str]) -> None:
 @pytest.mark.parametrize(
     ("written", "told"),
     [
-        ("BT031", "The nearest: BT032, BT029"),
-        ("BT9999999999999", "The nearest: BT1"),
-        ("BT" + "9" * 6000, "The nearest: "),
+        ("BT031", "Similar: BT032, BT029"),
+        ("BT9999999999999", "Similar: BT1"),
+        ("BT" + "9" * 6000, "Similar: "),
         ("BT", "A code is BT and three digits"),
         ("", "A code is BT and three digits"),
         ("BT\N{SUPERSCRIPT TWO}", "A code is BT and three digits"),

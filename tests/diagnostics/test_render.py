@@ -66,7 +66,7 @@ def test_colours_change_nothing_else() -> None:
 def test_severity_and_underline_are_coloured() -> None:
     problem = told(Source("wave then flarp", "tea.txt"))[0]
     assert render(problem, colour=True).splitlines()[:3] == [
-        "tea.txt:1:11: \x1b[1;31merror BT010:\x1b[0m I do not know how to 'flarp'.",
+        "tea.txt:1:11: \x1b[1;31merror BT010:\x1b[0m I don't know the command 'flarp'.",
         "  wave then flarp",
         "            \x1b[1;31m^^^^^\x1b[0m",
     ]

@@ -25,7 +25,7 @@ def test_files_in_place(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> N
     os.chmod(one, 0o640)
     before = other.stat()
     assert main(["format", str(one), str(other)]) == 0
-    assert capsys.readouterr().out == f"{one} is laid out anew.\n"
+    assert capsys.readouterr().out == f"Formatted {one}.\n"
     assert (one.read_bytes(), other.read_bytes()) == (TIDY, TIDY)
     assert one.stat().st_mode & 0o777 == 0o640
     assert other.stat().st_mtime_ns == before.st_mtime_ns

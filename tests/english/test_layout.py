@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from btlang.api import format_mission, parse_tree
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.english.layout import laid_out
-from btlang.frontends.mission import read_mission
+from btlang.frontends.mission.reader import read_mission
 from btlang.passes import compile_mission
 from btlang.text.source import Source
 from btlang.text.words import split

@@ -15,7 +15,7 @@ from btlang.diagnostics.diagnostic import MissionError
 from btlang.english import blocks
 from btlang.english.sentence import SAYS, english, statements
 from btlang.english.speaker import Speaker
-from btlang.frontends.mission import read_mission
+from btlang.frontends.mission.reader import read_mission
 from btlang.passes import compile_mission
 from btlang.text.source import Source
 from btlang.tree import ast

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 
-from btlang.frontends.mission import read_mission
+from btlang.frontends.mission.reader import read_mission
 from btlang.text.source import Source
 from btlang.tree import ast
 from btlang.vocabulary.entry import Entry, SlotSpec

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from btlang.api import world_vocabulary
 from btlang.diagnostics.diagnostic import MissionError
-from btlang.frontends.completion import Completion, completions
+from btlang.frontends.mission.completion.completer import Completion, completions
 from btlang.vocabulary.vocabulary import Vocabulary
 from tests.language.letters import letters, read
 from tests.language.sentences import broken_missions, english, missions

@@ -16,7 +16,7 @@ import btlang
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError
 from btlang.diagnostics.render import render
 from btlang.diagnostics.report import as_data
-from btlang.frontends.completion import completions
+from btlang.frontends.mission.completion.completer import completions
 from btlang.repl.draft import MissionDraft
 from btlang.repl.screen import Screen
 from btlang.repl.store import Store
@@ -282,7 +282,7 @@ def test_a_good_mission_reads_no_words_of_english() -> None:
         "print([name for name in sys.modules if name.endswith(('corrections', 'spelling_rule', 'correct_words'))])"
     )
     run = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
-    assert run.stdout == "The mission is fine.\n[]\n"
+    assert run.stdout == "No problems found.\n[]\n"
 
 
 def test_the_name_of_a_warning_keeps_its_meaning() -> None:

@@ -10,7 +10,7 @@ import btlang
 from btlang.cli import main
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.reading import read_source
-from btlang.frontends.completion import completions
+from btlang.frontends.mission.completion.completer import completions
 from btlang.repl.draft import MissionDraft
 from btlang.tree.dump import plain
 from btlang.vocabulary.load import load_vocabulary

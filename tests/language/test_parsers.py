@@ -10,10 +10,10 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from btlang.diagnostics.diagnostic import MissionError
-from btlang.frontends import lark_parser, shunting_yard
-from btlang.frontends.build import Builder
-from btlang.frontends.parse_error import ParseError
-from btlang.frontends.token import Token
+from btlang.frontends.mission.parsers import lark_parser, shunting_yard
+from btlang.frontends.mission.parsers.build import Builder
+from btlang.frontends.mission.parsers.parse_error import ParseError
+from btlang.frontends.mission.token import Token
 from btlang.record import Record
 from btlang.text.source import Source
 from btlang.tree import ast
@@ -79,8 +79,7 @@ def _spans(mission: ast.Program) -> list[tuple[int, int]]:
     return found
 
 
-_LEAF = ("nothing", None)
-_VALUES = {"COMMAND": _LEAF, "CONDITION": _LEAF, "POSTFIX": ("count", "2"), "LOOP": ("try", None), "ELSE": 0}
+_ROLES = {"COMMAND": "nothing", "CONDITION": "nothing", "POSTFIX": "count", "LOOP": "try"}
 _condition = st.recursive(
     st.just("CONDITION"),
     lambda c: st.one_of(
@@ -111,7 +110,10 @@ _command = st.recursive(
 @given(_command)
 def test_each_parser_takes_all_that_the_matching_stage_may_write(kinds: str) -> None:
     """Also token streams that no sentence was drawn for."""
-    tokens = [Token(kind, _VALUES.get(kind, "if"), i, i + 1) for i, kind in enumerate(kinds.split())]
+    tokens = [
+        Token(kind, i, i + 1, "2" if kind == "POSTFIX" else None, _ROLES.get(kind, "if"))
+        for i, kind in enumerate(kinds.split())
+    ]
     build = Builder(Source("x" * len(tokens)))
     assert shunting_yard.parse(tokens, build) == lark_parser.parse(tokens, build)
 
@@ -120,7 +122,10 @@ def test_each_parser_takes_all_that_the_matching_stage_may_write(kinds: str) -> 
     "kinds", ["COMMAND COMMAND", "THEN", "COMMAND THEN", "OPEN COMMAND", "COMMAND CLOSE", "LOOP END", ""]
 )
 def test_each_parser_rejects_tokens_that_are_no_mission(kinds: str) -> None:
-    tokens = [Token(kind, _VALUES.get(kind, "if"), i, i + 1) for i, kind in enumerate(kinds.split())]
+    tokens = [
+        Token(kind, i, i + 1, "2" if kind == "POSTFIX" else None, _ROLES.get(kind, "if"))
+        for i, kind in enumerate(kinds.split())
+    ]
     for parser in (shunting_yard, lark_parser):
         with pytest.raises(ParseError):
             parser.parse(tokens, Builder(Source("")))

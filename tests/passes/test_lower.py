@@ -78,6 +78,6 @@ def test_all_circles_are_told() -> None:
         parse_tree("a1 is b1\nb1 is c1 then a1\nc1 is wave\nx1 is x1\na1")
     messages = [problem.message for problem in caught.value.diagnostics]
     assert messages == [
-        "'a1' is defined by itself: 'a1' uses 'b1' uses 'a1'.",
-        "'x1' is defined by itself: 'x1' uses 'x1'.",
+        "'a1' is defined in terms of itself: 'a1' uses 'b1' uses 'a1'.",
+        "'x1' is defined in terms of itself: 'x1' uses 'x1'.",
     ]

@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError
 from btlang.english.sentence import english
-from btlang.frontends.mission import read_mission
+from btlang.frontends.mission.reader import read_mission
 from btlang.passes import compile_mission
 from btlang.passes.compilation import Compilation
 from btlang.passes.lint.two_readings import two_readings

@@ -84,7 +84,7 @@ def test_a_reset_is_no_status() -> None:
     sink, engine = LastStatuses(), Engine(Tree(Node("AlwaysSuccess")), lambda id: None, clock=Clock())
     for status in (RUNNING, SUCCESS, IDLE):
         changes = Changes()
-        changes.indices, changes.statuses, changes.before = [0], [status], [IDLE]
+        changes.add(0, IDLE, status)
         sink(StatusesChanged(0.0, "", 0, 0.0, changes, engine))
     assert sink.by_path == {"/": SUCCESS}
 

@@ -60,7 +60,7 @@ def test_faces_as_the_place_says():
 def test_names_do_not_care_about_case_and_must_be_known():
     robot = SimulatedRobot(HOUSE)
     assert robot.locate("ALICE") == (3.3, 7.2)
-    with pytest.raises(RobotError, match='I do not know where "moon" is'):
+    with pytest.raises(RobotError, match="I don't know where 'moon' is"):
         robot.navigate_to("moon")
 
 

@@ -62,7 +62,7 @@ def test_places() -> None:
 
 
 def test_a_place_that_nobody_knows() -> None:
-    with pytest.raises(ActionFailed, match="I do not know where Oz is"):
+    with pytest.raises(ActionFailed, match="I don't know where Oz is"):
         filled("geometry_msgs/msg/Pose", {"position": "{place}"}, place="Oz")
 
 

@@ -234,7 +234,7 @@ def test_without_its_interfaces(monkeypatch: pytest.MonkeyPatch, capsys: pytest.
 def test_an_action_that_cannot_run(run_mission: object, tmp_path: Path, capsys: pytest.CaptureFixture[str]):
     (tmp_path / "words.toml").write_text(WORDS.replace("serving_words", "no_such_words"), encoding="utf-8")
     assert main(["serve-actions", "--keywords", str(tmp_path / "words.toml")]) == 2
-    assert "error BT080: The command 'CountTo' cannot run: no_such_words:Count cannot be" in capsys.readouterr().err
+    assert "error BT080: The command 'CountTo' can't run: no_such_words:Count cannot be" in capsys.readouterr().err
 
 
 @pytest.mark.parametrize(

@@ -55,7 +55,7 @@ def test_a_signal_while_it_starts(tmp_path, domain: int):
 def test_a_domain_that_cannot_be(tmp_path, domain: int):
     sim = Command(tmp_path, domain, "sim-ros", ROS_DOMAIN_ID="kitchen")
     assert sim.process.wait(20) == 2
-    assert "error BT100: ROS 2 cannot be used: " in sim.err
+    assert "error BT100: ROS 2 can't be used: " in sim.err
     assert "Traceback" not in sim.err
 
 

@@ -41,8 +41,7 @@ class One:
 
 def changed(t: float, node: Node, status: int, reason: str = "") -> StatusesChanged:
     changes = Changes()
-    changes.indices, changes.statuses, changes.before = [3], [status], [IDLE]
-    changes.faults = {0: Fault(3, reason)} if reason else {}
+    changes.add(3, IDLE, status, Fault(3, reason) if reason else None)
     return StatusesChanged(t, "r1", 7, 1.5, changes, One(node))
 
 

@@ -10,7 +10,7 @@ from pathlib import Path
 import pytest
 
 from btlang.cli import main
-from btlang.frontends.mission import PARSERS
+from btlang.frontends.mission.reader import PARSERS
 from tests.conftest import matches_golden
 
 FAILURES = Path(__file__).parent / "failures"

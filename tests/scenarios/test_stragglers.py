@@ -184,7 +184,7 @@ def test_what_a_thread_asks_of_the_robot_is_done_by_the_thread_that_ticks() -> N
     note.policy = INLINE  # type: ignore[attr-defined]
     outcome = btlang.parse_tree("study the room", keywords=[study]).run(rate=1, sinks=[note])
     assert outcome.failure is not None
-    assert outcome.failure.reason == 'I do not know where "nowhere" is'
+    assert outcome.failure.reason == "I don't know where 'nowhere' is"
     assert found == [pytest.approx(100.0, abs=0.1), 360, True]
     assert set(did) == {ticking}
     assert outcome.seconds < 2.0  # each brought the next tick at once

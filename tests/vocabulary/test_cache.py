@@ -66,7 +66,9 @@ def described(vocabulary: Vocabulary) -> list[object]:
         for entry in entries:
             for pattern in (entry.example, *entry.phrases):
                 text = split(Source(pattern.replace("{", "").replace("}", "")), vocabulary.articles)
-                said += [longest(trie, text, 0, vocabulary.values) for trie in (vocabulary.trie, vocabulary.quantities)]
+                said += [
+                    longest(trie, text, 0, vocabulary.context) for trie in (vocabulary.trie, vocabulary.quantities)
+                ]
             said += [entry, entry.span and (entry.span, entry.span.place, entry.span.text)]
     tables = vocabulary.roles, vocabulary.counts, vocabulary.about, vocabulary.comparisons, dict(vocabulary.types)
     return [*said, *tables, vocabulary.articles, vocabulary.word("then"), vocabulary.value("duration", "half an hour")]

@@ -16,7 +16,7 @@ import pytest
 from btlang.api import world_vocabulary
 from btlang.diagnostics.reading import read_source
 from btlang.english.sentence import english
-from btlang.frontends.mission import read_mission
+from btlang.frontends.mission.reader import read_mission
 from btlang.passes import compile_mission
 from btlang.robots.world_file import world_names
 from btlang.text.source import Source

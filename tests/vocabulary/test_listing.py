@@ -143,7 +143,7 @@ def test_conditions_are_found_by_their_sort() -> None:
 def test_the_nearest_words_are_offered(search: str, near: str) -> None:
     first, second = listing(VOCABULARY, search)
     assert first == f"No phrase has the words: {search}"
-    assert near in second.removeprefix("The nearest: ").split(", ")
+    assert near in second.removeprefix("Similar: ").split(", ")
     assert help_on(VOCABULARY, search) == [first, second]
 
 

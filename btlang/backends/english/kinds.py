@@ -11,7 +11,7 @@ from btlang.backends.english.code import Computed, compared_by, computed, given_
 from btlang.backends.english.loops import Loop
 from btlang.english.naming import spelt
 from btlang.english.phrase import value_of
-from btlang.frontends.heads import find_heads
+from btlang.frontends.mission.symbols.prefixes import find_heads
 from btlang.record import Record
 from btlang.text.source import Source
 from btlang.text.words import split
@@ -19,8 +19,8 @@ from btlang.tree.catalogue import CATALOGUE, SUBTREE
 from btlang.tree.node import Node
 from btlang.vocabulary.entry import MEASURED
 from btlang.vocabulary.pattern import Slot, name_form
+from btlang.vocabulary.reading_context import Known
 from btlang.vocabulary.references import Reference, pieces
-from btlang.vocabulary.values import Known
 from btlang.vocabulary.vocabulary import Vocabulary
 
 TYPE_CHECKING = False

@@ -6,7 +6,8 @@ from collections.abc import Set
 
 from btlang.backends.english.kinds import Around, Kinds, parameters
 from btlang.backends.english.loops import Loop, find_loops
-from btlang.frontends.definitions import find_definitions
+from btlang.frontends.mission.symbols.definitions import find_definitions
+from btlang.frontends.mission.symbols.phrases import Phrases
 from btlang.record import Record
 from btlang.text.source import Source
 from btlang.text.words import split
@@ -99,5 +100,5 @@ def is_phrase(name: str, vocabulary: Vocabulary) -> bool:
     if not all(word.isalnum() for word in (*words, *own)) or name != name.lower() or len(keys) > len(set(keys)):
         return False
     text = split(Source(f"{name} {vocabulary.word('define_strong')} {vocabulary.word('nothing')}"), vocabulary.articles)
-    found = find_definitions(text, vocabulary)
+    found = find_definitions(Phrases(text, vocabulary))
     return not found.problems and [header.name for header in found.headers.values()] == [name]

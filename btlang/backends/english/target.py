@@ -11,7 +11,7 @@ from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.english.exact import is_one_piece
 from btlang.english.sentence import mission_lines
 from btlang.english.speaker import Speaker
-from btlang.frontends.mission import read_mission
+from btlang.frontends.mission.reader import read_mission
 from btlang.passes import lower_mission
 from btlang.passes.order import used_first
 from btlang.text.source import NOWHERE, Source

@@ -37,7 +37,9 @@ def silence(compilation: Compilation) -> Iterator[Diagnostic]:
             span = Span(source, start, start + len(name[0]))
             code = NAMES.get(" ".join(name[0].lower().split()))
             if code is None:
-                from btlang.frontends.spelling_rule import is_respelling  # most comments name what there is
+                from btlang.frontends.mission.explanations.spelling_rule import (
+                    is_respelling,  # most comments name what there is
+                )
 
                 near = nearest(name[0].lower(), NAMES)
                 fix = (span, near[0]) if near and is_respelling(name[0], near[0], vocabulary) else None
@@ -72,5 +74,5 @@ def _scope(comment: Span, words: Words, vocabulary: Vocabulary) -> tuple[int, in
 
 
 def _continues(at: int, words: Words, vocabulary: Vocabulary) -> bool:
-    match = longest(vocabulary.trie, words, at, vocabulary.values)
+    match = longest(vocabulary.trie, words, at, vocabulary.context)
     return match is not None and match.meaning.role == "otherwise"

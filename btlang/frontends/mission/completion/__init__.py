@@ -1,0 +1,1 @@
+"""What may follow at the end of a text."""

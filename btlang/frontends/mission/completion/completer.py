@@ -1,0 +1,252 @@
+"""What may follow at the end of a text: phrases, values, names and connectives.
+
+Phrases come from the trie, read ahead. Whether a phrase may stand at its place is asked of the grouping itself,
+so that what is offered here and what is accepted there cannot differ.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator
+from functools import lru_cache
+
+from btlang.frontends.mission.completion.value_completion import value_options
+from btlang.frontends.mission.grouping.grouping import group
+from btlang.frontends.mission.reader import lexed
+from btlang.frontends.mission.symbols.includes import ROLE
+from btlang.frontends.mission.symbols.prefixes import JOINTS
+from btlang.frontends.mission.token import Token
+from btlang.record import Record
+from btlang.text.source import Source
+from btlang.text.spelling import nearest
+from btlang.vocabulary.continuations import Begun, begun, meanings, values_on, ways_on
+from btlang.vocabulary.correct_words import correct_words
+from btlang.vocabulary.entry import Meaning
+from btlang.vocabulary.pattern import Slot, forms
+from btlang.vocabulary.trie import SLOTS, TrieNode
+from btlang.vocabulary.values import END
+from btlang.vocabulary.vocabulary import DEFINING, NO_PHRASES, Vocabulary
+
+_MOST_TOKENS_BACK = 6  # a phrase that is being written may look like that many shorter ones
+_LONG_ENOUGH = 3  # letters; a shorter word is no misspelling yet
+_MOST_CORRECTIONS = 3
+_ALIKE = {
+    **dict.fromkeys(("wait", "nothing", "fail"), "command"), "negated": "condition", "unless": "if", "until": "while",
+    "if_possible": "within", "retry": "try", "wait_until": "check", "delay": "every", "in_order": "in_parallel",
+    **dict.fromkeys(("set", "increase", "decrease", "remember", "include"), "command"), "each": "every",
+}  # fmt: skip
+"""Roles that stand where others stand: the grouping stage is asked for one of them."""
+_LOOK_AHEAD = frozenset(("and", "or"))  # whether these are in their place depends on what follows
+_MAY_FOLLOW = ((), ("command",), ("condition",), ("close",), ("colon",))
+_LINE_STARTS = frozenset(("newline", "semi", "indent", "dedent"))
+
+
+class Completion(Record):
+    """A way to go on: `text` takes the place of the characters from `start` on.
+
+    `kind` is "command", "condition", "name", "value" or "connective"; `help` is a line about it. `spelling` tells that
+    it corrects the word being written and does not go on from it.
+    """
+
+    text: str
+    start: int
+    kind: str
+    help: str = ""
+    spelling: bool = False
+
+
+@lru_cache(maxsize=4)  # an editor asks more than once while the text stands as it is
+def completions(text: str, vocabulary: Vocabulary) -> tuple[Completion, ...]:
+    """All that may follow the text, what goes on a phrase first; none inside quotes or behind an error."""
+    return tuple(Completer(text, vocabulary).found())
+
+
+class Completer:
+    """Finds what may follow one text."""
+
+    def __init__(self, text: str, vocabulary: Vocabulary) -> None:
+        self._vocabulary = vocabulary
+        self._text = text
+        self._partial = _last_word(text)
+        self._start = len(text) - len(self._partial)
+        self._source = Source(text[: self._start] + "(")  # the bracket stands for what is to come
+        self._lexer = lexed(self._source, vocabulary)
+        self._context = self._lexer.context
+        self._words = self._lexer.text
+        self._last = len(self._words.words) - 3  # the bracket; line end and text end follow
+        bracket = max((i for i, token in enumerate(self._lexer.tokens) if token.kind == "open"), default=0)
+        self._tokens = self._lexer.tokens[:bracket]
+        self._accepted: dict[tuple[int, str], bool] = {}
+
+    def found(self) -> list[Completion]:
+        """Sorted: phrases under way, then what may begin here; each once."""
+        if self._words.open_quotes or self._last < 0 or self._words.starts[self._last] != self._start:
+            return []  # in quotes, or in a comment
+        start = self._partial.lower()
+        options = list(self._options(start)) or list(self._defining(start))
+        if not options and len(self._partial) >= _LONG_ENOUGH and self._is_unknown():
+            options = self._corrections()
+        unique = {option.text: option for option in reversed(options) if option.text != self._partial}
+        return list(reversed(unique.values()))
+
+    def _options(self, start: str) -> Iterator[Completion]:
+        for words, kind in value_options(self._words, self._last, start, self._vocabulary, self._context):
+            yield Completion(words, self._start, kind, "named in this mission" if kind == "value" else "")
+        tokens = self._tokens
+        joining: list[Completion] = []
+        for at in range(max(0, len(tokens) - _MOST_TOKENS_BACK), len(tokens) + 1):
+            if at < len(tokens) and tokens[at].kind in _LINE_STARTS:
+                continue
+            for option in self._from(at, start):
+                if option.kind == "connective" and at < len(tokens):  # `wave and` more probably goes on with a command
+                    joining.append(option)
+                else:
+                    yield option
+        yield from joining
+        if not start and not self._is_broken(len(tokens)) and self._may_stand(len(tokens), "close"):
+            yield Completion(")", self._start, "connective", "ends the group")
+
+    def _is_unknown(self) -> bool:
+        """Whether the word being written belongs to nothing that is known."""
+        lexer = lexed(Source(self._text), self._vocabulary)
+        return bool(lexer.tokens) and any(t.kind == "unknown" and t.end > self._start for t in lexer.tokens)
+
+    def _corrections(self) -> list[Completion]:
+        options = {option.text: option for option in self._options("")}
+        firsts = {text: text.split()[0].lower() for text in options}
+        written = self._partial.lower()
+        is_right = written in correct_words(self._vocabulary.language)  # no slip, whatever else is like it
+        likely = [] if is_right else nearest(written, dict.fromkeys(firsts.values()))
+        found = [options[text].replace(spelling=True) for word in likely for text in options if firsts[text] == word]
+        return found[:_MOST_CORRECTIONS]
+
+    def _from(self, at: int, start: str) -> Iterator[Completion]:
+        """Ways to go on where the token at a place is the beginning of a phrase; at the end, where one begins."""
+        tokens, words = self._tokens, self._words
+        if self._is_broken(at):
+            return
+        first = self._last if at == len(tokens) else words.starts.index(tokens[at].start)
+        under_way = begun(self._vocabulary.trie, words, first, self._last, self._context)
+        names = begun(self._lexer.names.definitions.trie, words, first, self._last, self._context)
+        yield from self._named(names, first, at, start)
+        for node in under_way.nodes:
+            if node is self._vocabulary.trie and not start:
+                yield from self._openers(at)
+                continue
+            for way, child in sorted(ways_on(node, start), key=_shortest_first):
+                yield from self._phrase(" ".join(way), child, at)
+            yield from self._slots(((kind, self._last, child) for _, kind, child in node.get(SLOTS, ())), at, start)
+        yield from self._slots(under_way.slots, at, start)
+
+    def _openers(self, at: int) -> Iterator[Completion]:
+        """The first way to say each thing: nothing is written yet, and all synonyms would be too many."""
+        for opening, node in _openings(self._vocabulary):
+            yield from self._phrase(opening, node, at)
+
+    def _phrase(self, words: str, node: TrieNode, at: int) -> Iterator[Completion]:
+        ends = [node[END]] if END in node else []
+        slotted = [meaning for _, _, child in node.get(SLOTS, ()) for meaning in meanings(child)]
+        for meaning in (*ends, *slotted):
+            if self._may_stand(at, meaning.role):
+                more = "" if ends and meaning is ends[0] and meaning.role not in (*JOINTS, ROLE) else " "
+                kind, about = self._about(meaning)
+                yield Completion(words + more, self._start, kind, about)
+                return
+
+    def _slots(self, slots: Iterable[tuple[str, int, TrieNode]], at: int, start: str) -> Iterator[Completion]:
+        for kind, first, child in slots:
+            if any(self._may_stand(at, meaning.role) for meaning in meanings(child)):
+                written = self._words.words[first : self._last]
+                for value in values_on(kind, self._context.values, written, start):
+                    yield Completion(value, self._start, "value", kind)
+
+    def _named(self, names: Begun, first: int, at: int, start: str) -> Iterator[Completion]:
+        for node in names.nodes:
+            for way, child in ways_on(node, start):
+                if any(self._may_stand(at, self._kind_of_name(meaning)) for meaning in meanings(child)):
+                    more = "" if END in child else " "
+                    yield Completion(" ".join(way) + more, self._start, "name", "defined in this mission")
+        yield from self._slots(names.slots, at, start)
+
+    def _kind_of_name(self, meaning: Meaning) -> str:
+        if meaning.role != "name" or meaning.entry is None:
+            return meaning.role
+        return "condition" if meaning.entry.id in self._lexer.conditions else "command"
+
+    def _defining(self, start: str) -> Iterator[Completion]:
+        """`is` after the unknown words of a line: they may become a name."""
+        tokens = self._tokens
+        if not tokens or '"' in self._text[tokens[-1].start : tokens[-1].end]:
+            return  # `do "Id" with` is no name
+        if tokens[-1].kind == "unknown" and (len(tokens) == 1 or tokens[-2].kind == "newline"):
+            for role in reversed(DEFINING):
+                for word in self._vocabulary.roles[role]:
+                    if word.startswith(start):
+                        yield Completion(word + " ", self._start, "connective", "defines a name")
+
+    def _is_broken(self, at: int) -> bool:
+        """Whether there are unknown words in the statement before a place."""
+        return any(token.kind == "unknown" for token in self._tokens[self._statement(at) : at])
+
+    def _statement(self, at: int) -> int:
+        """The first token of the statement that a place is in."""
+        while at and self._tokens[at - 1].kind not in _LINE_STARTS:
+            at -= 1
+        return at
+
+    def _may_stand(self, at: int, role: str) -> bool:
+        """Whether a token of the role is accepted behind the first `at` tokens, and can be gone on from."""
+        kind = _ALIKE.get(role, role)
+        key = at, kind
+        if key not in self._accepted:
+            self._accepted[key] = kind != "politeness" and self._is_accepted(at, kind)
+        return self._accepted[key]
+
+    def _is_accepted(self, at: int, kind: str) -> bool:
+        """The grouping stage looks ahead, so what it says of a token depends on what follows."""
+        first = self._statement(at)
+        for after in _MAY_FOLLOW:
+            failed = [place for place in self._failures(at, kind, *after) if place >= first]
+            if not failed or failed[0] > at + 1:
+                return True
+            if failed[0] <= at and kind not in _LOOK_AHEAD:
+                return False
+        return False
+
+    def _failures(self, at: int, *kinds: str) -> list[int]:
+        end = self._tokens[at].start if at < len(self._tokens) else self._start
+        added = [Token(kind, end, end, "1") for kind in kinds]
+        return group(self._source, [*self._tokens[:at], *added], self._lexer.conditions).failed_at
+
+    def _about(self, meaning: Meaning) -> tuple[str, str]:
+        if meaning.entry is not None:
+            return ("condition" if meaning.entry.sort == "condition" else "command"), meaning.entry.help
+        return "connective", self._vocabulary.about[meaning.role].help
+
+
+def _last_word(text: str) -> str:
+    at = len(text)
+    while at and (text[at - 1].isalnum() or text[at - 1] in "'-_"):
+        at -= 1
+    return text[at:]
+
+
+def _shortest_first(way: tuple[tuple[str, ...], TrieNode]) -> tuple[int, tuple[str, ...]]:
+    return len(way[0]), way[0]
+
+
+@lru_cache(maxsize=4)
+def _openings(vocabulary: Vocabulary) -> list[tuple[str, TrieNode]]:
+    """The words, up to the first slot, of the first phrase of each role and entry, and where they lead in the trie."""
+    found: dict[str, TrieNode] = {}
+    entries = [entry.phrases[0] for entries in vocabulary.entries.values() for entry in entries]
+    roles = [phrases[0] for role, phrases in vocabulary.roles.items() if role not in (*NO_PHRASES, "politeness")]
+    for pattern in (*entries, *roles, *vocabulary.counts):
+        node, words = vocabulary.trie, []
+        for part in forms(pattern, vocabulary.articles)[-1]:
+            if isinstance(part, Slot):
+                break
+            words.append(part)
+            node = node[part]
+        if words:
+            found[" ".join(words)] = node
+    return list(found.items())

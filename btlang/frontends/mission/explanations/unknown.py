@@ -1,0 +1,301 @@
+"""Why words could not be read: a value that does not fit its slot, a name that nobody knows, or an unknown phrase."""
+
+from __future__ import annotations
+
+import re
+from bisect import bisect_left
+from collections.abc import Iterable, Iterator
+from functools import lru_cache
+from itertools import takewhile
+
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.frontends.mission.explanations.spelling_rule import is_respelling
+from btlang.frontends.mission.symbols.definitions import Definitions
+from btlang.frontends.mission.symbols.nodes import misread_node
+from btlang.frontends.mission.symbols.prefixes import span_of
+from btlang.frontends.mission.token import Called, Token
+from btlang.record import Record
+from btlang.text.source import Span
+from btlang.text.spelling import nearest, nearest_start
+from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
+from btlang.vocabulary.pattern import Slot, forms
+from btlang.vocabulary.reading_context import Known, ReadingContext
+from btlang.vocabulary.trie import SLOTS, TrieNode, longest
+from btlang.vocabulary.values import ValueType, with_unit
+from btlang.vocabulary.vocabulary import NODE_ROLES, Vocabulary
+
+_NOT_A_VALUE = frozenset((END_OF_TEXT, END_OF_STATEMENT, ",", ":", "(", ")"))
+
+
+def explain_unknown(
+    text: Words,
+    at: int,
+    end: int,
+    vocabulary: Vocabulary,
+    context: ReadingContext,
+    definitions: Definitions,
+    before: list[Token],
+) -> Diagnostic:
+    """The diagnostic (BT010 to BT014, BT019, BT038) for words `at` to `end`, which nothing in the vocabulary matches.
+
+    `context` is that of the lexer, with its pronouns.
+    """
+    unnamed = next(
+        (i for i in range(at, end) if text.words[i] == "{" and context.named(text, i) == (None, i + 1)), None
+    )
+    if unnamed is not None:
+        last = next((i for i in range(unnamed, end) if text.words[i] == "}"), unnamed)
+        name = " ".join(text.words[unnamed + 1 : last])
+        return unknown_value(text.span(unnamed, last + 1), name, context.known or ())
+    roots = (vocabulary.trie, definitions.trie)
+    start, misfits = at, list(_misfits(text, at, roots, context))
+    if before and before[-1].kind not in ("comma", "newline", "indent", "dedent", "open", "semi"):
+        phrase = bisect_left(text.starts, before[-1].start)  # `move forward 5 s`: read that far, and no further
+        longer = [found for found in _misfits(text, phrase, roots, context) if found.at >= at]
+        if longer and (not misfits or longer[0].at >= misfits[0].at):
+            start, misfits = phrase, longer
+    if misfits:
+        return _misfit(text, start, end, misfits, vocabulary, context, definitions)
+    number = vocabulary.values.number(text, at)
+    for _, kind, child in vocabulary.trie.get(SLOTS, ()):
+        if number is not None and text.words[number[1]] in child:  # `0 times`
+            return _number_misfit(text, at, number, [vocabulary.types[kind]], "", "", kind, vocabulary)
+    if number is not None or text.words[at][0] == '"':
+        return diagnostic("BT019", text.span(at, end), example='say "hello"')
+    return _unknown_phrase(text, at, end, vocabulary, definitions, before)
+
+
+def misread_head(text: Words, at: int, role: str, vocabulary: Vocabulary) -> Diagnostic:
+    """BT039 for a statement about a value of the mission that is not put together as one."""
+    word, places = vocabulary.word, vocabulary.values.names("place")
+    measured = (entry.quantity[0] for entries in vocabulary.entries.values() for entry in entries if entry.measures)
+    examples = {
+        "set": f"{word('set')} counter {word('set_to')} 3",
+        "increase": f"{word('increase')} counter {word('by')} 1",
+        "decrease": f"{word('decrease')} counter {word('by')} 1",
+        "remember": f"{word('remember')} {next(measured, 3)} {word('remember_as')} level",
+        "each": f"{word('each')} place {word('each_in')} {', '.join(places[:2]) or 'a, b'}: ...",
+    }
+    span = span_of(text, at)
+    return diagnostic("BT039", span, words=span.text, example=examples[role])
+
+
+def unknown_value(span: Span, key: str, known: Iterable[str]) -> Diagnostic:
+    """BT043: a name in braces that no value has."""
+    name, names = (key.replace("_", " ").strip(), [other.replace("_", " ").strip() for other in known])
+    near = nearest(name, names)
+    advice = _near_names(near, names) if names else "Nothing has a name in this mission yet."
+    braces = re.search(r"\{(\s*" + r"[\W_]+".join(map(re.escape, key.split("_"))) + r"\s*)\}", span.text, re.IGNORECASE)
+    fix = None
+    if near and braces:
+        fix = Span(span.source, span.start + braces.start(1), span.start + braces.end(1)), near[0]
+    return diagnostic("BT043", span, fix=fix, name=name, help=advice)
+
+
+_NOT_OFFERED = frozenset((*NODE_ROLES, "called", "with", "newline", "character", "main_name"))
+"""Roles for texts that programs write: what is like their words was hardly meant so."""
+
+
+class _Misfit(Record):
+    """A slot without a value of its type: the word where it is, the type, and the words that may follow the value."""
+
+    at: int
+    kind: str
+    following: frozenset[str]
+
+
+def _misfits(text: Words, at: int, roots: Iterable[TrieNode], context: ReadingContext) -> Iterator[_Misfit]:
+    """The slots that a phrase would have at the furthest word that its own words reach."""
+    furthest = at
+    found: dict[str, set[str]] = {}
+    paths: list[tuple[TrieNode, int]] = [(root, at) for root in roots]
+    while paths:
+        node, i = paths.pop()
+        for _, kind, child in node.get(SLOTS, ()):
+            value = context.read(kind, text, i)
+            if value is not None:
+                paths.append((child, value[1]))
+            elif i > furthest:
+                furthest, found = i, {kind: set(child)}
+            elif i == furthest and i > at:
+                found.setdefault(kind, set()).update(child)
+        child = node.get(text.words[i])
+        if child is not None:
+            paths.append((child, i + 1))
+    yield from (_Misfit(furthest, kind, frozenset(following)) for kind, following in found.items())
+
+
+def _misfit(
+    text: Words,
+    first: int,
+    end: int,
+    misfits: list[_Misfit],
+    vocabulary: Vocabulary,
+    context: ReadingContext,
+    definitions: Definitions,
+) -> Diagnostic:
+    at = misfits[0].at
+    types = [vocabulary.types[misfit.kind] for misfit in misfits]
+    wanted = " or ".join(f"{_article(kind.name)} {kind.name}" for kind in types)
+    head = text.span(first, at).text
+    example = f"{head} {_value_example(types[0], vocabulary)}"
+    if text.words[at] in _NOT_A_VALUE or _is_connective(text, at, vocabulary):
+        return diagnostic("BT012", text.span(first, at), words=head, wanted=wanted, example=example)
+    mentioned = context.named(text, at)
+    if mentioned is not None and mentioned[0] is not None:
+        return _wrong_type(text.span(at, mentioned[1]), mentioned[0], wanted)
+    quantity, number = vocabulary.values.quantity(text, at), vocabulary.values.number(text, at)
+    if quantity is not None:
+        span = text.span(at, quantity[2])
+        if quantity[1] in (kind.name for kind in types):
+            least = vocabulary.types[quantity[1]].least or 0
+            wanted = f"{_article(quantity[1])} {quantity[1]} is at least {least:g}"
+            return diagnostic("BT014", span, words=span.text, wanted=wanted)
+        reason = f"it is {_article(quantity[1])} {quantity[1]}, and {wanted} is needed"
+        return diagnostic("BT011", span, words=span.text, wanted=reason, example=example)
+    if number is not None:
+        return _number_misfit(text, at, number, types, head, example, wanted, vocabulary)
+    named = [kind for kind in types if kind.kind == "names"]
+    following = frozenset().union(*(misfit.following for misfit in misfits))
+    span = text.span(at, next((i for i in range(at + 1, end) if text.words[i] in following), max(end, at + 1)))
+    if named and text.words[at] in vocabulary.values.pronouns:
+        kinds = " or ".join(kind.name for kind in named)
+        return diagnostic(
+            "BT038",
+            text.span(at, at + 1),
+            words=text.words[at],
+            type=kinds,
+            example=_value_example(named[0], vocabulary),
+        )
+    if named:
+        known = [name for kind in named for name in vocabulary.values.names(kind.name)]
+        kinds = " or ".join(kind.name for kind in named)
+        near = nearest(span.text.lower(), known)
+        fix = (span, near[0]) if near else None
+        return diagnostic("BT013", span, fix=fix, type=kinds, words=span.text, help=_near_names(near, known))
+    if text.words[at][0] != '"':  # `turn leftt` lacks no angle
+        return _unknown_phrase(text, first, max(end, at + 1), vocabulary, definitions, [])
+    return diagnostic("BT011", span, words=span.text, wanted=f"{wanted} is needed", example=example)
+
+
+def _wrong_type(span: Span, known: Known, wanted: str) -> Diagnostic:
+    return diagnostic("BT044", span, name=" ".join(known.words), kind=known.kinds[0], wanted=wanted)
+
+
+def _is_connective(text: Words, at: int, vocabulary: Vocabulary) -> bool:
+    match = longest(vocabulary.trie, text, at, vocabulary.context)
+    return match is not None and match.meaning.entry is None and not match.values
+
+
+def _number_misfit(
+    text: Words,
+    at: int,
+    number: tuple[float, int],
+    types: list[ValueType],
+    head: str,
+    example: str,
+    wanted: str,
+    vocabulary: Vocabulary,
+) -> Diagnostic:
+    span = text.span(at, number[1])
+    measured = next((kind for kind in types if kind.kind == "quantity"), None)
+    if measured is not None:
+        units = [word for unit in measured.units for word in unit.words]
+        written = text.words[number[1]]
+        misspelt = [unit for unit in nearest(written, units)[:1] if is_respelling(written, unit, vocabulary)]
+        unit = misspelt[0] if misspelt else units[0]
+        value = with_unit(span.text, unit)
+        reason = f"{wanted} has a unit"
+        fix = (text.span(at, number[1] + len(misspelt)), value)
+        return diagnostic("BT011", span, fix=fix, words=span.text, wanted=reason, example=f"{head} {value}")
+    limited = next((kind for kind in types if kind.whole or kind.least is not None), None)
+    if limited is not None:
+        least = f" from {limited.least:g} on" if limited.least is not None else ""
+        reason = f"a {'whole ' if limited.whole else ''}number{least} is needed"
+        return diagnostic("BT014", span, words=span.text, wanted=reason)
+    return diagnostic("BT011", span, words=span.text, wanted=f"{wanted} is needed", example=example)
+
+
+def _ends_in_a_bare_text(command: Token) -> bool:
+    value = command.value
+    return (
+        isinstance(value, Called) and bool(value.arguments) and value.entry.slot(value.arguments[-1][0]).type == "text"
+    )
+
+
+def _unknown_phrase(
+    text: Words, at: int, end: int, vocabulary: Vocabulary, definitions: Definitions, before: list[Token]
+) -> Diagnostic:
+    span = text.span(at, end)
+    start = Span(text.source, before[-1].start, before[-1].end) if before else span
+    if before and before[-1].kind == "command" and _ends_in_a_bare_text(before[-1]) and start.text[-1].isalnum():
+        verb, _, word = start.text.rpartition(" ")
+        quoted = f'{verb} "{word} {span.text}"'
+        advice = f"A text of more than one word needs quotes: {quoted}"
+        whole = Span(text.source, start.start, span.end)
+        return diagnostic("BT010", span, fix=(whole, quoted), words=span.text, help=advice)
+    meant = longest(vocabulary.trie, text, at + 1, vocabulary.context) if end > at + 1 else None
+    is_node = text.words[at] in (phrase for role in NODE_ROLES for phrase in vocabulary.roles[role])
+    if is_node and meant is not None and meant.meaning.entry is not None:  # `do wave`
+        rest = text.span(at + 1, meant.last).text
+        whole = text.span(at, meant.last)
+        return diagnostic("BT010", span, fix=(whole, rest), words=span.text, help=nearest_known([rest]))
+    node = misread_node(text, at, vocabulary) if is_node else None
+    if node is not None:
+        advice = f"A node by its id: {' or '.join(node[1])}"
+        return diagnostic("BT010", node[0], fix=(node[0], node[1][0]), words=node[0].text, help=advice)
+    names = [header.name for header in definitions.headers.values()]
+    written = f" {' '.join(text.words[at:end])} "
+    inside = [(name, end - at) for name in names if f" {name} " in written]
+    near = dict(inside) | dict(_nearest_phrases(tuple(text.words[at:end]), vocabulary, tuple(names))) | dict(inside)
+    if not near:
+        return diagnostic("BT010", span, words=span.text, help="'btc words' lists what I know.")
+    likely, words = next(iter(near.items()))
+    fix = (text.span(at, min(at + words, end)), likely.partition(" {")[0])
+    return diagnostic("BT010", span, fix=fix, words=span.text, help=nearest_known(near))
+
+
+def nearest_known(words: Iterable[str]) -> str:
+    """The advice that lists what was probably meant."""
+    return "The nearest that I know: " + ", ".join(words)
+
+
+@lru_cache(maxsize=4)  # a text full of unknown words asks for them at each
+def _phrases(vocabulary: Vocabulary) -> dict[str, tuple[str, list[str]]]:
+    """What can be said, as people would write it: its id, and the words up to the first slot; each such start once."""
+    entries = [(entry.id, entry.phrases) for entries in vocabulary.entries.values() for entry in entries]
+    known: dict[tuple[str, ...], tuple[str, str]] = {}
+    roles = ((role, patterns) for role, patterns in vocabulary.roles.items() if role not in _NOT_OFFERED)
+    for id, patterns in (*entries, *roles):
+        for form in (form for pattern in patterns for form in reversed(forms(pattern, vocabulary.articles))):
+            start = tuple(str(part) for part in takewhile(lambda part: isinstance(part, str), form))
+            written = (f"{{{part.name}}}" if isinstance(part, Slot) else part for part in form)
+            known.setdefault(start, (" ".join(written), id))
+    return {written: (id, list(start)) for start, (written, id) in known.items() if start}
+
+
+@lru_cache(maxsize=256)  # mistakes repeat
+def _nearest_phrases(
+    all_written: tuple[str, ...], vocabulary: Vocabulary, names: tuple[str, ...]
+) -> list[tuple[str, int]]:
+    """Phrases and names that may have been meant, each with the number of words that stand for it; one of each id."""
+    phrases = {name: (name, name.split()) for name in names} | _phrases(vocabulary)
+    written = list(takewhile(lambda word: word[0].isalpha(), all_written))  # a value stands for no word
+    near = nearest_start(written, {key: start for key, (_, start) in phrases.items()})
+    best = {phrases[key][0]: key for key in reversed(near)}
+    return [(key, len(phrases[key][1])) for key in near if best[phrases[key][0]] == key][:3]
+
+
+def _near_names(near: list[str], known: list[str]) -> str:
+    if near:
+        return "The nearest: " + ", ".join(near)
+    return "Known: " + ", ".join(known) if known else "None is known in this world."
+
+
+def _value_example(kind: ValueType, vocabulary: Vocabulary) -> str:
+    names = vocabulary.values.names(kind.name) if kind.kind == "names" else []
+    return names[0] if names else kind.example
+
+
+def _article(word: str) -> str:
+    return "an" if word[0] in "aeiou" else "a"

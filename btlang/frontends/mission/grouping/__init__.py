@@ -1,0 +1,1 @@
+"""Raw tokens to grouped tokens, which need no look-ahead any more."""

@@ -1,0 +1,63 @@
+"""Bodies of forms: what separates them from their heads, blocks, and what stands behind `otherwise`."""
+
+from __future__ import annotations
+
+from btlang.diagnostics.diagnostic import diagnostic
+from btlang.frontends.mission.grouping.scan import Scan
+from btlang.frontends.mission.grouping.stack import StackEntry
+from btlang.frontends.mission.token import Token
+
+
+def separator(scan: Scan) -> None:
+    """What may stand between the head of a form and its body."""
+    token = scan.raw[scan.at]
+    if token.kind in ("comma", "then", "colon"):
+        scan.next(token, True)
+        if token.kind == "colon":
+            block = scan.raw[scan.at]
+            if block.kind == "indent":
+                scan.open_block()
+            elif block.kind in ("newline", "dedent", "end"):
+                scan.skip_statement()  # the lexer has told that the block is missing
+        elif token.kind == "comma" and scan.raw[scan.at].kind == "then":
+            scan.next(scan.raw[scan.at], True)
+
+
+def begin_otherwise(scan: Scan) -> None:
+    if scan.raw[scan.at].kind != "otherwise":
+        scan.at += 1  # a comma or the end of the line before it
+    token = scan.raw[scan.at]
+    opener = scan.emit("ELSE", token)
+    opener.start = scan.last_end
+    scan.stack.append(StackEntry("body", opener, scan.stack[-1]))
+    scan.next(token, True)
+    separator(scan)
+
+
+def end_block(scan: Scan) -> None:
+    scan.at += 1
+    scan.operand_due = False
+    if scan.stack[-1].kind != "block":
+        return
+    block = scan.stack.pop()
+    if not block.statement and block.opener is not None:  # there is nothing but politeness in it
+        scan.problems.append(diagnostic("BT027", scan.span(block.opener)))
+    scan.out.append(Token("CLOSE", scan.last_end, scan.last_end))
+    body = scan.stack[-1]
+    is_rule = body.opener is not None and body.opener.role == "whenever"
+    if body.kind == "body" and body.else_owner is not body and not (is_rule and scan.at_otherwise()):
+        scan.stack.pop()  # an `otherwise` behind a rule is about what the rule does
+        scan.emit_end()
+
+
+def block_follows(scan: Scan) -> bool:
+    return scan.raw[scan.at].kind == "colon" and scan.raw[scan.at + 1].kind == "indent"
+
+
+def set_amount(scan: Scan, opener: Token, amount: Token) -> None:
+    """A count or duration of a repeat or try, before or after its body."""
+    if amount.kind == "count":
+        opener.role = "repeat" if opener.role == "repeat" else "retry"
+    else:
+        opener.role = "for"
+    opener.value = amount.value

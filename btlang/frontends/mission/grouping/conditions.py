@@ -1,0 +1,95 @@
+"""Conditions: where they end, and what follows their end."""
+
+from __future__ import annotations
+
+from btlang.frontends.mission.grouping.bodies import begin_otherwise, separator
+from btlang.frontends.mission.grouping.scan import ENDS, Scan
+from btlang.frontends.mission.grouping.stack import StackEntry
+from btlang.frontends.mission.token import Token
+
+STARTS_OPERAND = frozenset((
+    "command", "condition", "unknown", "wait", "nothing", "fail", "not", "open", "repeat", "try", "retry", "check",
+    "wait_until", "whenever", "in_parallel", "in_order", "each", "node",
+))  # fmt: skip
+"""What can only be the start of a command or condition."""
+
+
+def after_condition(scan: Scan, token: Token) -> None:
+    entry = scan.stack[-1]
+    joined = connective_of(scan, token)
+    if joined:
+        entry.connective(scan.emit(joined, token))
+        scan.next(token, True)
+        if joined.startswith("WIDE"):
+            scan.at += 1
+    elif entry.kind == "condition bracket":
+        if token.kind != "close":
+            opener = entry.opener or token
+            scan.fail("BT023", scan.span(opener))
+            return
+        entry.close_chain()
+        scan.stack.pop()
+        scan.emit("COND_CLOSE", token)
+        scan.next(token, False)
+    else:
+        entry.close_chain()
+        scan.stack.pop()
+        end_condition(scan, entry, token)
+
+
+def connective_of(scan: Scan, token: Token) -> str:
+    """The kind of a connective that another condition follows, else ""."""
+    at = scan.at
+    if token.kind == "comma":
+        following = scan.raw[at + 1].kind
+        if following in ("and", "or"):
+            return "WIDE_" + following.upper() if scan.condition_at(at + 2) else ""
+        return "COMMA" if scan.condition_at(at + 1) else ""
+    return token.kind.upper() if token.kind in ("and", "or") and scan.condition_at(at + 1) else ""
+
+
+def closes_statement(scan: Scan, at: int) -> bool:
+    """Whether from here to the end of the statement or bracket there is nothing but a condition."""
+    first, depth = at, 0
+    while True:
+        kind = scan.raw[at].kind
+        if kind in ("and", "or", "comma"):
+            after = at + 2 if kind == "comma" and scan.raw[at + 1].kind in ("and", "or") else at + 1
+            if not scan.condition_at(after):
+                return False
+            at = after
+            continue
+        if (kind == "close" and depth == 0) or kind in ENDS - {"close"}:
+            otherwise = kind == "newline" and scan.raw[at + 1].kind == "otherwise"
+            return at > first and not otherwise
+        if kind not in ("condition", "not", "open", "close"):
+            return False
+        depth += (kind == "open") - (kind == "close")
+        at += 1
+
+
+def end_condition(scan: Scan, entry: StackEntry, token: Token) -> None:
+    if entry.after == "body":
+        scan.emit("DO", token)
+        body = StackEntry("body", entry.opener, scan.stack[-1])
+        body.else_owner = body if entry.opener is not None and entry.opener.role != "whenever" else None
+        scan.stack.append(body)
+        scan.operand_due = True
+        if token.kind in ("and", "or"):
+            following = scan.raw[scan.at + 1]
+            if following.kind in STARTS_OPERAND:
+                place = f"after '{scan.words(token)}'"
+                scan.fail("BT029", scan.span(following), words=scan.words(following), place=place)
+                return
+        separator(scan)
+    elif entry.after == "postfix" and scan.at_otherwise() and entry.opener and entry.opener.role in ("if", "unless"):
+        begin_otherwise(scan)
+    elif entry.after != "definition":
+        scan.emit_end()
+
+
+def is_refused(scan: Scan, token: Token) -> bool:
+    if scan.stack[-1].is_condition:
+        scan.fail("BT029", scan.span(token), words=scan.words(token), place="here")
+        return True
+    return False

@@ -1,0 +1,75 @@
+"""Grouping: one scan with a stack, like the matching of brackets, over raw tokens.
+
+It decides all that needs look-ahead: where conditions end and which connectives join them, what each bare comma means,
+which count, `for`, `until` or `while` closes an open `repeat` or `try`, who owns each `otherwise`, and which comma
+widens. It also is the one judge of syntax: what it lets through, both parsers accept.
+
+The scan alternates between two states: an operand must come, or something that follows an operand.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from btlang.diagnostics.diagnostic import Diagnostic
+from btlang.frontends.mission.grouping import operands, operators, problems
+from btlang.frontends.mission.grouping.conditions import STARTS_OPERAND, after_condition
+from btlang.frontends.mission.grouping.scan import Scan, Unit
+from btlang.frontends.mission.token import Token
+from btlang.record import Record
+from btlang.text.source import Source
+
+
+class Grouped(Record):
+    """The units of a text, the problems with its syntax, and the raw token (the end is one) at which each showed."""
+
+    units: tuple[Unit, ...]
+    problems: list[Diagnostic]
+    failed_at: list[int]
+
+
+def group(source: Source, raw: list[Token], conditions: set[str], word: Callable[[str], str] = str) -> Grouped:
+    """Groups the raw tokens of a source.
+
+    `conditions` are the defined names that stand for conditions; `word` gives the word of a role, for corrections.
+    """
+    scan = Scan(source, raw, conditions, word)
+    while scan.at < len(scan.raw):
+        token = scan.raw[scan.at]
+        if scan.operand_due:
+            _OPERAND.get(token.kind, problems.no_operand)(scan, token)
+        elif scan.stack[-1].is_condition:
+            after_condition(scan, token)
+        else:
+            _OPERATOR.get(token.kind, problems.side_by_side)(scan, token)
+    scan.units.append(Unit(None, tuple(scan.out)))
+    return Grouped(tuple(scan.units), scan.problems, scan.failed_at)
+
+
+_OPERAND: dict[str, Callable[[Scan, Token], None]] = {
+    **dict.fromkeys(("command", "condition", "unknown", "wait", "nothing", "fail"), operands.operand),
+    **dict.fromkeys(("if", "unless", "while", "until"), operands.form),
+    **dict.fromkeys(("check", "wait_until"), operands.test),
+    **dict.fromkeys(operands.SEPARATORS, operands.joined_block),
+    **dict.fromkeys(("repeat", "try", "retry", "every", "delay", "each"), operands.loop),
+    "whenever": operands.rule,
+    "not": operands.negation,
+    "open": operands.open_bracket,
+    "then": operands.leading_then,
+    "define": operands.definition,
+}
+
+_OPERATOR: dict[str, Callable[[Scan, Token], None]] = {
+    **dict.fromkeys(("then", "and", "or", "after"), operators.connective),
+    **dict.fromkeys(("within", "if_possible", "every", "delay"), operators.postfix),
+    **dict.fromkeys(("if", "unless", "while", "until", "provided"), operators.form_after),
+    **dict.fromkeys(STARTS_OPERAND, problems.side_by_side),
+    **dict.fromkeys(("newline", "semi", "dedent", "end"), operators.end_statement),
+    "repeat": operators.repeat_after,
+    "comma": operators.comma,
+    "otherwise": operators.otherwise,
+    "count": operators.amount_of_form,
+    "for": operators.amount_of_form,
+    "close": operators.close_bracket,
+    "colon": operators.colon,
+}

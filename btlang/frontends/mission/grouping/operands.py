@@ -1,0 +1,152 @@
+"""What may begin where an operand must come."""
+
+from __future__ import annotations
+
+from btlang.frontends.mission.grouping.bodies import block_follows, separator, set_amount
+from btlang.frontends.mission.grouping.conditions import is_refused
+from btlang.frontends.mission.grouping.problems import no_operand, word_before
+from btlang.frontends.mission.grouping.scan import Scan
+from btlang.frontends.mission.grouping.stack import StackEntry
+from btlang.frontends.mission.token import Header, Token
+
+SEPARATORS = {"in_parallel": "BLOCK_AND", "in_order": "BLOCK_OR", "node": "BLOCK_CHILD"}
+"""What begins a block with another token than SEMI between its lines."""
+
+
+def operand(scan: Scan, token: Token) -> None:
+    entry = scan.stack[-1]
+    if token.kind == "unknown":
+        scan.begin_statement(token)
+        scan.skip_statement()
+        return
+    if entry.is_condition:
+        if token.kind != "condition":
+            before = scan.raw[scan.at - 1]
+            place = f"after '{scan.words(before)}'" if before.end > before.start else "here"
+            scan.fail("BT029", scan.span(token), words=scan.words(token), place=place)
+            return
+        scan.emit("CONDITION", token)
+    else:
+        if token.kind == "condition":
+            scan.fail("BT028", scan.span(token), word_before(scan, token, "check"), words=scan.words(token))
+            return
+        scan.begin_statement(token)
+        scan.emit("COMMAND", token, token.kind if token.kind != "command" else "")
+    scan.next(token, False)
+
+
+def negation(scan: Scan, token: Token) -> None:
+    if not scan.stack[-1].is_condition:
+        if scan.condition_at(scan.at + 1):
+            last = scan.raw[scan.at + 1]
+            span = scan.span(token, last if last.kind == "condition" else token)
+            scan.fail("BT028", span, word_before(scan, token, "check"), words=span.text)
+            return
+        scan.stack.append(StackEntry("condition"))  # for the message: what follows `not` is no condition
+    scan.emit("NOT", token)
+    scan.next(token, True)
+
+
+def open_bracket(scan: Scan, token: Token) -> None:
+    entry = scan.stack[-1]
+    if entry.is_condition:
+        scan.stack.append(StackEntry("condition bracket", scan.emit("COND_OPEN", token)))
+    else:
+        scan.begin_statement(token)
+        scan.stack.append(StackEntry("bracket", scan.emit("OPEN", token)))
+    scan.next(token, True)
+
+
+def form(scan: Scan, token: Token) -> None:
+    if is_refused(scan, token):
+        return
+    scan.begin_statement(token)
+    opener = scan.emit("FORM", token, token.kind)
+    scan.stack.append(StackEntry("condition", opener, scan.stack[-1], after="body"))
+    scan.next(token, True)
+
+
+def rule(scan: Scan, token: Token) -> None:
+    """A standing rule begins a statement of the text or of a block that is a sequence."""
+    entry = scan.stack[-1]
+    if entry.kind not in ("top", "block") or entry.statement == "open" or entry.separator != "SEMI" or entry.last:
+        scan.fail("BT037", scan.span(token), words=scan.words(token))
+        return
+    form(scan, token)
+
+
+def test(scan: Scan, token: Token) -> None:
+    if is_refused(scan, token):
+        return
+    scan.begin_statement(token)
+    scan.stack.append(StackEntry("condition", scan.emit("TEST", token, token.kind), after="end"))
+    scan.next(token, True)
+
+
+def loop(scan: Scan, token: Token) -> None:
+    """repeat, try, retry, every 5 s, after 5 s."""
+    if is_refused(scan, token):
+        return
+    following = scan.raw[scan.at + 1]
+    if token.kind == "repeat" and following.kind in ("until", "while"):
+        scan.at += 1  # `repeat until` is a word of `until`
+        scan.raw[scan.at] = Token(following.kind, token.start, following.end, following.value, following.role)
+        return
+    scan.begin_statement(token)
+    opener = scan.emit("LOOP", token, token.kind)
+    body = StackEntry("body", opener, scan.stack[-1])
+    scan.next(token, True)
+    if token.kind in ("repeat", "try", "retry"):
+        if following.kind == "count" or (following.kind == "for" and token.kind == "repeat"):
+            set_amount(scan, opener, following)
+            scan.next(following, True)
+        elif not block_follows(scan):
+            body.count_owner = body
+            body.stop_owner = body if token.kind == "repeat" else body.stop_owner
+        if token.kind != "repeat":
+            body.else_owner = body
+    scan.stack.append(body)
+    separator(scan)
+
+
+def joined_block(scan: Scan, token: Token) -> None:
+    """`in parallel:`, `the first that works:` or a node that is said by its id, and the lines below."""
+    if is_refused(scan, token):
+        return
+    scan.begin_statement(token)
+    if token.kind == "node":
+        opener = scan.emit("LOOP", token, "node")
+        scan.stack.append(StackEntry("body", opener, scan.stack[-1]))
+    colon = scan.raw[scan.at + 1]
+    body = scan.raw[scan.at + 2] if colon.kind == "colon" else colon
+    on_this_line = "\n" not in scan.source.text[colon.end : body.start]
+    if colon.kind != "colon" or (on_this_line and body.kind not in ("indent", "dedent", "end")):
+        scan.fail("BT035", scan.span(token), words=scan.words(token))
+        return
+    scan.next(token, True)
+    scan.next(colon, True)
+    if scan.raw[scan.at].kind == "indent":
+        scan.open_block(SEPARATORS[token.kind])
+    else:
+        scan.skip_statement()  # the lexer has told that the block is missing
+
+
+def leading_then(scan: Scan, token: Token) -> None:
+    """`After that, go home` at the start of a statement joins it as the line end does already."""
+    entry = scan.stack[-1]
+    if not entry.is_group or entry.last is not None or entry.statement == "open":
+        no_operand(scan, token)
+        return
+    scan.next(token, True)
+    if scan.raw[scan.at].kind == "comma":
+        scan.at += 1
+
+
+def definition(scan: Scan, token: Token) -> None:
+    assert isinstance(token.value, Header)
+    scan.header = token.value
+    scan.out, scan.stack = [], [StackEntry("top")]
+    if token.value.name in scan.conditions:
+        scan.stack.append(StackEntry("condition", after="definition"))
+    scan.next(token, True)
+    separator(scan)

@@ -1,0 +1,93 @@
+"""What is wrong with the syntax (BT020 to BT037), in words, and how it may be mended."""
+
+from __future__ import annotations
+
+from btlang.frontends.mission.grouping.scan import ENDS, STARTS_STATEMENT, Scan
+from btlang.frontends.mission.token import Token
+from btlang.text.source import Span
+
+_COMMANDS = frozenset(("command", "wait", "nothing", "fail", "open"))
+_FOUND = {"newline": "the line ends", "semi": "the sentence ends", "close": "the bracket closes"}
+
+
+def no_operand(scan: Scan, token: Token) -> None:
+    """Something stands where a command or condition must."""
+    entry = scan.stack[-1]
+    before = scan.raw[scan.at - 1] if scan.at else None
+    wanted = "condition" if entry.is_condition else "command"
+    starts = before is None or before.kind in STARTS_STATEMENT
+    if starts and token.kind in ENDS:
+        nothing_there(scan, token, before)
+    elif token.kind == "colon":
+        scan.fail("BT026", scan.span(token))
+    elif starts and token.kind == "comma":
+        scan.fail(
+            "BT032", scan.span(token), (with_blanks(scan, token), ""), place="at the start", advice="Take it away."
+        )
+    elif starts or token.kind not in ENDS | {"then", "and", "or", "after", "otherwise", "comma"}:
+        scan.fail("BT022", scan.span(token), word=scan.words(token), example="wave")
+    elif before is not None and before.kind == "comma" and token.kind in ENDS:
+        advice = "Take it away, or say what follows."
+        scan.fail("BT032", scan.span(before), (scan.span(before), ""), place="at the end", advice=advice)
+    elif before is not None:
+        scan.fail("BT020", scan.span(before), wanted=wanted, word=scan.words(before), found=found_words(scan, token))
+
+
+def nothing_there(scan: Scan, token: Token, before: Token | None) -> None:
+    if token.kind == "close" and before is not None and before.kind == "open":
+        scan.fail("BT025", scan.span(before, token))
+    elif before is not None and before.kind == "define":
+        words = scan.words(before)
+        scan.fail("BT020", scan.span(before), wanted="command", word=words, found="nothing does")
+    elif token.kind == "newline" and scan.at_otherwise():
+        scan.at += 1  # an empty line is nothing to which `otherwise` could be the other way
+    else:
+        scan.operand_due = False  # an empty line or sentence
+
+
+def side_by_side(scan: Scan, token: Token) -> None:
+    if token.kind == "unknown":
+        scan.skip_statement()
+        return
+    before = scan.raw[scan.at - 1]
+    scan.fail("BT021", scan.span(before, token), word_before(scan, token, "then"), word=scan.words(token))
+
+
+def is_alone(scan: Scan) -> bool:
+    """Whether one command stands before this place in its bracket: what comes can be about nothing else."""
+    entry = scan.stack[-1]
+    return entry.is_group and entry.last is None
+
+
+def both_readings(scan: Scan, form: Token) -> str:
+    """What a form behind a comma may be about, as two texts: the command before it, or all in this bracket."""
+    first = last = scan.at
+    depth = 0
+    while first and (depth or scan.raw[first - 1].kind not in STARTS_STATEMENT):
+        first -= 1
+        depth += (scan.raw[first].kind == "close") - (scan.raw[first].kind == "open")
+        if not depth and last == scan.at and scan.raw[first].kind in _COMMANDS:
+            last = first
+    end = form.end
+    if form.kind == "provided":
+        end = next(token.start for token in scan.raw[scan.at :] if token.kind in ENDS)
+    text, start, command = scan.source.text, scan.raw[first].start, scan.raw[last].start
+    before, form_words = text[start : scan.raw[scan.at].start], text[form.start : end].strip()
+    one = f"{before[: command - start]}({before[command - start :]} {form_words})"
+    return f"Write which you mean: {one}, or: ({before}) {form_words}"
+
+
+def word_before(scan: Scan, token: Token, role: str) -> tuple[Span, str]:
+    """A fix: the word of a role put before a token."""
+    return Span(scan.source, token.start, token.start), f"{scan.word(role)} "
+
+
+def with_blanks(scan: Scan, token: Token) -> Span:
+    text = scan.source.text
+    return Span(scan.source, token.start, len(text) - len(text[token.end :].lstrip(" \t")))
+
+
+def found_words(scan: Scan, token: Token) -> str:
+    if token.kind in _FOUND:
+        return _FOUND[token.kind]
+    return "the mission ends" if token.kind in ENDS else f"'{scan.words(token)}' stands there"

@@ -1,0 +1,137 @@
+"""The state of grouping: what comes in, what goes out, what is open, and what is wrong."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.frontends.mission.grouping.stack import StackEntry
+from btlang.frontends.mission.token import Header, Token
+from btlang.record import Record
+from btlang.text.source import Source, Span
+
+ENDS = frozenset(("newline", "semi", "close", "dedent", "end"))
+STARTS_STATEMENT = frozenset(("newline", "semi", "indent", "dedent", "open", "define"))
+_CLOSES_LINE = frozenset(("newline", "indent", "dedent", "end"))
+
+
+class Unit(Record):
+    """The grouped tokens of the mission's commands (`header` is None) or of one definition."""
+
+    header: Header | None
+    tokens: tuple[Token, ...]
+
+
+class Scan:
+    """One pass over raw tokens: `at` is the next of them, `out` what was made, `stack` what is open.
+
+    `operand_due` says that an operand must come. One problem is told for each statement; `failed_at` has the raw token
+    (the end is one too) at which each showed. `main` are `out` and `stack` outside of definitions, `header` is that of
+    the definition that is being read.
+    """
+
+    def __init__(self, source: Source, raw: list[Token], conditions: set[str], word: Callable[[str], str]) -> None:
+        self.source = source
+        self.raw = [*_without_idle_stops(raw), Token("end", len(source.text), len(source.text))]
+        self.conditions = conditions
+        self.word = word
+        self.at = 0
+        self.operand_due = True
+        self.last_end = 0
+        self.out: list[Token] = []
+        self.stack = [StackEntry("top")]
+        self.main = self.out, self.stack
+        self.header: Header | None = None
+        self.units: list[Unit] = []
+        self.problems: list[Diagnostic] = []
+        self.failed_at: list[int] = []
+
+    def emit(self, kind: str, token: Token, role: str = "") -> Token:
+        """One that covers the same words and has the same value."""
+        made = Token(kind, token.start, token.end, token.value, role)
+        self.out.append(made)
+        return made
+
+    def emit_end(self) -> None:
+        self.out.append(Token("END", self.last_end, self.last_end))
+
+    def next(self, token: Token, operand_due: bool) -> None:
+        """The token is dealt with."""
+        self.at += 1
+        self.last_end = token.end
+        self.operand_due = operand_due
+
+    def span(self, first: Token, last: Token | None = None) -> Span:
+        return Span(self.source, first.start, (last or first).end)
+
+    def words(self, token: Token) -> str:
+        return self.span(token).text
+
+    def begin_statement(self, token: Token) -> None:
+        """Statements of a group are joined when the second one begins, so that trailing ends count for nothing."""
+        entry = self.stack[-1]
+        if entry.is_group:
+            if entry.statement == "ended":
+                self.out.append(Token(entry.separator, token.start, token.start))
+            entry.statement = "open"
+
+    def close_forms(self, down_to: StackEntry | None = None) -> None:
+        """Closes the open forms of this bracket, down to one of them (which stays open)."""
+        while not self.stack[-1].is_group and self.stack[-1] is not down_to:
+            self.stack.pop().close_chain()
+            self.emit_end()
+
+    def open_block(self, separator: str = "SEMI") -> None:
+        """At an indent: the lines below are statements of a new group, with a token between them."""
+        following = self.raw[self.at + 1]
+        self.out.append(Token("OPEN", following.start, following.start))
+        block = StackEntry("block", self.raw[self.at - 1])
+        block.separator = separator
+        self.stack.append(block)
+        self.at += 1
+        self.operand_due = True
+
+    def condition_at(self, at: int) -> bool:
+        while self.raw[at].kind == "open":
+            at += 1
+        return self.raw[at].kind in ("condition", "not")
+
+    def at_otherwise(self) -> bool:
+        token = self.raw[self.at]
+        if token.kind == "comma" or (token.kind == "newline" and all(e.kind != "bracket" for e in self.stack)):
+            token = self.raw[self.at + 1]
+        return token.kind == "otherwise"
+
+    def fail(self, code: str, span: Span, fix: tuple[Span, str] | None = None, **arguments: str) -> None:
+        self.problems.append(diagnostic(code, span, (), fix, **arguments))
+        self.failed_at.append(self.at)
+        self.skip_statement()
+
+    def skip_statement(self) -> None:
+        """One message a statement: goes on after it, so that all broken statements of a file are told at once."""
+        depth = sum(entry.kind in ("bracket", "condition bracket") for entry in self.stack)
+        while not self.stack[-1].is_group or self.stack[-1].kind == "bracket":
+            self.stack.pop()
+        while True:
+            kind = self.raw[self.at].kind
+            depth += (kind == "open") - (kind == "close")
+            if kind in _CLOSES_LINE or (kind == "semi" and depth <= 0):
+                break
+            self.at += 1
+        self.stack[-1].close_chain()
+        self.operand_due = False
+        if self.raw[self.at].kind == "indent":
+            self.open_block()
+
+
+def _without_idle_stops(raw: list[Token]) -> list[Token]:
+    """A stop at the end of a line ends nothing where the next line goes on with `otherwise`."""
+    kept: list[Token] = []
+    for at, token in enumerate(raw):
+        if token.kind == "otherwise" and at and raw[at - 1].kind == "newline":
+            newline = kept.pop()
+            while kept and kept[-1].kind == "semi":
+                kept.pop()
+            kept.append(newline)
+        kept.append(token)
+    return kept

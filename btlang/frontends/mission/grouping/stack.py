@@ -1,0 +1,81 @@
+"""What is open at a place in a sentence: brackets, blocks, forms and conditions."""
+
+from __future__ import annotations
+
+from btlang.frontends.mission.token import Token
+
+
+class StackEntry:
+    """One open thing. `kind` is "top", "block", "bracket", "body", "condition" or "condition bracket".
+
+    The owners are the nearest open forms of the same bracket that a count, an `until` (or `while`, `for`) or an
+    `otherwise` would belong to; `after` says what follows the end of a condition. `commas` are those whose meaning
+    the next connective will tell; `last` is the latest connective. `statement` of a group is "", "open" or "ended";
+    `separator` is the token between its statements. `is_group`: it holds statements; `is_condition`: operands in it are
+    conditions.
+    """
+
+    __slots__ = (
+        "after",
+        "commas",
+        "count_owner",
+        "else_owner",
+        "is_condition",
+        "is_group",
+        "kind",
+        "last",
+        "opener",
+        "separator",
+        "statement",
+        "stop_owner",
+    )  # fmt: skip
+
+    def __init__(
+        self, kind: str, opener: Token | None = None, outer: StackEntry | None = None, after: str = ""
+    ) -> None:
+        self.kind = kind
+        self.is_group = kind in ("top", "block", "bracket")
+        self.is_condition = kind in ("condition", "condition bracket")
+        self.opener = opener
+        self.after = after
+        self.count_owner: StackEntry | None = outer.count_owner if outer else None
+        self.stop_owner: StackEntry | None = outer.stop_owner if outer else None
+        self.else_owner: StackEntry | None = outer.else_owner if outer else None
+        self.commas: list[Token] = []
+        self.last: Token | None = None
+        self.statement = ""
+        self.separator = "SEMI"
+
+    def connective(self, token: Token) -> None:
+        """Notes a connective: the commas before it take its meaning if it is `and` or `or`, else they mean `then`.
+
+        A comma right before `and` or `or` (`a, b, and c`) is an Oxford comma where a comma stands before that too:
+        it widens nothing.
+        """
+        condition = self.is_condition
+        if token.kind == "COMMA":
+            self.commas.append(token)
+            self.last = token
+            return
+        if token.kind in ("WIDE_AND", "WIDE_OR") and self.last is not None and self.last.kind == "COMMA":
+            token.kind = token.kind[5:]
+        meaning = token.kind if token.kind in ("AND", "OR") else ""
+        self._settle(meaning)
+        if token.kind == "WIDE_OR":
+            token.kind = "OR_ELSE"
+        if condition:
+            token.kind = "COND_" + token.kind
+        self.last = token
+
+    def close_chain(self) -> None:
+        """The chain of operands ends here: what no connective told the commas, they mean `then` (or `and`)."""
+        self._settle("")
+        self.last = None
+
+    def _settle(self, meaning: str) -> None:
+        if not self.commas:
+            return
+        kind = ("COND_" + (meaning or "AND")) if self.is_condition else (meaning or "THEN")
+        for comma in self.commas:
+            comma.kind = kind
+        self.commas.clear()

@@ -1,0 +1,1 @@
+"""Grouped tokens to the syntax tree, in two ways that give the same."""

@@ -1,0 +1,162 @@
+"""Grouped tokens and parts to AST nodes: what both parsers call, so that only the grouping is theirs to find."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from btlang.frontends.mission.token import Assigned, Called, Each, Listed, NodeCall, Remembered, Token
+from btlang.text.source import Source, Span
+from btlang.tree.ast import (
+    Assign,
+    Ast,
+    Chain,
+    Check,
+    Compared,
+    Delay,
+    Every,
+    Exact,
+    Fail,
+    For,
+    ForEach,
+    If,
+    Name,
+    Not,
+    Nothing,
+    Phrase,
+    Provided,
+    Remember,
+    Repeat,
+    Retry,
+    Try,
+    Wait,
+    WaitUntil,
+    Whenever,
+    While,
+    Within,
+)
+from btlang.vocabulary.entry import Entry
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.frontends.mission.token import Value
+
+CHAINS = {
+    "SEMI": "sequence", "BLOCK_AND": "parallel", "BLOCK_OR": "fallback", "BLOCK_CHILD": "children",
+    "OR_ELSE": "fallback", "WIDE_AND": "parallel", "THEN": "sequence", "AFTER": "sequence",
+    "OR": "fallback", "AND": "parallel",
+    "COND_OR_ELSE": "any", "COND_WIDE_AND": "all", "COND_OR": "any", "COND_AND": "all",
+}  # fmt: skip
+"""What each connective makes of its operands."""
+
+
+class Builder:
+    """Makes the nodes of one source."""
+
+    def __init__(self, source: Source) -> None:
+        self.source = source
+
+    def span(self, start: int, end: int) -> Span:
+        return Span(self.source, start, end)
+
+    def leaf(self, token: Token) -> Ast:
+        """COMMAND or CONDITION."""
+        span, value = Span(self.source, token.start, token.end), token.value
+        if type(value) is Called:
+            return _called(value.entry, value.arguments, span)
+        if token.role == "wait":
+            return Wait(_amount(token), span)
+        if token.role:
+            return Nothing(span) if token.role == "nothing" else Fail(span)
+        return self._stated(value, token.kind == "CONDITION", span)
+
+    def _stated(self, value: Value, is_condition: bool, span: Span) -> Ast:
+        if isinstance(value, Assigned):
+            return Assign(value.key, value.operation, value.kind, value.text, span)
+        if isinstance(value, Remembered):
+            return Remember(value.key, value.entry, value.arguments, span)
+        if isinstance(value, NodeCall):
+            return Exact(value.id, value.ports, value.name, (), is_condition, span)
+        assert isinstance(value, Listed)
+        operators = ("any", "all") if is_condition else ("fallback", "sequence")
+        items = tuple(_called(value.entry, arguments, span) for arguments in value.arguments)
+        return Chain(operators[value.joiner != "or"], items, True, span)
+
+    def chain(self, operator: str, items: Sequence[Ast], start: int, end: int) -> Ast:
+        """Operands of one kind of connective, flat: equal chains without brackets melt into it."""
+        if len(items) == 1:
+            return items[0]
+        flat: list[Ast] = []
+        for item in items:
+            if type(item) is Chain and item.operator == operator and not item.bracketed:
+                flat += item.items
+            else:
+                flat.append(item)
+        return Chain(operator, tuple(flat), False, Span(self.source, start, end))
+
+    def group(self, inner: Ast, start: int, end: int) -> Ast:
+        """A bracket or block keeps a chain apart; round anything else it changes nothing."""
+        if type(inner) is Chain and not inner.bracketed:
+            return Chain(inner.operator, inner.items, True, Span(self.source, start, end))
+        return inner
+
+    def negation(self, token: Token, condition: Ast) -> Ast:
+        return Not(condition, Span(self.source, token.start, condition.span.end))
+
+    def postfix(self, body: Ast, token: Token) -> Ast:
+        """POSTFIX."""
+        return self._counted(token.role, _amount(token), body, Span(self.source, body.span.start, token.end))
+
+    def loop(self, opener: Token, body: Ast, otherwise: Ast | None, end: int, tried_end: int) -> Ast:
+        """LOOP body [ELSE otherwise] END; `tried_end` is where the part before `otherwise` ends."""
+        kind, value = opener.role, opener.value
+        span = Span(self.source, opener.start, end)
+        if isinstance(value, Each):
+            return ForEach(value.key, value.kind, value.values, body, span)
+        if isinstance(value, NodeCall):
+            children = body.items if isinstance(body, Chain) and body.operator == "children" else (body,)
+            return Exact(value.id, value.ports, value.name, children, False, span)
+        if kind == "try":
+            return Try(body, otherwise, span)
+        amount = _amount(opener)
+        if otherwise is None:
+            return self._counted(kind, amount, body, span)
+        return Try(self._counted(kind, amount, body, Span(self.source, opener.start, tried_end)), otherwise, span)
+
+    def _counted(self, kind: str, amount: str, body: Ast, span: Span) -> Ast:
+        if kind in ("repeat", "count"):
+            return Repeat(amount or "-1", body, span)
+        if kind == "retry":
+            return Retry(amount or "-1", body, span)
+        if kind == "if_possible":
+            return Try(body, None, span)
+        timed = {"for": For, "within": Within, "every": Every, "delay": Delay}[kind]
+        return timed(amount, body, span)
+
+    def form(self, kind: str, condition: Ast, body: Ast, otherwise: Ast | None, start: int, end: int) -> Ast:
+        """if, unless, while, until, provided, whenever: before or after a command."""
+        span = Span(self.source, start, end)
+        if kind == "whenever":
+            return Whenever(condition, body, span)
+        if kind == "provided":
+            return Provided(condition, body, span)
+        if kind in ("if", "unless"):
+            return If(kind == "unless", condition, body, otherwise, span)
+        return While(kind == "until", condition, body, otherwise, span)
+
+    def test(self, opener: Token, condition: Ast, end: int) -> Ast:
+        """check, wait until."""
+        span = Span(self.source, opener.start, end)
+        return Check(condition, span) if opener.role == "check" else WaitUntil(condition, span)
+
+
+def _amount(token: Token) -> str:
+    """The count or duration of a token, "" where it has none."""
+    return token.value if isinstance(token.value, str) else ""
+
+
+def _called(entry: Entry, arguments: tuple[tuple[str, str], ...], span: Span) -> Ast:
+    if entry.sort == "name":
+        return Name(entry.id, arguments, span)
+    if entry.sort == "value":
+        return Compared(entry.id, entry.measures, arguments, span)
+    return Phrase(entry, arguments, span)

@@ -1,0 +1,255 @@
+"""Finds the definitions of a text before any line is parsed, so that a name may be used before it is defined."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Container, Iterable, Mapping
+from itertools import takewhile
+
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.frontends.mission.symbols.nodes import Unreadable, read_node
+from btlang.frontends.mission.symbols.phrases import Phrases
+from btlang.frontends.mission.token import Header
+from btlang.text.source import Span
+from btlang.text.words import END_OF_STATEMENT, Words, statements
+from btlang.tree.ast import Definition
+from btlang.vocabulary.entry import Entry, Meaning, SlotSpec
+from btlang.vocabulary.pattern import Part, Slot, name_form
+from btlang.vocabulary.trie import SLOTS, Match, TrieNode, add, longest
+from btlang.vocabulary.values import END, key_of
+from btlang.vocabulary.vocabulary import DEFINING, NODE_ROLES, Vocabulary
+
+# A line that starts with one of these compares; it defines nothing.
+_STARTS_NO_NAME = frozenset((
+    "if", "unless", "while", "until", "whenever", "otherwise", "then", "check", "wait_until",
+))  # fmt: skip
+_NOT_IN_A_NAME = frozenset(("if", "unless", "while", "until", "otherwise", "then", "and", "or", "after", "provided"))
+
+
+class Definitions:
+    """The definitions of a text: `headers` by the word at which they start, `trie` of their names.
+
+    A name with parameters comes into the trie when their types are known (see variables.py).
+    """
+
+    def __init__(self) -> None:
+        self.headers: dict[int, Header] = {}
+        self.trie: TrieNode = {}
+        self.types: dict[int, tuple[tuple[str, str], ...]] = {}
+        """The parameters with their types of those in the trie, by the first word of the body."""
+        self.problems: list[Diagnostic] = []
+
+
+def find_definitions(
+    phrases: Phrases,
+    ends: Container[int] = (),
+    variables: Container[tuple[str, ...]] = (),
+    included: Iterable[Definition] = (),
+) -> Definitions:
+    """Every definition of the text. A name defined twice is listed twice; the later one counts.
+
+    `ends` are the words at which statements start that define no command; `variables` are words that are compared.
+    The `included` ones are known, too.
+    """
+    found = Definitions()
+    text, vocabulary = phrases.text, phrases.vocabulary
+    quoted = {definition.name for definition in included if definition.is_quoted}
+    for definition in included:
+        if not definition.is_quoted:
+            _add(found.trie, definition.name, dict(definition.parameters))
+    defining = {word for role in DEFINING for word in vocabulary.roles[role]}
+    if defining.isdisjoint(text.words):
+        return found
+    margin = text.lines[0].indent if text.lines else 0
+    for indent, first, last in statements(text, defining):
+        if first in ends or defining.isdisjoint(text.words[first:last]):
+            continue
+        header = _header(phrases, first, last, variables, found.problems)
+        if header is None:
+            continue
+        if indent > margin:
+            found.problems.append(diagnostic("BT033", header.span))
+        found.headers[first] = header
+        if header.is_quoted:
+            found.types[header.body] = ()
+            if header.name in quoted:
+                found.problems.append(diagnostic("BT017", header.span, name=header.name))
+            quoted.add(header.name)
+        elif header.name and not header.parameters:
+            add_name(header, found, vocabulary, {})
+    return found
+
+
+def add_name(header: Header, found: Definitions, vocabulary: Vocabulary, types: Mapping[str, str]) -> None:
+    """Makes a name known, with the types of its parameters (BT017, BT018)."""
+    words = name_form(header.name)
+    found.types[header.body] = tuple(types.items())
+    if _add(found.trie, header.name, types) is not None:
+        found.problems.append(diagnostic("BT017", header.span, name=header.name))
+        return
+    nodes = [vocabulary.trie]
+    for part in words:
+        nodes = [child for node in nodes for child in _below(node, part)]
+    if any(END in node for node in nodes):
+        found.problems.append(diagnostic("BT018", header.span, name=header.name))
+
+
+def _below(node: TrieNode, part: Part) -> list[TrieNode]:
+    if isinstance(part, Slot):
+        return [child for _, _, child in node.get(SLOTS, ())]
+    return [node[part]] if part in node else []
+
+
+def _add(trie: TrieNode, name: str, types: Mapping[str, str]) -> Meaning | None:
+    """What had the name before."""
+    slots = tuple(SlotSpec(key, kind) for key, kind in types.items())
+    return add(trie, name_form(name), types, Meaning("name", Entry("name", name, (name,), slots=slots)))
+
+
+def reach(text: Words, at: int) -> int:
+    """The word behind the statement in which a word stands, with the block below it; a bracket ends one too."""
+    number = bisect_right(text.lines, at, key=lambda line: line.first) - 1
+    line, depth = text.lines[number], 0
+    while at < line.last:
+        depth += (text.words[at] == "(") - (text.words[at] == ")")
+        if depth < 0 or (text.words[at] == END_OF_STATEMENT and depth == 0):
+            return at
+        at += 1
+    if text.words[line.last - 1] == ":":
+        below = takewhile(lambda other: other.indent > line.indent, text.lines[number + 1 :])
+        at = max((other.last for other in below), default=at)
+    return at
+
+
+def _header(
+    phrases: Phrases,
+    first: int,
+    last: int,
+    variables: Container[tuple[str, ...]],
+    problems: list[Diagnostic],
+) -> Header | None:
+    text = phrases.text
+    at = _defining_word(phrases, first, last)
+    if at is None:
+        return None
+    start = first
+    while start < at:
+        polite = phrases.at(start)
+        if polite is None or polite.meaning.role != "politeness" or polite.last > at:
+            break
+        start = polite.last
+    if start + 1 == at and text.words[start][0] == '"':
+        return Header(text.words[start][1:], text.span(start, at), at + 1, reach(text, at), is_quoted=True)
+    if start == at:
+        problems.append(diagnostic("BT016", text.span(at, at + 1), word=text.words[at]))
+        return Header("", text.span(at, at + 1), at + 1, at + 1)
+    if any(tuple(text.words[i:at]) in variables for i in range(start, at)):
+        return None
+    if text.words[at - 1] == "}" and any(tuple(text.words[i : at - 1]) in variables for i in range(start, at - 1)):
+        body = phrases.at(at + 1)
+        if body is None or body.meaning.role != "command":
+            return None
+    joined = _joining_word(phrases, start, at)
+    if joined is not None and joined.text[0].isalpha() and text.words[at - 1] == "}":
+        return None  # `wave until {counter} is 3` compares
+    if joined is not None and _starts_with_a_phrase(phrases, start, joined):
+        return None  # `charge until the battery is green` is a command that says something unknown
+    if joined is not None:
+        problems.append(diagnostic("BT015", joined, word=joined.text))
+        name = " ".join(word for word in text.words[start:at] if word[0].isalnum())
+        return Header(name, text.span(start, at), at + 1, reach(text, at))
+    parts, parameters = _pattern(text.words[start:at])
+    if len(parts) == len(parameters):
+        problems.append(diagnostic("BT016", text.span(start, at), word=text.words[at]))
+        return Header("", text.span(start, at), at + 1, reach(text, at))
+    return Header(" ".join(parts), text.span(start, at), at + 1, reach(text, at), parameters)
+
+
+def _pattern(words: list[str]) -> tuple[list[str], tuple[tuple[str, tuple[str, ...]], ...]]:
+    """The words of a name with its parameters in braces, and these."""
+    parts: list[str] = []
+    parameters: list[tuple[str, tuple[str, ...]]] = []
+    at = 0
+    while at < len(words):
+        if words[at] == "{":
+            end = words.index("}", at)
+            own = tuple(words[at + 1 : end])
+            parameters.append((key_of(own), own))
+            parts.append(f"{{{key_of(own)}}}")
+            at = end
+        else:
+            parts.append(words[at])
+        at += 1
+    return parts, tuple(parameters)
+
+
+def _slot_end(words: list[str], at: int, last: int) -> int | None:
+    """The word behind a parameter in braces that starts at a word."""
+    end = at + 1
+    while end < last and words[end][0].isalpha():
+        end += 1
+    return end + 1 if words[at] == "{" and end > at + 1 and end < last and words[end] == "}" else None
+
+
+def _defining_word(phrases: Phrases, first: int, last: int) -> int | None:
+    """The first `means`, else the first `is`, unless a condition phrase holds it or the line starts with a form."""
+    text, vocabulary = phrases.text, phrases.vocabulary
+    for role in DEFINING:
+        choices = vocabulary.roles[role]
+        at = first
+        while at < last:
+            if text.words[at] in choices:
+                return None if _is_compared(text, first, at, vocabulary) else at
+            match = phrases.at(at)
+            if match is None:
+                at += 1
+                continue
+            if match.meaning.role in _STARTS_NO_NAME and at == first:
+                return None
+            if match.meaning.role in NODE_ROLES:
+                at = _behind_node(text, match, last, vocabulary)
+                continue
+            # a command phrase inside a name is no reason against it: `go home is ...`
+            at = match.last if match.meaning.role != "command" else max(at + 1, _stop(text, at, match.last, choices))
+    return None
+
+
+def _behind_node(text: Words, head: Match, last: int, vocabulary: Vocabulary) -> int:
+    """Where a node ends that is said by its id: what defines is a word in it like any other."""
+    try:
+        read = read_node(text, head.last, head.meaning, vocabulary)
+    except Unreadable as problem:
+        return min(problem.at + 1, last)
+    return read[1] if read is not None else head.last
+
+
+def _is_compared(text: Words, first: int, at: int, vocabulary: Vocabulary) -> bool:
+    """Whether a quantity ends right before a word: what follows compares it."""
+    if not vocabulary.quantities:
+        return False
+    matches = (longest(vocabulary.quantities, text, start, vocabulary.context) for start in range(first, at))
+    return any(match is not None and match.last == at for match in matches)
+
+
+def _stop(text: Words, at: int, last: int, choices: list[str]) -> int:
+    return next((i for i in range(at, last) if text.words[i] in choices), last)
+
+
+def _starts_with_a_phrase(phrases: Phrases, start: int, joined: Span) -> bool:
+    match = phrases.at(start)
+    return match is not None and match.meaning.entry is not None and phrases.text.starts[match.last] >= joined.start
+
+
+def _joining_word(phrases: Phrases, start: int, last: int) -> Span | None:
+    text, at = phrases.text, start
+    while at < last:
+        slot_end = _slot_end(text.words, at, last)
+        if slot_end is not None:
+            at = slot_end
+            continue
+        match = phrases.at(at)
+        role = match.meaning.role if match else ""
+        if not text.words[at][0].isalnum() or role in _NOT_IN_A_NAME:
+            return text.span(at, match.last if match else at + 1)
+        at = max(match.last, at + 1) if match and match.meaning.entry is None else at + 1
+    return None

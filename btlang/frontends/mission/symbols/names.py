@@ -1,0 +1,89 @@
+"""What a text names, found before its lines are read: included missions, places, definitions and values."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.frontends.mission.symbols.definitions import find_definitions
+from btlang.frontends.mission.symbols.facts import find_facts
+from btlang.frontends.mission.symbols.includes import Included, find_includes
+from btlang.frontends.mission.symbols.nodes import find_main_names
+from btlang.frontends.mission.symbols.phrases import Phrases
+from btlang.frontends.mission.symbols.prefixes import find_heads
+from btlang.text.source import Span
+from btlang.text.words import Words
+from btlang.tree.ast import Include, all_definitions, all_facts
+from btlang.vocabulary.reading_context import Known
+from btlang.vocabulary.vocabulary import Vocabulary
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+    Load: TypeAlias = Callable[[str, Span], Included | None]
+else:
+    Load = None
+
+
+class Names:
+    """The names of one text. `load` reads what it includes, `shared` are values that are named elsewhere and hold here.
+
+    `vocabulary` has the places of its facts; `phrases` are those that were looked up on the way; `known` are the
+    values that hold in the whole text, by key; `others` are the words at which something stands that is no phrase:
+    `heads`, headers of `definitions`, and statements that end at `ends`. `bounds` are the words at which other values
+    begin to be known.
+    """
+
+    def __init__(
+        self, text: Words, vocabulary: Vocabulary, load: Load | None, shared: Mapping[str, Known] | None
+    ) -> None:
+        includes = find_includes(text, vocabulary)
+        loaded = [(path, span, load(path, span)) for path, span in includes.found] if load is not None else []
+        self.includes = [Include(path, part.mission, span) for path, span, part in loaded if part is not None]
+        self.included = {path: part for path, _, part in loaded if part is not None}
+        """What was included, by its path as it is written."""
+        parts = self.included.values()
+        facts = find_facts(text, vocabulary)
+        self.facts = facts.found
+        self.ends = includes.ends | facts.ends
+        self.main_name = ""
+        main_span: Span | None = None
+        for name, first, last in find_main_names(text, vocabulary):
+            self.main_name, main_span = name, text.span(first, last)
+            self.ends[first] = last
+        places = [*(fact for part in parts for fact in all_facts(part.mission)), *self.facts]
+        if places:
+            vocabulary = vocabulary.with_places(tuple(dict.fromkeys(fact.name for fact in places)))
+        self.vocabulary = vocabulary
+        self.heads = find_heads(text, vocabulary)
+        compared = {head.words for head in self.heads.values()}
+        elsewhere = [definition for part in parts for definition in all_definitions(part.mission)]
+        self.phrases = Phrases(text, vocabulary)
+        self.definitions = find_definitions(self.phrases, self.ends, compared, elsewhere)
+        self.problems: list[Diagnostic] = [*facts.problems, *self.definitions.problems]
+        if main_span is not None:
+            defined = [header.name for header in self.definitions.headers.values()]
+            if self.main_name in (*defined, *(definition.name for definition in elsewhere)):
+                self.problems.append(diagnostic("BT127", main_span, name=self.main_name))
+        self.others = {*self.heads, *self.ends, *self.definitions.headers}
+        self.bounds: list[int] = []
+        self.known = {key: one for named in (shared or {}, *(p.known for p in parts)) for key, one in named.items()}
+        if self.known or self.heads or any(header.parameters for header in self.definitions.headers.values()):
+            self._name_values(text)
+
+    def _name_values(self, text: Words) -> None:
+        from btlang.frontends.mission.symbols.variables import Variables  # most missions have none
+
+        before = len(self.definitions.problems)
+        self._variables = Variables(text, self.vocabulary, self.heads, self.definitions, self.known)
+        self.known, self.bounds = self._variables.everywhere, self._variables.bounds
+        self.problems += self.definitions.problems[before:] + self._variables.problems
+
+    def known_at(self, word: int) -> dict[str, Known]:
+        """The values that are known at a word, by key."""
+        return self._variables.at(word) if self.bounds else self.known
+
+    def included_conditions(self) -> set[str]:
+        """The names of included missions that stand for conditions."""
+        return {name for part in self.included.values() for name in part.conditions}

@@ -1,0 +1,33 @@
+"""The phrases in a text, each looked up once: whoever asks for one again, before the lexer or in it, gets the same."""
+
+from __future__ import annotations
+
+from btlang.text.words import Words
+from btlang.vocabulary.reading_context import ReadingContext
+from btlang.vocabulary.trie import Match, longest
+from btlang.vocabulary.vocabulary import Vocabulary
+
+
+class Phrases:
+    """What a vocabulary alone says of a text, by word; pronouns and names of the mission are no values here.
+
+    `fixed` are those that no value before them could make others.
+    """
+
+    def __init__(self, text: Words, vocabulary: Vocabulary) -> None:
+        self.text = text
+        self.vocabulary = vocabulary
+        self.fixed: dict[int, Match | None] = {}
+        self._others: dict[int, Match | None] = {}
+        self._context = ReadingContext(vocabulary.values)
+
+    def at(self, word: int) -> Match | None:
+        """The longest phrase that begins at a word."""
+        for found in (self.fixed, self._others):
+            if word in found:
+                return found[word]
+        self._context.lacked = False
+        match = longest(self.vocabulary.trie, self.text, word, self._context)
+        found = self._others if self._context.lacked else self.fixed
+        found[word] = match
+        return match

@@ -1,0 +1,64 @@
+"""Where the values that a mission names are known: everywhere, or in the body of a definition or `for each`."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+
+from btlang.frontends.mission.symbols.definitions import reach
+from btlang.frontends.mission.symbols.prefixes import Head
+from btlang.frontends.mission.token import Header
+from btlang.text.words import Words
+from btlang.vocabulary.reading_context import Known
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+    Types: TypeAlias = Mapping[tuple[int, str], tuple[str, ...]]
+else:
+    Types = Mapping
+
+
+class Scopes:
+    """The values that are known `everywhere`, by key, and the `local` ones with the words where each is known.
+
+    `types` are what is known of the types of values, by the word of their head or body, and their key. A local value
+    without one can be of any type.
+    """
+
+    def __init__(
+        self,
+        text: Words,
+        heads: Mapping[int, Head],
+        headers: Iterable[Header],
+        shared: Mapping[str, Known],
+        types: Types,
+    ) -> None:
+        self.everywhere = dict(shared)
+        self.local = [
+            (header.body, header.last, Known(key, words, types.get((header.body, key), ())))
+            for header in headers
+            for key, words in header.parameters
+        ]
+        for at, head in heads.items():
+            kinds = types.get((at, head.key))
+            if head.role == "each":
+                self.local.append((head.last, reach(text, at), Known(head.key, head.words, kinds or ())))
+            elif kinds is not None:
+                self.give(head, kinds)
+
+    def give(self, head: Head, kinds: tuple[str, ...]) -> None:
+        """A value of the whole mission is given one of these types; those that fit all that it is given remain."""
+        others = self.everywhere.get(head.key)
+        if others is not None:
+            kinds = tuple(kind for kind in others.kinds if kind in kinds) or others.kinds
+        self.everywhere[head.key] = Known(head.key, head.words, kinds)
+
+    def at(self, word: int) -> dict[str, Known]:
+        """What is known there, the innermost of each name, by key."""
+        inner = {known.key: known for first, last, known in self.local if first <= word < last}
+        return {**self.everywhere, **inner} if inner else self.everywhere
+
+    def bounds(self) -> list[int]:
+        """The words at which other values begin to be known, in order."""
+        return sorted({0, *(word for first, last, _ in self.local for word in (first, last))})

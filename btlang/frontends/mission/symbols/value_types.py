@@ -1,0 +1,182 @@
+"""The types of the values that a mission names: they follow from what is given to them, and from where they stand."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+
+from btlang.frontends.mission.symbols.definitions import Definitions, add_name
+from btlang.frontends.mission.symbols.prefixes import Head
+from btlang.frontends.mission.symbols.scopes import Scopes
+from btlang.frontends.mission.token import Header
+from btlang.text.words import Words
+from btlang.vocabulary.pattern import Slot, name_form
+from btlang.vocabulary.reading_context import Known, ReadingContext
+from btlang.vocabulary.trie import Match, TrieNode, longest
+from btlang.vocabulary.vocabulary import Vocabulary
+
+
+class ValueTypes:
+    """Finds `types`, by the word of the head or body of a value and its key; a value may be of several.
+
+    Types follow from each other, so each is looked for until nothing new is found. Names with parameters come into the
+    trie of `definitions` when all their types are known.
+    """
+
+    def __init__(
+        self,
+        text: Words,
+        vocabulary: Vocabulary,
+        heads: Mapping[int, Head],
+        definitions: Definitions,
+        shared: Mapping[str, Known],
+    ) -> None:
+        self._text, self._vocabulary, self._definitions = text, vocabulary, definitions
+        self._context = ReadingContext(vocabulary.values)
+        self._heads, self._shared = heads, shared
+        self._headers = [header for header in definitions.headers.values() if header.parameters]
+        self.types: dict[tuple[int, str], tuple[str, ...]] = {}
+        for header in self._headers:
+            named = [key for key, _ in header.parameters if key in vocabulary.types]
+            self.types |= {(header.body, key): (key,) for key in named}
+        for find in (self._follow, self._ask_uses, self._follow):
+            find()
+        self._default()
+
+    def scopes(self) -> Scopes:
+        """Where the values are known, with the types found so far."""
+        return Scopes(self._text, self._heads, self._headers, self._shared, self.types)
+
+    def _follow(self) -> None:
+        before = -1
+        while len(self.types) > before:
+            before, scopes = len(self.types), self.scopes()
+            for header in self._headers:
+                self._from_body(header, scopes)
+            for at, head in self._heads.items():
+                if (at, head.key) not in self.types and head.role in ("set", "remember", "each"):
+                    is_type = head.role == "each" and head.key in self._vocabulary.types
+                    kinds = (head.key,) if is_type else self._given(at, head, scopes)
+                    if kinds:
+                        self.types[at, head.key] = kinds
+                        if head.role != "each":
+                            scopes.give(head, kinds)
+            for header in self._headers:
+                if all((header.body, key) in self.types for key, _ in header.parameters):
+                    self._add(header)
+
+    def _default(self) -> None:
+        """What nothing has told of is a text."""
+        for header in self._headers:
+            for key, _ in header.parameters:
+                self.types.setdefault((header.body, key), ("text",))
+            self._add(header)
+        for at, head in self._heads.items():
+            if head.role in ("set", "each"):
+                self.types.setdefault((at, head.key), ("text",))
+
+    def _add(self, header: Header) -> None:
+        if header.body not in self._definitions.types:
+            kinds = {key: self.types[header.body, key][0] for key, _ in header.parameters}
+            add_name(header, self._definitions, self._vocabulary, kinds)
+
+    # -- parameters
+
+    def _from_body(self, header: Header, scopes: Scopes) -> None:
+        """A parameter is of the first type that fits all slots in which it stands, other than those of text."""
+        open_keys = [key for key, _ in header.parameters if (header.body, key) not in self.types]
+        if not open_keys:
+            return
+        known = scopes.at(header.body)
+        found: dict[str, tuple[str, ...]] = {}
+        at = header.body
+        while at < header.last:
+            match = self._longest(at, known)
+            for key in [key for key in open_keys if match is not None and _holds(match, key)]:
+                kinds = tuple(self._fitting(at, match, key, known))
+                found[key] = tuple(kind for kind in found.get(key, kinds) if kind in kinds) or found[key]
+            at = max(match.last, at + 1) if match is not None else at + 1
+        for at, head in self._heads.items():
+            if header.body <= at < header.last and head.role in ("increase", "decrease") and head.value >= 0:
+                named = self._context.named(self._text, head.value)
+                if named is not None and named[0] is not None and named[0].key in open_keys and head.key in known:
+                    found.setdefault(named[0].key, known[head.key].kinds)
+        self.types |= {(header.body, key): kinds[:1] for key, kinds in found.items() if kinds}
+
+    def _longest(self, at: int, known: Mapping[str, Known]) -> Match | None:
+        self._context.set_known(known)
+        matches = (longest(trie, self._text, at, self._context) for trie in self._tries())
+        return max((match for match in matches if match is not None), key=lambda match: match.last, default=None)
+
+    def _tries(self) -> Iterator[TrieNode]:
+        yield self._vocabulary.trie
+        if self._definitions.trie:
+            yield self._definitions.trie
+
+    def _fitting(self, at: int, match: Match | None, key: str, known: Mapping[str, Known]) -> Iterator[str]:
+        """The types with which a phrase is read as far as without."""
+        for kind in self._vocabulary.types:
+            if kind != "text":
+                other = self._longest(at, {**known, key: known[key].replace(kinds=(kind,))})
+                if other is not None and match is not None and other.last == match.last and _holds(other, key):
+                    yield kind
+
+    def _ask_uses(self) -> None:
+        """Where the body of a definition does not tell, its first use does."""
+        places: dict[str, list[int]] = {}
+        for at, word in enumerate(self._text.words):
+            places.setdefault(word, []).append(at)
+        self._context.set_known(self.scopes().everywhere)
+        for header in self._headers:
+            open_keys = [key for key, _ in header.parameters if (header.body, key) not in self.types]
+            form, own = name_form(header.name), header.span
+            first = form[0]
+            starts = range(len(self._text.words)) if isinstance(first, Slot) else places.get(first, ())
+            for at in starts if open_keys else ():
+                use = self._use(form, at) if not own.start <= self._text.starts[at] < own.end else None
+                if use is not None:
+                    self.types |= {(header.body, key): use[key] for key in open_keys if use[key]}
+                    break
+
+    def _use(self, form: Sequence[str | Slot], at: int) -> dict[str, tuple[str, ...]] | None:
+        """The types of the values with which a name is used at a word, None where it is not."""
+        found: dict[str, tuple[str, ...]] = {}
+        for part in form:
+            if isinstance(part, Slot):
+                value = self._context.any(self._text, at)
+                if value is None:
+                    return None
+                found[part.name], at = value[0], value[2]
+            elif self._text.words[at] == part:
+                at += 1
+            else:
+                return None
+        return found
+
+    # -- values that are given
+
+    def _given(self, at: int, head: Head, scopes: Scopes) -> tuple[str, ...]:
+        """The types that the value of a head can have, () where that is not known yet."""
+        if head.value < 0:
+            return ()
+        if head.role in ("set", "remember"):
+            quantity = longest(self._vocabulary.quantities, self._text, head.value, self._context)
+            if quantity is not None and quantity.meaning.entry is not None:
+                return (quantity.meaning.entry.measures,)
+        self._context.set_known(scopes.at(at))
+        named = self._context.named(self._text, head.value)
+        if named is not None:
+            return named[0].kinds if named[0] is not None else ()
+        value = self._context.any(self._text, head.value)
+        if value is None or (value[0] == ("text",) and self._is_open(head)):
+            return ()
+        return value[0]
+
+    def _is_open(self, head: Head) -> bool:
+        """Whether a bare word is no text: where something is remembered, and where a name without a value stands."""
+        word = self._text.words[head.value]
+        names = (other.words[0] for other in self._heads.values() if other.role != "each")
+        return word[0] != '"' and (head.role == "remember" or word in names)
+
+
+def _holds(match: Match, key: str) -> bool:
+    return any(f"{{{key}}}" in (value.text, *value.more) and value.type != "text" for value in match.values)

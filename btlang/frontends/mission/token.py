@@ -1,0 +1,119 @@
+"""Tokens between the stages of reading English.
+
+Raw tokens (from `lexer`) have the kinds of connective roles and punctuation. The grouping stage turns them into
+grouped tokens, which need no look-ahead any more:
+
+    COMMAND CONDITION                      operands
+    SEMI OR_ELSE WIDE_AND THEN AFTER OR AND    between commands, loosest first
+    BLOCK_AND BLOCK_OR                     in place of SEMI between the lines of `in parallel:`, `the first that works:`
+    BLOCK_CHILD                            the same between the children of a node that is said by its id
+    COND_OR_ELSE COND_WIDE_AND COND_OR COND_AND NOT    between and before conditions
+    OPEN CLOSE COND_OPEN COND_CLOSE        brackets; a block is a bracket too
+    POSTFIX                                after one command: `twice`, `within 10 s`, ...
+    FORM cond DO body [ELSE body] END      if, unless, while, until before a command
+    AFTER_FORM cond [ELSE body] END        the same after one command, and `provided that`
+    WIDE_FORM cond END                     the same after a comma at the end: takes the whole statement
+    LOOP body [STOP cond] END              repeat, every, after 5 s, for each, and try: LOOP body [ELSE body] END;
+                                           also a node that is said by its id with its children
+    TEST cond END                          check, wait until
+"""
+
+from __future__ import annotations
+
+from btlang.record import Record
+from btlang.text.source import Span
+from btlang.vocabulary.entry import Entry
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+    Said: TypeAlias = "Called | Listed | Assigned | Remembered | NodeCall"
+    Value: TypeAlias = "Said | Each | Header | str | None"
+
+
+class Called(Record):
+    """A phrase or a name with its arguments."""
+
+    entry: Entry
+    arguments: tuple[tuple[str, str], ...]
+
+
+class Listed(Record):
+    """A phrase with a list in one slot: arguments for each value. `joiner` is "and", "or" or ""."""
+
+    entry: Entry
+    arguments: tuple[tuple[tuple[str, str], ...], ...]
+    joiner: str
+
+
+class Assigned(Record):
+    """`operation` is "set", "increase" or "decrease"; `text` is the port text of a value of the type `kind`."""
+
+    key: str
+    operation: str
+    kind: str
+    text: str
+
+
+class Remembered(Record):
+    """What a quantity measures, with the arguments of its slots, under a key."""
+
+    key: str
+    entry: Entry
+    arguments: tuple[tuple[str, str], ...]
+
+
+class Each(Record):
+    """The values, all of the type `kind`, that a key goes through."""
+
+    key: str
+    kind: str
+    values: tuple[str, ...]
+
+
+class NodeCall(Record):
+    """A node by its id, its ports and its name, as they are."""
+
+    id: str
+    ports: tuple[tuple[str, str], ...]
+    name: str
+
+
+class Header(Record):
+    """The head of a definition: its name, the words of it, and the words `body` to `last` (exclusive) of its body.
+
+    The name is a pattern: `greet {someone}`. `parameters` are its slots, each with the words as they were written.
+    One that `is_quoted` is no phrase, and only known as a subtree.
+    """
+
+    name: str
+    span: Span
+    body: int
+    last: int
+    parameters: tuple[tuple[str, tuple[str, ...]], ...] = ()
+    is_quoted: bool = False
+
+
+class Token:
+    """One token; `start` and `end` are characters of the source.
+
+    The `value` of a command or condition is what it says, of a definition its header, of a loop what it goes through
+    or its amount; of a count or duration it is the amount. `role` is what the kind leaves open: the raw kind that a
+    form, loop, test or postfix was made of, or an operand that is no phrase, and what a connective means that has
+    another meaning between commands. An ELSE begins where what it is tried after ends.
+
+    Mutable, for grouping learns later what a comma means and which count closes a `repeat`.
+    """
+
+    __slots__ = ("end", "kind", "role", "start", "value")
+
+    def __init__(self, kind: str, start: int, end: int, value: Value = None, role: str = "") -> None:
+        self.kind = kind
+        self.start = start
+        self.end = end
+        self.value: Value = value
+        self.role = role
+
+    def __repr__(self) -> str:
+        return f"{self.kind}({self.role or self.value or ''})"

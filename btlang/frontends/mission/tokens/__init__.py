@@ -1,0 +1,1 @@
+"""Words to raw tokens: phrases, connectives, names, brackets, lines and blocks."""

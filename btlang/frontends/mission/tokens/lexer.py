@@ -1,0 +1,289 @@
+"""Words to raw tokens: phrases, connectives, names, brackets, lines and blocks. Collects what is unknown."""
+
+from __future__ import annotations
+
+from bisect import bisect_right
+from collections.abc import Mapping
+
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.frontends.mission.symbols.includes import ROLE as INCLUDE
+from btlang.frontends.mission.symbols.includes import misplaced
+from btlang.frontends.mission.symbols.names import Load, Names
+from btlang.frontends.mission.symbols.nodes import Unreadable, read_node, unreadable
+from btlang.frontends.mission.symbols.prefixes import JOINTS, Head, span_of
+from btlang.frontends.mission.token import Called, Listed, Token
+from btlang.frontends.mission.tokens.condition_names import called, condition_names
+from btlang.text.source import Source, Span
+from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, split
+from btlang.vocabulary.entry import Entry, Meaning
+from btlang.vocabulary.reading_context import Known, ReadingContext
+from btlang.vocabulary.references import keys_in, renamed
+from btlang.vocabulary.trie import SLOTS, Match, SlotValue, longest
+from btlang.vocabulary.values import key_of
+from btlang.vocabulary.vocabulary import NODE_ROLES, Vocabulary
+
+_MARKS = {",": "comma", ";": "semi", ":": "colon", "(": "open", ")": "close"}
+
+
+class Lexer:
+    """Reads one source. `tokens` are raw tokens, `problems` what was unknown; both are complete after construction.
+
+    With `explain` False nothing is said about unknown words, which takes time. `load` reads the missions that this one
+    includes; without it their names are unknown. `known` are values that it may use though it does not set them.
+    """
+
+    def __init__(
+        self,
+        source: Source,
+        vocabulary: Vocabulary,
+        explain: bool = True,
+        load: Load | None = None,
+        known: Mapping[str, Known] | None = None,
+    ) -> None:
+        self._explain, self._given, self._shared = explain, vocabulary, known
+        self.text: Words = split(source, vocabulary.articles)
+        self.problems: list[Diagnostic] = [
+            diagnostic("BT004", span, fix=(Span(source, span.end, span.end), '"')) for span in self.text.open_quotes
+        ]
+        self.problems += [diagnostic("BT003", span, characters=span.text[:20]) for span in self.text.unreadable]
+        self.names = Names(self.text, vocabulary, load, known)
+        self.problems += self.names.problems
+        self.vocabulary = self.names.vocabulary
+        self._bounds = [*self.names.bounds, len(self.text.words)]
+        self.context = ReadingContext(self.vocabulary.values)
+        has_values = self.names.known or self.names.bounds  # a name in it may be longer than a phrase
+        self._found = {} if has_values else self.names.phrases.fixed
+        self.tokens: list[Token] = []
+        self._lines()
+        self.conditions = condition_names(self.tokens, self.names.included_conditions())
+        """The defined names that stand for conditions."""
+        for token in self.tokens:
+            if token.kind == "name":
+                token.kind = "condition" if called(token).id in self.conditions else "command"
+
+    def again(self, source: Source) -> Lexer:
+        """Another text in the place of this one; it may include what this one does, and nothing is said about it."""
+        included = self.names.included
+        return Lexer(source, self._given, explain=False, load=lambda path, _: included.get(path), known=self._shared)
+
+    def _lines(self) -> None:
+        """Line ends, indents and dedents around the tokens of each line, as in Python."""
+        lines = self.text.lines
+        indents = [lines[0].indent] if lines else [0]
+        opens_block = False
+        for number, line in enumerate(lines):
+            if line.indent > indents[-1]:
+                if opens_block:
+                    indents.append(line.indent)
+                    self._mark("indent", line.first)
+                else:
+                    self.problems.append(diagnostic("BT006", self.text.span(line.first, line.first)))
+            else:
+                if opens_block:
+                    self.problems.append(diagnostic("BT027", self._last_span()))
+                while line.indent < indents[-1] and len(indents) > 1:
+                    indents.pop()
+                    self._mark("dedent", line.first)
+                if line.indent != indents[-1]:
+                    self.problems.append(diagnostic("BT007", self.text.span(line.first, line.first)))
+            if number and not opens_block:
+                self._mark("newline", line.first)
+            if line.indent <= indents[0]:
+                self.context.latest.clear()  # pronouns do not reach beyond a statement
+            self._line(line.first, line.last)
+            opens_block = bool(self.tokens) and self.tokens[-1].kind == "colon"  # politeness may stand behind it
+        if opens_block:
+            self.problems.append(diagnostic("BT027", self._last_span()))
+        for _ in indents[1:]:
+            self._mark("dedent", len(self.text.words) - 1)
+
+    def _line(self, at: int, last: int) -> None:
+        text, names, trie, context = self.text, self.names.definitions.trie, self.vocabulary.trie, self.context
+        words, starts, ends, tokens = text.words, text.starts, text.ends, self.tokens
+        found = self._found
+        headers, heads, others = self.names.definitions.headers, self.names.heads, self.names.others
+        while at < last:
+            word = words[at]
+            if at >= self._bounds[0]:
+                self._bounds = self._bounds[bisect_right(self._bounds, at) :]
+                context.set_known(self.names.known_at(at))
+            if at in others:
+                if at in heads:
+                    at = self._statement(heads[at], at)
+                elif at in self.names.ends:
+                    at = self.names.ends[at]
+                else:
+                    header = headers[at]
+                    tokens.append(Token("define", starts[at], ends[header.body - 1], header))
+                    at = header.body
+                continue
+            if word in _MARKS:
+                tokens.append(Token(_MARKS[word], starts[at], ends[at]))
+                if word == END_OF_STATEMENT:
+                    context.latest.clear()
+                at += 1
+                continue
+            if at in found:
+                match = found[at]
+                if names and match is not None and any(value.more for value in match.values):
+                    match = longest(trie, text, at, context, names)  # a name may end the list
+            else:
+                match = longest(trie, text, at, context, names)
+            if match is not None and match.meaning.role in NODE_ROLES:
+                end = self._node(match, at)
+                if end:
+                    at = end
+                    continue
+                match = None
+            if names and (word in names or SLOTS in names):
+                named = longest(names, text, at, context, trie)
+                if named is not None and (match is None or named.last >= match.last):
+                    match = named
+            role = match.meaning.role if match is not None else ""
+            if match is None or role in JOINTS or role == INCLUDE:
+                end = self._unknown_end(at, last)
+                if role == INCLUDE:
+                    end += words[end][0] == '"'
+                if self._explain:
+                    self.problems.append(self._why(at, end, match))
+                tokens.append(Token("unknown", starts[at], ends[end - 1]))
+                at = end
+            else:
+                if role == "politeness":
+                    at = self._politeness(match, at)
+                    continue
+                if role == "negated":
+                    tokens.append(Token("not", starts[at], starts[at]))
+                tokens.append(self._phrase(match, at))
+                for value in match.values:
+                    context.latest[value.type] = value.text if not value.more else value.more[-1]
+                at = match.last
+
+    def _why(self, at: int, end: int, match: Match | None) -> Diagnostic:
+        """What is wrong with words that are no phrase, or one that stands where it cannot."""
+        from btlang.frontends.mission.explanations import unknown  # most missions have nothing to explain
+
+        if match is None:
+            return unknown.explain_unknown(
+                self.text, at, end, self.vocabulary, self.context, self.names.definitions, self.tokens
+            )
+        if match.meaning.role == INCLUDE:
+            return misplaced(self.text.span(at, end), self.vocabulary)
+        return unknown.misread_head(self.text, at, match.meaning.role, self.vocabulary)
+
+    def _politeness(self, match: Match, at: int) -> int:
+        """Politeness is left out with the comma beside it: `Robot, go home, please`. Returns where to go on."""
+        words, tokens = self.text.words, self.tokens
+        if tokens and tokens[-1].kind == "comma" and words[match.last] in (",", ";", ")", END_OF_TEXT):
+            tokens.pop()
+        elif words[match.last] == "," and (not tokens or tokens[-1].kind not in ("command", "name", "condition")):
+            return match.last + 1
+        return match.last
+
+    def _phrase(self, match: Match, at: int) -> Token:
+        text, meaning = self.text, match.meaning
+        values = match.values
+        start, end = text.starts[at], text.ends[match.last - 1]
+        if values and values[-1].first == match.last:  # the article was the value: `print a`
+            end = text.articles[match.last][1]
+        if meaning.entry is not None:
+            kind = "condition" if meaning.role == "negated" else meaning.role
+            return Token(kind, start, end, self._called(meaning.entry, match, at))
+        if values:
+            return Token(meaning.role, start, end, values[0].text)
+        return Token(meaning.role, start, end, str(meaning.value) if meaning.role == "count" else None, meaning.between)
+
+    def _called(self, entry: Entry, match: Match, at: int) -> Called | Listed:
+        """The entry with its arguments, or with several of them where one slot holds a list."""
+        if entry.sort == "value" and not (self.context.known and entry.id in self.context.known):
+            self._unknown_value(self.text.span(at, match.last), entry.id)
+        if not match.values:
+            return Called(entry, ())
+        arguments = tuple([(value.name, self._port_text(value)) for value in match.values])
+        lists = [place for place, value in enumerate(match.values) if value.more]
+        if not lists:
+            return Called(entry, arguments)
+        if len(lists) > 1:
+            self.problems.append(
+                diagnostic("BT034", self.text.span(at, match.last), words=self.text.span(at, match.last).text)
+            )
+        place = lists[0]
+        value = match.values[place]
+        texts = (value.text, *value.more)
+        every = tuple((*arguments[:place], (value.name, text), *arguments[place + 1 :]) for text in texts)
+        return Listed(entry, every, value.joiner)
+
+    def _port_text(self, value: SlotValue) -> str:
+        """The text of a value; the names in braces in it become keys (BT043 where nothing has such a name)."""
+        text = value.text
+        if "{" not in text or self.context.types[value.type].kind != "text":
+            return text
+        text = renamed(text, lambda name: key_of(w for w in name.lower().split() if w not in self.vocabulary.articles))
+        known = self.context.known or {}
+        for key in keys_in(text):
+            if key not in known:
+                self._unknown_value(self.text.span(value.first, value.last), key)
+        return text
+
+    def _unknown_value(self, span: Span, key: str) -> None:
+        from btlang.frontends.mission.explanations.unknown import unknown_value
+
+        self.problems.append(unknown_value(span, key, self.context.known or ()))
+
+    def _statement(self, head: Head, at: int) -> int:
+        """A statement about a value of the mission. Returns where to go on."""
+        from btlang.frontends.mission.tokens.assignments import read_statement  # most missions have none
+
+        read = read_statement(head, self.text, at, self.vocabulary, self.context, self._port_text)
+        if read is None:
+            span = span_of(self.text, at)
+            if self._explain and (
+                head.role in ("each", "remember") or head.key in self.names.known
+            ):  # else that has been told
+                self.problems.append(self._why(at, at, Match(Meaning(head.role), at)))
+            self.tokens.append(Token("unknown", span.start, span.end))
+            return bisect_right(self.text.starts, span.end - 1)
+        self.tokens.append(read[0])
+        return read[1]
+
+    def _node(self, head: Match, at: int) -> int:
+        """A node that is said by its id. Returns where to go on, 0 where the words are no such node."""
+        text = self.text
+        try:
+            read = read_node(text, head.last, head.meaning, self.vocabulary)
+        except Unreadable as problem:
+            self.problems.append(unreadable(text, at, problem))
+            end = self._unknown_end(at, bisect_right(text.starts, span_of(text, at).end - 1))
+            self.tokens.append(Token("unknown", text.starts[at], text.ends[end - 1]))
+            return end
+        if read is None:
+            return 0
+        call, end = read
+        kind = "condition" if head.meaning.role == "test" else "node" if text.words[end] == ":" else "command"
+        self.tokens.append(Token(kind, text.starts[at], text.ends[end - 1], call))
+        return end
+
+    def _unknown_end(self, at: int, last: int) -> int:
+        """Unknown words reach to the next mark or connective, or to a phrase that is more than one word.
+
+        A value that nothing has the name of, and a pronoun, are read as values there: they may be another mistake.
+        """
+        text, context = self.text, self.context.with_references()
+        context.latest = dict.fromkeys(context.types, "")
+        while True:
+            at += 1
+            if at >= last or text.words[at] in _MARKS:
+                return at
+            match = longest(self.vocabulary.trie, text, at, context)
+            if match is not None and match.meaning.role in NODE_ROLES:
+                continue
+            if match is not None and (match.meaning.entry is None or match.last > at + 1):
+                return at
+
+    def _mark(self, kind: str, at: int) -> None:
+        start = self.text.starts[at] if at < len(self.text.starts) else len(self.text.source.text)
+        self.tokens.append(Token(kind, start, start))
+
+    def _last_span(self) -> Span:
+        last = self.tokens[-1]
+        return Span(self.text.source, last.start, last.end)

@@ -1,0 +1,143 @@
+"""What is known while a mission is read: the values that it names itself, and what pronouns stand for."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from btlang.record import Record
+from btlang.text.words import Words
+from btlang.vocabulary.values import Values, find, format_number, key_of
+
+
+class Known(Record):
+    """A value that the mission names itself: its key on the blackboard, and the types that it can be used as.
+
+    Without types it can be used as any: nothing has told yet.
+    """
+
+    key: str
+    words: tuple[str, ...]
+    kinds: tuple[str, ...] = ()
+
+
+class ReadingContext:
+    """Reads values at a place in a text, those too that only the mission knows.
+
+    `known` are the values that it names, by key; None where any name in braces is one. `latest` are the values that
+    pronouns stand for, by type; whoever reads a text sets them, on a context of its own. `lacked` tells that a pronoun
+    stood for nothing: behind other values it might stand for one.
+    """
+
+    __slots__ = ("_most_words", "joiners", "known", "lacked", "latest", "pronouns", "types", "values")
+
+    def __init__(self, values: Values, known: Mapping[str, Known] | None = None) -> None:
+        self.values = values
+        self.types, self.joiners, self.pronouns = values.types, values.joiners, values.pronouns
+        self.latest: dict[str, str] = {}
+        self.lacked = False
+        self.known: Mapping[str, Known] | None = {}
+        self._most_words = 0
+        self.set_known(known or {})
+
+    def set_known(self, known: Mapping[str, Known]) -> None:
+        """The values that the mission names where reading goes on."""
+        self.known = known
+        self._most_words = max((len(value.words) for value in known.values()), default=0)
+
+    def with_references(self) -> ReadingContext:
+        """The same, where any name in braces is a value of any type, and with pronouns of its own."""
+        made = ReadingContext(self.values)
+        made.known = None
+        return made
+
+    @property
+    def openers(self) -> Mapping[str, frozenset[str]]:
+        """As those of the values; where the mission names values itself, any value may begin at any word."""
+        return self.values.openers if self.known == {} else {}
+
+    def read(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
+        """The port text of a value of the type and where it ends, or None where there is none."""
+        if self.known != {}:
+            known = self._known(kind, text, at)
+            if known is not None:
+                return known
+        found = self.values.read(kind, text, at)
+        if found is None and text.words[at] in self.pronouns and self.types[kind].kind == "names":
+            return self._referred(kind, text.words[at], at)
+        return found
+
+    def any(self, text: Words, at: int) -> tuple[tuple[str, ...], str, int] | None:
+        """A value of any type: the types that it can be, its port text, and where it ends."""
+        reference = self._reference(text, at)
+        if reference is not None and self.known and reference[0] in self.known:
+            return self.known[reference[0]].kinds, f"{{{reference[0]}}}", reference[1]
+        quantity = self.values.quantity(text, at)
+        if quantity is not None:
+            return (quantity[1],), format_number(quantity[0]), quantity[2]
+        kinds = [name for sort in ("number", "names", "text") for name, kind in self.types.items() if kind.kind == sort]
+        read = [(kind, self.read(kind, text, at)) for kind in kinds]
+        found = [(kind, value) for kind, value in read if value is not None]
+        if not found:
+            return None
+        if len(found) > 1 and self.types[found[0][0]].kind == "number":
+            found.pop()  # figures are a text only where one is wanted
+        best, end = max((value for _, value in found), key=lambda value: value[1])
+        return tuple(kind for kind, (other, last) in found if last == end and other.lower() == best.lower()), best, end
+
+    def named(self, text: Words, at: int) -> tuple[Known | None, int] | None:
+        """The value that the mission names at a place, None for an unknown one in braces, and where its name ends."""
+        reference = self._reference(text, at)
+        if reference is not None:
+            known = self.known.get(reference[0]) if self.known else None
+            return known, reference[1] if known is not None else at + 1
+        return self._bare(text.words, at)
+
+    def _known(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
+        """A value that the mission names: in braces, or bare where no text is wanted and no name is longer."""
+        reference = self._reference(text, at)
+        if reference is not None:
+            key, end = reference
+            if self.known is None or (key in self.known and self._fits(kind, self.known[key])):
+                return f"{{{key}}}", end
+        elif self.known and self.types[kind].kind != "text":
+            found = self._bare(text.words, at)
+            if found is not None and self._fits(kind, found[0]):
+                named = self._listed(kind, text, at)
+                if named is None or named[1] <= found[1]:
+                    return f"{{{found[0].key}}}", found[1]
+        return None
+
+    def _bare(self, words: Sequence[str], at: int) -> tuple[Known, int] | None:
+        """The value with the longest name that stands at a place without braces, and where it ends."""
+        for end in range(at + self._most_words if self.known else at, at, -1):
+            named = tuple(words[at:end])
+            known = self.known.get(key_of(named)) if self.known else None
+            if known is not None and known.words == named:
+                return known, end
+        return None
+
+    def _fits(self, kind: str, known: Known) -> bool:
+        """Whether a slot of the type takes the value; one of text takes any, and a number may be a count."""
+        if not known.kinds or kind in known.kinds or kind == "text":
+            return True
+        return self.types[kind].kind == self.types[known.kinds[0]].kind == "number"
+
+    def _listed(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
+        """A name from the list of a type, unquoted."""
+        return find(self.values.names_tree(kind), text.words, at) if self.types[kind].kind == "names" else None
+
+    def _reference(self, text: Words, at: int) -> tuple[str, int] | None:
+        """The key of a name in braces, and where it ends."""
+        words = text.words
+        if words[at] != "{":
+            return None
+        end = at + 1
+        while words[end][0].isalnum() or words[end][0] == "_":
+            end += 1
+        return (key_of(words[at + 1 : end]), end + 1) if end > at + 1 and words[end] == "}" else None
+
+    def _referred(self, kind: str, word: str, at: int) -> tuple[str, int] | None:
+        """What a pronoun stands for."""
+        is_one = kind in self.pronouns.get(word, ())
+        self.lacked |= is_one and kind not in self.latest
+        return (self.latest[kind], at + 1) if is_one and kind in self.latest else None
