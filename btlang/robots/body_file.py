@@ -22,6 +22,7 @@ from btlang.robots.body import (
 from btlang.robots.data_file import DataFileError, as_mission_error, load_data
 from btlang.robots.platforms import ROBOTS
 from btlang.text.toml_table import Problem, Table
+from btlang.vocabulary.capabilities import CAPABILITIES
 from btlang.vocabulary.shipped import BODIES, STANDARD_BODY
 
 _HANDS = ("left", "right")
@@ -106,6 +107,8 @@ def _limits(table: Table) -> Limits:
 
 def _joint(table: Table) -> Joint:
     name, part = table.text("name"), table.text("part")
+    if part in CAPABILITIES:
+        raise table.problem("part", f'"{part}" has another meaning; call the part "{name}", or the like')
     low = table.number("low")
     high = table.number("high", low=low)
     speed = table.number("speed", low=_LEAST)

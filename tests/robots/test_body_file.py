@@ -56,6 +56,7 @@ def test_parts_are_what_words_need(tmp_path: Path) -> None:
         (HEAD + BASE + "[navigation]\npeople = 1\nobjects = 0.1", 9, '"objects" is at least 0.2, not 0.1'),
         (HEAD + JOINT.replace("high = 10", "high = -20"), 7, '"high" is at least -10, not -20'),
         (HEAD + JOINT + "rest = 11", 9, '"rest" is from -10 to 10, not 11'),
+        (HEAD + JOINT.replace('"head"', '"docking"'), 5, '"docking" has another meaning'),
         (HEAD + JOINT + JOINT, 10, '"neck" is given twice in joints'),
         (HEAD + JOINT + "[postures]\nup = { nek = 1 }", 10, 'the robot has no joint "nek"; its joints are neck'),
         (HEAD + JOINT + "[postures]\nup = [\n{ neck = 1 },\n{ neck = 99 },\n]", 12, '"neck" is from -10 to 10'),
