@@ -19,7 +19,7 @@ from btlang.tree.node import Node, Tree
 from btlang.vocabulary.cache import kept
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.load import load_vocabulary
-from btlang.vocabulary.shipped import DEFAULT_WORLD
+from btlang.vocabulary.shipped import DEFAULT_WORLD, STANDARD_BODY
 from btlang.vocabulary.vocabulary import Vocabulary
 
 TYPE_CHECKING = False
@@ -99,7 +99,7 @@ def format_mission(
 def world_vocabulary(keywords: Sequence[str | Entry | Callable[..., Any]] = (), world: str | None = None) -> Vocabulary:
     """The words of the keyword files and the names of a world. Raises MissionError."""
     file = DEFAULT_WORLD if world is None else world
-    return load_vocabulary(keywords, kept("world", [file], partial(_names_by_type, world)))
+    return load_vocabulary(keywords, kept("world", [file, STANDARD_BODY], partial(_names_by_type, world)))
 
 
 def _names_by_type(world: str | None) -> dict[str, tuple[str, ...]]:
@@ -108,9 +108,9 @@ def _names_by_type(world: str | None) -> dict[str, tuple[str, ...]]:
     try:
         names = world_names(world)
     except WorldError as error:
-        from btlang.robots.world_problem import world_problem
+        from btlang.robots.data_file import as_mission_error
 
-        raise world_problem(error) from None
+        raise as_mission_error(error) from None
     return {"place": names.places, "person": names.people, "object": names.objects}
 
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import argparse
 import math
-from collections.abc import Callable
+import os
+from collections.abc import Callable, Sequence
 
 from btlang.run.limits import SLOWEST
 
@@ -17,6 +18,23 @@ def speed(text: str) -> float | str:
 def real_speed(text: str) -> float | str:
     """The word "real", or a factor of real time."""
     return text if text == "real" else between(SLOWEST, 1e6)(text)
+
+
+def robot_on(platforms: Sequence[str]) -> Callable[[str], str]:
+    """What runs missions: one of these names, or a robot file."""
+
+    def robot(text: str) -> str:
+        from btlang.robots.body_file import shipped_bodies
+        from btlang.robots.platforms import ROBOTS
+
+        if text in platforms:
+            return text
+        names = (*platforms, *shipped_bodies())
+        if text in names or text.endswith(".toml") or (os.path.exists(text) and text not in ROBOTS):
+            return text
+        raise argparse.ArgumentTypeError(f"{', '.join(names)} or a robot file is needed, not '{text}'")
+
+    return robot
 
 
 def namespace(text: str) -> str:

@@ -72,7 +72,7 @@ def _run(options: argparse.Namespace) -> int:
     robot = chosen_robot(options)
     mission = _mission(options)
     if options.preflight:
-        ready = print_preflight(mission.tree, mission.vocabulary, read_world(options.world), robot)
+        ready = print_preflight(mission.tree, mission.vocabulary, read_world(options.world, robot.body), robot)
         return SUCCESS if ready else FAILED
     with pictures_of(mission, options.picture, options.tree_picture) as sinks:
         return run_mission(
@@ -229,6 +229,7 @@ def _repl(options: argparse.Namespace) -> int:
         parser=options.parser,
         include_root=options.include_root,
         speed=options.speed,
+        robot=options.robot,
     )
 
 

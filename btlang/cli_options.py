@@ -39,7 +39,7 @@ def parsed(arguments: Sequence[str] | None) -> argparse.Namespace:
 
 _DEFAULTS: dict[str, Any] = {
     "keywords": [], "world": None, "parser": DEFAULT_PARSER, "include_root": None, "speed": "real", "format": "text",
-    "main": "",
+    "main": "", "robot": "simulated", "over": None,
 }  # fmt: skip
 
 
@@ -80,8 +80,11 @@ def _speed_option(parser: argparse.ArgumentParser) -> None:
 
 
 def _repl_options(parser: argparse.ArgumentParser) -> None:
+    from btlang.ros.command import add_body_options
+
     _reading_options(parser)
     _speed_option(parser)
+    add_body_options(parser, ("simulated",))
 
 
 def _run_options(parser: argparse.ArgumentParser) -> None:

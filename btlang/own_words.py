@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 
+from btlang.vocabulary.capabilities import resources_of
 from btlang.vocabulary.entry import Entry, SlotSpec
 
 TYPE_CHECKING = False
@@ -23,6 +24,7 @@ def action(
     id: str = "",
     slots: Slots | None = None,
     resources: Sequence[str] = (),
+    needs: Sequence[str] = (),
     topic: str = "",
     help: str = "",
     example: str = "",
@@ -42,7 +44,7 @@ def action(
     With `replace` it is what runs in place of the known word that has this id, or this phrase where no id is given: a
     fake for tests. Without it a second function for one id is an error (BT064).
     """
-    return _word("action", phrase, id, slots or {}, ros, replace, resources=tuple(resources), topic=topic, help=help,
+    return _word("action", phrase, id, slots or {}, ros, replace, needs, resources, topic=topic, help=help,
                  example=example, instant=instant, uninterruptible=uninterruptible, thread=thread)  # fmt: skip
 
 
@@ -51,6 +53,7 @@ def condition(
     *,
     id: str = "",
     slots: Slots | None = None,
+    needs: Sequence[str] = (),
     topic: str = "",
     help: str = "",
     example: str = "",
@@ -58,7 +61,7 @@ def condition(
     replace: bool = False,
 ) -> Callable[[Call], Call]:
     """Makes a function that returns a bool a condition; as `action`."""
-    return _word("condition", phrase, id, slots or {}, ros, replace, topic=topic, help=help, example=example)
+    return _word("condition", phrase, id, slots or {}, ros, replace, needs, topic=topic, help=help, example=example)
 
 
 def quantity(
@@ -67,6 +70,7 @@ def quantity(
     type: str,
     id: str = "",
     slots: Slots | None = None,
+    needs: Sequence[str] = (),
     topic: str = "",
     help: str = "",
     example: str = "",
@@ -77,12 +81,20 @@ def quantity(
 
     The number is in the unit whose factor is 1. As `action`.
     """
-    return _word("quantity", phrase, id, slots or {}, ros, replace, topic=topic, help=help, example=example,
+    return _word("quantity", phrase, id, slots or {}, ros, replace, needs, topic=topic, help=help, example=example,
                  measures=type)  # fmt: skip
 
 
 def _word(
-    sort: str, phrase: Phrases, node_id: str, slots: Slots, ros: Mapping[str, Any] | None, replace: bool, **keys: Any
+    sort: str,
+    phrase: Phrases,
+    node_id: str,
+    slots: Slots,
+    ros: Mapping[str, Any] | None,
+    replace: bool,
+    needs: Sequence[str],
+    resources: Sequence[str] = (),
+    **keys: Any,
 ) -> Callable[[Call], Call]:
     from btlang.vocabulary.pattern import Slot, forms
 
@@ -93,9 +105,11 @@ def _word(
         specs = tuple(_slot(name, slots.get(name, name)) for name in names)
         made = node_id or ("" if replace else "".join(part.title() for part in call.__name__.split("_")))
         is_quantity = sort == "quantity"
+        taken = tuple(dict.fromkeys((*resources, *resources_of(needs)))) if sort == "action" else ()
         entry = Entry(
             "condition" if is_quantity else sort, made, () if is_quantity else phrases, call, specs,
             quantity=phrases if is_quantity else (), ros=_ros(ros, sort), replaces=replace,
+            needs=tuple(needs), resources=taken,
             **{**keys, "help": keys["help"] or call.__doc__ or ""},
         )  # fmt: skip
         call.btlang_entry = entry  # type: ignore[attr-defined]

@@ -71,14 +71,18 @@ MOST_EVENTS = 10_000
 class Session:
     """A robot, for many runs one after the other. Its world goes on from run to run; what a mission names ends with it.
 
-    `robot` is "simulated", "ros", "actions", or a function of a World that gives a btlang.run.connection.Connection;
-    `world` is the path of a world file, by default the world that ships. Raises MissionError where the world cannot be
-    read (BT070) or the robot cannot be reached (BT100), ValueError for another name.
+    `robot` is "simulated", "ros", "actions", the path of a robot file or the name of one that ships, or a function of a
+    World that gives a btlang.run.connection.Connection; `over` is what the robot of a file runs on, by default what the
+    file says; `world` is the path of a world file, by default the world that ships. Raises MissionError where the world
+    or the robot cannot be read (BT070, BT071) or the robot cannot be reached (BT100), ValueError for another name.
     """
 
-    def __init__(self, robot: str | Connect = "simulated", *, world: str | None = None) -> None:
-        self.world = read_world(world)
-        self.connection: Connection = connector(robot)(self.world)
+    def __init__(
+        self, robot: str | Connect = "simulated", *, world: str | None = None, over: str | None = None
+    ) -> None:
+        connect = connector(robot, over) if isinstance(robot, str) else robot
+        self.world = read_world(world, getattr(connect, "body", None))
+        self.connection: Connection = connect(self.world)
         self.current: Run | None = None
         """The latest run."""
 

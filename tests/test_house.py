@@ -15,7 +15,9 @@ import pytest
 
 import btlang
 from btlang.robots import world_file
+from btlang.robots.body import Body
 from btlang.vocabulary import keyword_file, language_tables
+from btlang.vocabulary.capabilities import CAPABILITIES
 
 ROOT = Path(__file__).parent.parent
 FOLDERS = ("btlang", "tests", "grammar", "keywords", "examples", "docs", ".ci")
@@ -90,10 +92,12 @@ def headings(page: Path) -> set[str]:
 
 
 def test_documents_name_every_key() -> None:
-    keywords, worlds = (text(ROOT / "docs" / page) for page in ("keywords.md", "worlds.md"))
+    keywords, worlds, robots = (text(ROOT / "docs" / page) for page in ("keywords.md", "worlds.md", "robots.md"))
     keys = keyword_file._TOP | keyword_file._ENTRY | keyword_file._TYPE
     assert [key for key in sorted(keys) if not re.search(rf"`\[*{key}\]*`", keywords)] == []
     assert [role for role in language_tables.ROLES if f"`{role}`" not in keywords.partition("### Roles")[2]] == []
+    assert [need for need in CAPABILITIES if f'`"{need}"`' not in keywords] == []
+    assert [key for key in Body.fields if f"`{key}`" not in robots] == []
     assert [kind for kind in world_file._FAULTS if f'`"{kind}"`' not in worlds] == []
 
 

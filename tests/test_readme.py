@@ -38,11 +38,13 @@ class Block(NamedTuple):
     text: str
 
 
-BLOCKS = [
-    Block(page, match[1], match[2] or "", match[3])
-    for page in PAGES
-    for match in _BLOCK.finditer(page.read_text(encoding="utf-8"))
-]
+def blocks_of(page: Path) -> list[Block]:
+    """The blocks of a page."""
+    text = page.read_text(encoding="utf-8")
+    return [Block(page, match[1], match[2] or "", match[3]) for match in _BLOCK.finditer(text)]
+
+
+BLOCKS = [block for page in PAGES for block in blocks_of(page)]
 
 
 def blocks(language: str) -> list[Block]:
@@ -226,9 +228,12 @@ def test_ci_runs_the_two_set_up_commands() -> None:
 
 
 def test_files_of_the_pages_load(folder: Path) -> None:
-    """Keyword files and worlds that are shown without a command."""
+    """Keyword files, worlds and robots that are shown without a command."""
     for block in BLOCKS:
         if block.language == "toml" and block.file:
             option = "--world" if block.file.endswith("world.toml") else "--keywords"
-            done = btc(f"btc check {option} {block.file} -c wave", folder)
+            command = f"btc check {option} {block.file} -c wave"
+            if block.file.endswith("robot.toml"):
+                command = f"btc run --speed max --robot {block.file} -c 'wait 1 s'"
+            done = btc(command, folder)
             assert done.returncode == 0, done.stdout

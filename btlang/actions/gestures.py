@@ -2,122 +2,108 @@
 
 from __future__ import annotations
 
-from btlang.actions.joints import HANGING, STRETCHED, arm, bring
+from btlang.actions.joints import take
 from btlang.actions.motion import Steps
 from btlang.engine.leaf import ActionFailed
-from btlang.robots.robot import Hand, Robot
+from btlang.robots.robot import Robot
 from btlang.robots.world import said
-
-_HEAD_LIMIT = 90.0
 
 
 def wave(robot: Robot, person: str | None = None) -> Steps:
     """Waves the right arm, towards the person if one is named, and lets it hang again."""
-    swing = _bearing(robot, person) if person else 0.0
-    yield from bring(robot, arm("right", {"lift": 140.0, "swing": swing, "bend": 20.0}))
-    for bend in (60.0, 20.0) * 3:
-        yield from bring(robot, arm("right", {"bend": bend}))
-    yield from bring(robot, arm("right", HANGING))
+    yield from _towards(robot, "wave", person) if person else take(robot, "wave")
 
 
 def point_at_person(robot: Robot, person: str) -> Steps:
     """Stretches the right arm towards a person."""
-    yield from _point(robot, "right", _bearing(robot, person))
+    yield from _towards(robot, "right arm pointing", person)
 
 
 def point_at_object(robot: Robot, object: str) -> Steps:
     """Stretches the right arm towards an object."""
-    yield from _point(robot, "right", _bearing(robot, object))
+    yield from _towards(robot, "right arm pointing", object)
 
 
 def point_at_place(robot: Robot, place: str) -> Steps:
     """Stretches the right arm towards a place."""
-    yield from _point(robot, "right", _bearing(robot, place))
+    yield from _towards(robot, "right arm pointing", place)
 
 
 def point_left(robot: Robot) -> Steps:
     """Stretches the left arm to the left."""
-    yield from _point(robot, "left", 90.0)
+    yield from take(robot, "left arm pointing", bearing=90.0)
 
 
 def point_right(robot: Robot) -> Steps:
     """Stretches the right arm to the right."""
-    yield from _point(robot, "right", -90.0)
+    yield from take(robot, "right arm pointing", bearing=-90.0)
 
 
 def point_ahead(robot: Robot) -> Steps:
     """Stretches the right arm ahead."""
-    yield from _point(robot, "right", 0.0)
+    yield from take(robot, "right arm pointing", bearing=0.0)
 
 
 def nod(robot: Robot) -> Steps:
     """Nods the head twice."""
-    for tilt in (-20.0, 0.0) * 2:
-        yield from bring(robot, {"head tilt": tilt})
+    yield from take(robot, "nod")
 
 
 def shake_head(robot: Robot) -> Steps:
     """Turns the head from side to side."""
-    for angle in (30.0, -30.0, 30.0, 0.0):
-        yield from bring(robot, {"head turn": angle})
+    yield from take(robot, "shake head")
 
 
 def look_around(robot: Robot) -> Steps:
     """Turns the head all the way to both sides and back ahead."""
-    for angle in (_HEAD_LIMIT, -_HEAD_LIMIT, 0.0):
-        yield from bring(robot, {"head turn": angle, "head tilt": 0.0})
+    yield from take(robot, "look around")
 
 
 def look_left(robot: Robot) -> Steps:
     """Turns the head to the left."""
-    yield from bring(robot, {"head turn": 60.0, "head tilt": 0.0})
+    yield from take(robot, "look left")
 
 
 def look_right(robot: Robot) -> Steps:
     """Turns the head to the right."""
-    yield from bring(robot, {"head turn": -60.0, "head tilt": 0.0})
+    yield from take(robot, "look right")
 
 
 def look_ahead(robot: Robot) -> Steps:
     """Turns the head straight ahead."""
-    yield from bring(robot, {"head turn": 0.0, "head tilt": 0.0})
+    yield from take(robot, "look ahead")
 
 
 def look_up(robot: Robot) -> Steps:
     """Raises the head."""
-    yield from bring(robot, {"head tilt": 30.0})
+    yield from take(robot, "look up")
 
 
 def look_down(robot: Robot) -> Steps:
     """Lowers the head."""
-    yield from bring(robot, {"head tilt": -30.0})
+    yield from take(robot, "look down")
 
 
 def look_at_person(robot: Robot, person: str) -> Steps:
     """Turns the head to a person. Fails where they are behind the robot."""
-    yield from _look(robot, person)
+    yield from _towards(robot, "look at", person)
 
 
 def look_at_object(robot: Robot, object: str) -> Steps:
     """Turns the head to an object. Fails where it is behind the robot."""
-    yield from _look(robot, object)
+    yield from _towards(robot, "look at", object)
 
 
 def look_at_place(robot: Robot, place: str) -> Steps:
     """Turns the head to a place. Fails where it is behind the robot."""
-    yield from _look(robot, place)
+    yield from _towards(robot, "look at", place)
 
 
-def _bearing(robot: Robot, name: str) -> float:
-    return robot.pose.bearing_to(robot.locate(name))
-
-
-def _point(robot: Robot, side: Hand, swing: float) -> Steps:
-    yield from bring(robot, arm(side, {**STRETCHED, "swing": swing}))
-
-
-def _look(robot: Robot, name: str) -> Steps:
-    bearing = _bearing(robot, name)
-    if abs(bearing) > _HEAD_LIMIT:
-        raise ActionFailed(f"{said(name)} is behind the robot, where its head does not turn")
-    yield from bring(robot, {"head turn": bearing, "head tilt": 0.0})
+def _towards(robot: Robot, posture: str, name: str) -> Steps:
+    """Raises ActionFailed where the joint that turns there does not turn so far."""
+    bearing = robot.pose.bearing_to(robot.locate(name))
+    joint = robot.body.bearing_joint(posture)
+    if joint is not None and not joint.low <= bearing <= joint.high:
+        where = "behind the robot" if abs(bearing) > 90.0 else "too far to the side"
+        raise ActionFailed(f"{said(name)} is {where}, where its {joint.part} does not turn")
+    yield from take(robot, posture, bearing=bearing)

@@ -1,4 +1,4 @@
-"""What gestures and manipulation share: bringing joints to angles."""
+"""What gestures and manipulation share: bringing joints to angles, and parts of the body to postures."""
 
 from __future__ import annotations
 
@@ -6,24 +6,12 @@ from collections.abc import Mapping
 
 from btlang.actions.motion import Steps
 from btlang.actions.watch import Watch
-from btlang.robots.robot import Hand, Robot
-
-Posture = Mapping[str, float]
-
-HANGING: Posture = {"lift": 0.0, "swing": 0.0, "bend": 0.0}
-RAISED: Posture = {"lift": 150.0, "swing": 0.0, "bend": 0.0}
-STRETCHED: Posture = {"lift": 90.0, "swing": 0.0, "bend": 0.0}
-FOLDED: Posture = {"lift": 0.0, "swing": 0.0, "bend": 150.0}
-REACHING: Posture = {"lift": 60.0, "swing": 0.0, "bend": 0.0}
-CARRYING: Posture = {"lift": 40.0, "swing": 0.0, "bend": 90.0}
+from btlang.engine.leaf import ActionFailed
+from btlang.robots.body import BEARING
+from btlang.robots.robot import Robot
 
 
-def arm(side: Hand, posture: Posture) -> dict[str, float]:
-    """The posture as targets of one arm's joints."""
-    return {f"{side} arm {part}": angle for part, angle in posture.items()}
-
-
-def bring(robot: Robot, targets: Posture) -> Steps:
+def bring(robot: Robot, targets: Mapping[str, float]) -> Steps:
     """Moves joints to angles (degrees); halted, just these joints freeze. Raises ActionFailed on an emergency stop."""
     watch = Watch(robot)
     robot.move_joints(targets)
@@ -33,3 +21,20 @@ def bring(robot: Robot, targets: Posture) -> Steps:
             watch.check_stop()
     finally:
         robot.freeze_joints(*targets)
+
+
+def take(robot: Robot, *postures: str, bearing: float = 0.0) -> Steps:
+    """Brings the body to postures of its file, all of them at once, where they have steps one after the other.
+
+    `bearing` is the angle of a joint that points or looks somewhere. Raises ActionFailed as `bring` does.
+    """
+    known = robot.body.postures
+    for name in postures:
+        if name not in known:
+            raise ActionFailed(f'the robot has no posture "{name}"')
+    for at in range(max(len(known[name]) for name in postures)):
+        step: dict[str, float | str] = {}
+        for name in postures:
+            for angles in known[name][at : at + 1]:
+                step.update(angles)
+        yield from bring(robot, {joint: bearing if angle == BEARING else float(angle) for joint, angle in step.items()})

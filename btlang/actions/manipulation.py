@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from btlang.actions.joints import CARRYING, FOLDED, HANGING, RAISED, REACHING, STRETCHED, arm, bring
+from btlang.actions.joints import take
 from btlang.actions.motion import Steps
 from btlang.actions.navigation import accomplish, travel
 from btlang.engine.leaf import ActionFailed
@@ -46,17 +46,17 @@ def pick_up(robot: Robot, object: str) -> Steps:
     if held is not None:
         raise ActionFailed(f"the right hand already holds {said(held)}")
     yield from travel(robot, object)
-    yield from bring(robot, arm("right", REACHING))
+    yield from take(robot, "right arm reaching")
     yield from accomplish(robot.grasp("right", object))
-    yield from bring(robot, arm("right", CARRYING))
+    yield from take(robot, "right arm carrying")
 
 
 def put_down(robot: Robot, object: str | None = None) -> Steps:
     """Lowers the arm that holds the object (or anything) and opens its hand. Fails where none does."""
     hand = _hand_with(robot, object)
-    yield from bring(robot, arm(hand, REACHING))
+    yield from take(robot, f"{hand} arm reaching")
     yield from accomplish(robot.release(hand))
-    yield from bring(robot, arm(hand, HANGING))
+    yield from take(robot, f"{hand} arm hanging")
 
 
 def _hand_with(robot: Robot, object: str | None) -> Hand:
@@ -70,49 +70,49 @@ def _hand_with(robot: Robot, object: str | None) -> Hand:
 
 def raise_right_arm(robot: Robot) -> Steps:
     """Brings the arm up."""
-    yield from bring(robot, arm("right", RAISED))
+    yield from take(robot, "right arm raised")
 
 
 def raise_left_arm(robot: Robot) -> Steps:
     """Brings the arm up."""
-    yield from bring(robot, arm("left", RAISED))
+    yield from take(robot, "left arm raised")
 
 
 def raise_both_arms(robot: Robot) -> Steps:
     """Brings both arms up together."""
-    yield from bring(robot, arm("left", RAISED) | arm("right", RAISED))
+    yield from take(robot, "left arm raised", "right arm raised")
 
 
 def lower_right_arm(robot: Robot) -> Steps:
     """Lets the arm hang."""
-    yield from bring(robot, arm("right", HANGING))
+    yield from take(robot, "right arm hanging")
 
 
 def lower_left_arm(robot: Robot) -> Steps:
     """Lets the arm hang."""
-    yield from bring(robot, arm("left", HANGING))
+    yield from take(robot, "left arm hanging")
 
 
 def lower_both_arms(robot: Robot) -> Steps:
     """Lets both arms hang."""
-    yield from bring(robot, arm("left", HANGING) | arm("right", HANGING))
+    yield from take(robot, "left arm hanging", "right arm hanging")
 
 
 def stretch_right_arm(robot: Robot) -> Steps:
     """Stretches the arm out ahead."""
-    yield from bring(robot, arm("right", STRETCHED))
+    yield from take(robot, "right arm stretched")
 
 
 def stretch_left_arm(robot: Robot) -> Steps:
     """Stretches the arm out ahead."""
-    yield from bring(robot, arm("left", STRETCHED))
+    yield from take(robot, "left arm stretched")
 
 
 def retract_right_arm(robot: Robot) -> Steps:
     """Folds the arm to the body."""
-    yield from bring(robot, arm("right", FOLDED))
+    yield from take(robot, "right arm folded")
 
 
 def retract_left_arm(robot: Robot) -> Steps:
     """Folds the arm to the body."""
-    yield from bring(robot, arm("left", FOLDED))
+    yield from take(robot, "left arm folded")

@@ -17,8 +17,6 @@ from btlang.robots.robot import Robot
 Steps = Generator[None, None, None]
 Tell = Callable[[float], object]
 
-_DECELERATION = 0.6
-_TURN_DECELERATION = 180.0
 _CLOSE_ENOUGH = 0.004
 _ANGLE_CLOSE_ENOUGH = 0.25
 _STRAIGHTENING = 2.0  # degrees a second for each degree off course
@@ -78,7 +76,8 @@ def drive_straight(robot: Robot, distance: float, speed: float | None = None, pr
     """Drives `distance` metres along the heading (negative: backwards), keeps the course, and brakes."""
     start, watch = robot.pose, Watch(robot)
     bounds = Progress(distance, _CLOSE_ENOUGH, False, lambda: robot.time)
-    limit = min(robot.normal_speed if speed is None else abs(speed), robot.max_speed)
+    driving = robot.body.driving
+    limit, slowing = min(driving.speed if speed is None else abs(speed), driving.top_speed), driving.slowing
     try:
         while True:
             pose = robot.pose
@@ -89,7 +88,7 @@ def drive_straight(robot: Robot, distance: float, speed: float | None = None, pr
                 return
             bounds.check(left, start.distance_to((pose.x, pose.y)))
             progress(gone / distance)
-            pace = min(limit, sqrt(2 * _DECELERATION * abs(left)), 3.0 * abs(left))
+            pace = min(limit, sqrt(2 * slowing * abs(left)), 3.0 * abs(left))
             course = wrap(start.heading - pose.heading)
             robot.drive(copysign(pace, left), _STRAIGHTENING * course)
             yield
@@ -100,6 +99,7 @@ def drive_straight(robot: Robot, distance: float, speed: float | None = None, pr
 def turn(robot: Robot, angle: float, progress: Tell = unheard) -> Steps:
     """Turns on the spot by `angle` degrees (left positive; more than a whole turn is fine) and brakes."""
     heading, turned, watch = robot.pose.heading, 0.0, Watch(robot)
+    turning = robot.body.turning
     bounds = Progress(angle, _ANGLE_CLOSE_ENOUGH, True, lambda: robot.time)
     try:
         while True:
@@ -111,7 +111,7 @@ def turn(robot: Robot, angle: float, progress: Tell = unheard) -> Steps:
                 return
             bounds.check(left, turned)
             progress(turned / angle)
-            pace = min(robot.normal_turn, sqrt(2 * _TURN_DECELERATION * abs(left)), 4.0 * abs(left))
+            pace = min(turning.speed, sqrt(2 * turning.slowing * abs(left)), 4.0 * abs(left))
             robot.drive(0.0, copysign(pace, left))
             yield
     finally:

@@ -4,25 +4,26 @@ from __future__ import annotations
 
 from btlang.actions.motion import Steps
 from btlang.engine.leaf import ActionFailed
-from btlang.robots.robot import Deed, Robot
+from btlang.robots.capabilities import Navigation
+from btlang.robots.robot import Deed
 
 
-def go_to(robot: Robot, place: str) -> Steps:
+def go_to(robot: Navigation, place: str) -> Steps:
     """Drives to a place and faces as the place says."""
     yield from travel(robot, place)
 
 
-def go_to_person(robot: Robot, person: str) -> Steps:
+def go_to_person(robot: Navigation, person: str) -> Steps:
     """Drives to talking distance of a person and faces them."""
     yield from travel(robot, person)
 
 
-def approach(robot: Robot, object: str) -> Steps:
+def approach(robot: Navigation, object: str) -> Steps:
     """Drives until an object is within arm's reach, and faces it."""
     yield from travel(robot, object)
 
 
-def travel(robot: Robot, name: str) -> Steps:
+def travel(robot: Navigation, name: str) -> Steps:
     """Drives to anything that has a name; halted, it brakes."""
     yield from accomplish(robot.navigate_to(name))
 

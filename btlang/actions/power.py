@@ -8,8 +8,6 @@ from btlang.actions.watch import Watch
 from btlang.engine.leaf import ActionFailed
 from btlang.robots.robot import Robot
 
-_CLEAR_OF_DOCK = 0.4
-
 
 def dock(robot: Robot) -> Steps:
     """Drives to the dock and connects; does nothing when docked."""
@@ -19,10 +17,11 @@ def dock(robot: Robot) -> Steps:
 
 
 def undock(robot: Robot) -> Steps:
-    """Disconnects and backs off by 0.4 m; does nothing when not docked."""
+    """Disconnects and backs off; does nothing when not docked."""
     if robot.docked:
         yield from accomplish(robot.undock())
-        yield from drive_straight(robot, -_CLEAR_OF_DOCK)
+        if robot.body.dock is not None:
+            yield from drive_straight(robot, -robot.body.dock.backs_off)
 
 
 def charge(robot: Robot, percent: float) -> Steps:

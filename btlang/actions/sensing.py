@@ -4,14 +4,16 @@ from __future__ import annotations
 
 from math import inf, radians
 
-from btlang.robots.robot import Robot, RobotError
+from btlang.robots.capabilities import Base, Docking, Hands, Power, Sensors
+from btlang.robots.robot import RobotError
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     import numpy as np
     import numpy.typing as npt
 
-NEAR_WALL = 0.8
+NEAR_WALL = 0.6
+"""Metres before the robot: after "no wall in front" it can drive 0.5 m."""
 NEAR_PERSON = 1.5
 AT_PLACE = 0.5
 LOW_BATTERY = 20.0
@@ -20,53 +22,54 @@ FULL_BATTERY = 99.5
 _SIDE_MARGIN = 0.03
 
 
-def wall_in_front(robot: Robot) -> bool:
+def wall_in_front(robot: Sensors) -> bool:
     """Whether the next 0.5 m ahead (and the robot's own length, and a margin) are not free of walls and things."""
     return is_blocked(robot, 0.0)
 
 
-def wall_on_left(robot: Robot) -> bool:
+def wall_on_left(robot: Sensors) -> bool:
     """Whether a robot turned left would have a wall in front."""
     return is_blocked(robot, 90.0)
 
 
-def wall_on_right(robot: Robot) -> bool:
+def wall_on_right(robot: Sensors) -> bool:
     """Whether a robot turned right would have a wall in front."""
     return is_blocked(robot, -90.0)
 
 
-def wall_behind(robot: Robot) -> bool:
+def wall_behind(robot: Sensors) -> bool:
     """Whether a robot turned around would have a wall in front."""
     return is_blocked(robot, 180.0)
 
 
-def path_is_clear(robot: Robot) -> bool:
+def path_is_clear(robot: Sensors) -> bool:
     """The opposite of `wall_in_front`."""
     return not wall_in_front(robot)
 
 
-def is_blocked(robot: Robot, direction: float) -> bool:
+def is_blocked(robot: Sensors, direction: float) -> bool:
     """Whether a scan point lies in the strip that the robot would sweep in a direction (degrees left of its heading).
 
-    The strip is as wide as the robot and a margin, and NEAR_WALL metres long from its centre: after False, 0.5 m in
+    The strip is as wide as the robot and a margin, and NEAR_WALL metres beyond its rim: after False, 0.5 m in
     that direction cannot bump. What a silent scanner does not see counts as blocked.
     """
     try:
         along, across = _points(robot, direction)
     except RobotError:
         return True  # a failed condition would read as "no wall" under `not` and `until`, and the robot drive blind
-    return bool(((along > 0.0) & (along < NEAR_WALL) & (abs(across) < robot.radius + _SIDE_MARGIN)).any())
+    near = robot.body.radius + NEAR_WALL
+    return bool(((along > 0.0) & (along < near) & (abs(across) < robot.body.radius + _SIDE_MARGIN)).any())
 
 
-def distance_ahead(robot: Robot) -> float:
+def distance_ahead(robot: Sensors) -> float:
     """Metres that the robot can drive straight ahead before it touches something; inf beyond the scanner's range."""
     along, across = _points(robot, 0.0)
-    touching = (along > 0.0) & (abs(across) < robot.radius)
-    bulge = (robot.radius**2 - across[touching] ** 2) ** 0.5
+    touching = (along > 0.0) & (abs(across) < robot.body.radius)
+    bulge = (robot.body.radius**2 - across[touching] ** 2) ** 0.5
     return max(0.0, float((along[touching] - bulge).min(initial=inf)))
 
 
-def _points(robot: Robot, direction: float) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
+def _points(robot: Sensors, direction: float) -> tuple[npt.NDArray[np.float64], npt.NDArray[np.float64]]:
     """Scan points in metres along and across a direction."""
     import numpy as np  # takes longer to import than many missions that sense something else
 
@@ -76,86 +79,86 @@ def _points(robot: Robot, direction: float) -> tuple[npt.NDArray[np.float64], np
     return ranges[seen] * np.cos(angles), ranges[seen] * np.sin(angles)
 
 
-def bumped(robot: Robot) -> bool:
+def bumped(robot: Sensors) -> bool:
     """Whether the robot has run into something and not moved away since."""
     return robot.bumped
 
 
-def stuck(robot: Robot) -> bool:
+def stuck(robot: Base) -> bool:
     """Whether the robot is told to move and does not."""
     return robot.stuck
 
 
-def battery_level(robot: Robot) -> float:
+def battery_level(robot: Power) -> float:
     """Percent left."""
     return robot.battery
 
 
-def battery_low(robot: Robot) -> bool:
+def battery_low(robot: Power) -> bool:
     """Whether less than 20% is left."""
     return robot.battery < LOW_BATTERY
 
 
-def battery_full(robot: Robot) -> bool:
+def battery_full(robot: Power) -> bool:
     """Whether the battery is charged."""
     return robot.battery >= FULL_BATTERY
 
 
-def docked(robot: Robot) -> bool:
+def docked(robot: Docking) -> bool:
     """Whether the robot is connected to its dock."""
     return robot.docked
 
 
-def charging(robot: Robot) -> bool:
+def charging(robot: Power) -> bool:
     """Whether the battery is being charged."""
     return robot.charging
 
 
-def at_place(robot: Robot, place: str) -> bool:
+def at_place(robot: Base, place: str) -> bool:
     """Whether the robot is within half a metre of a place."""
     return robot.pose.distance_to(robot.locate(place)) <= AT_PLACE
 
 
-def distance_to_place(robot: Robot, place: str) -> float:
+def distance_to_place(robot: Base, place: str) -> float:
     """Metres to a place, as the crow flies."""
     return robot.pose.distance_to(robot.locate(place))
 
 
-def distance_to_person(robot: Robot, person: str) -> float:
+def distance_to_person(robot: Base, person: str) -> float:
     """Metres to a person, as the crow flies."""
     return robot.pose.distance_to(robot.locate(person))
 
 
-def distance_to_object(robot: Robot, object: str) -> float:
+def distance_to_object(robot: Base, object: str) -> float:
     """Metres to an object, as the crow flies."""
     return robot.pose.distance_to(robot.locate(object))
 
 
-def people_near(robot: Robot) -> int:
+def people_near(robot: Base) -> int:
     """How many people are within 1.5 m."""
     return len(robot.nearby_people(NEAR_PERSON))
 
 
-def person_near(robot: Robot, person: str) -> bool:
+def person_near(robot: Base, person: str) -> bool:
     """Whether a person is within 1.5 m."""
     return robot.pose.distance_to(robot.locate(person)) <= NEAR_PERSON
 
 
-def someone_near(robot: Robot) -> bool:
+def someone_near(robot: Base) -> bool:
     """Whether anybody is within 1.5 m."""
     return bool(robot.nearby_people(NEAR_PERSON))
 
 
-def holding(robot: Robot, object: str) -> bool:
+def holding(robot: Hands, object: str) -> bool:
     """Whether either hand holds the object."""
     return object in (robot.holding("left"), robot.holding("right"))
 
 
-def holding_something(robot: Robot) -> bool:
+def holding_something(robot: Hands) -> bool:
     """Whether either hand holds anything."""
     return robot.holding("left") is not None or robot.holding("right") is not None
 
 
-def hand_empty(robot: Robot) -> bool:
+def hand_empty(robot: Hands) -> bool:
     """Whether neither hand holds anything."""
     return not holding_something(robot)

@@ -104,6 +104,8 @@ _ALL = (
     Code("BT064", "'{id}' already has a function, from {file}, and only one can run.",
          "To run yours instead, write {fixed}; otherwise give it another id."),
     Code("BT070", "This world file can't be used: {reason}."),
+    Code("BT071", "This robot file can't be used: {reason}."),
+    Code("BT072", "The robot '{robot}' has no {parts}, which '{words}' needs.", "Leave it out, or choose another robot with --robot."),
     Code("BT080", "The command '{id}' can't run: {reason}."),
     Code("BT081", "Pictures need matplotlib, which isn't installed.", "Install it: pip install 'btlang[pictures]'"),
     Code("BT090", "There's no message code '{name}'.", "Run 'btc explain' to list them."),

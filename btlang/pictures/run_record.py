@@ -82,7 +82,7 @@ class RunRecord:
         self.moved: dict[str, Point | None] = {}
         self.moves: list[tuple[float, str, Point | None]] = []
         self.ended: tuple[int, float] | None = None
-        self.radius = 0.2
+        self.radius = 0.0
 
     @property
     def begun(self) -> bool:

@@ -49,8 +49,10 @@ class MissionDraft:
         world: str | None = None,
         parser: str = DEFAULT_PARSER,
         include_root: str | None = None,
+        robot: str = "simulated",
     ) -> None:
-        """Raises MissionError where a keyword file or the world cannot be used."""
+        """Raises MissionError where a keyword file, the world or the robot cannot be used."""
+        self._robot = robot
         self._keywords = keywords
         self._include_root = include_root
         self._parser = parser
@@ -66,13 +68,13 @@ class MissionDraft:
     def use_world(self, world: str | None) -> None:
         """Puts the robot into a world of its own file, None for the one that ships. Raises MissionError."""
         vocabulary = world_vocabulary(self._keywords, world)
-        self.session = Session(world=world)
+        self.session = Session(self._robot, world=world, over="simulated")
         self.vocabulary = vocabulary
         self.world = world
 
     def reset(self) -> None:
         """The same world, as it was at the start."""
-        self.session = Session(world=self.world)
+        self.session = Session(self._robot, world=self.world, over="simulated")
         self._blackboard = Blackboard()
 
     def _source(self, text: str, name: str = ENTRY) -> Source:

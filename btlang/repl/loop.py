@@ -32,9 +32,10 @@ def run_repl(
     parser: str = DEFAULT_PARSER,
     include_root: str | None = None,
     speed: float | str = "real",
+    robot: str = "simulated",
 ) -> int:
     """Runs until the user leaves or the input ends; returns the exit code. Raises MissionError for wrong files."""
-    draft = MissionDraft(keywords, world, parser, include_root)
+    draft = MissionDraft(keywords, world, parser, include_root, robot)
     if not can_draw(sys.stdout) or sys.stdin is None or not sys.stdin.isatty():
         return Repl(draft, Store(None), speed).read(sys.stdin or ())
     store = Store(state_folder())

@@ -4,17 +4,11 @@ from __future__ import annotations
 
 from math import ceil, copysign, cos, degrees, inf, radians, sin
 
+from btlang.robots.body import Body
 from btlang.robots.geometry import Pose, wrap
 from btlang.robots.obstacles import Obstacles
-from btlang.robots.world import ROBOT_RADIUS
-
-MAX_SPEED = 1.0
-MAX_TURN = 180.0
-ACCELERATION, BRAKE, HARD_BRAKE = 1.0, 2.0, 4.0
-TURN_ACCELERATION, TURN_BRAKE, TURN_HARD_BRAKE = 240.0, 480.0, 960.0
 
 _SUBSTEP = 0.02
-_WHEEL_GAP = 0.3
 _STUCK_AFTER = 1.0
 _FREE_AGAIN = 0.03
 
@@ -22,8 +16,12 @@ _FREE_AGAIN = 0.03
 class Base:
     """Metres, degrees and seconds. `bumped_into` names what a contact was with, `bumps` counts contacts."""
 
-    def __init__(self, pose: Pose, obstacles: Obstacles) -> None:
+    def __init__(self, pose: Pose, obstacles: Obstacles, body: Body) -> None:
         self.pose = pose
+        self.body = body
+        self._driving, self._turning = body.driving, body.turning
+        self._radius = body.radius
+        self._wheel_gap = body.base.wheel_gap if body.base is not None else 1.0
         self.velocity = (0.0, 0.0)
         self.bumps = 0
         self.bumped_into = ""
@@ -57,7 +55,7 @@ class Base:
 
     def drive(self, linear: float, angular: float) -> None:
         """Sets the wanted velocity, within the limits."""
-        self._wanted = (_clip(linear, MAX_SPEED), _clip(angular, MAX_TURN))
+        self._wanted = (_clip(linear, self._driving.top_speed), _clip(angular, self._turning.top_speed))
         self._hard = False
         if self._wanted == (0.0, 0.0):
             self._forget_trouble()
@@ -83,9 +81,10 @@ class Base:
 
     def _substep(self, h: float) -> None:
         linear, angular = self._speeds
-        brake, turn_brake = (HARD_BRAKE, TURN_HARD_BRAKE) if self._hard else (BRAKE, TURN_BRAKE)
-        linear = _towards(linear, self._wanted[0], ACCELERATION * h, brake * h)
-        angular = _towards(angular, self._wanted[1], TURN_ACCELERATION * h, turn_brake * h)
+        driving, turning = self._driving, self._turning
+        brake, turn_brake = (driving.hard_brake, turning.hard_brake) if self._hard else (driving.brake, turning.brake)
+        linear = _towards(linear, self._wanted[0], driving.acceleration * h, brake * h)
+        angular = _towards(angular, self._wanted[1], turning.acceleration * h, turn_brake * h)
         self._speeds = linear, angular
         v, w = self._on_floor(linear, angular)
         old = self.pose
@@ -105,17 +104,17 @@ class Base:
         self.travelled += abs(v) * h
         if self._contact is not None and self._contact.distance_to((new.x, new.y)) > _FREE_AGAIN:
             self._contact = None
-        wanted = abs(self._wanted[0]) + ROBOT_RADIUS * radians(abs(self._wanted[1]))
-        real = abs(v) + ROBOT_RADIUS * radians(abs(w))
+        wanted = abs(self._wanted[0]) + self._radius * radians(abs(self._wanted[1]))
+        real = abs(v) + self._radius * radians(abs(w))
         self._idle = self._idle + h if real < 0.05 * wanted else 0.0
 
     def _on_floor(self, linear: float, angular: float) -> tuple[float, float]:
         """What is left of the wheels' motion where one slips."""
         if self.grips == (1.0, 1.0):
             return linear, angular
-        side = radians(angular) * _WHEEL_GAP / 2
+        side = radians(angular) * self._wheel_gap / 2
         left, right = (linear - side) * self.grips[0], (linear + side) * self.grips[1]
-        return (left + right) / 2, degrees((right - left) / _WHEEL_GAP)
+        return (left + right) / 2, degrees((right - left) / self._wheel_gap)
 
     def _hits(self, pose: Pose, moved: float) -> bool:
         """`_free` is a lower bound of the room left, so that most steps need not look at the obstacles."""
@@ -136,7 +135,7 @@ class Base:
 
     def _gap(self, pose: Pose) -> float:
         distance, self._near = self._obstacles.nearest(pose.x, pose.y)
-        return inf if distance == inf else distance - ROBOT_RADIUS
+        return inf if distance == inf else distance - self._radius
 
     def _last_free(self, old: Pose, new: Pose) -> Pose:
         """Halves the way until the touching point is known to a few micrometres."""

@@ -7,25 +7,22 @@ from itertools import pairwise
 from math import cos, dist, radians, sqrt
 
 from btlang.robots.base import Base
+from btlang.robots.body import Body, Limits
 from btlang.robots.faults import Faults
 from btlang.robots.geometry import Point, Pose, wrap
 from btlang.robots.obstacles import Obstacles
-from btlang.robots.world import ROBOT_RADIUS, Place, World, said
+from btlang.robots.robot import RobotError
+from btlang.robots.world import Place, Thing, World, said
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.robots.planning import Planner
 
-SPEED = 0.5
-TURN = 90.0
-ARM_REACH = 0.5
-TALKING_DISTANCE = 0.8
+ROOM = 0.15
+"""Metres between the robot and an object or a person that it goes to, at least."""
 
-_DECELERATION = 0.6
-_TURN_DECELERATION = 180.0
 _LOOK_AHEAD = 0.25
 _NEAR, _FACING = 0.03, 1.0
-_ROOM = ROBOT_RADIUS + 0.15
 
 
 class Journey:
@@ -71,6 +68,7 @@ class Navigator:
         self._places: dict[str, Place] = {place.name: place for place in world.places}
         self._people = set(world.names.people)
         self._base = base
+        self._body = base.body
         self._obstacles = obstacles
         self._faults = faults
         self._world = world
@@ -125,7 +123,7 @@ class Navigator:
         if self._planner is None:
             from btlang.robots.planning import Planner  # brings numpy, which takes longer to import than many missions
 
-            self._planner = Planner(self._world, self._obstacles)
+            self._planner = Planner(self._world, self._obstacles, self._body.radius)
         path = self._planner.path((self._base.pose.x, self._base.pose.y), goal, reach)
         if path is None:
             journey.end(f"there is no free way to {said(journey.name)}")
@@ -139,8 +137,7 @@ class Navigator:
         if name in self._places:
             return (self._places[name].x, self._places[name].y), 0.0
         thing = self._obstacles.things[name]
-        near = TALKING_DISTANCE if name in self._people else ARM_REACH
-        return (thing.x, thing.y), max(near, thing.radius + _ROOM)
+        return (thing.x, thing.y), stand_off(self._body, thing, name in self._people)
 
     def _follow(self, journey: Journey) -> None:
         pose, path = self._base.pose, journey.path
@@ -155,9 +152,11 @@ class Navigator:
         error = pose.bearing_to(path[journey.at])
         if journey.at == last and left < 2 * _NEAR and abs(error) > 90.0:
             journey.driven = True  # just past the goal: good enough, turning back would look silly
-        speed = min(SPEED, sqrt(2 * _DECELERATION * left), 3.0 * left) * max(0.0, cos(radians(min(90.0, 2 * error))))
+        driving = self._body.driving
+        speed = min(driving.speed, sqrt(2 * driving.slowing * left), 3.0 * left)
+        speed *= max(0.0, cos(radians(min(90.0, 2 * error))))
         speed = 0.0 if abs(error) > 45.0 else speed
-        self._base.drive(speed, turn_rate(error))
+        self._base.drive(speed, turn_rate(error, self._body.turning))
 
     def _face(self, journey: Journey) -> None:
         pose = self._base.pose
@@ -172,10 +171,18 @@ class Navigator:
         if abs(error) <= _FACING:
             journey.end(None)
         else:
-            self._base.drive(0.0, turn_rate(error))
+            self._base.drive(0.0, turn_rate(error, self._body.turning))
 
 
-def turn_rate(error: float) -> float:
+def turn_rate(error: float, turning: Limits) -> float:
     """Degrees a second that close an error of heading fast without overshooting."""
-    rate = min(TURN, sqrt(2 * _TURN_DECELERATION * abs(error)), 4.0 * abs(error))
+    rate = min(turning.speed, sqrt(2 * turning.slowing * abs(error)), 4.0 * abs(error))
     return rate if error > 0 else -rate
+
+
+def stand_off(body: Body, thing: Thing, is_person: bool) -> float:
+    """Metres from an object or a person at which a robot that goes there stops. Raises RobotError."""
+    if body.navigation is None:
+        raise RobotError("the robot finds no ways")
+    near = body.navigation.people if is_person else body.navigation.objects
+    return max(near, thing.radius + body.radius + ROOM)

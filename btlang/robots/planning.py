@@ -12,13 +12,12 @@ import numpy.typing as npt
 from btlang.robots.geometry import Point
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.robot import RobotError
-from btlang.robots.world import ROBOT_RADIUS, World
+from btlang.robots.world import World
 
 Array = npt.NDArray[np.float64]
 
 CELL = 0.1
-_NEEDED = ROBOT_RADIUS + 0.04
-_COMFORTABLE = ROBOT_RADIUS + 0.2
+_NEEDED, _COMFORTABLE = 0.04, 0.2  # metres beside the robot
 _MARGIN = 1.0
 _MOST_AREA = 40_000  # square metres: the grid takes 250 MB
 _START_SEARCH = 0.5
@@ -28,13 +27,14 @@ _GOAL_SEARCH = 0.15
 class Planner:
     """Plans for a round robot among the obstacles as they stand now. Raises RobotError where the world is too large."""
 
-    def __init__(self, world: World, obstacles: Obstacles) -> None:
+    def __init__(self, world: World, obstacles: Obstacles, radius: float) -> None:
         points = [(x, y) for ax, ay, bx, by in world.segments() for x, y in ((ax, ay), (bx, by))]
         points += [(world.start.x, world.start.y), *((place.x, place.y) for place in world.places)]
         points += [(thing.x, thing.y) for thing in (*world.objects, *world.people)]
         low_x, high_x = min(p[0] for p in points) - _MARGIN, max(p[0] for p in points) + _MARGIN
         low_y, high_y = min(p[1] for p in points) - _MARGIN, max(p[1] for p in points) + _MARGIN
         self._obstacles = obstacles
+        self._radius, self._needed, self._comfort = radius, radius + _NEEDED, radius + _COMFORTABLE
         self._origin = low_x, low_y
         if (high_x - low_x) * (high_y - low_y) > _MOST_AREA:
             size = f"{high_x - low_x:.0f} m by {high_y - low_y:.0f} m"
@@ -68,7 +68,7 @@ class Planner:
         cells = self._search(first, self._centre(last), CELL / 4)
         if cells is None:
             return None
-        exact = self._obstacles.nearest(*goal)[0] > ROBOT_RADIUS
+        exact = self._obstacles.nearest(*goal)[0] > self._radius
         ends = [goal] if exact else []
         return self._smooth([start, *map(self._centre, cells[:-1] if exact else cells), *ends])
 
@@ -80,8 +80,8 @@ class Planner:
         clearance = self._fixed.copy()
         for x, y, radius in self._obstacles.discs:
             np.minimum(clearance, np.hypot(self._xs - x, self._ys - y) - radius, out=clearance)
-        tight = np.maximum(0.0, _COMFORTABLE - clearance) / (_COMFORTABLE - _NEEDED)
-        costs = np.where(clearance < _NEEDED, 0.0, 1.0 + 3.0 * tight)
+        tight = np.maximum(0.0, self._comfort - clearance) / (self._comfort - self._needed)
+        costs = np.where(clearance < self._needed, 0.0, 1.0 + 3.0 * tight)
         costs[0, :] = costs[-1, :] = costs[:, 0] = costs[:, -1] = 0.0  # the rim is blocked, so neighbours always exist
         self._clearance = clearance
         self._blocked = costs.ravel() == 0.0
@@ -147,7 +147,7 @@ class Planner:
         count = ceil(hypot(b[0] - a[0], b[1] - a[1]) / (CELL / 2)) + 1
         columns = (np.linspace(a[0], b[0], count) - self._origin[0]) / CELL
         rows = (np.linspace(a[1], b[1], count) - self._origin[1]) / CELL
-        return bool((self._clearance[rows.astype(int), columns.astype(int)] >= _COMFORTABLE - CELL / 2).all())
+        return bool((self._clearance[rows.astype(int), columns.astype(int)] >= self._comfort - CELL / 2).all())
 
 
 def _clearance(obstacles: Obstacles, xs: Array, ys: Array) -> Array:

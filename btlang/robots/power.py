@@ -2,21 +2,20 @@
 
 from __future__ import annotations
 
+from btlang.robots.body import Battery, Body, Dock
 from btlang.robots.geometry import Pose
 from btlang.robots.robot import RobotError
 from btlang.robots.world import Place
 
-IDLE_DRAIN = 0.01
-DRIVE_DRAIN = 0.1
-CHARGE_RATE = 2.0
-_DOCKED_WITHIN = 0.15
-_UNDOCKED_BEYOND = 0.2
+_ENDLESS = Battery(0.0, 0.0, 0.0)  # of a robot whose file knows of no battery
+_NO_DOCK = Dock(0.0, 0.0, 0.0)
 
 
 class Power:
-    """Percent left: drains IDLE_DRAIN a second and DRIVE_DRAIN a metre, gains CHARGE_RATE a second when docked."""
+    """Percent left: drains with time and with metres, and gains when docked, as the body says."""
 
-    def __init__(self, level: float, dock: Place | None) -> None:
+    def __init__(self, level: float, dock: Place | None, body: Body) -> None:
+        self._battery, self._docking = body.battery or _ENDLESS, body.dock or _NO_DOCK
         self.level = level
         self.docked = False
         self._dock = dock
@@ -36,21 +35,22 @@ class Power:
         if self._dock is None:
             raise RobotError("there is no dock in this world")
         distance = pose.distance_to((self._dock.x, self._dock.y))
-        if distance > _DOCKED_WITHIN:
+        if distance > self._docking.within:
             raise RobotError(f"the dock is {distance:.1f} m away")
         self.docked = True
 
     def step(self, dt: float, metres: float, pose: Pose) -> bool:
         """Moves on by `dt` seconds; returns True when the robot has just driven off its dock."""
-        if self.docked and self._dock is not None and pose.distance_to((self._dock.x, self._dock.y)) > _UNDOCKED_BEYOND:
+        dock = self._dock
+        if self.docked and dock is not None and pose.distance_to((dock.x, dock.y)) > self._docking.beyond:
             self.docked = False
             self._drain(dt, metres)
             return True
         if self.docked:
-            self.level = min(100.0, self.level + CHARGE_RATE * dt)
+            self.level = min(100.0, self.level + self._battery.charging * dt)
         else:
             self._drain(dt, metres)
         return False
 
     def _drain(self, dt: float, metres: float) -> None:
-        self.level = max(0.0, self.level - IDLE_DRAIN * dt - DRIVE_DRAIN * metres)
+        self.level = max(0.0, self.level - self._battery.idle * dt - self._battery.driving * metres)

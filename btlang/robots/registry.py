@@ -1,33 +1,65 @@
-"""Which robots a mission can run on: by name, what connects to one."""
+"""Which robots a mission can run on: by name, what connects to one; or a robot file."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from importlib import import_module
+import os
+from collections.abc import Callable, Mapping
+
+from btlang.record import Record
+from btlang.robots.body_file import read_body, shipped_bodies, standard_body
+from btlang.robots.platforms import ROBOTS, connection_function
+from btlang.vocabulary.shipped import BODIES
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import TypeAlias
+    from typing import Any, TypeAlias
 
+    from btlang.robots.body import Body
     from btlang.robots.world import World
     from btlang.run.connection import Connection
 
     Connect: TypeAlias = Callable[[World], Connection]
 
-ROBOTS = {
-    "simulated": "btlang.robots.simulation:Simulation",
-    "ros": "btlang.ros.command:connect_ros",
-    "actions": "btlang.ros.command:connect_actions",
-}
-"""Functions of a world, by the name of the robot; imported when it is asked for."""
+
+def body_of(robot: str) -> Body:
+    """The body of a robot: of a name in ROBOTS that which ships, else of the robot file.
+
+    Raises MissionError (BT071), and ValueError for what is no robot.
+    """
+    if robot in ROBOTS:
+        return standard_body()
+    if robot in shipped_bodies():
+        return read_body(os.path.join(BODIES, f"{robot}.toml"))
+    if not (robot.endswith(".toml") or os.path.exists(robot)):
+        names = " or ".join(map(repr, ROBOTS))
+        raise ValueError(f"robot is {names}, a robot file, or a function that connects to one: {robot!r}")
+    return read_body(robot)
 
 
-def connector(robot: str | Connect) -> Connect:
-    """What connects to a robot: that of a name in ROBOTS, or the function given. Raises ValueError."""
-    if not isinstance(robot, str):
-        return robot
-    if robot not in ROBOTS:
-        raise ValueError(f"robot is {' or '.join(map(repr, ROBOTS))}, or a function that connects to one: {robot!r}")
-    module, _, name = ROBOTS[robot].partition(":")
-    made: Connect = getattr(import_module(module), name)
-    return made
+def runs_on(robot: str, over: str | None = None) -> tuple[Body, str]:
+    """The body, and the name in ROBOTS of what it runs on: that of `over`, else what the robot says.
+
+    Raises as `body_of`, and ValueError for another `over`.
+    """
+    if over is not None and over not in ROBOTS:
+        raise ValueError(f"over is {' or '.join(map(repr, ROBOTS))}: {over!r}")
+    body = body_of(robot)
+    return body, over or (robot if robot in ROBOTS else body.over)
+
+
+class Connector(Record):
+    """Connects a robot of a body, in a world, to what it runs on: `over`, a name in ROBOTS."""
+
+    body: Body
+    over: str
+    options: Mapping[str, Any] = {}
+
+    def __call__(self, world: World) -> Connection:
+        """Raises MissionError where the robot cannot be reached."""
+        return connection_function(self.over)(world, body=self.body, **self.options)
+
+
+def connector(robot: str, over: str | None = None, **options: Any) -> Connector:
+    """What connects to a robot. The options are for one that does not run simulated. Raises as `runs_on`."""
+    body, name = runs_on(robot, over)
+    return Connector(body, name, {} if name == "simulated" else options)

@@ -10,14 +10,14 @@ from btlang.robots.obstacles import Obstacles
 
 Array = npt.NDArray[np.float64]
 
-RANGE = 8.0
 _ANGLES = np.radians(np.arange(360.0))
 
 
 class Scanner:
     """Computes a scan when it is first read from a pose, and keeps it until something moves."""
 
-    def __init__(self, obstacles: Obstacles) -> None:
+    def __init__(self, obstacles: Obstacles, reach: float) -> None:
+        self._reach = reach
         self._obstacles = obstacles
         self._segments: Array = np.array(obstacles.segments, dtype=np.float64).reshape(-1, 4)
         self._pose: Pose | None = None
@@ -27,13 +27,13 @@ class Scanner:
     def read(self, pose: Pose) -> Array:
         """See `scan`."""
         if pose is not self._pose or self._version != self._obstacles.version:
-            self._ranges = scan(self._segments, np.array(self._obstacles.discs).reshape(-1, 3), pose)
+            self._ranges = scan(self._segments, np.array(self._obstacles.discs).reshape(-1, 3), pose, self._reach)
             self._pose, self._version = pose, self._obstacles.version
         return self._ranges
 
 
-def scan(segments: Array, discs: Array, pose: Pose) -> Array:
-    """360 distances in metres, index = degrees left of the heading; inf beyond RANGE.
+def scan(segments: Array, discs: Array, pose: Pose, reach: float) -> Array:
+    """360 distances in metres, index = degrees left of the heading; inf beyond `reach` metres.
 
     A row of `segments` is x, y of one end and of the other, a row of `discs` is x, y and radius.
     """
@@ -44,7 +44,7 @@ def scan(segments: Array, discs: Array, pose: Pose) -> Array:
         ranges = np.minimum(ranges, _to_segments(segments, pose, beams))
     if len(discs):
         ranges = np.minimum(ranges, _to_discs(discs, pose, beams))
-    ranges[ranges > RANGE] = np.inf
+    ranges[ranges > reach] = np.inf
     ranges.flags.writeable = False  # shared by all who read it between two steps
     return ranges
 

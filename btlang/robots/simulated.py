@@ -6,9 +6,9 @@ from collections.abc import Iterable, Mapping
 from math import ceil
 from typing import Any
 
-from btlang.robots import base as wheels
-from btlang.robots import navigation
 from btlang.robots.base import Base
+from btlang.robots.body import Body
+from btlang.robots.body_file import standard_body
 from btlang.robots.faults import Faults, describe
 from btlang.robots.geometry import Point, Pose
 from btlang.robots.hands import Hands
@@ -18,8 +18,9 @@ from btlang.robots.navigation import Journey, Navigator
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.power import Power
 from btlang.robots.robot import Done, Hand, OnEvent, RobotError, SensorSilent
-from btlang.robots.world import ROBOT_RADIUS, Place, World, said
+from btlang.robots.world import Place, World, said
 from btlang.run.standstill import Standstill
+from btlang.vocabulary.capabilities import part_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -34,24 +35,24 @@ class SimulatedRobot:
     """Implements `btlang.robots.robot.Robot`. Nothing in it is random: the same commands give the same run."""
 
     moves_by_itself = False
-    radius = ROBOT_RADIUS
-    normal_speed = navigation.SPEED
-    max_speed = wheels.MAX_SPEED
-    normal_turn = navigation.TURN
 
-    def __init__(self, world: World, on_event: OnEvent | None = None) -> None:
+    def __init__(self, world: World, on_event: OnEvent | None = None, body: Body | None = None) -> None:
+        self.body = body = body or standard_body()
+        self.radius = body.radius
+        self.normal_speed, self.max_speed = body.driving.speed, body.driving.top_speed
+        self.normal_turn = body.turning.speed
         self.world = self._given_world = world
         self.on_event = on_event
         self.time = 0.0
         self.stops = 0
         self._obstacles = Obstacles(world)
-        self._base = Base(world.start, self._obstacles)
+        self._base = Base(world.start, self._obstacles, body)
         self._faults = Faults(world.faults)
         self._navigator = Navigator(world, self._base, self._obstacles, self._faults)
-        self._power = Power(world.battery, world.dock)
+        self._power = Power(world.battery, world.dock, body)
         self._scanner: Scanner | None = None
-        self._joints = Joints()
-        self._hands = Hands(self._obstacles, world.names.objects)
+        self._joints = Joints(body)
+        self._hands = Hands(self._obstacles, world.names.objects, body)
         self._speech_left = 0.0
         self._latch = Latch()
         self._bumps_told = 0
@@ -167,6 +168,7 @@ class SimulatedRobot:
         return self._set_out(f"({pose.x:.2f}, {pose.y:.2f})", pose)
 
     def _set_out(self, name: str, pose: Pose | None = None) -> Journey:
+        self._need("navigation")
         journey = self._navigator.start(name, pose)
         if self._latch.refuses:
             journey.end("the robot was told to stop")
@@ -178,12 +180,13 @@ class SimulatedRobot:
     # Senses
     def scan(self) -> Array:
         """360 distances, computed when first read after a step. Raises RobotError when the scanner is silent."""
+        self._need("scanner")
         if self._faults.scanner_silent:
             raise SensorSilent("the laser scanner is silent")
         if self._scanner is None:
             from btlang.robots.scan import Scanner  # brings numpy, which takes longer to import than many missions
 
-            self._scanner = Scanner(self._obstacles)
+            self._scanner = Scanner(self._obstacles, self.body.range)
         return self._scanner.read(self.pose)
 
     def locate(self, name: str) -> Point:
@@ -247,6 +250,7 @@ class SimulatedRobot:
 
     def dock(self) -> Done:
         """Connects to the charger at once. Raises RobotError where the robot does not stand at the dock."""
+        self._need("docking")
         self._power.connect(self.pose)
         self._emit("dock")
         return Done()
@@ -297,9 +301,11 @@ class SimulatedRobot:
 
     # Voice
     def say(self, text: str) -> None:
-        """Starts to speak: 0.35 s and 0.06 s a character."""
-        if not self._latch.refuses:
-            self._speech_left = 0.35 + 0.06 * len(text)
+        """Starts to speak, for as long as the body says."""
+        self._need("voice")
+        voice = self.body.voice
+        if voice is not None and not self._latch.refuses:
+            self._speech_left = voice.text + voice.character * len(text)
             self._emit("say", text=text)
 
     @property
@@ -313,7 +319,13 @@ class SimulatedRobot:
 
     def print(self, text: str) -> None:
         """Shows text at once."""
+        self._need("screen")
         self._emit("print", text=text)
+
+    def _need(self, need: str) -> None:
+        """Raises RobotError where the body lacks it."""
+        if not self.body.has(need):
+            raise RobotError(f"the robot has no {part_of(need)}")
 
     def _begin_faults(self) -> None:
         for fault in self._faults.advance(self.time):

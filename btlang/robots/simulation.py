@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
+from btlang.robots.body import Body
+from btlang.robots.needs import check_body
 from btlang.robots.simulated import SimulatedRobot
 from btlang.robots.world import World
 from btlang.run.bus import Bus
@@ -23,12 +25,12 @@ if TYPE_CHECKING:
 class Simulation:
     """See btlang.run.connection.Connection. The world keeps its state from one run to the next."""
 
-    def __init__(self, world: World) -> None:
+    def __init__(self, world: World, body: Body | None = None) -> None:
         self.world = world
         self.bus = Bus()
         self._early: list[tuple[str, Mapping[str, Any]]] = []  # faults from the start are there before anybody listens
         self._begun = False
-        self.robot = SimulatedRobot(world, on_event=self._report)
+        self.robot = SimulatedRobot(world, self._report, body)
 
     def begin(self, bus: Bus) -> None:
         """A new run: what the robot reports goes on this bus."""
@@ -42,7 +44,8 @@ class Simulation:
         return None
 
     def check(self, tree: Tree, vocabulary: Vocabulary) -> None:
-        """The simulated robot can do all that the shipped leaves need."""
+        """Raises MissionError where its body lacks what a leaf needs (BT072)."""
+        check_body(self.robot.body, tree, vocabulary)
 
     def pace(self, speed: float, controls: Controls) -> Pace:
         """Any speed will do: the world moves on as fast as it is asked to."""

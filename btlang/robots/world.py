@@ -8,7 +8,6 @@ from itertools import pairwise
 from btlang.record import Record
 from btlang.robots.geometry import Point, Pose, Segment
 
-ROBOT_RADIUS = 0.2
 PERSON_RADIUS = 0.25
 OBJECT_RADIUS = 0.05
 NEVER = float("inf")

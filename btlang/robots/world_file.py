@@ -2,18 +2,16 @@
 
 from __future__ import annotations
 
-import tomllib
 from collections.abc import Mapping
 from os import PathLike, fspath
 
-from btlang.diagnostics.reading import read_bytes
-from btlang.robots import world_lines
+from btlang.robots.body_file import standard_body
+from btlang.robots.data_file import DataFileError, load_data
 from btlang.robots.geometry import Point, Pose, segment_distance
 from btlang.robots.world import (
     NEVER,
     OBJECT_RADIUS,
     PERSON_RADIUS,
-    ROBOT_RADIUS,
     Box,
     Fault,
     Place,
@@ -21,43 +19,32 @@ from btlang.robots.world import (
     World,
     WorldNames,
 )
-from btlang.robots.world_table import Problem, Table
-from btlang.text.toml import parse_toml
+from btlang.text.toml_table import Problem, Table
 from btlang.vocabulary.shipped import DEFAULT_WORLD
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+    from btlang.robots.body import Body
+
 _FAULTS = ("blocked", "slip", "silent scanner", "weak hand")
 
 
-class WorldError(Exception):
-    """A world file that cannot be used: `message` says what to write instead; `line` counts from 1, None if unknown."""
+class WorldError(DataFileError):
+    """A world file that cannot be used."""
 
-    def __init__(self, message: str, path: str, line: int | None = None) -> None:
-        super().__init__(f"{path}:{line}: {message}" if line else f"{path}: {message}")
-        self.message = message
-        self.path = path
-        self.line = line
+    code = "BT070"
 
 
-def load_world(path: str | PathLike[str] | None = None) -> World:
-    """The world in the file, or the world that ships. Raises WorldError."""
+def load_world(path: str | PathLike[str] | None = None, body: Body | None = None) -> World:
+    """The world in the file, or the world that ships. Raises WorldError.
+
+    It has to leave room for the body, by default that of the robot that ships.
+    """
     name = DEFAULT_WORLD if path is None else fspath(path)
-    try:
-        text = _read(name)
-    except OSError as error:
-        raise WorldError(f"cannot read the world file: {error.strerror or error}", name) from None
-    except UnicodeDecodeError:
-        raise WorldError("a world file is UTF-8 text; save it as such", name) from None
-    try:
-        return _world(Table("", parse_toml(text)))
-    except tomllib.TOMLDecodeError as error:
-        raise WorldError(f"this is no TOML: {error}", name, world_lines.line_in_message(str(error))) from None
-    except Problem as problem:
-        line = world_lines.find_line(text, problem.section, problem.index, problem.key)
-        raise WorldError(problem.message, name, line) from None
+    radius = (body or standard_body()).radius
+    return load_data(name, "a world", lambda top: _world(top, radius), WorldError)
 
 
 def world_names(path: str | PathLike[str] | None = None) -> WorldNames:
@@ -65,15 +52,7 @@ def world_names(path: str | PathLike[str] | None = None) -> WorldNames:
     return load_world(path).names
 
 
-def _read(name: str) -> str:
-    read = getattr(__spec__.loader, "get_data", None)  # reads the packaged world from a zipped wheel too
-    if name == DEFAULT_WORLD and read is not None:
-        data: bytes = read(name)
-        return data.decode("utf-8-sig")
-    return read_bytes(name).decode("utf-8-sig")
-
-
-def _world(top: Table) -> World:
+def _world(top: Table, radius: float) -> World:
     table = top.table("start")
     battery = table.number("battery", 100.0, low=0.0, high=100.0)
     start = table.finish(Pose(table.number("x"), table.number("y"), table.number("facing", 0.0)))
@@ -90,7 +69,7 @@ def _world(top: Table) -> World:
     faults = tuple(_fault(table, [place.name for place in places]) for table in top.tables("faults"))
     world = top.finish(World(start, battery, walls, boxes, places, objects, people, faults, dock))
     _check_names(world)
-    _check_room(world)
+    _check_room(world, radius)
     return world
 
 
@@ -147,14 +126,16 @@ def _check_names(world: World) -> None:
             seen[key] = section
 
 
-def _check_room(world: World) -> None:
-    spots: list[tuple[str, str, int, float, float]] = [("the start", "start", 0, world.start.x, world.start.y)]
+def _check_room(world: World, radius: float) -> None:
+    spots: list[tuple[str, tuple[str | int, ...], float, float]] = [
+        ("the start", ("start",), world.start.x, world.start.y)
+    ]
     for index, place in enumerate(world.places):
-        section = "dock" if place is world.dock else "places"
-        spots.append((f'the place "{place.name}"', section, index, place.x, place.y))
-    for what, section, index, x, y in spots:
+        path: tuple[str | int, ...] = ("dock",) if place is world.dock else ("places", index)
+        spots.append((f'the place "{place.name}"', path, place.x, place.y))
+    for what, path, x, y in spots:
         inside = any(box.contains((x, y)) for box in world.boxes)
         gap = min((segment_distance((x, y), segment) for segment in world.segments()), default=NEVER)
-        if inside or gap < ROBOT_RADIUS:
-            message = f"{what} at ({x:g}, {y:g}) is inside a wall or a box; leave {ROBOT_RADIUS} m to every wall"
-            raise Problem(message, section, index, "x")
+        if inside or gap < radius:
+            message = f"{what} at ({x:g}, {y:g}) is inside a wall or a box; leave {radius:g} m to every wall"
+            raise Problem(message, *path, "x")

@@ -3,39 +3,48 @@
 from __future__ import annotations
 
 from argparse import ArgumentParser, Namespace
-from collections.abc import Callable
 from contextlib import closing
-from functools import partial
 
-from btlang.arguments import namespace
-from btlang.robots.registry import ROBOTS, connector
+from btlang.arguments import namespace, robot_on
+from btlang.robots.platforms import ROBOTS
+from btlang.robots.registry import connector, runs_on
 from btlang.ros.available import require_interfaces, require_ros
 from btlang.ros.serving.names import FOLDER
 from btlang.text.output import show
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from typing import Any
 
+    from btlang.robots.body import Body
+    from btlang.robots.registry import Connector
     from btlang.robots.world import World
     from btlang.ros.connection import RosConnection
-    from btlang.run.connection import Connection
     from btlang.tree.node import Tree
     from btlang.vocabulary.vocabulary import Vocabulary
 
 _PACKAGES = ("geometry_msgs", "nav_msgs", "rosgraph_msgs", "sensor_msgs", "std_msgs", "std_srvs", "trajectory_msgs")
 
 
-def connect_ros(world: World, *, sim_time: bool = False, namespace: str = "", name: str = "btlang") -> RosConnection:
+def connect_ros(
+    world: World, *, sim_time: bool = False, namespace: str = "", name: str = "btlang", body: Body | None = None
+) -> RosConnection:
     """A connection to the ROS 2 robot of a namespace. Raises MissionError (BT100) without ROS 2."""
     require_ros(*_PACKAGES)
     from btlang.ros.connection import RosConnection
 
-    return RosConnection(world, sim_time=sim_time, namespace=namespace, name=name)
+    return RosConnection(world, sim_time=sim_time, namespace=namespace, name=name, body=body)
 
 
 def connect_actions(
-    world: World, *, sim_time: bool = False, namespace: str = "", name: str = "btlang", servers: str = ""
+    world: World,
+    *,
+    sim_time: bool = False,
+    namespace: str = "",
+    name: str = "btlang",
+    servers: str = "",
+    body: Body | None = None,
 ) -> RosConnection:
     """As connect_ros, where each action is done by its server, by default one of the same namespace.
 
@@ -46,14 +55,12 @@ def connect_actions(
     from btlang.ros.connection import RosConnection
 
     servers = servers or f"/{namespace.strip('/')}/{FOLDER}".replace("//", "/")
-    return RosConnection(world, sim_time=sim_time, namespace=namespace, name=name, servers=servers)
+    return RosConnection(world, sim_time=sim_time, namespace=namespace, name=name, servers=servers, body=body)
 
 
 def add_robot_options(parser: ArgumentParser) -> None:
     """The options of `btc run` that choose a robot."""
-    parser.add_argument(
-        "--robot", choices=list(ROBOTS), default="simulated", help="what runs the mission (default: %(default)s)"
-    )
+    add_body_options(parser)
     parser.add_argument(
         "--sim-time", action="store_true", help="with --robot ros or actions: time is that of the topic /clock"
     )
@@ -69,24 +76,42 @@ def add_robot_options(parser: ArgumentParser) -> None:
     parser.set_defaults(refuse=parser.error)
 
 
+def add_body_options(parser: ArgumentParser, platforms: Sequence[str] = tuple(ROBOTS)) -> None:
+    """The options --robot and --over, for a verb whose robot runs on these."""
+    parser.add_argument(
+        "--robot",
+        type=robot_on(platforms),
+        default="simulated",
+        metavar="ROBOT",
+        help=f"{', '.join(platforms)}, a robot file or the name of one that ships (default: %(default)s)",
+    )
+    parser.add_argument("--over", choices=platforms, help="what the robot of a file runs on (default: as it says)")
+
+
 def add_namespace(parser: ArgumentParser, what: str) -> None:
     """The option --namespace."""
     parser.add_argument("--namespace", type=namespace, default="", metavar="NS", help=what)
 
 
-def chosen_robot(options: Namespace) -> str | Callable[[World], Connection]:
-    """As `btlang.Session` takes it. Ends with a usage error where options do not go together."""
-    if options.servers is not None and options.robot != "actions":
+def chosen_robot(options: Namespace) -> Connector:
+    """As `btlang.Session` takes it. Ends with a usage error where options do not go together. Raises MissionError."""
+    over = platform_of(options)
+    if options.servers is not None and over != "actions":
         options.refuse("--servers is for --robot actions")
-    if options.robot == "simulated":
-        if options.sim_time or options.preflight or options.namespace:
-            options.refuse("--sim-time, --namespace and --preflight are for --robot ros and --robot actions")
-        return str(options.robot)
-    if options.speed != "real":
-        options.refuse(f"--robot {options.robot} runs in real time, so it takes no --speed")
-    connect: Any = connector(options.robot)
-    make = partial(connect, sim_time=options.sim_time, namespace=options.namespace)
-    return make if options.servers is None else partial(make, servers=f"/{options.servers.strip('/')}")
+    if over == "simulated" and (options.sim_time or options.preflight or options.namespace):
+        options.refuse("--sim-time, --namespace and --preflight are for --robot ros and --robot actions")
+    servers = {} if options.servers is None else {"servers": f"/{options.servers.strip('/')}"}
+    named = {"sim_time": options.sim_time, "namespace": options.namespace, **servers}
+    return connector(options.robot, options.over, **named)
+
+
+def platform_of(options: Namespace) -> str:
+    """What the chosen robot runs on. Ends with a usage error where that takes no --speed. Raises MissionError."""
+    over = runs_on(options.robot, options.over)[1]
+    if over != "simulated" and options.speed != "real":
+        how = f"--robot {over}" if options.robot == over else f"--robot {options.robot} over {over}"
+        options.refuse(f"{how} runs in real time, so it takes no --speed")
+    return over
 
 
 def print_preflight(tree: Tree, vocabulary: Vocabulary, world: World, robot: Any) -> bool:
@@ -96,12 +121,19 @@ def print_preflight(tree: Tree, vocabulary: Vocabulary, world: World, robot: Any
     """
     with closing(robot(world)) as connection:
         found = connection.survey(tree, vocabulary)
+        lacks = connection.lacking_parts(tree, vocabulary)
         warnings = connection.warnings(found)
     for interface, (_, reason) in found.items():
         state = f"missing: {reason}" if reason else "found"
         show(f"{interface.sort:<7} {interface.name:<20} {interface.type:<36} {state}")
+    for part in lacks:
+        show(f"{'part':<7} {part:<57} missing: it is not in the robot file")
     for warning in warnings:
         show(f"warning: {warning}")
-    missing = sum(bool(reason) for _, reason in found.values())
-    show(f"The robot lacks {missing} of {len(found)}." if missing else "The robot has all that the mission needs.")
+    missing = sum(bool(reason) for _, reason in found.values()) + len(lacks)
+    show(
+        f"The robot lacks {missing} of {len(found) + len(lacks)}."
+        if missing
+        else "The robot has all that the mission needs."
+    )
     return not missing

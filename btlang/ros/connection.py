@@ -9,6 +9,8 @@ from typing import Any
 from rosgraph_msgs.msg import Clock as ClockMessage
 
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.robots.body import Body
+from btlang.robots.needs import check_body, lacking
 from btlang.robots.world import World
 from btlang.ros.available import require_ros
 from btlang.ros.binding import bind_ros
@@ -50,7 +52,14 @@ class RosConnection:
     """
 
     def __init__(
-        self, world: World, *, sim_time: bool = False, namespace: str = "", name: str = "btlang", servers: str = ""
+        self,
+        world: World,
+        *,
+        sim_time: bool = False,
+        namespace: str = "",
+        name: str = "btlang",
+        servers: str = "",
+        body: Body | None = None,
     ) -> None:
         self.world = world
         self.bus = Bus()
@@ -62,7 +71,7 @@ class RosConnection:
         self._now = self._ros_time if sim_time else time.monotonic
         now = NodeClock(self._spun.node).now
         try:
-            self.robot = RosRobot(self._spun.node, world, on_event=self._report, now=now)
+            self.robot = RosRobot(self._spun.node, world, on_event=self._report, now=now, body=body)
             if sim_time:
                 self.robot.inbox.listen(CLOCK.name, ClockMessage, "simulated time")
             self._clients = Clients(self._spun.node)
@@ -89,7 +98,7 @@ class RosConnection:
         """
         wanted: dict[Interface, Node | None] = {CLOCK: None} if self._sim_time else {}
         declared, own = self._bound(tree, vocabulary)
-        wanted.update(needs(tree, but=declared))
+        wanted.update(needs(tree, vocabulary, self.robot.body, but=declared))
         if any(interface.kind == "action" for interface in wanted):
             require_ros("nav2_msgs")
             self.robot.prepare_navigation()
@@ -104,6 +113,10 @@ class RosConnection:
 
         wait_until(has_all, max(self._discovers_until - time.monotonic(), _AGAIN))
         return {self._named(interface): lack for interface, lack in found.items()}
+
+    def lacking_parts(self, tree: Tree, vocabulary: Vocabulary) -> dict[str, Node]:
+        """The parts that a tree needs and the body lacks, each with the first leaf that needs it."""
+        return lacking(self.robot.body, tree, vocabulary, but=self._bound(tree, vocabulary)[0])
 
     def warnings(self, needs: Iterable[Interface]) -> list[str]:
         """What is there and may yet do harm: others who tell the robot how to move. Gives DDS a moment to find them."""
@@ -155,7 +168,8 @@ class RosConnection:
         return ids, own
 
     def check(self, tree: Tree, vocabulary: Vocabulary) -> None:
-        """Raises MissionError with all that the tree needs and the robot lacks (BT101)."""
+        """Raises MissionError with all that the tree needs and the robot lacks (BT072, BT101)."""
+        check_body(self.robot.body, tree, vocabulary, but=self._bound(tree, vocabulary)[0])
         lacking = [(i, node, reason) for i, (node, reason) in self.survey(tree, vocabulary).items() if reason]
         if lacking:
             raise MissionError([_lack(*lack) for lack in lacking])

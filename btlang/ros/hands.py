@@ -9,6 +9,7 @@ from rclpy.node import Node
 from std_msgs.msg import String
 from std_srvs.srv import SetBool
 
+from btlang.robots.body import Body
 from btlang.robots.geometry import Pose
 from btlang.robots.robot import Hand, RobotError
 from btlang.robots.world import said
@@ -30,12 +31,14 @@ class RosHands:
         places: Places,
         where: Callable[[], Pose | None],
         emit: Callable[..., object],
+        body: Body,
     ) -> None:
+        self._hands: list[Hand] = [hand for hand in _HANDS if body.hand(hand) is not None]
         self._inbox, self._services, self._places = inbox, services, places
         self._where, self._emit = where, emit
         self._holding: dict[Hand, str] = {}
         self._opening: dict[Hand, Call] = {}
-        for hand in _HANDS:
+        for hand in self._hands:
             inbox.listen(_held(hand), String, f"word of the {hand} hand", qos="state")
             services.add(_close(hand), SetBool)
 
@@ -50,14 +53,16 @@ class RosHands:
         return self._opening[hand]
 
     def holding(self, hand: Hand) -> str | None:
-        """The name of what the hand holds. Raises RobotError where nothing tells of it."""
+        """The name of what it holds, None for no such hand. Raises RobotError where nothing tells of it."""
+        if hand not in self._hands:
+            return None
         if hand not in self._holding:
             self._inbox.get(_held(hand))
         return self._holding.get(hand) or None
 
     def step(self) -> None:
         """Hears what the hands hold."""
-        for hand in _HANDS:
+        for hand in self._hands:
             for message in self._inbox.events(_held(hand)):
                 before = self._holding.get(hand, "")
                 self._holds(hand, message.data)
@@ -84,7 +89,7 @@ class RosHands:
         objects = self._places.world.names.objects
         here = self._where()
         if before in objects and here is not None:
-            self._places.put_down(before, here)
+            self._places.put_down(before, here, hand)
         if name in objects:
             self._places.picked_up(name)
 

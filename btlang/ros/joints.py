@@ -9,7 +9,8 @@ from rclpy.node import Node
 from sensor_msgs.msg import JointState
 from trajectory_msgs.msg import JointTrajectory
 
-from btlang.robots.joints import LIMITS, RATE
+from btlang.robots.body import Body
+from btlang.robots.joints import clipped, joint_of
 from btlang.robots.robot import RobotError, SensorSilent
 from btlang.ros.awake import AWAKE
 from btlang.ros.commands import trajectory
@@ -25,7 +26,8 @@ _PROGRESS = 0.5  # degrees that count as nearer
 class RosJoints:
     """Degrees here, radians on the wire, where names have `_` for blanks. `freeze` may be called from any thread."""
 
-    def __init__(self, node: Node, inbox: Inbox) -> None:
+    def __init__(self, node: Node, inbox: Inbox, body: Body) -> None:
+        self._body = body
         self._inbox = inbox
         self._targets: dict[str, float] = {}
         self._nearest: dict[str, tuple[float, float]] = {}  # degrees left at the nearest, and since when
@@ -39,8 +41,7 @@ class RosJoints:
 
     def angle(self, name: str) -> float:
         """Raises RobotError for an unknown joint, and where the joint states are silent."""
-        if name not in LIMITS:
-            raise RobotError(f'the robot has no joint "{name}"')
+        joint_of(self._body, name)
         states = self._inbox.get(STATES, _SILENT)
         wire = _on_wire(name)
         position = positions(states).get(wire)
@@ -50,12 +51,11 @@ class RosJoints:
 
     def move(self, targets: Mapping[str, float]) -> None:
         """Sets off towards the targets, clipped to the limits. Raises RobotError as `angle` does."""
-        clipped = {name: min(max(target, LIMITS[name][0]), LIMITS[name][1]) for name, target in targets.items()}
-        angles = {name: self.angle(name) for name in targets}
-        furthest = max((abs(clipped[name] - angle) for name, angle in angles.items()), default=0.0)
-        self._tell(clipped, furthest / RATE)
-        self._targets.update(clipped)
-        self._nearest.update(dict.fromkeys(clipped, (float("inf"), AWAKE.now())))
+        goals = clipped(self._body, targets)
+        times = (abs(goal - self.angle(name)) / joint_of(self._body, name).speed for name, goal in goals.items())
+        self._tell(goals, max(times, default=0.0))
+        self._targets.update(goals)
+        self._nearest.update(dict.fromkeys(goals, (float("inf"), AWAKE.now())))
 
     def at_target(self, names: tuple[str, ...]) -> bool:
         """True when none of them is on its way. Raises RobotError where one of them is stuck."""

@@ -5,21 +5,20 @@ from __future__ import annotations
 from collections.abc import Iterable
 from contextlib import suppress
 
+from btlang.robots.body import Body
 from btlang.robots.geometry import Point, Pose
-from btlang.robots.navigation import ARM_REACH, TALKING_DISTANCE
+from btlang.robots.navigation import stand_off
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.planning import Planner
-from btlang.robots.robot import RobotError
-from btlang.robots.world import ROBOT_RADIUS, Place, World
-
-_ROOM = ROBOT_RADIUS + 0.15
-_PUT_AT = ROBOT_RADIUS + 0.2  # metres ahead of the robot that an object lies once it was put down
+from btlang.robots.robot import Hand, RobotError
+from btlang.robots.world import Place, World
 
 
 class Places:
     """Metres on the map, which is that of the world file. Objects move when the robot carries them."""
 
-    def __init__(self, world: World) -> None:
+    def __init__(self, world: World, body: Body) -> None:
+        self._body = body
         self.world = self._given_world = world
         self._obstacles = Obstacles(world)
         self._planner: Planner | None = None
@@ -58,8 +57,7 @@ class Places:
             if place.name == known:
                 facing = robot.heading + robot.bearing_to(point) if place.facing is None else place.facing
                 return Pose(place.x, place.y, facing)
-        near = TALKING_DISTANCE if known in self.world.names.people else ARM_REACH
-        reach = max(near, self._obstacles.things[known].radius + _ROOM)
+        reach = stand_off(self._body, self._obstacles.things[known], known in self.world.names.people)
         stand = self._stand(robot, point, reach)
         return Pose(*stand, stand_heading(stand, point))
 
@@ -67,9 +65,11 @@ class Places:
         """The robot carries it from now on."""
         self._obstacles.pick_up(name)
 
-    def put_down(self, name: str, robot: Pose) -> None:
+    def put_down(self, name: str, robot: Pose, hand: Hand) -> None:
         """It lies just in front of the robot."""
-        self._obstacles.put_down(name, *robot.ahead(_PUT_AT))
+        part = self._body.hand(hand)
+        ahead = (part.puts_at if part is not None else self._body.radius) + self._obstacles.things[name].radius
+        self._obstacles.put_down(name, *robot.ahead(ahead))
 
     def nearby_people(self, within: float, robot: Pose) -> list[str]:
         """Names, nearest first."""
@@ -79,7 +79,7 @@ class Places:
     def _stand(self, robot: Pose, point: Point, reach: float) -> Point:
         with suppress(RobotError):  # a world too large to plan in
             if self._planner is None:
-                self._planner = Planner(self._given_world, self._obstacles)
+                self._planner = Planner(self._given_world, self._obstacles, self._body.radius)
             path = self._planner.path((robot.x, robot.y), point, reach)
             if path is not None:
                 return path[-1]

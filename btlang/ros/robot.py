@@ -12,10 +12,12 @@ import numpy.typing as npt
 from rclpy.node import Node
 from std_srvs.srv import Trigger
 
+from btlang.robots.body import Body
+from btlang.robots.body_file import standard_body
 from btlang.robots.geometry import Point, Pose
 from btlang.robots.latch import Latch
 from btlang.robots.robot import Deed, Done, Hand, OnEvent, RobotError
-from btlang.robots.world import ROBOT_RADIUS, Place, World
+from btlang.robots.world import Place, World
 from btlang.ros.awake import AWAKE
 from btlang.ros.base import RosBase
 from btlang.ros.errands import Errands
@@ -47,11 +49,6 @@ class RosRobot:
     """
 
     moves_by_itself = True
-    radius = ROBOT_RADIUS
-    normal_speed = 0.5
-    max_speed = 1.0
-    normal_turn = 90.0
-    max_turn = 180.0
 
     def __init__(
         self,
@@ -59,7 +56,12 @@ class RosRobot:
         world: World,
         on_event: OnEvent | None = None,
         now: Callable[[], float] = AWAKE.now,
+        body: Body | None = None,
     ) -> None:
+        self.body = body = body or standard_body()
+        self.radius = body.radius
+        self.normal_speed, self.max_speed = body.driving.speed, body.driving.top_speed
+        self.normal_turn = body.turning.speed
         self.on_event = on_event
         self.stops = 0
         self.time = 0.0
@@ -67,16 +69,16 @@ class RosRobot:
         self._node, self._now = node, now
         self._naps = AWAKE.naps
         self._errands = Errands(node)
-        self._places = Places(world)
+        self._places = Places(world, body)
         self._latch = Latch()
-        self._base = RosBase(node, inbox, self.radius, (self.max_speed, self.max_turn), self._latch)
-        self._joints = RosJoints(node, inbox)
+        self._base = RosBase(node, inbox, body.radius, (body.driving.top_speed, body.turning.top_speed), self._latch)
+        self._joints = RosJoints(node, inbox, body)
         self._voice = RosVoice(node, inbox)
         self._services = Services(node, self._errands)
         self._services.add(_STOP, Trigger)
         self._senses = RosSenses(inbox, self._base, self._emit)
         self._power = RosPower(node, inbox, self._services, self._emit)
-        self._hands = RosHands(node, inbox, self._services, self._places, self._base.where, self._emit)
+        self._hands = RosHands(node, inbox, self._services, self._places, self._base.where, self._emit, body)
         self._navigation: RosNavigation | None = None
         self.pending: Callable[[], Iterable[str]] = tuple
         """Further reasons why it may be moved on, beside its journeys."""

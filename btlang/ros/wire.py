@@ -5,7 +5,13 @@ from __future__ import annotations
 from collections.abc import Collection
 
 from btlang.record import Record
+from btlang.robots.body import Body
+from btlang.robots.needs import needs_of
 from btlang.tree.node import Node, Tree
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.vocabulary.vocabulary import Vocabulary
 
 
 class Interface(Record):
@@ -35,12 +41,16 @@ _BASE = (
 )
 _HAND = "std_srvs/srv/SetBool"
 _HOLDING = "std_msgs/msg/String"
-CAPABILITIES: dict[str, tuple[Interface, ...]] = {
+_JOINTS = (
+    Interface("listener", "joint_trajectory", "trajectory_msgs/msg/JointTrajectory"),
+    Interface("publisher", "joint_states", "sensor_msgs/msg/JointState", flows=True),
+)
+_CAPABILITIES: dict[str, tuple[Interface, ...]] = {
     "base": _BASE,
     "pose": _BASE[1:],
     "navigation": (Interface("action", "navigate_to_pose", "nav2_msgs/action/NavigateToPose"), *_BASE[1:]),
-    "scan": (Interface("publisher", "scan", "sensor_msgs/msg/LaserScan", flows=True),),
-    "bump": (Interface("publisher", "bump", "std_msgs/msg/String"),),
+    "scanner": (Interface("publisher", "scan", "sensor_msgs/msg/LaserScan", flows=True),),
+    "bumper": (Interface("publisher", "bump", "std_msgs/msg/String"),),
     "battery": (Interface("publisher", "battery_state", "sensor_msgs/msg/BatteryState", flows=True),),
     "charging": (Interface("publisher", "battery_state", "sensor_msgs/msg/BatteryState"),),
     "docked": (Interface("publisher", "docked", "std_msgs/msg/Bool", flows=True),),
@@ -48,59 +58,30 @@ CAPABILITIES: dict[str, tuple[Interface, ...]] = {
         Interface("service", "dock", "std_srvs/srv/Trigger"),
         Interface("service", "undock", "std_srvs/srv/Trigger"),
     ),
-    "joints": (
-        Interface("listener", "joint_trajectory", "trajectory_msgs/msg/JointTrajectory"),
-        Interface("publisher", "joint_states", "sensor_msgs/msg/JointState", flows=True),
-    ),
-    "left hand": (Interface("service", "left_hand/close", _HAND),),
-    "right hand": (Interface("service", "right_hand/close", _HAND),),
-    "holding": (
-        Interface("publisher", "left_hand/holding", _HOLDING, flows=True),
-        Interface("publisher", "right_hand/holding", _HOLDING, flows=True),
-    ),
+    "joints": _JOINTS,
     "voice": (Interface("listener", "speech", "std_msgs/msg/String"),),
-    "print": (Interface("listener", "print", "std_msgs/msg/String"),),
+    "screen": (Interface("listener", "print", "std_msgs/msg/String"),),
 }
-"""What the robot needs for each thing that it can do."""
-
-_DOES = {
-    ("base",): "MoveForward MoveBackward TurnLeft TurnRight TurnAround Stop Stuck FacePlace FacePerson FaceObject",
-    ("navigation",): "GoTo GoToPerson Approach",
-    ("navigation", "docking", "docked"): "Dock",
-    ("base", "docking", "docked"): "Undock",
-    ("navigation", "docking", "docked", "battery"): "Charge",
-    ("joints",): (
-        "Wave PointLeft PointRight PointAhead Nod ShakeHead LookAround LookLeft LookRight LookAhead LookUp LookDown "
-        "RaiseArm RaiseLeftArm RaiseBothArms LowerArm LowerLeftArm LowerBothArms StretchArm StretchLeftArm "
-        "RetractArm RetractLeftArm"
-    ),
-    ("joints", "pose"): "PointAtPerson PointAtObject PointAtPlace LookAtPerson LookAtObject LookAtPlace",
-    ("voice",): "Say",
-    ("print",): "Print",
-    ("scan",): "WallInFront WallOnLeft WallOnRight WallBehind PathClear DistanceAhead",
-    ("bump",): "Bumped",
-    ("battery",): "BatteryLow BatteryFull Battery",
-    ("charging",): "Charging",
-    ("docked",): "Docked",
-    ("pose",): (
-        "AtPlace PersonNear SomeoneNear PeopleNear DistanceToPlace DistanceToPerson DistanceToObject"
-    ),
-    ("holding",): "Holding HoldingSomething HandEmpty",
-    ("left hand",): "OpenLeftHand CloseLeftHand",
-    ("right hand",): "OpenHand CloseHand Grasp",
-    ("left hand", "right hand", "holding"): "Release",
-    ("left hand", "right hand", "holding", "joints"): "PutDown",
-    ("navigation", "right hand", "holding", "joints"): "PickUp",
-}  # fmt: skip
-LEAVES = {leaf: capabilities for capabilities, leaves in _DOES.items() for leaf in leaves.split()}
-"""What the leaves that ship need the robot to be able to do, by their ids."""
 
 
-def needs(tree: Tree, but: Collection[str] = ()) -> dict[Interface, Node]:
+def interfaces(need: str, body: Body) -> tuple[Interface, ...]:
+    """What the robot has to offer for what a word needs; nothing for what is unknown."""
+    hands = [hand.name for hand in body.hands]
+    if need == "holding":
+        return tuple(Interface("publisher", f"{hand}_hand/holding", _HOLDING, flows=True) for hand in hands)
+    if need == "hand" or need.removesuffix(" hand") in hands:
+        wanted = hands if need == "hand" else [need.removesuffix(" hand")]
+        return tuple(Interface("service", f"{hand}_hand/close", _HAND) for hand in wanted)
+    if any(joint.part == need for joint in body.joints):
+        return _JOINTS
+    return _CAPABILITIES.get(need, ())
+
+
+def needs(tree: Tree, vocabulary: Vocabulary, body: Body, but: Collection[str] = ()) -> dict[Interface, Node]:
     """What a tree needs of the robot, each with the first leaf that needs it; but for leaves of some ids."""
     found: dict[Interface, Node] = {}
     for node in tree.walk():
-        for capability in LEAVES.get(node.id, ()) if node.id not in but else ():
-            for interface in CAPABILITIES[capability]:
+        for need in needs_of(node, vocabulary) if node.id not in but else ():
+            for interface in interfaces(need, body):
                 found.setdefault(interface, node)
     return found

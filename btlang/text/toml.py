@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 import tomllib
 
 TYPE_CHECKING = False
@@ -19,3 +20,9 @@ def parse_toml(text: str) -> dict[str, Any]:
         raise tomllib.TOMLDecodeError("it is nested too deep") from None
     except ValueError:
         raise tomllib.TOMLDecodeError("a number is too long") from None
+
+
+def line_of(error: tomllib.TOMLDecodeError) -> int | None:
+    """The line that the error names: "... (at line 3, column 5)"."""
+    place = re.search(r"\(at line (\d+), column \d+\)$", str(error))
+    return int(place[1]) if place else None

@@ -37,6 +37,8 @@ class Entry(Record, uncompared=("span",)):
     that it should not be halted half-way. Warnings are made of them; they change nothing in a run. With `thread` the
     `call`, a plain function, works in a thread of its own, beside the tick. `ros` stands in place of `call` on a robot
     that speaks ROS 2. With `replaces` its `call` is what runs, whatever other entries of its id say, on any robot.
+    `needs` names capabilities and parts of the robot (btlang.vocabulary.capabilities); what an action takes of them for
+    itself is among its `resources`.
     """
 
     sort: str  # "action" or "condition"
@@ -55,6 +57,7 @@ class Entry(Record, uncompared=("span",)):
     thread: bool = False
     ros: RosBinding | None = None
     replaces: bool = False
+    needs: tuple[str, ...] = ()
     span: Span | None = None
 
     def slot(self, name: str) -> SlotSpec:

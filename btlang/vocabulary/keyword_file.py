@@ -10,7 +10,9 @@ from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.record import Record
 from btlang.text.source import Source, Span
 from btlang.text.toml import parse_toml
+from btlang.text.toml_positions import positions
 from btlang.tree.catalogue import CATALOGUE
+from btlang.vocabulary.capabilities import resources_of
 from btlang.vocabulary.entry import COMPARISONS, MEASURED, Entry, SlotSpec
 from btlang.vocabulary.language_tables import TABLES, WORD_LISTS, problems
 from btlang.vocabulary.pattern import PatternError, Slot, forms
@@ -23,7 +25,7 @@ if TYPE_CHECKING:
     from typing import Any
 
 _TOP = {"language", "replaces", "action", "condition", "quantity", "type", *WORD_LISTS, *TABLES}
-_ENTRY = {"phrase", "id", "call", "ros", "slots", "resources", "topic", "help", "example"}
+_ENTRY = {"phrase", "id", "call", "ros", "slots", "resources", "needs", "topic", "help", "example"}
 _FLAGS = ("instant", "uninterruptible", "thread")
 _MORE = {"action": set(_FLAGS), "condition": set[str](), "quantity": {"type"}}
 """The keys that an entry of one sort has beside those of all."""
@@ -49,6 +51,8 @@ class _Reader:
     def __init__(self, source: Source) -> None:
         self.source = source
         self.problems: list[Diagnostic] = []
+        self.start = 0
+        """Of the table that is being read."""
 
     def wrong(self, reason: str, near: str = "", code: str = "BT060") -> None:
         self.problems.append(diagnostic(code, self.span(near), reason=reason))
@@ -61,9 +65,10 @@ class _Reader:
         self.problems.append(diagnostic(code, place, (), None, phrase=phrase, **texts))
 
     def span(self, near: str) -> Span:
-        """TOML readers give no places: the first time that the text stands in quotes, else stands at all."""
-        start = self.source.text.find(f'"{near}"') + 1 if near else 0
-        start = start or max(0, self.source.text.find(near))
+        """Where the table first has the text in quotes, else has it at all."""
+        text = self.source.text
+        start = text.find(f'"{near}"', self.start) + 1 if near else 0
+        start = start or max(self.start, text.find(near, self.start))
         return Span(self.source, start, start + len(near))
 
     def entry(self, sort: str, table: dict[str, Any]) -> Entry | None:
@@ -88,6 +93,12 @@ class _Reader:
         if not _strings(resources):
             self.wrong(f"resources of '{near}' is a list of names", near)
             resources = []
+        needs = table.get("needs", [])
+        if not _strings(needs):
+            self.wrong(f"needs of '{near}' is a list of names such as [\"navigation\"]", near)
+            needs = []
+        if sort == "action":
+            resources = list(dict.fromkeys((*resources, *resources_of(needs))))
         for key in [key for key in _FLAGS if not isinstance(table.get(key, False), bool)]:
             self.wrong(f"{key} of '{near}' is true or false", near)
         instant, uninterruptible, thread = (table.get(key) is True for key in _FLAGS)
@@ -99,6 +110,7 @@ class _Reader:
             sort, name, tuple(phrases), str(call), slots, tuple(resources), topic, help, example, span=self.span(near),
             instant=instant, uninterruptible=uninterruptible, thread=thread,
             ros=self.ros(table["ros"], sort, slots, near) if "ros" in table else None,
+            needs=tuple(needs),
         )  # fmt: skip
         return self.quantity(made, table, near) if sort == "quantity" else made
 
@@ -232,16 +244,20 @@ def read_keyword_file(source: Source) -> KeywordFile:
     for key in [key for key in document if key not in _TOP]:
         reader.wrong(f"'{key}' is not known in a keyword file; known are {', '.join(sorted(_TOP))}", key)
     entries, types, names = [], [], []
+    places = positions(source.text)
     for sort in ("action", "condition", "quantity"):
-        for table in _tables(document, sort, reader):
+        for index, table in enumerate(_tables(document, sort, reader)):
+            reader.start = places.get((sort, index), 0)
             entry = reader.entry(sort, table)
             if entry is not None:
                 entries.append(entry)
-    for table in _tables(document, "type", reader):
+    for index, table in enumerate(_tables(document, "type", reader)):
+        reader.start = places.get(("type", index), 0)
         declared = reader.type(table)
         if declared is not None:
             types.append(declared[0])
             names += declared[1]
+    reader.start = 0
     entries = reader.replacing(document.get("replaces", []), entries)
     own = ("action", "condition", "quantity", "type", "replaces")
     language = {k: v for k, v in document.items() if k not in own}

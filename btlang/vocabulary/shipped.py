@@ -5,16 +5,20 @@ from __future__ import annotations
 import os
 from functools import cache
 
-_PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
+PACKAGE = os.path.dirname(os.path.dirname(os.path.abspath(__file__)))
 
-DEFAULT_WORLD = os.path.join(_PACKAGE, "robots", "worlds", "default.toml")
+DEFAULT_WORLD = os.path.join(PACKAGE, "robots", "worlds", "default.toml")
 """The world that a mission runs in where none is named."""
+BODIES = os.path.join(PACKAGE, "robots", "bodies")
+"""The folder of the robot files that ship."""
+STANDARD_BODY = os.path.join(BODIES, "standard.toml")
+"""The robot that a mission runs on where none is named."""
 
 
 def shipped(*parts: str) -> str:
     """The path of a shipped file: inside an installed package, else beside the package in a checkout."""
-    installed = os.path.join(_PACKAGE, "_resources", *parts)
-    return installed if os.path.exists(installed) else os.path.join(os.path.dirname(_PACKAGE), *parts)
+    installed = os.path.join(PACKAGE, "_resources", *parts)
+    return installed if os.path.exists(installed) else os.path.join(os.path.dirname(PACKAGE), *parts)
 
 
 @cache

@@ -1,9 +1,9 @@
 """Every code has a page, and the examples of a page do what it says: the wrong one gets its code, the right one none.
 
 A label, an empty line and indented lines are an example. Labels are `Wrong:` and `Right:` for a mission, `Wrong
-keyword file:` and `Wrong world:` for a file that a mission is checked with, `Wrong ros keyword file:` for one whose
-words are bound to ROS 2, `Wrong command:` for a command, and `The file NAME:` for a file beside it. `, saved as
-ENCODING` may end a label.
+keyword file:`, `Wrong world:` and `Wrong robot:` for a file that a mission is used with, `Wrong ros keyword file:` for
+one whose words are bound to ROS 2, `Wrong command:` for a command, and `The file NAME:` for a file beside it. `, saved
+as ENCODING` may end a label.
 """
 
 from __future__ import annotations
@@ -23,7 +23,8 @@ from tests.ros.bound import bind_words
 
 TEXTS = {path.stem: path.read_text(encoding="utf-8") for path in Path(PAGES).iterdir()}
 _LABELLED = re.compile(r"^(Wrong|Right|The file)(?: ([\w. ]+))?(?:, saved as ([\w-]+))?:\n\n((?: {4}.*\n?)+)", re.M)
-_COMMANDS = {"": "check FILE", "keyword file": "check -c wave --keywords FILE", "world": "check -c wave --world FILE"}
+_COMMANDS = {"": "check FILE", "keyword file": "check -c wave --keywords FILE", "world": "check -c wave --world FILE",
+             "robot": "run -c 'wait 1 s' --speed max --robot FILE"}  # fmt: skip
 
 
 class Example(NamedTuple):
@@ -56,7 +57,7 @@ def said(example: Example, page: str, folder: Path, capsys: pytest.CaptureFixtur
         if example.of == "ros keyword file":
             (folder / "example.txt").rename(folder / "example.toml")
             return bind_words("example.toml"), capsys.readouterr().err
-        command = _COMMANDS[example.of].replace("FILE", "example.txt").split()
+        command = shlex.split(_COMMANDS[example.of].replace("FILE", "example.txt"))
     code = main(command)
     return code, capsys.readouterr().err
 

@@ -6,11 +6,11 @@ import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
-from btlang.robots import base
+from btlang.robots.body_file import standard_body
 from btlang.robots.geometry import Pose, segment_distance, wrap
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.simulated import SimulatedRobot
-from btlang.robots.world import ROBOT_RADIUS, Box, Fault, Place, Thing, World
+from btlang.robots.world import Box, Fault, Place, Thing, World
 
 ROOM = World(
     start=Pose(2.0, 2.0, 0.0),
@@ -19,6 +19,7 @@ ROOM = World(
     people=(Thing("Alice", 0.8, 3.0, 0.25),),
 )
 EMPTY = World(start=Pose(0.0, 0.0, 0.0))
+BODY = standard_body()
 
 
 def run(robot, seconds, dt=0.05):
@@ -33,7 +34,7 @@ def test_drives_with_limited_acceleration_and_speed():
     for _ in range(60):
         robot.step(0.05)
         speeds.append(robot.velocity[0])
-        assert robot.velocity[0] - before <= base.ACCELERATION * 0.05 + 1e-9
+        assert robot.velocity[0] - before <= BODY.driving.acceleration * 0.05 + 1e-9
         before = robot.velocity[0]
     assert speeds[-1] == robot.max_speed
     assert robot.pose.x == pytest.approx(3.0 - 0.5, abs=0.02)
@@ -55,8 +56,8 @@ def test_brakes_within_its_limit_and_harder_in_an_emergency():
         assert not robot.moving
         assert robot.velocity == (0.0, 0.0)
         rolled[emergency] = robot.pose.x - x
-    assert rolled[False] == pytest.approx(1 / (2 * base.BRAKE), abs=0.02)
-    assert rolled[True] == pytest.approx(1 / (2 * base.HARD_BRAKE), abs=0.02)
+    assert rolled[False] == pytest.approx(1 / (2 * BODY.driving.brake), abs=0.02)
+    assert rolled[True] == pytest.approx(1 / (2 * BODY.driving.hard_brake), abs=0.02)
 
 
 def test_turning_is_counter_clockwise_positive():
@@ -83,7 +84,7 @@ def test_stops_at_a_wall_bumps_once_and_gets_stuck():
     robot = SimulatedRobot(ROOM, lambda kind, data: events.append((kind, dict(data))))
     robot.drive(0.5, 0.0)
     run(robot, 8)
-    assert robot.pose.x == pytest.approx(4.0 - ROBOT_RADIUS, abs=1e-4)
+    assert robot.pose.x == pytest.approx(4.0 - BODY.radius, abs=1e-4)
     assert robot.bumped
     assert robot.bumps == 1
     assert robot.stuck
@@ -112,7 +113,7 @@ def test_people_are_bumped_into_by_name():
     robot.drive(0.5, 0.0)
     run(robot, 5)
     assert ("bump", {"into": "Alice"}) in events
-    assert robot.pose.y == pytest.approx(3.0 - 0.25 - ROBOT_RADIUS, abs=1e-4)
+    assert robot.pose.y == pytest.approx(3.0 - 0.25 - BODY.radius, abs=1e-4)
 
 
 @settings(max_examples=40, deadline=None)
@@ -123,8 +124,8 @@ def test_never_penetrates(commands):
         robot.drive(linear, angular)
         run(robot, seconds)
         point = robot.pose.x, robot.pose.y
-        assert min(segment_distance(point, s) for s in ROOM.segments()) >= ROBOT_RADIUS - 1e-9
-        assert hypot(point[0] - 0.8, point[1] - 3.0) >= 0.25 + ROBOT_RADIUS - 1e-9
+        assert min(segment_distance(point, s) for s in ROOM.segments()) >= BODY.radius - 1e-9
+        assert hypot(point[0] - 0.8, point[1] - 3.0) >= 0.25 + BODY.radius - 1e-9
         assert not ROOM.boxes[0].contains(point)
 
 

@@ -10,16 +10,18 @@ from hypothesis import strategies as st
 from btlang.robots.geometry import Pose
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.robot import RobotError
-from btlang.robots.scan import RANGE, Scanner
+from btlang.robots.scan import Scanner
 from btlang.robots.simulated import SimulatedRobot
 from btlang.robots.world import Fault, Thing, World
 
 SQUARE = World(start=Pose(2.0, 2.0), walls=(((0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0), (0.0, 0.0)),))
 
+RANGE = 8.0
+
 
 def scan(obstacles: Obstacles, pose: Pose) -> Any:
     """What a new scanner sees."""
-    return Scanner(obstacles).read(pose)
+    return Scanner(obstacles, RANGE).read(pose)
 
 
 def test_a_square_room():

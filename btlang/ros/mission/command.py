@@ -7,9 +7,8 @@ from functools import partial
 from typing import Any
 
 from btlang.arguments import node_name
-from btlang.robots.registry import ROBOTS
 from btlang.ros.available import require_interfaces, require_ros
-from btlang.ros.command import add_namespace
+from btlang.ros.command import add_body_options, add_namespace, platform_of
 from btlang.text.output import show
 
 PACKAGES = ("diagnostic_msgs", "lifecycle_msgs", "std_msgs", "std_srvs")
@@ -20,7 +19,7 @@ _ANSWERS = 1.0  # seconds that the last answers to clients get
 def add_node_options(parser: argparse.ArgumentParser) -> None:
     """The options of `btc ros-node` that are about the node."""
     parser.add_argument("--mission", default="", metavar="FILE", help="run this one when the node is activated")
-    parser.add_argument("--robot", choices=list(ROBOTS), default="simulated", help="(default: %(default)s)")
+    add_body_options(parser)
     parser.add_argument(
         "--sim-time", action="store_true", help="with --robot ros or actions: time is that of the topic /clock"
     )
@@ -48,10 +47,8 @@ def serve(options: argparse.Namespace) -> int:
 
     Raises MissionError where ROS 2 is not there (BT100, BT110), or where the node cannot be configured at its start.
     """
-    if options.sim_time and options.robot == "simulated":
+    if platform_of(options) == "simulated" and options.sim_time:
         options.refuse("--sim-time is for --robot ros and --robot actions")
-    if options.speed != "real" and options.robot != "simulated":
-        options.refuse(f"--robot {options.robot} runs in real time, so it takes no --speed")
     require_ros()
     require_interfaces()
     require_ros(*PACKAGES)
@@ -63,7 +60,7 @@ def serve(options: argparse.Namespace) -> int:
     from btlang.run.emergency import emergency_signal
 
     setup = Setup(
-        options.name, options.robot, options.sim_time, options.namespace, options.speed,
+        options.name, options.robot, options.over, options.sim_time, options.namespace, options.speed,
         options.mission, options.keywords, options.world, options.parser, options.include_root, options.allow_keywords,
     )  # fmt: skip
     controls = Controls()

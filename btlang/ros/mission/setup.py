@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
-from functools import partial
+from collections.abc import Sequence
 
 from btlang.api import Mission, parse_tree
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
@@ -14,16 +13,11 @@ from btlang.robots.registry import connector
 from btlang.session import Session
 from btlang.text.source import Source, Span
 
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    from btlang.run.connection import Connection
-
-
 _NOT_ALLOWED = "other programs may not use it; the node allows it with --allow-keywords and its name or folder"
 
 
 class Setup(Record):
-    """`robot` is a name of ROBOTS; `file` is the mission that the node runs when it is activated, "" for none.
+    """`robot` and `over` are as for Session; `file` is the mission that the node runs when activated, "" for none.
 
     What other programs send may include only files below `include_root`, and use only the keyword files of
     `allowed_keywords`: names of packs, and folders.
@@ -31,6 +25,7 @@ class Setup(Record):
 
     name: str = "btlang"
     robot: str = "simulated"
+    over: str | None = None
     sim_time: bool = False
     namespace: str = ""
     speed: float | str = "real"
@@ -43,10 +38,8 @@ class Setup(Record):
 
     def session(self) -> Session:
         """The robot in its world. Raises MissionError."""
-        connect: Callable[..., Connection] = connector(self.robot)
-        if self.robot != "simulated":
-            connect = partial(connect, sim_time=self.sim_time, namespace=self.namespace, name=f"{self.name}_robot")
-        return Session(connect, world=self.world)
+        named = {"sim_time": self.sim_time, "namespace": self.namespace, "name": f"{self.name}_robot"}
+        return Session(connector(self.robot, self.over, **named), world=self.world)
 
     def sent(self, text: str) -> Source:
         """A mission that another program sent."""

@@ -11,8 +11,9 @@ from btlang.arguments import between, node_name, real_speed
 from btlang.backends.engine import bind_leaf
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.engine.build import EngineError
+from btlang.robots.needs import lacking
 from btlang.ros.available import require_interfaces, require_ros
-from btlang.ros.command import add_namespace
+from btlang.ros.command import add_body_options, add_namespace, platform_of
 from btlang.ros.mission.setup import Setup
 from btlang.ros.serving.choosing import chosen, servable
 from btlang.ros.serving.names import FOLDER
@@ -32,9 +33,7 @@ _ANSWERS = 1.0  # seconds that the last answers to clients get
 
 def add_serving_options(parser: argparse.ArgumentParser) -> None:
     """The options of `btc serve-actions` that are not those of all words and worlds."""
-    parser.add_argument(
-        "--robot", choices=["simulated", "ros"], default="simulated", help="what does them (default: %(default)s)"
-    )
+    add_body_options(parser, ("simulated", "ros"))
     parser.add_argument("--sim-time", action="store_true", help="with --robot ros: time is that of the topic /clock")
     parser.add_argument("--speed", type=real_speed, default="real", help="real, or a factor of real time")
     parser.add_argument("--rate", type=between(*RATES), default=20.0, metavar="HZ", help="ticks a second (default: 20)")
@@ -52,19 +51,20 @@ def serve(options: argparse.Namespace) -> int:
 
     Raises MissionError where ROS 2 is not there (BT100, BT110), or where an action cannot run (BT080, BT104 to BT106).
     """
-    if options.robot != "ros" and options.sim_time:
+    over = platform_of(options)
+    if over == "actions":
+        options.refuse("btc serve-actions serves the actions itself: it takes no robot that runs on actions")
+    if over != "ros" and options.sim_time:
         options.refuse("--sim-time is for --robot ros")
-    if options.robot == "ros" and options.speed != "real":
-        options.refuse("--robot ros runs in real time, so it takes no --speed")
     vocabulary = world_vocabulary(options.keywords, options.world)
     try:
-        ids = chosen(options.only, servable(vocabulary, ros=options.robot == "ros"), vocabulary)
+        ids = chosen(options.only, servable(vocabulary, ros=over == "ros"), vocabulary)
     except ValueError as problem:
         options.refuse(str(problem))
     require_ros("std_srvs")
     require_interfaces()
     setup = Setup(
-        options.name, options.robot, options.sim_time, options.namespace,
+        options.name, options.robot, options.over, options.sim_time, options.namespace,
         keywords=options.keywords, world=options.world,
     )  # fmt: skip
     with setup.session() as session:
@@ -80,6 +80,9 @@ def _check(connection: Connection, ids: Sequence[str], vocabulary: Vocabulary) -
         if reason:
             user = f", which {node.id} needs" if node is not None else ""
             show(f"btlang serve-actions: no {interface.name}{user}: {reason}", stream=sys.stderr)
+    body = connection.robot.body
+    for part, node in lacking(body, everything, vocabulary).items():
+        show(f"btlang serve-actions: the robot '{body.name}' has no {part}, which {node.id} needs", stream=sys.stderr)
     for node_id in ids:
         try:
             bind_leaf(node_id, vocabulary, connection.bind)

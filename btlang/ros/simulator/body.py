@@ -13,13 +13,11 @@ from std_msgs.msg import Bool, String
 from std_srvs.srv import SetBool
 from trajectory_msgs.msg import JointTrajectory
 
-from btlang.robots.joints import LIMITS
 from btlang.robots.robot import Hand
 from btlang.robots.simulated import SimulatedRobot
 from btlang.ros.simulator.inbox import Inbox
 from btlang.ros.simulator.publishing import COMMANDS, Every, Latched, Moment
 
-_JOINTS = {name.replace(" ", "_"): name for name in LIMITS}
 _HANDS: tuple[Hand, Hand] = ("left", "right")
 
 
@@ -29,11 +27,13 @@ class Body:
     def __init__(self, node: Node, robot: SimulatedRobot, inbox: Inbox) -> None:
         self._robot = robot
         self._inbox = inbox
+        self._names = {joint.name.replace(" ", "_"): joint.name for joint in robot.body.joints}
+        hands = [hand for hand in _HANDS if robot.body.hand(hand) is not None]
         self._joints = node.create_publisher(JointState, "joint_states", COMMANDS)
         self._joints_due = Every(20)
         self._speaking = Latched(node, Bool, "speaking", robot.speaking)
-        self._holding = {hand: Latched(node, String, f"{hand}_hand/holding", "") for hand in _HANDS}
-        for hand in _HANDS:
+        self._holding = {hand: Latched(node, String, f"{hand}_hand/holding", "") for hand in hands}
+        for hand in hands:
             node.create_service(SetBool, f"{hand}_hand/close", partial(self._close, hand))
         for kind, topic, act in (
             (JointTrajectory, "joint_trajectory", self._move),
@@ -48,9 +48,9 @@ class Body:
         for hand, topic in self._holding.items():
             topic.set(self._robot.holding(hand) or "")
         if self._joints_due.is_due(now.seconds):
-            state = JointState(name=list(_JOINTS))
+            state = JointState(name=list(self._names))
             state.header.stamp = now.stamp
-            state.position = [radians(self._robot.joint(name)) for name in _JOINTS.values()]
+            state.position = [radians(self._robot.joint(name)) for name in self._names.values()]
             self._joints.publish(state)
 
     def _hand_over(self, act: Callable[[Any], None], message: Any) -> None:
@@ -71,12 +71,13 @@ class Body:
 
     def _move(self, message: JointTrajectory) -> None:
         """The last point counts, and how fast is up to the joints. No point at all: they stay where they are."""
-        names = [_JOINTS[name] for name in message.joint_names if name in _JOINTS]
+        names = [self._names[name] for name in message.joint_names if name in self._names]
         if not message.points:
-            self._robot.freeze_joints(*(names or LIMITS))
+            self._robot.freeze_joints(*(names or self._names.values()))
             return
         positions = dict(zip(message.joint_names, message.points[-1].positions, strict=False))
-        targets = {_JOINTS[name]: degrees(at) for name, at in positions.items() if name in _JOINTS and isfinite(at)}
+        known = {self._names[name]: at for name, at in positions.items() if name in self._names}
+        targets = {name: degrees(at) for name, at in known.items() if isfinite(at)}
         if targets:
             self._robot.move_joints(targets)
 

@@ -8,8 +8,9 @@ import sys
 from time import monotonic
 
 from btlang.arguments import between, real_speed
+from btlang.robots.registry import runs_on
 from btlang.robots.world_problem import read_world
-from btlang.ros.command import add_namespace
+from btlang.ros.command import add_body_options, add_namespace
 from btlang.ros.ending import ending_signals
 from btlang.run.emergency import emergency_signal
 from btlang.run.limits import RATES
@@ -24,6 +25,7 @@ PACKAGES = (
 
 def add_simulator_options(parser: argparse.ArgumentParser) -> None:
     """The options of `btc sim-ros` but its world."""
+    add_body_options(parser, ("simulated",))
     parser.add_argument("--speed", type=real_speed, default="real", help="real, or a factor of real time")
     parser.add_argument(
         "--rate", type=between(*RATES), default=20.0, metavar="HZ", help="steps a simulated second (default: 20)"
@@ -37,9 +39,10 @@ def add_simulator_options(parser: argparse.ArgumentParser) -> None:
 def serve(options: argparse.Namespace) -> int:
     """Steps the simulation `rate` times a simulated second, `speed` simulated seconds a second, until a signal comes.
 
-    Returns the exit code, 128 and the number of the signal. Raises MissionError (BT070, BT100).
+    Returns the exit code, 128 and the number of the signal. Raises MissionError (BT070, BT071, BT100).
     """
-    world = read_world(options.world)
+    body = runs_on(options.robot, "simulated")[0]
+    world = read_world(options.world, body)
     speed, rate = 1.0 if options.speed == "real" else options.speed, options.rate
     from btlang.ros.available import require_ros
 
@@ -47,7 +50,7 @@ def serve(options: argparse.Namespace) -> int:
     from btlang.ros.simulator.simulator import Simulator, can_navigate
 
     with ending_signals() as came:
-        simulator = Simulator(world, namespace=options.namespace, gives_clock=options.clock, show=show)
+        simulator = Simulator(world, namespace=options.namespace, gives_clock=options.clock, show=show, body=body)
         with simulator, emergency_signal(simulator.robot.stop):
             came.on_arrival = simulator.wake
             simulator.step(1 / rate)

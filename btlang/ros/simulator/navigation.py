@@ -11,7 +11,7 @@ from rclpy.node import Node
 from rclpy.task import Future
 
 from btlang.robots.geometry import Pose
-from btlang.robots.navigation import SPEED, Journey
+from btlang.robots.navigation import Journey
 from btlang.robots.simulated import SimulatedRobot
 from btlang.ros.lease import Leases
 from btlang.ros.poses import MAP, ODOM, pose_message, pose_of
@@ -123,7 +123,7 @@ class Navigation:
         feedback.current_pose.header.stamp, feedback.current_pose.header.frame_id = now.stamp, MAP
         feedback.current_pose.pose = pose_message(self._robot.pose)
         feedback.navigation_time = duration(now.seconds - ride.began)
-        feedback.estimated_time_remaining = duration(left / SPEED)
+        feedback.estimated_time_remaining = duration(left / self._robot.normal_speed)
         ride.goal.publish_feedback(feedback)
 
 

@@ -12,9 +12,7 @@ from std_msgs.msg import Bool
 from std_srvs.srv import Trigger
 
 from btlang.robots.robot import RobotError
-from btlang.robots.scan import RANGE
 from btlang.robots.simulated import SimulatedRobot
-from btlang.ros.poses import BASE
 from btlang.ros.simulator.inbox import Inbox
 from btlang.ros.simulator.publishing import COMMANDS, Every, Latched, Moment
 
@@ -28,7 +26,7 @@ class Sensors:
         self._robot = robot
         self._scan = node.create_publisher(LaserScan, "scan", qos_profile_sensor_data)
         self._battery = node.create_publisher(BatteryState, "battery_state", COMMANDS)
-        self._docked = Latched(node, Bool, "docked", robot.docked)
+        self._docked = Latched(node, Bool, "docked", robot.docked) if robot.body.dock is not None else None
         self._scan_due, self._battery_due = Every(_SCANS), Every(2)
 
         def dock(request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
@@ -39,26 +37,31 @@ class Sensors:
             response.success, response.message = inbox.ask(robot.undock)
             return response
 
-        node.create_service(Trigger, "dock", dock)
-        node.create_service(Trigger, "undock", undock)
+        if robot.body.dock is not None:
+            node.create_service(Trigger, "dock", dock)
+            node.create_service(Trigger, "undock", undock)
 
     def publish(self, now: Moment) -> None:
         """Tells what the robot senses."""
-        self._docked.set(self._robot.docked)
-        if self._battery_due.is_due(now.seconds):
+        if self._docked is not None:
+            self._docked.set(self._robot.docked)
+        if self._robot.body.battery is not None and self._battery_due.is_due(now.seconds):
             self._publish_battery(now)
         if self._scan_due.is_due(now.seconds):
             self._publish_scan(now)
 
     def _publish_scan(self, now: Moment) -> None:
+        sensor = self._robot.body.sensor("scanner")
+        if sensor is None:
+            return
         try:
             ranges = self._robot.scan()
         except RobotError:
             return
         step = radians(1)
         scan = LaserScan(angle_min=0.0, angle_max=359 * step, angle_increment=step, scan_time=1 / _SCANS)
-        scan.range_min, scan.range_max, scan.ranges = 0.0, RANGE, array("f", ranges)
-        scan.header.stamp, scan.header.frame_id = now.stamp, BASE
+        scan.range_min, scan.range_max, scan.ranges = 0.0, sensor.range, array("f", ranges)
+        scan.header.stamp, scan.header.frame_id = now.stamp, sensor.frame
         self._scan.publish(scan)
 
     def _publish_battery(self, now: Moment) -> None:

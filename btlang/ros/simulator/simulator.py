@@ -10,6 +10,7 @@ from rclpy.qos import QoSProfile
 from rosgraph_msgs.msg import Clock
 from std_srvs.srv import Trigger
 
+from btlang.robots import body as bodies
 from btlang.robots.simulated import SimulatedRobot
 from btlang.robots.world import World
 from btlang.ros.node import SpunNode
@@ -36,8 +37,16 @@ class Simulator:
     `show` gets what the robot says and prints, a line at a time. Without nav2_msgs nothing is offered that navigates.
     """
 
-    def __init__(self, world: World, *, namespace: str, gives_clock: bool, show: Callable[[str], object]) -> None:
-        self.robot = SimulatedRobot(world)
+    def __init__(
+        self,
+        world: World,
+        *,
+        namespace: str,
+        gives_clock: bool,
+        show: Callable[[str], object],
+        body: bodies.Body | None = None,
+    ) -> None:
+        self.robot = SimulatedRobot(world, body=body)
         self._show = show
         self._inbox = Inbox()
         self._spun = SpunNode("btlang_sim", namespace=namespace)
@@ -48,7 +57,7 @@ class Simulator:
             Sensors(node, self.robot, self._inbox),
             Body(node, self.robot, self._inbox),
         ]
-        if can_navigate():
+        if can_navigate() and self.robot.body.has("navigation"):
             from btlang.ros.simulator.navigation import Navigation
 
             self._parts.append(Navigation(node, self.robot, self._inbox, self._wheels))

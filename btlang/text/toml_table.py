@@ -6,6 +6,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, TypeVar
 
+    from btlang.text.toml_positions import Path
+
     T = TypeVar("T")
 
 
@@ -13,26 +15,36 @@ _MOST = 1_000_000
 
 
 class Problem(Exception):
-    """What is wrong with one key of the n-th table (from 0) of a section."""
+    """What is wrong at a path of the file."""
 
-    def __init__(self, message: str, section: str = "", index: int = 0, key: str = "") -> None:
+    def __init__(self, message: str, *path: str | int) -> None:
         super().__init__(message)
         self.message = message
-        self.section = section
-        self.index = index
-        self.key = key
+        self.path = path
 
 
 class Table:
-    """One table of the file; `finish` reports keys that nobody asked for."""
+    """One table of the file, called `name` in messages; `finish` reports keys that nobody asked for."""
 
-    __slots__ = ("_index", "_read", "_section", "_values")
+    __slots__ = ("_name", "_path", "_read", "_values")
 
-    def __init__(self, section: str, values: dict[str, Any], index: int = 0) -> None:
-        self._section = section
+    def __init__(self, name: str, values: dict[str, Any], path: Path = ()) -> None:
+        self._name = name
+        self._path = path
         self._values = values
-        self._index = index
         self._read: list[str] = []
+
+    def keys(self) -> list[str]:
+        """All keys, for a table whose keys are names that the file gives."""
+        return list(self._values)
+
+    def is_list(self, key: str) -> bool:
+        """Whether a list is given."""
+        return self.has(key) and isinstance(self._values[key], list)
+
+    def is_text(self, key: str) -> bool:
+        """Whether a text is given."""
+        return self.has(key) and isinstance(self._values[key], str)
 
     def has(self, key: str) -> bool:
         """Whether the key is given; it then counts as known."""
@@ -62,6 +74,13 @@ class Table:
             raise self.problem(key, f'"{key}" is text in quotes; write {key} = "kitchen"')
         return " ".join(value.split())
 
+    def flag(self, key: str) -> bool:
+        """True or false, false where it is missing. Raises Problem."""
+        value = self._values[key] if self.has(key) else False
+        if not isinstance(value, bool):
+            raise self.problem(key, f'"{key}" is true or false')
+        return value
+
     def choice(self, key: str, values: tuple[str, ...], default: str | None = None) -> str:
         """One of the values. Raises Problem."""
         if not self.has(key) and default is not None:
@@ -76,14 +95,14 @@ class Table:
         """The table under the key. Raises Problem."""
         value = self._required(key, "a table")
         if not isinstance(value, dict):
-            raise Problem(f'"{key}" is a table; write {key} = {{ x = 1, y = 1 }}', key)
-        return Table(key, value)
+            raise self.problem(key, f'"{key}" is a table; write {key} = {{ x = 1, y = 1 }}')
+        return Table(key, value, (*self._path, key))
 
     def items(self, key: str) -> list[Any]:
         """The list under the key, empty where it is missing. Raises Problem."""
         value = self._values[key] if self.has(key) else []
         if not isinstance(value, list):
-            raise Problem(f'"{key}" is a list; write {key} = [ ... ]', key)
+            raise self.problem(key, f'"{key}" is a list; write {key} = [ ... ]')
         return value
 
     def tables(self, key: str) -> list[Table]:
@@ -91,26 +110,22 @@ class Table:
         items = self.items(key)
         for index, item in enumerate(items):
             if not isinstance(item, dict):
-                raise Problem(f'"{key}" holds tables; write [[{key}]] above each', key, index)
-        return [Table(key, item, index) for index, item in enumerate(items)]
+                raise Problem(f'"{key}" holds tables; write [[{key}]] above each', *self._path, key, index)
+        return [Table(key, item, (*self._path, key, index)) for index, item in enumerate(items)]
 
     def finish(self, result: T) -> T:
         """Returns the result when every key was asked for. Raises Problem for an unknown one."""
         for key in self._values:
             if key not in self._read:
-                where = f"in {self._section}" if self._section else "in a world"
                 known = ", ".join(dict.fromkeys(self._read))
-                raise self.problem(key, f'unknown key "{key}" {where}; the keys are {known}')
+                raise self.problem(key, f'unknown key "{key}" in {self._name}; the keys are {known}')
         return result
 
     def problem(self, key: str, message: str) -> Problem:
         """A Problem at this key."""
-        if not self._section:
-            return Problem(message, key)
-        return Problem(message, self._section, self._index, key)
+        return Problem(message, *self._path, key)
 
     def _required(self, key: str, kind: str) -> Any:
         if not self.has(key):
-            where = f"{self._section} needs" if self._section else "a world needs"
-            raise self.problem(key, f'{where} {kind} "{key}"')
+            raise self.problem(key, f'{self._name} needs {kind} "{key}"')
         return self._values[key]

@@ -1,0 +1,175 @@
+"""The body of a robot as its file describes it. Frozen data without numpy."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from btlang.record import Record
+from btlang.vocabulary.capabilities import POSTURE
+
+BEARING = "bearing"
+"""In a posture the angle towards what the robot points or looks at."""
+
+Step = Mapping[str, float | str]
+"""Joint -> degrees or BEARING."""
+
+
+class Limits(Record):
+    """How fast it drives, in metres and seconds, or turns, in degrees and seconds.
+
+    `speed` is that where a mission says no other, `slowing` how it brakes for a goal, `hard_brake` for a stop.
+    """
+
+    speed: float = 0.0
+    top_speed: float = 0.0
+    acceleration: float = 1.0
+    slowing: float = 1.0
+    brake: float = 1.0
+    hard_brake: float = 1.0
+
+
+class Base(Record):
+    """Two wheels, `wheel_gap` metres apart."""
+
+    driving: Limits
+    turning: Limits
+    wheel_gap: float
+
+
+class Navigation(Record):
+    """How near it goes to objects (within reach of its hands) and to people, in metres from centre to centre."""
+
+    objects: float
+    people: float
+
+
+class Joint(Record):
+    """Degrees, and degrees a second. `part` is what it belongs to: "head", "right arm"."""
+
+    name: str
+    part: str
+    low: float
+    high: float
+    speed: float
+    rest: float = 0.0
+
+
+class HandPart(Record):
+    """`name` is "left" or "right". It takes what is within `reach` of a point, so many metres `ahead` of the robot's
+    centre and to the `left`, and puts things down with their rim `puts_at` metres ahead.
+    """
+
+    name: str
+    ahead: float
+    left: float
+    reach: float
+    puts_at: float
+
+
+class Sensor(Record):
+    """`kind` is "scanner" or "bumper"; `frame` is its frame in ROS 2. A scanner is at the centre."""
+
+    kind: str
+    frame: str
+    range: float = 0.0
+
+
+class Battery(Record):
+    """Percent that it loses a second and a metre, and gains a second at the dock."""
+
+    idle: float
+    driving: float
+    charging: float
+
+
+class Dock(Record):
+    """Metres from the dock: it connects `within`, has left it `beyond`, and `backs_off` so far when it undocks."""
+
+    within: float
+    beyond: float
+    backs_off: float
+
+
+class Voice(Record):
+    """Seconds that speaking takes, for each text and for each character of it."""
+
+    text: float
+    character: float
+
+
+class Body(Record):
+    """All that is known of a robot. What it lacks is None, or is not in the tuples.
+
+    `over` is what it runs on where nothing else is said: a name of btlang.robots.registry.ROBOTS. Joints that a posture
+    does not name stay where they are; its steps follow each other.
+    """
+
+    name: str
+    radius: float
+    over: str = "simulated"
+    base: Base | None = None
+    navigation: Navigation | None = None
+    joints: tuple[Joint, ...] = ()
+    postures: Mapping[str, tuple[Step, ...]] = {}
+    hands: tuple[HandPart, ...] = ()
+    sensors: tuple[Sensor, ...] = ()
+    battery: Battery | None = None
+    dock: Dock | None = None
+    voice: Voice | None = None
+    screen: bool = False
+
+    @property
+    def driving(self) -> Limits:
+        """Of a robot without wheels all zero."""
+        return self.base.driving if self.base is not None else Limits()
+
+    @property
+    def turning(self) -> Limits:
+        """As `driving`."""
+        return self.base.turning if self.base is not None else Limits()
+
+    def sensor(self, kind: str) -> Sensor | None:
+        """The first of a kind."""
+        return next((sensor for sensor in self.sensors if sensor.kind == kind), None)
+
+    @property
+    def range(self) -> float:
+        """Metres that the scanner sees, 0 without one."""
+        scanner = self.sensor("scanner")
+        return scanner.range if scanner is not None else 0.0
+
+    def hand(self, name: str) -> HandPart | None:
+        """The hand of a name."""
+        return next((hand for hand in self.hands if hand.name == name), None)
+
+    def joint(self, name: str) -> Joint | None:
+        """The joint of a name."""
+        return next((joint for joint in self.joints if joint.name == name), None)
+
+    def bearing_joint(self, posture: str) -> Joint | None:
+        """The joint that turns towards something in a posture."""
+        steps = self.postures.get(posture, ())
+        return next((self.joint(name) for step in steps for name, at in step.items() if at == BEARING), None)
+
+    def has(self, need: str) -> bool:
+        """Whether it has what a word needs: see btlang.vocabulary.capabilities."""
+        if need.startswith(POSTURE):
+            return need.removeprefix(POSTURE) in self.postures
+        return need in self._parts
+
+    @property
+    def _parts(self) -> set[str]:
+        """What it has of the needs that words have."""
+        return {
+            *(("base", "pose") if self.base else ()),
+            *(("navigation",) if self.base and self.navigation else ()),
+            *(("joints",) if self.joints else ()),
+            *(joint.part for joint in self.joints),
+            *(("hand", "holding") if self.hands else ()),
+            *(f"{hand.name} hand" for hand in self.hands),
+            *(sensor.kind for sensor in self.sensors),
+            *(("battery", "charging") if self.battery else ()),
+            *(("docking", "docked") if self.dock else ()),
+            *(("voice",) if self.voice else ()),
+            *(("screen",) if self.screen else ()),
+        }

@@ -1,0 +1,74 @@
+"""Worlds and robots are data in TOML files: reading one, and what is wrong with it as a message about its line."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Callable
+
+from btlang.diagnostics.reading import read_bytes
+from btlang.text.toml import line_of, parse_toml
+from btlang.text.toml_table import Problem, Table
+from btlang.vocabulary.shipped import PACKAGE
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import TypeVar
+
+    from btlang.diagnostics.diagnostic import MissionError
+
+    T = TypeVar("T")
+
+
+class DataFileError(Exception):
+    """A file that cannot be used: `message` says what to write instead; `line` counts from 1, None if unknown."""
+
+    code = ""
+
+    def __init__(self, message: str, path: str, line: int | None = None) -> None:
+        super().__init__(f"{path}:{line}: {message}" if line else f"{path}: {message}")
+        self.message = message
+        self.path = path
+        self.line = line
+
+
+def load_data(path: str, what: str, make: Callable[[Table], T], error: type[DataFileError]) -> T:
+    """What `make` makes of the file, which is "a world" or the like. Raises `error`."""
+    try:
+        text = _read(path)
+    except OSError as problem:
+        raise error(f"cannot read {what.replace('a ', 'the ')} file: {problem.strerror or problem}", path) from None
+    except UnicodeDecodeError:
+        raise error(f"{what} file is UTF-8 text; save it as such", path) from None
+    try:
+        return make(Table(what, parse_toml(text)))
+    except tomllib.TOMLDecodeError as problem:
+        raise error(f"this is no TOML: {problem}", path, line_of(problem)) from None
+    except Problem as problem:
+        from btlang.text.toml_positions import nearest, positions
+
+        at = nearest(positions(text), problem.path)
+        raise error(problem.message, path, None if at is None else text.count("\n", 0, at) + 1) from None
+
+
+def as_mission_error(error: DataFileError) -> MissionError:
+    """The error's code at its line."""
+    from btlang.diagnostics.diagnostic import MissionError, diagnostic
+    from btlang.diagnostics.reading import read_source
+    from btlang.text.source import Source, Span
+
+    try:
+        source = read_source(error.path)
+    except MissionError:
+        source = Source("", error.path)
+    start = source.offset(error.line or 1)
+    end = start + len(source.line(error.line).rstrip()) if error.line and source.text else start
+    return MissionError([diagnostic(error.code, Span(source, start, end), reason=error.message)])
+
+
+def _read(path: str) -> str:
+    if path.startswith(PACKAGE):
+        read = getattr(__spec__.loader, "get_data", None)  # from a zipped wheel too
+        if read is not None:
+            data: bytes = read(path)
+            return data.decode("utf-8-sig")
+    return read_bytes(path).decode("utf-8-sig")

@@ -1,0 +1,25 @@
+"""What a robot can run on: by name, what connects to it."""
+
+from __future__ import annotations
+
+from importlib import import_module
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from btlang.run.connection import Connection
+
+ROBOTS = {
+    "simulated": "btlang.robots.simulation:Simulation",
+    "ros": "btlang.ros.command:connect_ros",
+    "actions": "btlang.ros.command:connect_actions",
+}
+"""Functions of a world and a body, by what the robot runs on; imported when it is asked for."""
+
+
+def connection_function(name: str) -> Callable[..., Connection]:
+    """What connects to a robot, by a name in ROBOTS."""
+    module, _, function = ROBOTS[name].partition(":")
+    made: Callable[..., Connection] = getattr(import_module(module), function)
+    return made

@@ -1,0 +1,118 @@
+"""Where each table, key and item of a TOML document stands: tomllib gives values without positions."""
+
+from __future__ import annotations
+
+import re
+from contextlib import suppress
+
+Path = tuple[str | int, ...]
+"""Keys and indexes from the top: ("places", 2, "name")."""
+
+_BLANK = re.compile(r"(?:\s|#[^\n]*)*")
+_STRING = re.compile(
+    r'"""(?:\\.|[^\\])*?"{3,5}' r"|'''.*?'{3,5}" r'|"(?:\\.|[^"\\\n])*"' r"|'[^'\n]*'", re.DOTALL
+)  # fmt: skip
+_KEY = re.compile(r"[A-Za-z0-9_-]+")
+_OTHER = re.compile(r"[^,\]}#\n]+")  # numbers, dates, true and false
+
+
+def positions(text: str) -> dict[Path, int]:
+    """The offset of each table, key and item of a text that tomllib reads; of a table its header."""
+    scan = _Scan(text)
+    with suppress(RecursionError, ValueError, AssertionError):  # too deep, or no TOML: until there
+        scan.document()
+    return scan.found
+
+
+def nearest(found: dict[Path, int], path: Path) -> int | None:
+    """The offset of a path, or of what it is in where it is missing; None where nothing of it is there."""
+    while path and path not in found:
+        path = path[:-1]
+    return found[path] if path else None
+
+
+class _Scan:
+    def __init__(self, text: str) -> None:
+        self.text = text.replace("\r\n", "\n\n")  # offsets stay
+        self.at = 0
+        self.found: dict[Path, int] = {}
+        self._count: dict[Path, int] = {}  # tables of each list so far
+
+    def document(self) -> None:
+        table: Path = ()
+        while self._skip() < len(self.text):
+            start = self.at
+            if self.text.startswith("[[", start):
+                self.at += 2
+                table = self._inside(self._keys())
+                self._count[table] = self._count.get(table, -1) + 1
+                self.found.setdefault(table, start)
+                table = (*table, self._count[table])
+                self.found[table] = start
+                self.at = self.text.index("]]", self.at) + 2
+            elif self.text[start] == "[":
+                self.at += 1
+                table = self._inside(self._keys())
+                self._note(table, start)
+                self.at = self.text.index("]", self.at) + 1
+            else:
+                self._pair(table)
+
+    def _inside(self, keys: list[str]) -> Path:
+        """The path of a header, in the latest table of each list on the way."""
+        path: Path = ()
+        for key in keys:
+            if path in self._count:
+                path = (*path, self._count[path])
+            path = (*path, key)
+        return path
+
+    def _pair(self, table: Path) -> None:
+        start = self.at
+        path = (*table, *self._keys())
+        self._note(path, start)
+        self.at = self.text.index("=", self.at) + 1
+        self._value(path)
+
+    def _note(self, path: Path, start: int) -> None:
+        for end in range(1, len(path) + 1):
+            self.found.setdefault(path[:end], start)
+
+    def _keys(self) -> list[str]:
+        keys = []
+        while True:
+            self._skip()
+            quoted = _STRING.match(self.text, self.at)
+            match = quoted or _KEY.match(self.text, self.at)
+            assert match is not None
+            keys.append(match[0][1:-1] if quoted else match[0])
+            self.at = match.end()
+            if self._skip() >= len(self.text) or self.text[self.at] != ".":
+                return keys
+            self.at += 1
+
+    def _value(self, path: Path) -> None:
+        self._skip()
+        opening = self.text[self.at : self.at + 1]
+        if opening not in ("[", "{"):
+            match = _STRING.match(self.text, self.at) or _OTHER.match(self.text, self.at)
+            self.at = match.end() if match is not None else len(self.text)
+            return
+        self.at += 1
+        index = 0
+        while self._skip() < len(self.text) and self.text[self.at] not in "]}":
+            if self.text[self.at] == ",":
+                self.at += 1
+            elif opening == "{":
+                self._pair(path)
+            else:
+                self.found[(*path, index)] = self.at
+                self._value((*path, index))
+                index += 1
+        self.at += 1
+
+    def _skip(self) -> int:
+        match = _BLANK.match(self.text, self.at)
+        assert match is not None
+        self.at = match.end()
+        return self.at

@@ -1,0 +1,81 @@
+"""Robot files: what they say, and what is said of those that are wrong."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from btlang.robots.body_file import BodyError, load_body, shipped_bodies, standard_body
+from btlang.vocabulary.shipped import BODIES
+
+HEAD = 'name = "x"\nradius = 0.2\n'
+LIMITS = "{ speed = 1, top_speed = 2, acceleration = 1, slowing = 1, brake = 1, hard_brake = 1 }"
+BASE = f"[base]\ndriving = {LIMITS}\nturning = {LIMITS}\nwheel_gap = 0.3\n"
+JOINT = '[[joints]]\nname = "neck"\npart = "head"\nlow = -10\nhigh = 10\nspeed = 1\n'
+
+
+def written(folder: Path, text: str) -> str:
+    path = folder / "robot.toml"
+    path.write_text(text)
+    return str(path)
+
+
+def test_the_robot_that_ships_is_a_file_like_any_other() -> None:
+    body = standard_body()
+    assert body == load_body(f"{BODIES}/standard.toml")
+    assert body.radius == 0.2
+    assert (body.driving.speed, body.driving.top_speed, body.turning.speed) == (0.5, 1.0, 90.0)
+    assert {joint.part for joint in body.joints} == {"left arm", "right arm", "head"}
+    assert body.bearing_joint("look at") == body.joint("head turn")
+    assert "small" in shipped_bodies()
+
+
+def test_a_robot_needs_a_name_and_a_radius_alone(tmp_path: Path) -> None:
+    body = load_body(written(tmp_path, HEAD))
+    assert (body.name, body.radius, body.over) == ("x", 0.2, "simulated")
+    assert not any(map(body.has, ("base", "pose", "navigation", "joints", "hand", "battery", "voice", "screen")))
+
+
+def test_parts_are_what_words_need(tmp_path: Path) -> None:
+    text = HEAD + BASE + JOINT + '[[joints]]\nname = "a"\npart = "lift"\nlow = 0\nhigh = 1\nspeed = 1\n'
+    body = load_body(written(tmp_path, text + "[postures]\nup = { a = 1 }\n"))
+    assert all(map(body.has, ("base", "pose", "joints", "head", "lift", "posture up")))
+    assert not any(map(body.has, ("navigation", "left arm", "scanner", "posture down")))
+
+
+@pytest.mark.parametrize(
+    ("text", "line", "message"),
+    [
+        ("", None, 'a robot needs a text "name"'),
+        ('name = "x"', None, 'a robot needs a number "radius"'),
+        (HEAD + "legs = 2", 3, 'unknown key "legs" in a robot'),
+        (HEAD + 'over = "tcp"', 3, '"over" is one of "simulated", "ros", "actions"'),
+        (HEAD + "[base]\nwheel_gap = 1", 3, 'base needs a table "driving"'),
+        (HEAD + BASE.replace("speed = 1,", "speed = 3,"), 4, '"top_speed" is at least 3, not 2'),
+        (HEAD + BASE + "[navigation]\npeople = 1\nobjects = 0.1", 9, '"objects" is at least 0.2, not 0.1'),
+        (HEAD + JOINT.replace("high = 10", "high = -20"), 7, '"high" is at least -10, not -20'),
+        (HEAD + JOINT + "rest = 11", 9, '"rest" is from -10 to 10, not 11'),
+        (HEAD + JOINT.replace('"head"', '"docking"'), 5, '"docking" has another meaning'),
+        (HEAD + JOINT + JOINT, 10, '"neck" is given twice in joints'),
+        (HEAD + JOINT + "[postures]\nup = { nek = 1 }", 10, 'the robot has no joint "nek"; its joints are neck'),
+        (HEAD + JOINT + "[postures]\nup = [\n{ neck = 1 },\n{ neck = 99 },\n]", 12, '"neck" is from -10 to 10'),
+        (HEAD + JOINT + '[postures]\nup = { neck = "left" }', 10, '"neck" is one of "bearing"'),
+        (HEAD + '[[hands]]\nname = "middle"', 4, '"name" is one of "left", "right"'),
+        (HEAD + '[[sensors]]\nkind = "scanner"\nframe = "laser"', 3, 'sensors needs a number "range"'),
+        (HEAD + "[dock]\nwithin = 0.2\nbeyond = 0.1", 5, '"beyond" is at least 0.2, not 0.1'),
+        (HEAD + "screen = 1", 3, '"screen" is true or false'),
+        ("name = = 3", 1, "this is no TOML: Invalid value (at line 1, column 8)"),
+    ],
+)
+def test_what_may_be_wrong(tmp_path: Path, text: str, line: int | None, message: str) -> None:
+    path = written(tmp_path, text)
+    with pytest.raises(BodyError) as caught:
+        load_body(path)
+    assert message in caught.value.message
+    assert (caught.value.line, caught.value.path) == (line, path)
+
+
+def test_unreadable_files(tmp_path: Path) -> None:
+    with pytest.raises(BodyError, match="cannot read the robot file: No such file"):
+        load_body(str(tmp_path / "none.toml"))

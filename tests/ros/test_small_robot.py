@@ -1,0 +1,44 @@
+"""Another body over ROS 2: other joints, other limits, one hand and no dock."""
+
+from __future__ import annotations
+
+import pytest
+from rclpy.qos import qos_profile_sensor_data
+from sensor_msgs.msg import JointState, LaserScan
+
+from btlang.cli import main
+from tests.ros.client import Client
+
+SMALL = ["--robot", "small", "--over", "ros", "--sim-time"]
+
+
+@pytest.fixture(autouse=True)
+def _in_domain(domain: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
+
+
+def test_the_simulated_robot_is_that_of_the_file(start_sim, client: Client) -> None:
+    states, scans = client.hear(JointState, "/joint_states"), client.hear(LaserScan, "/scan", qos_profile_sensor_data)
+    start_sim("--robot", "small")
+    assert list(states.wait().name) == ["shoulder", "elbow", "neck"]
+    scan = scans.wait()
+    assert (scan.header.frame_id, scan.range_max) == ("laser", 5.0)
+    services = {name for name, _ in client.node.get_service_names_and_types()}
+    assert "/right_hand/close" in services
+    assert not services & {"/left_hand/close", "/dock"}
+
+
+def test_a_mission_runs_on_it(start_sim, capfd: pytest.CaptureFixture[str]) -> None:
+    start_sim("--robot", "small")
+    assert main(["run", "-c", "look left then raise the arm then turn left", *SMALL]) == 0
+    assert "The mission succeeded" in capfd.readouterr().out
+
+
+def test_what_it_lacks_is_said(start_sim, capfd: pytest.CaptureFixture[str]) -> None:
+    start_sim("--robot", "small")
+    assert main(["run", "-c", "nod then raise the left arm", *SMALL]) == 2
+    assert "BT072: The robot 'small' has no left arm, which 'raise the left arm' needs." in capfd.readouterr().err
+    assert main(["run", "-c", "look left then nod", *SMALL, "--preflight"]) == 1
+    out = capfd.readouterr().out
+    assert 'part    posture "nod"' in out
+    assert "The robot lacks 1 of " in out

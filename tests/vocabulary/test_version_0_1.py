@@ -1,0 +1,25 @@
+"""Keyword files and Python words written for version 0.1 run unchanged: the page of then, with its files and output."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from tests.test_readme import Block, blocks_of, btc, command_and_output, first_line
+
+PAGE = Path(__file__).parent / "version_0_1" / "keywords.md"
+BLOCKS = blocks_of(PAGE)
+
+
+@pytest.mark.parametrize("block", [block for block in BLOCKS if block.language == "console"], ids=first_line)
+def test_shown_output_is_real(block: Block, tmp_path: Path) -> None:
+    for file in BLOCKS:
+        if file.file:
+            (tmp_path / file.file).write_text(file.text)
+    line, shown = command_and_output(block)
+    printed = btc(line, tmp_path).stdout
+    if "--speed max" in line:
+        assert printed == shown
+    else:  # in real time
+        assert [text.split()[1:] for text in printed.splitlines()] == [text.split()[1:] for text in shown.splitlines()]
