@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import math
+import os
 import threading
-import uuid
 from collections import deque
 from collections.abc import Iterable, Iterator
 from functools import cache, partial
 from threading import Condition
 
-from btlang.backends.checking import tree_problems
 from btlang.backends.engine import bind_leaf
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.engine.blackboard import Blackboard
@@ -134,8 +133,8 @@ class Session:
         return run
 
     def emergency_stop(self) -> None:
-        """Stops the robot at once, from any thread, and ends the run under way."""
-        if self.current is not None and self.current.is_under_way:
+        """Stops the robot at once, from any thread, and ends the run under way, or prepared, before its next tick."""
+        if self.current is not None:
             self.current.emergency_stop()
         else:
             disable(self.connection.robot)
@@ -173,7 +172,7 @@ class Run:
         values: Blackboard | None,
         controls: Controls | None,
     ) -> None:
-        self.id = uuid.uuid4().hex
+        self.id = os.urandom(16).hex()  # what `uuid` does, whose import takes 4 ms
         self.mission = mission
         self.controls = Controls() if controls is None else controls
         """Pause, resume, single step and the stops, from any thread."""
@@ -319,6 +318,8 @@ class Run:
         refused = diagnostic("BT080", span, id=error.node.id, reason=error.message)
         if not mission.says_ids:
             return [refused]
+        from btlang.backends.checking import tree_problems  # most trees are sound
+
         bind = cache(partial(_bind, mission.vocabulary, connection))
         return tree_problems(mission.tree, mission.vocabulary, bind, {"robot": connection.robot}) or [refused]
 
@@ -331,7 +332,6 @@ class _Recent:
     """Keeps the latest events for who asks later."""
 
     policy = INLINE
-    needs_periods = False
 
     def __init__(self) -> None:
         self._events: deque[Event] = deque(maxlen=MOST_EVENTS)

@@ -56,30 +56,19 @@ class Bus:
         self._number = 0
         self._numbering = threading.Lock()
         self._queued = queued
-        self._watched = False
         self._sinks: list[Sink] = []
         self._queues: list[_Queue] = []
-
-    @property
-    def watched(self) -> bool:
-        """Whether anybody listens who does not say that he needs no PeriodPassed (`needs_periods`)."""
-        return self._watched
 
     def add(self, sink: Sink) -> None:
         """Adds a sink, which gets the events from now on. Its attribute `policy` is INLINE, BLOCK, which is usual,
         DROP_OLDEST or NEWEST.
         """
         policy = getattr(sink, "policy", BLOCK)
-        self._watched = self._watched or getattr(sink, "needs_periods", True)
         if policy != INLINE and self._queued:
             queue = _Queue(sink, policy, self.errors.append)
             self._queues.append(queue)
             sink = queue.put
         self._sinks.append(sink)
-
-    def remove(self, sink: Sink) -> None:
-        """A sink that is called in the thread of the run gets no more events."""
-        self._sinks.remove(sink)
 
     def emit(self, kind: type[Event], /, *data: Any, **more: Any) -> None:
         """Makes an event of a class and hands it to all sinks."""

@@ -94,10 +94,14 @@ class StatusesChanged(Event):
         """One for each change."""
         return len(self.changes)
 
+    def without_paths(self) -> Iterator[tuple[int, int, int, str]]:
+        """Index, new status, status before and reason of each change. Paths cost more than all the rest."""
+        for index, status, before, fault in self.changes:
+            yield index, status, before, self.nodes.reason(index, fault) if status == FAILURE else ""
+
     def __iter__(self) -> Iterator[StatusChanged]:
         nodes, number = self.nodes, self.number
-        for index, status, before, fault in self.changes:
-            reason = nodes.reason(index, fault) if status == FAILURE else ""
+        for index, status, before, reason in self.without_paths():
             path, node = nodes.path(index), nodes.node(index)
             yield StatusChanged(self.t, self.run, number, self.wall, path, node, status, before, index, reason)
             number += 1

@@ -264,8 +264,7 @@ class Runner:
         self._publish_period()
 
     def _publish_period(self) -> None:
-        if self._bus.watched:
-            self._bus.emit(PeriodPassed, self.ticks, self._pace.late, read_robot(self._robot), self._robot)
+        self._bus.emit(PeriodPassed, self.ticks, self._pace.late, read_robot(self._robot), self._robot)
 
     def _end(self) -> Standstill:
         """Another Ctrl-C cuts short only the wait for the robot, not the halting."""

@@ -71,8 +71,8 @@ class State:
     def take(self, event: Event) -> None:
         """An event of the run."""
         if isinstance(event, StatusesChanged):
-            for index, status, _, fault in event.changes:  # without the paths, which cost more than all the rest
-                self.change(index, status, event.t, event.nodes.reason(index, fault) if status == FAILURE else "")
+            for index, status, _, reason in event.without_paths():
+                self.change(index, status, event.t, reason)
         elif isinstance(event, PeriodPassed):
             self.now, self.ticks, self.overruns, self.robot = event.t, event.ticks, event.overruns, event.state
         elif isinstance(event, Said):

@@ -7,7 +7,7 @@ from collections.abc import Iterable
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SUCCESS
 from btlang.record import Record
 from btlang.run.bus import INLINE
-from btlang.run.events import StatusChanged, StatusesChanged
+from btlang.run.events import StatusesChanged
 from btlang.tree.catalogue import CATALOGUE, ON_FAILURE, SUBTREE, NodeKind
 
 TYPE_CHECKING = False
@@ -79,7 +79,6 @@ class Story:
     """
 
     policy = INLINE
-    needs_periods = False
 
     def __init__(self, engine: Engine) -> None:
         self.engine = engine
@@ -98,41 +97,41 @@ class Story:
 
     def __call__(self, event: Event) -> None:
         if isinstance(event, StatusesChanged):
-            for change in event:
-                self._changed(change)
+            for index, status, _, reason in event.without_paths():
+                self._changed(index, status, event.t, reason)
 
-    def _changed(self, event: StatusChanged) -> None:
-        index, status = event.index, event.status
+    def _changed(self, index: int, status: int, t: float, reason: str) -> None:
         above = self.engine.parent(index)
         self._failed.get(above, {}).pop(index, None)
         if status == RUNNING:
-            if not event.node.children and event.node.id != SUBTREE:
-                self._since[index] = event.t
+            node = self.engine.node(index)
+            if not node.children and node.id != SUBTREE:
+                self._since[index] = t
             return
         began, tried = self._since.pop(index, None), self._tried.pop(index, _NONE)
         if status == FAILURE:
-            self._fail(event, above, tried)
+            self._fail(index, t, reason, tried)
         elif status == IDLE:
             if began is not None:
-                if event.t != self._stopped_at:
-                    self._stopped, self._stopped_at = [], event.t
-                self._stopped.append((index, event.t - began))
+                if t != self._stopped_at:
+                    self._stopped, self._stopped_at = [], t
+                self._stopped.append((index, t - began))
             self._add(above, tried)
         elif status == SUCCESS and index != above + 1 and self._recovers(above):
-            self._add(above, Attempts((Attempt(index, "", event.t, event.t, event.t),)))
+            self._add(above, Attempts((Attempt(index, "", t, t, t),)))
 
-    def _fail(self, event: StatusChanged, above: int, tried: Attempts) -> None:
-        index = event.index
+    def _fail(self, index: int, t: float, reason: str, tried: Attempts) -> None:
+        above = self.engine.parent(index)
         failed = self._failed.get(index)
-        kind = CATALOGUE.get(event.node.id)
+        kind = self._kind(index)
         if not failed:
-            told = together((tried, Attempts((Attempt(index, event.reason, event.t, event.t, event.t),))))
+            told = together((tried, Attempts((Attempt(index, reason, t, t, t),))))
         elif kind is not None and kind.again == ON_FAILURE:
             told = tried
         else:
             needs_all = kind is not None and (kind.goes_on == ON_FAILURE or kind.at_once)
             told = together(failed.values()) if needs_all else next(reversed(failed.values()))
-        now = self._stopped if event.t == self._stopped_at else []
+        now = self._stopped if t == self._stopped_at else []
         halted = tuple(leaf for leaf in now if leaf[0] > index)  # what is below comes later
         if halted and told.kept:
             *others, latest = told.kept
@@ -143,7 +142,7 @@ class Story:
         if index != above + 1 or parent is None or not parent.asks_first:
             self._add(above, told)
         if above < 0:
-            self.ended = event.t
+            self.ended = t
 
     def _add(self, index: int, tried: Attempts) -> None:
         if tried.kept and index >= 0:

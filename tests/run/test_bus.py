@@ -136,6 +136,20 @@ def test_a_session_runs_many_missions_and_late_joiners_see_the_state() -> None:
     assert [(c.path, c.before, c.status) for c in changes if c.path == "/0"] == [("/0", 4, 2), ("/0", 2, 1)]
 
 
+def test_an_emergency_stop_of_a_session_ends_a_run_that_is_prepared_too() -> None:
+    with btlang.Session() as session:
+        session.emergency_stop()  # without any run
+        assert session.robot.stops == 1
+        run = session.prepare(btlang.parse_tree("move forward 1 m"), speed="max")
+        session.emergency_stop()
+        outcome = run.execute()
+        assert (outcome.stopped, outcome.ticks, session.robot.moving) == ("emergency stop", 0, False)
+        session.emergency_stop()  # after it
+        after = session.run(btlang.parse_tree("wave"), speed="max")
+        assert after.outcome is not None
+        assert after.outcome.succeeded
+
+
 def test_the_published_schema_is_that_of_the_classes() -> None:
     assert json.loads(SCHEMA.read_text(encoding="utf-8")) == schema()
 
