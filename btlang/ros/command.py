@@ -17,7 +17,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from typing import Any
 
-    from btlang.robots.body import Body
     from btlang.robots.registry import Connector
     from btlang.robots.world import World
     from btlang.ros.connection import RosConnection
@@ -27,35 +26,23 @@ if TYPE_CHECKING:
 _PACKAGES = ("geometry_msgs", "nav_msgs", "rosgraph_msgs", "sensor_msgs", "std_msgs", "std_srvs", "trajectory_msgs")
 
 
-def connect_ros(
-    world: World, *, sim_time: bool = False, namespace: str = "", name: str = "btlang", body: Body | None = None
-) -> RosConnection:
-    """A connection to the ROS 2 robot of a namespace. Raises MissionError (BT100) without ROS 2."""
+def connect_ros(world: World, **options: Any) -> RosConnection:
+    """A connection to a ROS 2 robot, with the options of RosConnection. Raises MissionError (BT100) without ROS 2."""
     require_ros(*_PACKAGES)
     from btlang.ros.connection import RosConnection
 
-    return RosConnection(world, sim_time=sim_time, namespace=namespace, name=name, body=body)
+    return RosConnection(world, **options)
 
 
-def connect_actions(
-    world: World,
-    *,
-    sim_time: bool = False,
-    namespace: str = "",
-    name: str = "btlang",
-    servers: str = "",
-    body: Body | None = None,
-) -> RosConnection:
+def connect_actions(world: World, *, namespace: str = "", servers: str = "", **options: Any) -> RosConnection:
     """As connect_ros, where each action is done by its server, by default one of the same namespace.
 
     Raises MissionError (BT100, BT110).
     """
     require_ros(*_PACKAGES)
     require_interfaces()
-    from btlang.ros.connection import RosConnection
-
     servers = servers or f"/{namespace.strip('/')}/{FOLDER}".replace("//", "/")
-    return RosConnection(world, sim_time=sim_time, namespace=namespace, name=name, servers=servers, body=body)
+    return connect_ros(world, namespace=namespace, servers=servers, **options)
 
 
 def add_robot_options(parser: ArgumentParser) -> None:

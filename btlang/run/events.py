@@ -212,22 +212,24 @@ class FaultInjected(Event):
     text: str
 
 
-class Warned(Event):
-    """Something to know of that does not end the mission, of the node at `path` at a `place` of the text, if any."""
+class Notice(Event):
+    """A text for people, about the node at `path` and a `place` of the mission, if any."""
+
+    text: str
+    path: str = ""
+    place: str = ""
+
+
+class Warned(Notice):
+    """Something to know of that does not end the mission."""
 
     tag = "warning"
-    text: str
-    path: str = ""
-    place: str = ""
 
 
-class Troubled(Event):
-    """Something went wrong beside the mission, such as a command that did not halt. As Warned."""
+class Troubled(Notice):
+    """Something went wrong beside the mission, such as a command that did not halt."""
 
     tag = "error"
-    text: str
-    path: str = ""
-    place: str = ""
 
 
 class RobotEvent(Event):

@@ -9,14 +9,13 @@ from btlang.run.events import (
     Bumped,
     Dropped,
     FaultInjected,
+    Notice,
     Overrun,
     Printed,
     Said,
     StatusChanged,
     StatusesChanged,
     Stuck,
-    Troubled,
-    Warned,
 )
 from btlang.text.output import one_line
 from btlang.tree.catalogue import CATALOGUE
@@ -59,7 +58,7 @@ class Lines:
             self._line(event.t, "drops", event.name or "")
         elif isinstance(event, Stuck):
             self._line(event.t, event.tag, "")
-        elif isinstance(event, FaultInjected | Troubled | Warned):
+        elif isinstance(event, FaultInjected | Notice):
             self._line(event.t, event.tag, event.text)
 
     def _action(self, event: StatusChanged, node: Node) -> None:

@@ -201,16 +201,22 @@ def exits(world: World) -> Node:
     return world.bind("X", lambda: sys.exit(3))
 
 
+def engine_with(leaf: Callable[[World], Node], world: World, id: str, **options: bool) -> Engine:
+    """Over a node of this type, with such a leaf in each place where its row of RUNS has an `R`."""
+    world.cls("Z", "r")
+    scripts = RUNS[id][0].split()
+    others = leaves(world, scripts)
+    children = [leaf(world) if script == "R" else other for script, other in zip(scripts, others, strict=True)]
+    engine = world.engine(around(id, *children), **options)
+    engine.blackboard.set("x", 1)
+    return engine
+
+
 @every_type
 @pytest.mark.parametrize("leaf", [in_start, in_tick, in_function, in_generator, exits_in_tick, exits])
 def test_an_exception_in_a_leaf_is_its_failure(id: str, leaf: Callable[[World], Node]) -> None:
     world = World()
-    world.cls("Z", "r")
-    scripts = RUNS[id][0].split()
-    children = [leaf(world) if script == "R" else child
-                for script, child in zip(scripts, leaves(world, scripts), strict=True)]  # fmt: skip
-    engine = world.engine(around(id, *children), watched=True)
-    engine.blackboard.set("x", 1)
+    engine = engine_with(leaf, world, id, watched=True)
     for _ in range(3):
         engine.tick()
     assert {(at, FAILURE) for at, (_, node) in enumerate(engine.nodes) if node.id == "X"} & set(world.changes)
@@ -225,12 +231,7 @@ def test_an_exception_in_a_leaf_is_its_failure(id: str, leaf: Callable[[World], 
 def test_an_exit_stays_within_the_tree_also_where_nobody_watches(id: str) -> None:
     """Functions are then called by the node above them itself."""
     world = World()
-    world.cls("Z", "r")
-    scripts = RUNS[id][0].split()
-    children = [exits(world) if script == "R" else child
-                for script, child in zip(scripts, leaves(world, scripts), strict=True)]  # fmt: skip
-    engine = world.engine(around(id, *children))
-    engine.blackboard.set("x", 1)
+    engine = engine_with(exits, world, id)
     for _ in range(3):
         engine.tick()
 
@@ -258,15 +259,10 @@ def test_an_exception_in_halt_keeps_no_other_leaf_from_halting(id: str, order: s
         (leaving, "SystemExit"),
     ):
         world = World()
-        world.cls("Z", "r")
-        scripts = RUNS[id][0].split()
-        children = [bad(world) if script == "R" else child
-                    for script, child in zip(scripts, leaves(world, scripts), strict=True)]  # fmt: skip
-        engine = world.engine(around(id, *children))
-        engine.blackboard.set("x", 1)
+        engine = engine_with(bad, world, id)
         engine.tick()
         getattr(engine, order)()
-        count = scripts.count("R")
+        count = RUNS[id][0].split().count("R")
         assert [call for call in world.log if call.endswith("halt")] == ["halt"] * count + ["Z.halt"]
         assert [failure.reason for failure in engine.take_halt_failures()] == [f"{kind}: stuck"] * count
         assert engine.take_halt_failures() == []
