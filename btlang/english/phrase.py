@@ -15,7 +15,7 @@ from btlang.vocabulary.trie import TrieNode, longest
 from btlang.vocabulary.values import ValueType, with_unit
 from btlang.vocabulary.vocabulary import DEFINING, Vocabulary
 
-_MARKUP = ("<", '"')  # what XML and JSON begin with, and no sentence
+MARKUP = ("<", '"')  # what XML and JSON begin with, and no sentence
 
 
 def phrase_of(node: Node, vocabulary: Vocabulary) -> str:
@@ -26,7 +26,7 @@ def phrase_of(node: Node, vocabulary: Vocabulary) -> str:
     if node.id == SUBTREE:
         return _filled_name(node)
     computed = node.id in ("Script", "ScriptCondition") or any(text.startswith("{_") for _, text in node.ports)
-    if node.span is not None and (computed or node.port(MEASURED)) and node.span.text[:1] not in _MARKUP:
+    if node.span is not None and (computed or node.port(MEASURED)) and node.span.text[:1] not in MARKUP:
         return node.span.text
     if node.id == "Sleep":
         return f"{vocabulary.word('wait')} {seconds(node.port('msec'))}"

@@ -11,7 +11,7 @@ from btlang.vocabulary.vocabulary import Vocabulary
 
 
 def to_svg(tree: Tree, vocabulary: Vocabulary) -> str:
-    """The text of an SVG file. Raises MissionError (BT081)."""
+    """The text of an SVG file."""
     return _drawn(tree, vocabulary, ".svg").decode()
 
 

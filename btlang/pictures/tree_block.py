@@ -6,13 +6,9 @@ from collections.abc import Sequence
 from itertools import pairwise
 from math import ceil, sqrt
 
-from btlang.pictures.letters import wrapped
+from btlang.pictures.letters import width, wrapped
 from btlang.pictures.style import TEXT
 from btlang.pictures.tree_boxes import Box
-
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    from btlang.pictures.letters import Measure
 
 LINE_HEIGHT = 12.0
 SIGN = 13.0  # room for the sign of a status
@@ -43,14 +39,14 @@ class Block:
     first column. `width` and `height` are those of the box itself.
     """
 
-    def __init__(self, box: Box, measure: Measure, signs: bool) -> None:
+    def __init__(self, box: Box, signs: bool) -> None:
         self.box = box
         self.is_frame = box.shape == "frame"
         bold = box.shape in ("control", "decorator", "frame", "subtree")
         widest = _WIDEST_LEAF if box.shape in ("action", "condition") else _WIDEST
-        lines = wrapped(box.text, widest, 1 if self.is_frame else _LINES, TEXT, bold, measure)
+        lines = wrapped(box.text, widest, 1 if self.is_frame else _LINES, TEXT, bold)
         self.lines = tuple(lines)
-        self.width = max(measure(line, TEXT, bold) for line in lines) + 2 * side(box)
+        self.width = max(width(line, TEXT, bold) for line in lines) + 2 * side(box)
         self.width += (SIGN if signs and box.shape != "more" else 0) + (SYMBOL if box.symbol else 0)
         self.height = len(lines) * LINE_HEIGHT + 2 * _TOP
         self.places: list[tuple[float, float]] = []

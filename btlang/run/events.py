@@ -20,11 +20,16 @@ if TYPE_CHECKING:
     Sink: TypeAlias = Callable[["Event"], object]
 
     class Nodes(Protocol):
-        """The nodes of a tree by their numbers."""
+        """The nodes of a tree by their numbers; see btlang.engine.engine.Engine."""
+
+        @property
+        def size(self) -> int: ...
 
         def path(self, index: int) -> str: ...
 
         def node(self, index: int) -> Node: ...
+
+        def filled(self, index: int) -> Node: ...
 
         def reason(self, index: int, fault: Fault | Site | None) -> str: ...
 
