@@ -10,7 +10,7 @@ from functools import cache
 from math import sqrt
 
 from btlang.pictures.files import missing
-from btlang.pictures.letters import CAP_HEIGHT, FAMILY, UNKNOWN
+from btlang.pictures.letters import CAP_HEIGHT, FAMILY, UNKNOWN, width
 from btlang.pictures.style import INK, PAPER, TEXT
 
 TYPE_CHECKING = False
@@ -105,7 +105,7 @@ class Canvas:
         from matplotlib.text import Text
 
         baseline, known = y + size * CAP_HEIGHT / 2, _known()
-        text = "".join(c if c in known else UNKNOWN for c in text)
+        text = "".join(c if c in known else UNKNOWN if width(c, size) else "" for c in text)
         artist = Text(x, baseline, text, color=colour, fontproperties=_font(size, bold), parse_math=False)
         artist.set_horizontalalignment(align)  # type: ignore[arg-type]
         artist.set_verticalalignment("baseline")

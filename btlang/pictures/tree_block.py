@@ -7,7 +7,7 @@ from itertools import pairwise
 from math import ceil, sqrt
 
 from btlang.pictures.letters import width, wrapped
-from btlang.pictures.style import TEXT
+from btlang.pictures.style import SMALL, TEXT
 from btlang.pictures.tree_boxes import Box
 
 LINE_HEIGHT = 12.0
@@ -21,7 +21,8 @@ _LINES = 3
 _TOP = 4.5
 _GAP, _BIG_GAP = 5.0, 9.0  # between leaves, and between branches
 _JOG = 14.0  # a bend by less looks like a mistake
-_REACH, _REACH_WITH_ROLE = 22.0, 36.0  # from a box to its children
+_REACH = 22.0  # from a box to its children
+_ROLE = 5.0  # more than a role takes
 _COLUMN_GAP = 30.0
 _HIGH = 1100.0  # points; what is higher is put in columns
 _FLAT = 1.25  # how much wider than high a picture with columns may be
@@ -57,8 +58,8 @@ class Block:
         if self.is_frame:
             self._surround(blocks[0])
             return
-        has_roles = any(block.box.role for block in blocks)
-        self.column = self.width + (_REACH_WITH_ROLE if has_roles else _REACH)
+        roles = max((width(block.box.role, SMALL) for block in blocks), default=0.0)
+        self.column = self.width + max(_REACH, STUB + _ROLE + roles)
         columns = _columns(blocks) if in_columns else [list(blocks)]
         if len(columns) > 1:
             self._take(columns, HEAD)

@@ -38,6 +38,11 @@ def test_commands_are_numbered_and_know_how_they_ended() -> None:
     assert record.ended[0] == IDLE
 
 
+def test_commands_say_the_values_that_they_had() -> None:
+    record, _ = recorded("for each place in the kitchen, the lab: go to the place then say 'at {place}'")
+    assert [c.text for c in record.commands] == ["go to kitchen", 'say "at kitchen"', "go to lab", 'say "at lab"']
+
+
 def test_the_track_follows_the_robot() -> None:
     record, _ = recorded("move forward 1 m, wait 1 min, then turn left 90 degrees")
     first, last = record.track[0], record.track[-1]
