@@ -88,18 +88,9 @@ class Canvas:
         return self.axes.add_artist(artist)
 
     def text(
-        self,
-        x: float,
-        y: float,
-        text: str,
-        *,
-        size: float = TEXT,
-        colour: str = INK,
-        bold: bool = False,
-        align: str = "left",
-        z: float = 0,
-        halo: bool = False,
-    ) -> Artist:
+        self, x: float, y: float, text: str, *, size: float = TEXT,
+        colour: str = INK, bold: bool = False, align: str = "left", z: float = 0, halo: bool = False,
+    ) -> Artist:  # fmt: skip
         """One line whose capitals are centred on `y`. A halo keeps it legible above lines."""
         from matplotlib.patheffects import withStroke
         from matplotlib.text import Text
@@ -114,19 +105,9 @@ class Canvas:
         return self.add(artist, z)
 
     def box(
-        self,
-        x: float,
-        y: float,
-        width: float,
-        height: float,
-        *,
-        round: float = 0,
-        fill: str = "none",
-        edge: str = "none",
-        line: float = 1,
-        dashed: bool = False,
-        z: float = 0,
-    ) -> Artist:
+        self, x: float, y: float, width: float, height: float, *,
+        round: float = 0, fill: str = "none", edge: str = "none", line: float = 1, dashed: bool = False, z: float = 0,
+    ) -> Artist:  # fmt: skip
         """A rectangle with corners rounded to a radius."""
         from matplotlib.patches import FancyBboxPatch
 
@@ -144,32 +125,18 @@ class Canvas:
         return self.add(Polygon(points, closed=True, fc=fill, ec=edge, lw=line, joinstyle="round"), z)
 
     def circle(
-        self,
-        x: float,
-        y: float,
-        radius: float,
-        *,
-        fill: str = "none",
-        edge: str = "none",
-        line: float = 1,
-        dashed: bool = False,
-        z: float = 0,
-    ) -> Artist:
+        self, x: float, y: float, radius: float, *,
+        fill: str = "none", edge: str = "none", line: float = 1, dashed: bool = False, z: float = 0,
+    ) -> Artist:  # fmt: skip
         """A disc or a ring."""
         from matplotlib.patches import Circle
 
         return self.add(Circle((x, y), radius, fc=fill, ec=edge, lw=line, ls=(0, (2, 1.5)) if dashed else "solid"), z)
 
     def line(
-        self,
-        points: Points,
-        *,
-        colour: str = INK,
-        line: float = 1,
-        dashed: bool = False,
-        round: bool = True,
-        z: float = 0,
-    ) -> Artist:
+        self, points: Points, *,
+        colour: str = INK, line: float = 1, dashed: bool = False, round: bool = True, z: float = 0,
+    ) -> Artist:  # fmt: skip
         """A line through the points."""
         from matplotlib.lines import Line2D
 

@@ -34,7 +34,8 @@ class SvgSurface:
         self, x: float, y: float, text: str, *,
         size: float = TEXT, colour: str = INK, bold: bool = False, align: str = "left",
     ) -> None:  # fmt: skip
-        """See Surface."""
+        if not text:  # the sign of a node that was never reached
+            return
         self._add(
             "text", text, x=x, y=y + size * CAP_HEIGHT / 2, fill=colour, font_size=size if size != TEXT else None,
             font_weight="bold" if bold else None, text_anchor=_ANCHORS[align],
@@ -44,23 +45,19 @@ class SvgSurface:
         self, x: float, y: float, width: float, height: float, *,
         round: float = 0, fill: str = "none", edge: str = "none", line: float = 1, dashed: bool = False,
     ) -> None:  # fmt: skip
-        """See Surface."""
         self._add(
             "rect", x=x, y=y, width=width, height=height, rx=round or None, fill=fill,
             **_stroke(edge, line), stroke_dasharray="3 2" if dashed else None,
         )  # fmt: skip
 
     def polygon(self, points: Points, *, fill: str = "none", edge: str = "none") -> None:
-        """See Surface."""
         self._add("polygon", points=_joined(points), fill=fill, **_stroke(edge), stroke_linejoin="round")
 
     def line(self, points: Points, *, colour: str = INK) -> None:
-        """See Surface."""
         self._add("polyline", points=_joined(points), fill="none", **_stroke(colour), stroke_linejoin="round")
 
     @contextmanager
     def group(self, title: str) -> Iterator[None]:
-        """See Surface."""
         self._lines.append(f"<g><title>{title.translate(_ESCAPES)}</title>")
         yield
         self._lines.append("</g>")

@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import partial
 
 from btlang.english.phrase import phrase_of
+from btlang.pictures.tree_boxes import Maker, title_of
 from btlang.pictures.tree_picture import picture_of
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.vocabulary import Vocabulary
@@ -21,7 +22,8 @@ def to_png(tree: Tree, vocabulary: Vocabulary) -> bytes:
 
 
 def _drawn(tree: Tree, vocabulary: Vocabulary, kind: str) -> bytes:
-    return picture_of(tree, partial(_label, vocabulary), partial(_is_action, vocabulary), kind)
+    sheets = Maker(tree, partial(_label, vocabulary), partial(_is_action, vocabulary)).sheets()
+    return picture_of(sheets, title_of(tree), kind)
 
 
 def _label(vocabulary: Vocabulary, node: Node) -> str:

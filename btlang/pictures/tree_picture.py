@@ -60,60 +60,46 @@ def draw_tree(
     Raises ValueError for another ending, MissionError (BT009, BT081).
     """
     kind = ending(path, STILL)
-    write_file(path, picture_of(tree, label, is_action, kind, path, apart=apart, run=run, title=title))
-
-
-def picture_of(
-    tree: Tree,
-    label: Callable[[Node], str],
-    is_action: Callable[[Node], bool],
-    kind: str,
-    path: str = "",
-    *,
-    apart: bool = False,
-    run: LastStatuses | None = None,
-    title: str = "",
-) -> bytes:
-    """As draw_tree, the content of a file of the `kind` ".svg" or ".png"; errors name its `path`."""
     sheets = Maker(tree, label, is_action, run).sheets(apart)
     title = letters.shown(title) or title_of(tree)
+    write_file(path, picture_of(sheets, title, kind, path, has_run=run is not None))
+
+
+def picture_of(sheets: list[Sheet], title: str, kind: str, path: str = "", *, has_run: bool = False) -> bytes:
+    """The content of a file of the `kind` ".svg" or ".png"; errors name its `path`. After a run, nodes have signs."""
     if kind == ".svg":
         from btlang.pictures.svg import SvgSurface
 
-        return _TreePicture(sheets, run, title, SvgSurface).surface.encoded(kind)
+        return _TreePicture(sheets, title, has_run, SvgSurface).surface.encoded(kind)
     from btlang.pictures.canvas import Canvas, drawing
 
     with drawing(path):
-        return _TreePicture(sheets, run, title, Canvas).surface.encoded(kind)
+        return _TreePicture(sheets, title, has_run, Canvas).surface.encoded(kind)
 
 
 class _TreePicture:
     def __init__(
-        self,
-        sheets: list[Sheet],
-        run: LastStatuses | None,
-        title: str,
-        make_surface: Callable[[float, float, str], Surface],
+        self, sheets: list[Sheet], title: str, has_run: bool, make_surface: Callable[[float, float, str], Surface]
     ) -> None:
-        self._signs = run is not None
-        pieces = [(sheet.name, laid_out(sheet.boxes, self._signs)) for sheet in sheets]
-        corners = _arranged([layout for _, layout in pieces])
-        width = max(x + layout.width for (x, _), (_, layout) in zip(corners, pieces, strict=True)) + _MARGIN
-        height = max(y + layout.height for (_, y), (_, layout) in zip(corners, pieces, strict=True)) + _MARGIN
+        self._signs = has_run
+        layouts = [laid_out(sheet.boxes, has_run) for sheet in sheets]
+        pieces = list(zip(sheets, layouts, _arranged(layouts), strict=True))
+        width = max(x + layout.width for _, layout, (x, _) in pieces) + _MARGIN
         width = max(width, min(letters.width(title, TITLE, True), _LEAST_WIDE) + 2 * _MARGIN)
-        if run is not None:
-            looks = list(dict.fromkeys(LOOKS[status] for status in run.by_path.values()))
-            looks = [look for look in LOOKS.values() if look in looks] + [NEVER]
+        height = max(y + layout.height for _, layout, (_, y) in pieces) + _MARGIN
+        if has_run:
+            statuses = {box.status for sheet in sheets for box in sheet.boxes}
+            looks = [*(look for status, look in LOOKS.items() if status in statuses), NEVER]
             width = max(width, self._legend_width(looks))
             height += _LEGEND + (10 if len(pieces) > 1 else 0)
         self.surface = make_surface(width, height, title)
         title = letters.clipped(title, width - 2 * _MARGIN, TITLE, True)
         self.surface.text(_MARGIN, _MARGIN + 4, title, size=TITLE, bold=True)
-        for (x, y), (name, layout) in zip(corners, pieces, strict=True):
-            if name:
-                self._frame_of(name, x, y, layout)
+        for sheet, layout, (x, y) in pieces:
+            if sheet.name:
+                self._frame_of(sheet.name, x, y, layout)
             self._draw(layout, x, y)
-        if run is not None:
+        if has_run:
             self._draw_legend(looks, height - _MARGIN - 6)
 
     def _frame_of(self, name: str, x: float, y: float, layout: Layout) -> None:

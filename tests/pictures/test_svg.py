@@ -29,10 +29,6 @@ SVG = "{http://www.w3.org/2000/svg}"
 ROUNDS = 'for each place in the kitchen, the office: go to the place then say "Here is {place}"'
 
 
-def drawn(tree: Tree, apart: bool = False) -> ElementTree.Element:
-    return ElementTree.fromstring(picture_of(tree, label, lambda node: True, ".svg", apart=apart))
-
-
 def titles(svg: ElementTree.Element) -> list[str]:
     """The text of each node that is drawn."""
     return [group.findtext(f"{SVG}title") or "" for group in svg.iter(f"{SVG}g")]
@@ -43,9 +39,8 @@ def said(mission: str, apart: bool = False, **options: float) -> list[str]:
     trial, statuses = Trial(mission), LastStatuses()
     trial.run(speed="max", sinks=[statuses], **options)
     assert trial.sink_errors == []
-    compiled = trial.mission
-    data = picture_of(compiled.tree, compiled.label, compiled.is_action, ".svg", apart=apart, run=statuses)
-    return titles(ElementTree.fromstring(data))
+    sheets = Maker(trial.mission.tree, trial.mission.label, trial.mission.is_action, statuses).sheets(apart)
+    return titles(ElementTree.fromstring(picture_of(sheets, "", ".svg", has_run=True)))
 
 
 def extent(group: ElementTree.Element) -> tuple[float, float, float, float] | None:
@@ -64,8 +59,9 @@ def test_a_small_tree() -> None:
     mission = btlang.parse_tree(
         'greet is say "Good <morning> & hello" and wave\nUnless bumped, greet. Try to pick up the cup 3 times'
     )
-    data = picture_of(mission.tree, mission.label, mission.is_action, ".svg", title="small & simple")
-    assert data == picture_of(mission.tree, mission.label, mission.is_action, ".svg", title="small & simple")
+    sheets = Maker(mission.tree, mission.label, mission.is_action).sheets()
+    data = picture_of(sheets, "small & simple", ".svg")
+    assert data == picture_of(sheets, "small & simple", ".svg")
     matches_golden(data.decode(), Path(__file__).parent / "samples" / "small.svg")
 
 
@@ -76,8 +72,8 @@ names = st.text(max_size=90) | st.sampled_from(["a\x00b\x1b[2J", "]]></title><sc
 def test_each_node_of_a_random_tree_is_drawn_once(root: Node, texts: list[str], apart: bool) -> None:
     parts = tuple((name, Node("Do", name=text or "x")) for name, text in zip("abc", texts, strict=False))
     tree = Tree(root, parts)
-    svg = drawn(tree, apart)
     sheets = Maker(tree, label, lambda node: True).sheets(apart)
+    svg = ElementTree.fromstring(picture_of(sheets, "random", ".svg"))
     assert sorted(titles(svg)) == sorted(box.text for sheet in sheets for box in sheet.boxes)
     outlines = []
     for group in svg.iter(f"{SVG}g"):
