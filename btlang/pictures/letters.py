@@ -9,7 +9,8 @@ FAMILY = "DejaVu Sans"  # comes with matplotlib, and few common families are wid
 CAP_HEIGHT = 0.73  # as a share of the size
 UNKNOWN = "\N{REPLACEMENT CHARACTER}"
 _JOINERS = "\u200c\u200d"  # without which some scripts and emoji fall apart
-_LONGEST = 400  # characters of a text that are broken into lines: no picture shows more
+_LONGEST = 10_000  # characters of a text that a picture holds: a value may be much longer
+_BROKEN = 400  # of these, so many are broken into lines
 
 _NORMAL = {
     0x20: "32 40 46 84 64 95 78 27 39 39 50 84 32 36 32 34 64 64 64 64 64 64 64 64 64 64 34 34 84 84 84 53 100 68 "
@@ -36,7 +37,7 @@ _FULL_WIDTH = 103  # of the rest: a Chinese character, or the mark for one that 
 
 def shown(text: str) -> str:
     """The text in one line, with a mark for each character that cannot be printed."""
-    return "".join(c if c.isprintable() or c in _JOINERS else UNKNOWN for c in " ".join(text.split()))
+    return "".join(c if c.isprintable() or c in _JOINERS else UNKNOWN for c in " ".join(text[:_LONGEST].split()))
 
 
 def width(text: str, size: float, bold: bool = False) -> float:
@@ -57,7 +58,7 @@ def _advance(character: str, bold: bool) -> int:
 def wrapped(text: str, room: float, most: int, size: float, bold: bool) -> list[str]:
     """At most so many lines, none wider than `room`; what does not fit ends in an ellipsis."""
     lines: list[str] = []
-    words = text[:_LONGEST].split()
+    words = text[:_BROKEN].split()
     while words:
         line, words = _first_line(words, room, size, bold)
         lines.append(line)

@@ -51,12 +51,14 @@ def title_of(tree: Tree) -> str:
         return shown(given)
     if span.source.name != "-" and not span.source.name.startswith("<"):
         return shown(os.path.basename(span.source.name))
-    return shown(given if span.text.startswith(MARKUP) else span.text.splitlines()[0])
+    first = span.text.partition("\n")[0]
+    return shown(given if first.startswith(MARKUP) or not first.strip() else first)
 
 
 class Maker:
-    """Makes the sheets of a tree. `label` and `is_action` are those of btlang.api.Mission, `run` has the
-    statuses and values of a run; in its picture what only computes the values of a command is left out.
+    """Makes the sheets of a tree. `label` and `is_action` are those of btlang.api.Mission.
+
+    `run` has the statuses and values of a run; in its picture what only computes the values of a command is left out.
     """
 
     def __init__(

@@ -18,7 +18,7 @@ from btlang.pictures import letters
 from btlang.pictures.statuses import LastStatuses
 from btlang.pictures.tree_boxes import Maker, title_of
 from btlang.pictures.tree_picture import draw_tree, picture_of
-from btlang.text.source import Source
+from btlang.text.source import Source, Span
 from btlang.tree.node import Node, Tree
 from tests.conftest import matches_golden
 from tests.pictures.test_tree_layout import label, roots
@@ -174,6 +174,7 @@ def test_a_script_of_the_tree_and_one_that_failed_are_shown() -> None:
 def test_a_picture_has_a_title(text: str, name: str, title: str) -> None:
     assert title_of(btlang.parse_tree(Source(text, name)).tree) == title
     assert title_of(Tree(Node("Wave"), name="Given")) == "Given"
+    assert title_of(Tree(Node("Wave", span=Span(Source("wave"), 0, 0)))) == "mission"
 
 
 def test_titles_are_in_files(tmp_path: Path) -> None:
