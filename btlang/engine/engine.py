@@ -14,7 +14,7 @@ from btlang.engine.leaf import REFUSED, LeafBinding, told, unheard
 from btlang.engine.script_values import as_text
 from btlang.engine.status import FAILURE, IDLE
 from btlang.engine.watch import Changes, Trace
-from btlang.garbage import no_collection
+from btlang.gc_pause import gc_paused
 from btlang.record import Record
 from btlang.text.source import Span
 from btlang.tree.node import Node, Tree
@@ -85,7 +85,7 @@ class Engine:
         self._shared = Shared(bind, clock, {**own, **services}, enums, stopwatch, proxies)
         if on_unknown is not None:
             self._shared.on_unknown = lambda fault: on_unknown(self._failure(fault))
-        with no_collection:
+        with gc_paused:
             self._sites = expand(tree, self.blackboard, self._shared)
             self._trace = None if listener is None else Trace(self._shared, listener)
             self._tick, self._halt = compile_sites(self._sites, self._trace)

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from btlang.english.phrase import seconds
 from btlang.pictures.letters import shown
 from btlang.pictures.statuses import by_definition
+from btlang.printer.phrase import seconds
 from btlang.record import Record
 from btlang.tree.catalogue import CATALOGUE, SUBTREE
 from btlang.tree.node import Node, Tree

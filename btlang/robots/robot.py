@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from btlang.engine.leaf import ActionFailed, Unknown
-from btlang.robots.capabilities import Deed, Done, Hand, OnEvent, Robot
+from btlang.robots.capabilities import CompletedOperation, Hand, OnEvent, Operation, Robot
 
-__all__ = ["Deed", "Done", "Hand", "OnEvent", "Robot", "RobotError", "SensorSilent"]
+__all__ = ["CompletedOperation", "Hand", "OnEvent", "Operation", "Robot", "RobotError", "SensorSilent"]
 
 
 class RobotError(ActionFailed):

@@ -19,7 +19,7 @@ from btlang.engine.build import EngineError
 from btlang.text.source import NOWHERE
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import fold
-from btlang.vocabulary.vocabulary import Vocabulary
+from btlang.vocabulary.lexicon import Lexicon
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 def to_py_trees(
     tree: Tree,
-    vocabulary: Vocabulary,
+    vocabulary: Lexicon,
     *,
     bind: Callable[[Node], Behaviour] | None = None,
     is_action: Callable[[Node], bool] | None = None,

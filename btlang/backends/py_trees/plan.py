@@ -12,12 +12,12 @@ from btlang.engine.clock import Clock
 from btlang.engine.compile import expand
 from btlang.engine.conditions import OF_EDITORS
 from btlang.engine.leaf import LeafBinding
-from btlang.english.phrase import phrase_of
+from btlang.printer.phrase import phrase_of
 from btlang.record import Record
 from btlang.text.source import NOWHERE
 from btlang.tree.catalogue import CATALOGUE, SUBTREE, Port
 from btlang.tree.node import Node, Tree
-from btlang.vocabulary.vocabulary import Vocabulary
+from btlang.vocabulary.lexicon import Lexicon
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -67,7 +67,7 @@ class _Untold(Exception):
     """Why a node cannot be told to py_trees."""
 
 
-def plan_of(tree: Tree, vocabulary: Vocabulary, is_action: Callable[[Node], bool] | None = None) -> Plan:
+def plan_of(tree: Tree, vocabulary: Lexicon, is_action: Callable[[Node], bool] | None = None) -> Plan:
     """The plan of a tree, each use of a subtree for itself. `is_action` says which leaves take more than one tick.
 
     Raises MissionError with all that is wrong with the tree (BT126, BT131, BT132), or all that cannot be told (BT134).
@@ -82,7 +82,7 @@ def plan_of(tree: Tree, vocabulary: Vocabulary, is_action: Callable[[Node], bool
 
 class _Planner:
     def __init__(
-        self, sites: list[Site], tree: Tree, vocabulary: Vocabulary, is_action: Callable[[Node], bool] | None
+        self, sites: list[Site], tree: Tree, vocabulary: Lexicon, is_action: Callable[[Node], bool] | None
     ) -> None:
         self._sites = sites
         self._vocabulary = vocabulary
