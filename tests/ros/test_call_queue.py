@@ -5,7 +5,7 @@ from __future__ import annotations
 from concurrent.futures import ThreadPoolExecutor
 
 from btlang.robots.robot import RobotError
-from btlang.ros.simulator.call_queue import SubscriptionCache
+from btlang.ros.simulator.call_queue import CallQueue
 from tests.ros.processes import LONG, wait_until
 
 
@@ -14,7 +14,7 @@ def refuse() -> None:
 
 
 def test_questions_are_answered_in_order():
-    subscriptions, done = SubscriptionCache(), []
+    subscriptions, done = CallQueue(), []
     with ThreadPoolExecutor() as pool:
         first = pool.submit(subscriptions.ask, lambda: done.append(1))
         wait_until(lambda: subscriptions.work(0.0) or first.done(), "the first answer")
@@ -27,7 +27,7 @@ def test_questions_are_answered_in_order():
 
 
 def test_who_waits_is_told_when_nobody_works_any_more():
-    subscriptions = SubscriptionCache()
+    subscriptions = CallQueue()
     with ThreadPoolExecutor() as pool:
         waiting = pool.submit(subscriptions.ask, lambda: "done")
         wait_until(waiting.running, "the question")
@@ -37,6 +37,6 @@ def test_who_waits_is_told_when_nobody_works_any_more():
 
 
 def test_a_wake_ends_the_wait_also_one_that_came_before():
-    subscriptions = SubscriptionCache()
+    subscriptions = CallQueue()
     subscriptions.wake()
     subscriptions.work(3600.0)
