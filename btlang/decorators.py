@@ -38,8 +38,8 @@ def action(
 
     The options are the keys of an entry in a keyword file (docs/keywords.md). `phrase` is one pattern or several;
     `slots` gives a type, or a type and a default, to slots whose name is not a type; `id` is the node's name, by
-    default that of the function in CamelCase; `help` is by default the docstring. See btlang/engine/leaf.py for what a
-    leaf may be. Raises ValueError for a `ros` table with mistakes.
+    default that of the function in CamelCase; `help` is by default the docstring. See btlang/engine/leaves/leaf.py
+    for what a leaf may be. Raises ValueError for a `ros` table with mistakes.
 
     With `replace` it is what runs in place of the known word that has this id, or this phrase where no id is given: a
     fake for tests. Without it a second function for one id is an error (BT064).

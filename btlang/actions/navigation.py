@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from btlang.actions.motion import Steps
-from btlang.engine.leaf import ActionFailed
+from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.capabilities import Navigation
 from btlang.robots.robot import Operation
 

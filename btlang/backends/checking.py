@@ -8,9 +8,9 @@ from functools import cache, partial
 from btlang.backends.engine import bind_leaf, leaf_binding
 from btlang.backends.keywords import Draft, drafts
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic, in_order
-from btlang.engine.build import EngineError
 from btlang.engine.faults import UnknownNode, UnknownSubTree, faults
-from btlang.engine.leaf import LeafBinding
+from btlang.engine.instance import EngineError
+from btlang.engine.leaves.leaf import LeafBinding
 from btlang.text.source import NOWHERE, Span
 from btlang.text.spelling import nearest
 from btlang.tree.catalogue import CATALOGUE

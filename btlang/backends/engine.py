@@ -9,9 +9,9 @@ from importlib.util import find_spec
 from types import ModuleType
 
 from btlang.backends.comparing import comparing
-from btlang.engine.build import EngineError
-from btlang.engine.leaf import LeafBinding, described
-from btlang.engine.script_values import as_text
+from btlang.engine.instance import EngineError
+from btlang.engine.leaves.leaf import LeafBinding, described
+from btlang.engine.script.values import as_text
 from btlang.printer.phrase import leaf_words
 from btlang.tree.node import Node
 from btlang.vocabulary.entry import MEASURED, Entry, SlotSpec

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from btlang.engine.leaf import ActionFailed, Unknown
+from btlang.engine.leaves.leaf import ActionFailed, Unknown
 from btlang.robots.capabilities import CompletedOperation, Hand, OnEvent, Operation, Robot
 
 __all__ = ["CompletedOperation", "Hand", "OnEvent", "Operation", "Robot", "RobotError", "SensorSilent"]

@@ -14,7 +14,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from btlang.engine.leaf import LeafBinding
+    from btlang.engine.leaves.leaf import LeafBinding
     from btlang.run.controls import Controls
     from btlang.run.pace import Pace
     from btlang.tree.node import Tree

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from inspect import Parameter, Signature, signature
 
 from btlang.backends.engine import leaf_binding
-from btlang.engine.leaf import LeafBinding
+from btlang.engine.leaves.leaf import LeafBinding
 from btlang.ros.clients import Clients, Unusable
 from btlang.ros.leaves.actions import action_leaf
 from btlang.ros.leaves.driving import drive_leaf

@@ -32,7 +32,7 @@ from btlang.tree.node import Node, Tree
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.engine.leaf import LeafBinding
+    from btlang.engine.leaves.leaf import LeafBinding
     from btlang.vocabulary.entry import Entry
     from btlang.vocabulary.lexicon import Lexicon
 

@@ -11,7 +11,7 @@ from collections.abc import Callable
 
 from rclpy.node import Node
 
-from btlang.engine.leaf import described
+from btlang.engine.leaves.leaf import described
 
 
 class ExecutorThread:

@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from importlib import import_module
 
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
-from btlang.engine.leaf import ActionFailed
+from btlang.engine.leaves.leaf import ActionFailed
 from btlang.text.source import Source, Span
 from btlang.text.spelling import nearest
 from btlang.vocabulary.ros_table import SLOT

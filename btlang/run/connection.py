@@ -11,7 +11,7 @@ from btlang.tree.node import Tree
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.engine.leaf import LeafBinding
+    from btlang.engine.leaves.leaf import LeafBinding
     from btlang.vocabulary.entry import Entry
     from btlang.vocabulary.lexicon import Lexicon
 

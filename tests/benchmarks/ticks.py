@@ -21,7 +21,7 @@ from py_trees.common import Status
 
 from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine
-from btlang.engine.leaf import LeafBinding
+from btlang.engine.leaves.leaf import LeafBinding
 from btlang.run.bus import Bus
 from btlang.run.runner import traced_engine
 from btlang.tree.node import Node, Tree

@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from itertools import cycle
 from typing import Any
 
-from btlang.engine.leaf import LeafBinding
+from btlang.engine.leaves.leaf import LeafBinding
 from btlang.engine.status import RUNNING, SUCCESS
 
 from .random_trees import Drawn

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from typing import Any
 
-from btlang.engine.script import ScriptFailed, compile_script, truth
+from btlang.engine.script.script import ScriptFailed, compile_script, truth
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 
 STATUSES = {"SUCCESS": SUCCESS, "FAILURE": FAILURE, "SKIPPED": SKIPPED, "RUNNING": RUNNING}

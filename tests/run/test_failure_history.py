@@ -7,7 +7,7 @@ from typing import Any
 
 import pytest
 
-from btlang.engine.leaf import ActionFailed, LeafBinding
+from btlang.engine.leaves.leaf import ActionFailed, LeafBinding
 from btlang.engine.status import FAILURE, RUNNING
 from btlang.run.bus import Bus
 from btlang.run.failure_history import MOST, FailureHistory

@@ -15,7 +15,7 @@ from btlang.backends.py_trees.plan import Name, Part, plan_of
 from btlang.backends.py_trees.values import engine_leaf, values_of
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.engine.blackboard import Blackboard
-from btlang.engine.build import EngineError
+from btlang.engine.instance import EngineError
 from btlang.text.source import NOWHERE
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import fold

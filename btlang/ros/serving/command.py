@@ -10,7 +10,7 @@ from btlang.api import world_vocabulary
 from btlang.arguments import between, node_name, real_speed
 from btlang.backends.engine import bind_leaf
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
-from btlang.engine.build import EngineError
+from btlang.engine.instance import EngineError
 from btlang.robots.needs import lacking
 from btlang.ros.available import require_interfaces, require_ros
 from btlang.ros.command import add_body_options, add_namespace, platform_of

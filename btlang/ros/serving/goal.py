@@ -84,7 +84,7 @@ class Goal:
     def tick(self) -> None:
         """Goes on."""
         assert self.engine is not None
-        self._connection.bus.before = self.engine.tell  # all engines publish into the same stream
+        self._connection.bus.before = self.engine.flush  # all engines publish into the same stream
         status = self.engine.tick()
         if status == RUNNING:
             self.tell()

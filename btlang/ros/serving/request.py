@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 
-from btlang.engine.build import blackboard_key
-from btlang.engine.leaf import ActionFailed
+from btlang.engine.instance import blackboard_key
+from btlang.engine.leaves.leaf import ActionFailed
 from btlang.text.spelling import nearest
 from btlang.tree.node import Node
 from btlang.vocabulary.entry import Entry

@@ -8,7 +8,7 @@ from btlang_interfaces.action import RunPhrase
 from rclpy.node import Node
 from std_srvs.srv import Trigger
 
-from btlang.engine.leaf import ActionFailed
+from btlang.engine.leaves.leaf import ActionFailed
 from btlang.ros.goals import GoalServer, HeldGoal
 from btlang.ros.lease import Leases
 from btlang.ros.serving.goal_executor import GoalExecutor
