@@ -87,7 +87,7 @@ def peer(node: Node) -> py_trees.behaviour.Behaviour:
         return Answer(node.id, ANSWERS[node.id])
     children = [peer(child) for child in node.children]
     if node.id in DECORATORS:
-        return DECORATORS[node.id](node.id, children[0])
+        return DECORATORS[node.id](node.id, children[0])  # type: ignore[abstract]
     if node.id == "Parallel":
         policy = py_trees.common.ParallelPolicy.SuccessOnAll(synchronise=True)
         return py_trees.composites.Parallel(node.id, policy, children)

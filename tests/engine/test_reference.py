@@ -18,8 +18,9 @@ from btlang.tree.node import Node
 from tests.profiles import searches
 
 from .random_trees import BUSY, TREES, Drawn, letters
-from .reference import Mission, Reference
+from .reference import Reference
 from .reference_board import Board
+from .reference_node import Mission
 from .scripted import LETTER, World
 
 
