@@ -233,26 +233,36 @@ def _unknown_phrase(
         quoted = f'{verb} "{word} {span.text}"'
         advice = f"A text of more than one word needs quotes: {quoted}"
         whole = Span(text.source, start.start, span.end)
-        return diagnostic("BT010", span, fix=(whole, quoted), words=span.text, help=advice)
+        return diagnostic("BT010", span, fix=(whole, quoted), kind="word", words=span.text, help=advice)
+    kind = "condition" if _asks(before) else "command"
     meant = longest(vocabulary.trie, text, at + 1, vocabulary.context) if end > at + 1 else None
     is_node = text.words[at] in (phrase for role in NODE_ROLES for phrase in vocabulary.roles[role])
     if is_node and meant is not None and meant.meaning.entry is not None:  # `do wave`
         rest = text.span(at + 1, meant.last).text
         whole = text.span(at, meant.last)
-        return diagnostic("BT010", span, fix=(whole, rest), words=span.text, help=nearest_known([rest]))
+        return diagnostic("BT010", span, fix=(whole, rest), kind=kind, words=span.text, help=nearest_known([rest]))
     node = misread_node(text, at, vocabulary) if is_node else None
     if node is not None:
         advice = f"A node by its id: {' or '.join(node[1])}"
-        return diagnostic("BT010", node[0], fix=(node[0], node[1][0]), words=node[0].text, help=advice)
+        return diagnostic("BT010", node[0], fix=(node[0], node[1][0]), kind="node", words=node[0].text, help=advice)
     names = [header.name for header in definitions.headers.values()]
     written = f" {' '.join(text.words[at:end])} "
     inside = [(name, end - at) for name in names if f" {name} " in written]
     near = dict(inside) | dict(_nearest_phrases(tuple(text.words[at:end]), vocabulary, tuple(names))) | dict(inside)
     if not near:
-        return diagnostic("BT010", span, words=span.text, help="'btc words' lists what I know.")
+        return diagnostic("BT010", span, kind=kind, words=span.text, help="'btc words' lists what I know.")
     likely, words = next(iter(near.items()))
     fix = (text.span(at, min(at + words, end)), likely.partition(" {")[0])
-    return diagnostic("BT010", span, fix=fix, words=span.text, help=nearest_known(near))
+    return diagnostic("BT010", span, fix=fix, kind=kind, words=span.text, help=nearest_known(near))
+
+
+_ASKING = frozenset(("if", "unless", "whenever", "while", "until", "check", "wait_until", "condition"))
+
+
+def _asks(before: list[Token]) -> bool:
+    """Whether a condition belongs after these tokens."""
+    kinds = (token.kind for token in reversed(before))
+    return next((kind for kind in kinds if kind not in ("not", "open", "and", "or")), "") in _ASKING
 
 
 def nearest_known(words: Iterable[str]) -> str:
