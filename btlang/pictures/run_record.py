@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from btlang.engine.leaf import ActionFailed
+from btlang.engine.leaves.leaf import ActionFailed
 from btlang.engine.status import IDLE, RUNNING, SKIPPED
 from btlang.record import Record
 from btlang.robots.geometry import Point, Pose

@@ -6,10 +6,10 @@ import os
 from collections.abc import Callable, Mapping
 
 from btlang.engine.status import FAILURE
-from btlang.english.phrase import MARKUP, seconds
 from btlang.passes.scripts import is_prepared
 from btlang.pictures.letters import shown
 from btlang.pictures.statuses import LastStatuses, by_definition
+from btlang.printer.phrase import MARKUP, seconds
 from btlang.record import Record
 from btlang.tree.catalogue import CATALOGUE, SUBTREE
 from btlang.tree.node import Node, Tree

@@ -13,8 +13,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, ClassVar, Protocol, TypeAlias
 
-    from btlang.engine.build import Fault, Site
-    from btlang.engine.watch import Changes
+    from btlang.engine.instance import Fault, NodeInstance
+    from btlang.engine.status_trace import Changes
     from btlang.run.robot_state import RobotState
 
     Sink: TypeAlias = Callable[["Event"], object]
@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
         def filled(self, index: int) -> Node: ...
 
-        def reason(self, index: int, fault: Fault | Site | None) -> str: ...
+        def reason(self, index: int, fault: Fault | NodeInstance | None) -> str: ...
 
     class Robot(Protocol):
         """What a run asks of a robot; see btlang.robots.robot.Robot. `moving`, `standstill`, `disable` and `enable` may

@@ -5,7 +5,7 @@ from __future__ import annotations
 from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
-from btlang.engine.watch import Changes
+from btlang.engine.status_trace import Changes
 from btlang.pictures.run_picture import numbers
 from btlang.pictures.run_record import RunRecord
 from btlang.pictures.statuses import LastStatuses, by_definition
