@@ -20,7 +20,7 @@ from btlang.vocabulary.cache import cached
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.load import load_vocabulary
-from btlang.vocabulary.shipped import DEFAULT_WORLD, STANDARD_BODY
+from btlang.vocabulary.shipped import DEFAULT_WORLD, ENGLISH, STANDARD_BODY
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -37,17 +37,18 @@ def parse_tree(
     keywords: Sequence[str | Entry | Callable[..., Any]] = (),
     world: str | None = None,
     main: str = "",
+    language: str = ENGLISH,
 ) -> Mission:
     """Compiles a mission in English, or a tree: a text that begins with `<` is XML of BehaviorTree.CPP, with `{` JSON.
 
     `parser` is "shunting-yard" or "lark" (both read the same); `keywords` are paths of keyword files, names of
     installed packs, or functions made words by `action` or `condition`; `world` is the path of a world file, by
-    default the world that ships; `main` is the ID of the tree to run, where XML or JSON has several. Raises
-    MissionError, which holds every diagnostic.
+    default the world that ships; `main` is the ID of the tree to run, where XML or JSON has several; `language` is that
+    of the mission: "en", "es" or the folder of another one. Raises MissionError, which holds every diagnostic.
     """
     source = Source(text) if isinstance(text, str) else text
     with gc_paused:
-        vocabulary = world_vocabulary(keywords, world)
+        vocabulary = world_vocabulary(keywords, world, language)
         read = read_text(source, main, vocabulary=vocabulary, parser=parser, errors_of=errors_of)
         if isinstance(read, Tree):
             compilation = run_passes(Compilation(vocabulary, tree=read))
@@ -65,12 +66,13 @@ def parse_file(
     world: str | None = None,
     main: str = "",
     include_root: str | None = None,
+    language: str = ENGLISH,
 ) -> Mission:
     """As `parse_tree`, of the text in a file; it may include files in its folder, and below `include_root`."""
     from btlang.diagnostics.reading import read_source
 
     source = read_source(path, include_root)
-    return parse_tree(source, parser=parser, keywords=keywords, world=world, main=main)
+    return parse_tree(source, parser=parser, keywords=keywords, world=world, main=main, language=language)
 
 
 def format_mission(
@@ -79,6 +81,7 @@ def format_mission(
     parser: str = DEFAULT_PARSER,
     keywords: Sequence[str | Entry | Callable[..., Any]] = (),
     world: str | None = None,
+    language: str = ENGLISH,
 ) -> str:
     """The text in the canonical layout: its words, comments and lines stay, and so does its tree.
 
@@ -90,16 +93,19 @@ def format_mission(
     if frontend_of(source) != "english":
         raise MissionError([diagnostic("BT001", Span(source, 0, 1), file=source.name, reason="this is no English")])
     with gc_paused:
-        vocabulary = world_vocabulary(keywords, world)
+        vocabulary = world_vocabulary(keywords, world, language)
         mission = read_mission(source, vocabulary, parser, errors_of=errors_of).mission
         compile_mission(mission, vocabulary, needs_command=False)
-    return laid_out(source, vocabulary.articles)
+    return laid_out(source, vocabulary.orthography)
 
 
-def world_vocabulary(keywords: Sequence[str | Entry | Callable[..., Any]] = (), world: str | None = None) -> Lexicon:
-    """The words of the keyword files and the names of a world. Raises MissionError."""
+def world_vocabulary(
+    keywords: Sequence[str | Entry | Callable[..., Any]] = (), world: str | None = None, language: str = ENGLISH
+) -> Lexicon:
+    """The words of a language and of the keyword files, and the names of a world. Raises MissionError."""
     file = DEFAULT_WORLD if world is None else world
-    return load_vocabulary(keywords, cached("world", [file, STANDARD_BODY], partial(_names_by_type, world)))
+    names = cached("world", [file, STANDARD_BODY], partial(_names_by_type, world))
+    return load_vocabulary(keywords, names, language)
 
 
 def _names_by_type(world: str | None) -> dict[str, tuple[str, ...]]:

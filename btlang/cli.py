@@ -139,7 +139,7 @@ def _compile(options: argparse.Namespace) -> int:
 def _words(options: argparse.Namespace) -> int:
     from btlang.vocabulary.listing import listing
 
-    lines = listing(world_vocabulary(options.keywords, options.world), " ".join(options.search))
+    lines = listing(world_vocabulary(options.keywords, options.world, options.language), " ".join(options.search))
     show("\n".join(lines))
     return SUCCESS
 
@@ -199,7 +199,9 @@ def _format(options: argparse.Namespace) -> int:
 
 def _format_one(source: Source, options: argparse.Namespace) -> bool:
     """Whether `--check` found that the text would change."""
-    text = format_mission(source, parser=options.parser, keywords=options.keywords, world=options.world)
+    text = format_mission(
+        source, parser=options.parser, keywords=options.keywords, world=options.world, language=options.language
+    )
     changes = text != source.text
     if options.check:
         if changes:
@@ -230,6 +232,7 @@ def _repl(options: argparse.Namespace) -> int:
         include_root=options.include_root,
         speed=options.speed,
         robot=options.robot,
+        language=options.language,
     )
 
 
@@ -264,8 +267,9 @@ def _mission(options: argparse.Namespace) -> Mission:
     """Compiles what the options name; warnings go to the report."""
     source = _typed(options) if options.text is not None else read_source(options.file, options.include_root)
     mission = parse_tree(
-        source, parser=options.parser, keywords=options.keywords, world=options.world, main=options.main
-    )
+        source, parser=options.parser, keywords=options.keywords, world=options.world, main=options.main,
+        language=options.language,
+    )  # fmt: skip
     for warning in mission.warnings:
         options.report.add([warning])
     return mission

@@ -12,6 +12,7 @@ from btlang.diagnostics.report import FORMATS
 from btlang.frontends.mission.reader import DEFAULT_PARSER, PARSERS
 from btlang.run.limits import RATES
 from btlang.text.output import show
+from btlang.vocabulary.shipped import ENGLISH
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -39,13 +40,16 @@ def parsed(arguments: Sequence[str] | None) -> argparse.Namespace:
 
 _DEFAULTS: dict[str, Any] = {
     "keywords": [], "world": None, "parser": DEFAULT_PARSER, "include_root": None, "speed": "real", "format": "text",
-    "main": "", "robot": "simulated", "over": None,
+    "main": "", "robot": "simulated", "over": None, "language": ENGLISH,
 }  # fmt: skip
 
 
 def _words_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--keywords", action="append", default=[], metavar="FILE", help="further keyword file, or name of a pack"
+    )
+    parser.add_argument(
+        "--language", default=ENGLISH, metavar="LANG", help="of the mission: en, es, or a folder (default: en)"
     )
     _world_option(parser)
 

@@ -161,8 +161,8 @@ def _explain(text: str) -> None:
 
 def _format(text: str) -> None:
     compile_mission(read_mission(Source(text), VOCABULARY).mission, VOCABULARY, needs_command=False)
-    once = laid_out(Source(text), VOCABULARY.articles)
-    assert laid_out(Source(once), VOCABULARY.articles) == once, "a text that is laid out stays as it is"
+    once = laid_out(Source(text), VOCABULARY.orthography)
+    assert laid_out(Source(once), VOCABULARY.orthography) == once, "a text that is laid out stays as it is"
 
 
 def _complete(text: str, at: int) -> None:

@@ -133,7 +133,7 @@ class _Sentences:
     """The sentences of a text: what stands between line ends, `;` and full stops outside brackets and blocks."""
 
     def __init__(self, source: Source, vocabulary: Lexicon) -> None:
-        self._words: Words = split(source, vocabulary.articles)
+        self._words: Words = split(source, vocabulary.orthography)
         self._sentences: list[tuple[int, int, int]] = []  # first character, first word, the word at which it ends
         words = self._words
         for line in words.lines:

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-import os
 from collections.abc import Sequence
 
 from btlang.backends.python_source import Source, Statements, called, literal
 from btlang.tree.ast import Fact
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.lexicon import Lexicon
-from btlang.vocabulary.shipped import keyword_files
+from btlang.vocabulary.shipped import keyword_files, languages, shipped, shown_name
 
 _HEAD = '''"""A behavior tree that runs on the simulated robot: python FILE [--speed max]. Needs btlang.
 
@@ -84,6 +83,6 @@ def _node(node: Node, children: list[Source]) -> Source:
 
 def _files(tree: Tree, vocabulary: Lexicon) -> list[str]:
     """The keyword files of the leaves, without those that ship."""
-    shipped = {"keywords/" + os.path.basename(path) for path in keyword_files()}
+    ours = {shown_name(path) for name in languages() for path in keyword_files(shipped("keywords", name))}
     found = {entry.file for node in tree.walk() for entry in vocabulary.entries.get(node.id, ())}
-    return sorted(file for file in found - shipped if file != "Python")
+    return sorted(file for file in found - ours if file != "Python")

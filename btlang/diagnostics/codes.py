@@ -103,6 +103,8 @@ _ALL = (
     Code("BT063", "There's no keyword file or pack called '{name}'.", "Give the path of a TOML file or the name of an installed pack."),
     Code("BT064", "'{id}' already has a function, from {file}, and only one can run.",
          "To run yours instead, write {fixed}; otherwise give it another id."),
+    Code("BT065", "There's no language called '{name}'.",
+         "The languages that ship: {known}. For another one, give the folder that holds its language.toml."),
     Code("BT070", "This world file can't be used: {reason}."),
     Code("BT071", "This robot file can't be used: {reason}."),
     Code("BT072", "The robot '{robot}' has no {parts}, which '{words}' needs.", "Leave it out, or choose another robot with --robot."),

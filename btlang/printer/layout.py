@@ -12,7 +12,7 @@ from collections.abc import Iterator
 
 from btlang.record import Record
 from btlang.text.source import Source
-from btlang.text.words import Line, Words, split
+from btlang.text.words import Line, Orthography, Words, split
 
 INDENT = "  "
 _BLANK = r"[\s\ufeff]"
@@ -33,12 +33,12 @@ class _Row(Record):
     words: Line | None
 
 
-def laid_out(source: Source, articles: frozenset[str]) -> str:
+def laid_out(source: Source, orthography: Orthography) -> str:
     """The text in its canonical layout, the same for a text that is laid out. It must be a mission without errors.
 
     Its words are the same ones, so it has the same tree.
     """
-    rows = list(_rows(source, split(source, articles)))
+    rows = list(_rows(source, split(source, orthography)))
     levels = _levels(rows)
     lines: list[str] = []
     for row, level in zip(rows, levels, strict=True):
@@ -54,7 +54,7 @@ def _rows(source: Source, words: Words) -> Iterator[_Row]:
     quotes = [
         (start, end)
         for word, start, end in zip(words.words, words.starts, words.ends, strict=True)
-        if word.startswith('"')
+        if word.startswith('"') or source.text.find(",", start, end - 1) > start  # `1,5` is one number
     ]
     by_end = {words.ends[line.last]: line for line in words.lines}
     at = 0

@@ -92,7 +92,7 @@ def _fitting(entry: Entry, spoken: Mapping[str, str]) -> Iterator[tuple[Form, Ma
 def _reads_back(
     words: str, entry: Entry, spoken: Mapping[str, str], vocabulary: Lexicon, names: TrieNode | None
 ) -> bool:
-    text = split(Source(words), vocabulary.articles)
+    text = split(Source(words), vocabulary.orthography)
     match = longest(vocabulary.trie, text, 0, vocabulary.context)
     if match is None or match.meaning.entry is None or match.meaning.role == "negated":
         return False
@@ -138,7 +138,7 @@ def _says_more(text: str, vocabulary: Lexicon) -> bool:
 
 def holds_definer(words: str, vocabulary: Lexicon) -> bool:
     """Whether a phrase or name holds a word that would define at the start of a line, and is no condition."""
-    text = split(Source(words), vocabulary.articles)
+    text = split(Source(words), vocabulary.orthography)
     if not any(word in vocabulary.roles[role] for role in DEFINING for word in text.words):
         return False
     match = longest(vocabulary.trie, text, 0, vocabulary.context)

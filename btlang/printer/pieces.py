@@ -68,7 +68,7 @@ def reads_on(first: Piece, second: Piece, vocabulary: Lexicon, names: TrieNode) 
     """Whether a connective and what stands behind it would be read as one: `once` and `every 5 s`."""
     if first.kind != WORD:
         return False
-    words = split(Source(f"{first.text} {second.text}"), vocabulary.articles)
+    words = split(Source(f"{first.text} {second.text}"), vocabulary.orthography)
     return _end(words, 0, vocabulary, names) > len(first.text)
 
 
@@ -81,7 +81,7 @@ def text_of(pieces: Pieces, vocabulary: Lexicon, names: TrieNode) -> str:
     alone: set[int] = set()
     while True:
         text, starts = _joined(given, alone)
-        words = split(Source(text), vocabulary.articles)
+        words = split(Source(text), vocabulary.orthography)
         at = {start: i for i, start in enumerate(words.starts)}
         wrong = set()
         for i, start in starts.items():

@@ -68,7 +68,7 @@ def command_of(text: str, draft: MissionDraft) -> tuple[str, str] | None:
     if name.lower() == "show" and (rest in ("", "tree") or rest.lower() in draft.definitions):
         return "show", rest
     source = Source(f"{draft.context()}{line}")
-    words = split(source, draft.vocabulary.articles)
+    words = split(source, draft.vocabulary.orthography)
     definitions = find_definitions(Phrases(words, draft.vocabulary))
     at = words.lines[-1].first
     known = (longest(trie, words, at, draft.vocabulary.context) for trie in (draft.vocabulary.trie, definitions.trie))

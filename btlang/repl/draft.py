@@ -20,6 +20,7 @@ from btlang.tree.ast import Ast, Chain, Definition, Fact, Include, Program, all_
 from btlang.tree.node import Tree
 from btlang.tree.visit import used_subtrees
 from btlang.vocabulary.reading_context import Known
+from btlang.vocabulary.shipped import ENGLISH
 
 ENTRY = "<entry>"
 """What messages call the source of an entry."""
@@ -50,10 +51,12 @@ class MissionDraft:
         parser: str = DEFAULT_PARSER,
         include_root: str | None = None,
         robot: str = "simulated",
+        language: str = ENGLISH,
     ) -> None:
         """Raises MissionError where a keyword file, the world or the robot cannot be used."""
         self._robot = robot
         self._keywords = keywords
+        self._language = language
         self._include_root = include_root
         self._parser = parser
         self._undone: list[tuple[Entry, ...]] = []
@@ -67,7 +70,7 @@ class MissionDraft:
 
     def use_world(self, world: str | None) -> None:
         """Puts the robot into a world of its own file, None for the one that ships. Raises MissionError."""
-        vocabulary = world_vocabulary(self._keywords, world)
+        vocabulary = world_vocabulary(self._keywords, world, self._language)
         self.session = Session(self._robot, world=world, over="simulated")
         self.vocabulary = vocabulary
         self.world = world

@@ -40,5 +40,5 @@ def _opens_block(line: str) -> bool:
 
 def _goes_on(line: str, vocabulary: Lexicon) -> bool:
     """Whether a line at the margin belongs to the statement above it."""
-    match = longest(vocabulary.trie, split(Source(line), vocabulary.articles), 0, vocabulary.context)
+    match = longest(vocabulary.trie, split(Source(line), vocabulary.orthography), 0, vocabulary.context)
     return match is not None and match.meaning.role == "otherwise"

@@ -17,6 +17,7 @@ from btlang.repl.entering import entries
 from btlang.repl.store import Kept, Store, state_folder
 from btlang.run.command import ENDING_SIGNALS, can_draw, run_mission
 from btlang.text.output import show
+from btlang.vocabulary.shipped import ENGLISH
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -33,9 +34,10 @@ def run_repl(
     include_root: str | None = None,
     speed: float | str = "real",
     robot: str = "simulated",
+    language: str = ENGLISH,
 ) -> int:
     """Runs until the user leaves or the input ends; returns the exit code. Raises MissionError for wrong files."""
-    draft = MissionDraft(keywords, world, parser, include_root, robot)
+    draft = MissionDraft(keywords, world, parser, include_root, robot, language)
     if not can_draw(sys.stdout) or sys.stdin is None or not sys.stdin.isatty():
         return Repl(draft, Store(None), speed).read(sys.stdin or ())
     store = Store(state_folder())

@@ -2,25 +2,30 @@
 
 A word is kept in lower case; quoted text keeps its case behind a leading `"`; a unit is a word of its own
 ("2m" is `2`, `m`);
-each punctuation mark is a word of its own. Articles leave no word, only a note of where they stood.
+each punctuation mark is a word of its own. Articles leave no word, only a note of where they stood. `Orthography` holds
+what languages differ in.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Set
+from collections.abc import Iterable, Iterator, Mapping, Set
 
 from btlang.record import Record
 from btlang.text.source import Source, Span
 
 # Same length on both sides, so that offsets stay those of the text that the user sees.
-_TYPOGRAPHIC = str.maketrans({"“": '"', "”": '"', "„": '"', "«": '"', "»": '"', "’": "'", "‘": "'", "\ufeff": "\r"})  # noqa: RUF001
+_TYPOGRAPHIC = str.maketrans({
+    "“": '"', "”": '"', "„": '"', "«": '"', "»": '"', "’": "'", "‘": "'", "\ufeff": "\r", "¿": "\r", "¡": "\r",  # noqa: RUF001
+})  # fmt: skip
+_DECIMAL_COMMA = r"(?<![\d,.])(\d+),(\d+)(?!\d|,\d)"  # but `1,2,3` is a list; compiled where a language needs it
+_MARKS_ABOVE = "\u0300-\u036f"  # accents as characters of their own, which some keyboards send
 
 # Blanks in front of a word belong to its match, which halves the number of matches.
 _PIECE = re.compile(
-    r"""[^\S\n]*(?:([^\W\d_]+/[^\W\d_]+(?!\w)|[^\W\d](?:[\w'-]*\w)?)  # word
+    rf"""[^\S\n]*(?:([^\W\d_]+/[^\W\d_]+(?!\w)|[^\W\d](?:[\w{_MARKS_ABOVE}'-]*[\w{_MARKS_ABOVE}])?)  # word
     |(-?\d+(?:\.\d+)?(?:[eE][+-]?\d+(?!\w))?)                          # number
-    |([,:()%°{}])                                                      # mark
+    |([,:()%°{{}}])                                                    # mark
     |(\n[ \t\r]*)                                                      # line
     |("[^"\n]*"|(?<!\w)'[^'\n]*'(?!\w))                                # quote
     |([.!?]+|;)                                                        # stop
@@ -33,6 +38,45 @@ _WORD, _NUMBER, _MARK, _LINE, _QUOTE, _STOP, _COMMENT, _OPEN, _OTHER = range(1, 
 
 END_OF_STATEMENT = ";"
 END_OF_TEXT = "\n"  # also the word that ends each line
+
+
+class Orthography(Record):
+    """How a language is written: its articles, and whether `1,5` is a number.
+
+    `spellings` are words that are read as another one: contractions (Spanish `al` as `a`), and words that are written
+    without their accents, where no other word is written so.
+    """
+
+    articles: frozenset[str] = frozenset()
+    decimal_comma: bool = False
+    spellings: Mapping[str, str] = {}
+
+    def with_words(self, words: Iterable[str]) -> Orthography:
+        """The same, where these words may be written without their accents."""
+        known = {*self.articles, *words}
+        plain = {without_accents(word): word for word in known if not word.isascii()}
+        new = {bare: word for bare, word in plain.items() if bare not in known}
+        return self.replace(spellings={**self.spellings, **new}) if new else self
+
+    def word(self, written: str) -> str:
+        """A word in lower case, with its accents as they are known."""
+        word = written.lower()
+        if not word.isascii():
+            from unicodedata import normalize
+
+            word = normalize("NFC", word)
+        return self.spellings.get(word, word)
+
+    def words(self, text: str) -> list[str]:
+        """The words of a name, without articles."""
+        return [word for word in map(self.word, text.split()) if word not in self.articles]
+
+
+def without_accents(word: str) -> str:
+    """`rápido` as `rapido`."""
+    from unicodedata import combining, normalize
+
+    return "".join(character for character in normalize("NFD", word) if not combining(character))
 
 
 class Line(Record):
@@ -87,11 +131,14 @@ class Words:
         return Span(self.source, self.starts[first], self.ends[last - 1])
 
 
-def split(source: Source, articles: frozenset[str]) -> Words:
+def split(source: Source, orthography: Orthography) -> Words:
     """The words of a text. Never raises: unterminated quotes and unreadable characters are listed in the result."""
     result = Words(source)
     words, starts, ends = result.words, result.starts, result.ends
     text = source.text.translate(_TYPOGRAPHIC)
+    if orthography.decimal_comma:
+        text = re.sub(_DECIMAL_COMMA, r"\1.\2", text)
+    articles, spellings = orthography.articles, orthography.spellings
     first, indent = 0, _indent(re.match(r"[ \t]*", text).group())  # type: ignore[union-attr]
 
     def end_line(at: int) -> None:
@@ -108,7 +155,7 @@ def split(source: Source, articles: frozenset[str]) -> Words:
         word = match[kind]
         start, end = match.span(kind)
         if kind == _WORD:
-            word = word.lower()
+            word = word.lower() if word.isascii() and not spellings else orthography.word(word)
             if word in articles and not (
                 text[start - 1 : start] == "{" and text[end : end + 1] == "}"
             ):  # a name is `{a}`

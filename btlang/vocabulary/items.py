@@ -47,7 +47,8 @@ def _words(*texts: str) -> frozenset[str]:
 
 def items(vocabulary: Lexicon) -> list[Item]:
     """Everything that can be said, by topic and in the order to show it."""
-    commands = [_command(entry, vocabulary) for entries in vocabulary.entries.values() for entry in entries]
+    entries = [entry for entries in vocabulary.entries.values() for entry in entries if entry.phrases]
+    commands = [_command(entry, vocabulary) for entry in entries]
     words = [item for role in vocabulary.about if (item := _word(role, vocabulary)) is not None]
     values = [_value(kind, vocabulary) for kind in vocabulary.types.values()]
     found = [*commands, *words, *values]

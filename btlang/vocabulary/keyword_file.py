@@ -14,7 +14,7 @@ from btlang.text.toml_positions import positions
 from btlang.tree.catalogue import CATALOGUE
 from btlang.vocabulary.capabilities import resources_of
 from btlang.vocabulary.entry import COMPARISONS, MEASURED, Entry, SlotSpec
-from btlang.vocabulary.language_tables import TABLES, WORD_LISTS, problems
+from btlang.vocabulary.language_tables import SWITCHES, TABLES, WORD_LISTS, problems
 from btlang.vocabulary.pattern import PatternError, Slot, forms
 from btlang.vocabulary.ros_binding import RosBinding
 from btlang.vocabulary.ros_table import read_ros, unknown_slots
@@ -24,7 +24,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-_TOP = {"language", "replaces", "action", "condition", "quantity", "type", *WORD_LISTS, *TABLES}
+_TOP = {"language", "replaces", "action", "condition", "quantity", "type", "phrases", *WORD_LISTS, *SWITCHES, *TABLES}
 _ENTRY = {"phrase", "id", "call", "ros", "slots", "resources", "needs", "topic", "help", "example"}
 _FLAGS = ("instant", "uninterruptible", "thread")
 _MORE = {"action": set(_FLAGS), "condition": set[str](), "quantity": {"type"}}
@@ -113,6 +113,21 @@ class _Reader:
             needs=tuple(needs),
         )  # fmt: skip
         return self.quantity(made, table, near) if sort == "quantity" else made
+
+    def phrases(self, table: object) -> list[Entry]:
+        """The entries that give known ids further phrases: `GoTo = ["ve a {place}"]`."""
+        if not isinstance(table, dict):
+            self.wrong("phrases is a table: [phrases]", "phrases")
+            return []
+        found = []
+        for name, value in table.items():
+            phrases = [value] if isinstance(value, str) else value
+            if not _strings(phrases) or not phrases:
+                self.wrong(f"{name} in [phrases] is a phrase, or a list of them", name)
+                continue
+            self.start = max(self.source.text.find(f"\n{name}"), 0)
+            found.append(Entry("", name, tuple(phrases), span=self.span(phrases[0])))
+        return found
 
     def replacing(self, ids: object, entries: list[Entry]) -> list[Entry]:
         """The entries, where those with these ids replace what is known."""
@@ -257,9 +272,10 @@ def read_keyword_file(source: Source) -> KeywordFile:
         if declared is not None:
             types.append(declared[0])
             names += declared[1]
+    entries += reader.phrases(document.get("phrases", {}))
     reader.start = 0
     entries = reader.replacing(document.get("replaces", []), entries)
-    own = ("action", "condition", "quantity", "type", "replaces")
+    own = ("action", "condition", "quantity", "type", "phrases", "replaces")
     language = {k: v for k, v in document.items() if k not in own}
     for key, value in language.items():
         if key in _TOP:

@@ -1,15 +1,19 @@
-"""The tables of a connective file: which there are, and what each may hold."""
+"""The tables of a connective file: which there are, what each may hold, and what those of several files add up to."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.text.source import Span
 from btlang.vocabulary.entry import COMPARISONS, About
 from btlang.vocabulary.pattern import PatternError, Slot, forms
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
+
+    from btlang.vocabulary.keyword_file import KeywordFile
 
 _NO_SLOT = (
     "then", "and", "or", "after", "otherwise", "if", "unless", "while", "until", "whenever", "provided", "not",
@@ -33,6 +37,8 @@ BETWEEN = ("then", "and", "or", "after")
 
 EXPLAINED = (*ROLES, "compare", "politeness")
 """What the table `about` tells of."""
+
+SWITCHES = frozenset(("decimal_comma",))
 
 WORD_LISTS = frozenset(("articles", "politeness", "unit_joiner", "quantifiers", "halting"))
 
@@ -69,6 +75,7 @@ TABLES: dict[str, tuple[Callable[[object], bool], str]] = {
     "pronouns": (_words, "a list of types"),
     "meanings": (_between, "one of " + ", ".join(BETWEEN)),
     "nodes": (_is_text, "the words of a node"),
+    "contractions": (_is_text, "a word"),
     "counts": (_rounds, "a whole number from 1 on, or -1 for without end"),
     "numbers": (_number, "a number"),
     "multipliers": (_number, "a number"),
@@ -82,6 +89,10 @@ def problems(table: str, value: Any) -> Iterator[tuple[str, str]]:
     if table == "language":
         if not isinstance(value, str):
             yield "language is a name", table
+        return
+    if table in SWITCHES:
+        if not isinstance(value, bool):
+            yield f"{table} is true or false", table
         return
     if table in WORD_LISTS:
         if not _words(value):
@@ -116,3 +127,43 @@ def _phrase_problems(kind: str, name: str, phrases: list[str], known: Mapping[st
         if any(found != wanted for found in slots):
             need = f"holds {' and '.join(f'{{{slot}}}' for slot in sorted(wanted, reverse=True))}, not in brackets"
             yield f"a phrase of the {kind} {name} {need if wanted else 'holds no slot'}: '{phrase}'", phrase
+
+
+_LANGUAGE: dict[str, Any] = {
+    "language": "", "decimal_comma": False,
+    "articles": [], "politeness": [], "unit_joiner": [], "quantifiers": [], "halting": [],
+    "roles": {}, "contractions": {}, "about": {}, "comparisons": {}, "counts": {}, "negations": {},
+    "pronouns": {}, "nodes": {}, "meanings": {}, "numbers": {}, "multipliers": {}, "fractions": {},
+}  # fmt: skip
+
+
+def merged(files: Iterable[KeywordFile]) -> dict[str, Any]:
+    """The language tables of all files; a later file replaces single roles and words of an earlier one."""
+    found = {key: type(value)(value) for key, value in _LANGUAGE.items()}
+    for file in files:
+        for key, value in file.language.items():
+            if isinstance(value, dict):
+                found[key] |= value
+            else:
+                found[key] = value
+    return found
+
+
+def missing_words(file: KeywordFile, language: Mapping[str, Any]) -> Iterator[Diagnostic]:
+    """BT060 where a language has no words for some role: messages and printed missions need some of each."""
+    for table, names in (("roles", ROLES), ("comparisons", COMPARING)):
+        missing = [name for name in names if not language[table].get(name)]
+        if missing:
+            reason = f"the language has no words in [{table}] for {', '.join(missing)}"
+            yield diagnostic("BT060", Span(file.source, 0, 0), reason=reason)
+
+
+def about_roles(files: Iterable[KeywordFile], known: Mapping[str, About]) -> dict[str, About]:
+    """What the files tell of the roles, the latest of each; a role with new words loses its example in old ones."""
+    about: dict[str, About] = {role: told.replace(example="") for role, told in known.items()}
+    for file in files:
+        told = file.language.get("about", {})
+        replaced = [role for role in file.language.get("roles", {}) if role in about and role not in told]
+        about |= {role: about[role].replace(example="") for role in replaced}
+        about |= {role: About(**table) for role, table in told.items()}
+    return about | {role: About() for role in EXPLAINED if role not in about}

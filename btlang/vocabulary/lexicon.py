@@ -2,24 +2,25 @@
 
 from __future__ import annotations
 
+import os
 import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
+from itertools import chain
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.text.source import Source, Span
-from btlang.text.words import split
+from btlang.text.spelling import nearest
+from btlang.text.words import Orthography, split
 from btlang.vocabulary.cache import recent
 from btlang.vocabulary.entry import COMPARISONS, About, Entry, Meaning, SlotSpec
-from btlang.vocabulary.language_tables import EXPLAINED
+from btlang.vocabulary.language_tables import about_roles, merged, missing_words
 from btlang.vocabulary.pattern import Form, PatternError, Slot, forms
 from btlang.vocabulary.reading_context import Known, ReadingContext
-from btlang.vocabulary.trie import TrieNode, add, collisions
-from btlang.vocabulary.values import Values, ValueType
+from btlang.vocabulary.trie import SLOTS, TrieNode, add, collisions
+from btlang.vocabulary.values import END, Values, ValueType
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any
-
     from btlang.vocabulary.keyword_file import KeywordFile
 
 DEFINING = ("define_strong", "define")
@@ -38,19 +39,33 @@ NODE_ROLES = ("do", "test")
 class Lexicon:
     """Phrases, types and connectives of a language and its packs.
 
-    `about` says what each role means to people; it holds every role.
+    `about` says what each role means to people; it holds every role. `folder` is that of the language. Another language
+    than English takes all but the words from the `english` lexicon: what its entries do, and what their slots take.
     Raises MissionError (BT060 to BT062) where the files do not fit together.
     """
 
-    def __init__(self, files: Iterable[KeywordFile], entries: Iterable[Entry] = ()) -> None:
+    def __init__(
+        self,
+        files: Iterable[KeywordFile],
+        entries: Iterable[Entry] = (),
+        english: Lexicon | None = None,
+        folder: str = "",
+    ) -> None:
         self._problems: list[Diagnostic] = []
         self.trie: TrieNode = {}
         self.entries: dict[str, list[Entry]] = {}
+        """By id. Entries of an id that has no words in this language have no phrases."""
         files = list(files)
-        language = _merged(files)
+        language = merged(files)
+        if english is not None:
+            if missing := list(missing_words(files[0], language)):
+                raise MissionError(missing)
+            for node_id, known in english.entries.items():
+                self.entries[node_id] = [entry.replace(phrases=(), quantity=()) for entry in known]
         self.articles = frozenset(language["articles"])
+        self.orthography = Orthography(self.articles, language["decimal_comma"], language["contractions"])
         self._with_names: dict[tuple[tuple[str, tuple[str, ...]], ...], Lexicon] = {}
-        self.values = Values(self._types_of(files), language)
+        self.values = Values(self._types_of(files, english), language)
         self.context = ReadingContext(self.values)
         """What is known without a mission; whoever reads one has a context of its own."""
         for file in files:
@@ -58,7 +73,9 @@ class Lexicon:
                 if self.types[kind].kind == "names":
                     self.values.add_name(kind, self._bare(words), name)
         self.roles: dict[str, list[str]] = {**language["roles"], "politeness": language["politeness"]}
-        self.language: str = language["language"]
+        name = language["language"]
+        self.word_list = os.path.join(folder, f"{name}.words") if folder and name.isalpha() else ""
+        """The file of the correct words of the language, which need not be there."""
         self.quantifiers, self.halting = frozenset(language["quantifiers"]), frozenset(language["halting"])
         """Negations and words for how many, and words like `stop`: corrections are careful about them."""
         self.counts: dict[str, int] = language["counts"]
@@ -66,7 +83,7 @@ class Lexicon:
         """The words of nodes that have some, by their ids."""
         self.meanings: dict[str, str] = language["meanings"]
         """Connectives that have another role between commands: `and` may mean `then`."""
-        self.about = _about(files)
+        self.about: dict[str, About] = about_roles(files, english.about if english is not None else {})
         self.quantities: TrieNode = {}
         """The phrases of quantities alone: before `is` they compare and define nothing."""
         self.comparisons: dict[str, list[str]] = language["comparisons"]
@@ -77,6 +94,7 @@ class Lexicon:
         self._find_collisions()
         if self._problems:
             raise MissionError(self._problems)
+        self.orthography = self.orthography.with_words((*self.words(), *self.values.pronouns))
 
     @property
     def types(self) -> Mapping[str, ValueType]:
@@ -97,7 +115,9 @@ class Lexicon:
         def made() -> Lexicon:
             pairs = {kind: [(self._bare(name), name) for name in listed] for kind, listed in names.items()}
             values = self.values.with_names(pairs)
-            return self._with(values=values, context=ReadingContext(values))
+            words = (word for pair in chain(*pairs.values()) for word in pair[0].lower().split())
+            written = self.orthography.with_words(word for word in words if not word.isascii())
+            return self._with(values=values, context=ReadingContext(values), orthography=written)
 
         return recent(self._with_names, tuple((kind, tuple(listed)) for kind, listed in names.items()), made)
 
@@ -124,7 +144,7 @@ class Lexicon:
 
     def value(self, kind: str, written: str) -> str | None:
         """The port text of a text that as a whole is a value of the type (`half an hour`), None where it is none."""
-        text = split(Source(written), self.articles)
+        text = split(Source(written), self.orthography)
         found = self.context.read(kind, text, 0)
         return found[0] if found and found[1] >= len(text.words) - 2 else None
 
@@ -137,13 +157,30 @@ class Lexicon:
         words = forms(self.first(role))[-1]
         return " ".join(word for word in words if isinstance(word, str))
 
-    def _types_of(self, files: Iterable[KeywordFile]) -> dict[str, ValueType]:
-        """The types by name; a file may declare one anew, but not of another kind."""
-        types: dict[str, ValueType] = {}
+    def words(self) -> frozenset[str]:
+        """Every word that can be read, also those in names and values."""
+        words: set[str] = set(self.articles)
+        pending: list[TrieNode] = [self.trie, self.quantities, *self.values.word_trees()]
+        pending += [self.values.names_tree(name) for name, kind in self.types.items() if kind.kind == "names"]
+        while pending:
+            for key, child in pending.pop().items():
+                if key == SLOTS:
+                    pending += [below for _, _, below in child]
+                elif key != END:
+                    words.add(key)
+                    pending.append(child)
+        for role in NO_PHRASES:
+            words.update(word for phrase in self.roles.get(role, ()) for word in phrase.split())
+        return frozenset(word for word in words if word.isalpha())
+
+    def _types_of(self, files: Iterable[KeywordFile], english: Lexicon | None) -> dict[str, ValueType]:
+        """The types by name; a file may declare one anew, but not of another kind. Its least number stays."""
+        types: dict[str, ValueType] = dict(english.types) if english is not None else {}
         for file in files:
             for kind in file.types:
-                if types.get(kind.name, kind).kind == kind.kind:
-                    types[kind.name] = kind
+                known = types.get(kind.name, kind)
+                if known.kind == kind.kind:
+                    types[kind.name] = kind.replace(least=known.least) if kind.least is None else kind
                     continue
                 reason = f"the type {kind.name} is there already and of another kind"
                 self._problems.append(diagnostic("BT060", Span(file.source, 0, 0), reason=reason))
@@ -166,19 +203,47 @@ class Lexicon:
         except PatternError as error:  # all of its words are articles of another file
             self._problems.append(diagnostic("BT060", Span(Source(phrase, "words"), 0, len(phrase)), reason=str(error)))
 
-    def _add_entry(self, entry: Entry) -> None:
+    def _phrases_of(self, entry: Entry) -> Entry | None:
+        """The entry that an entry of phrases alone stands for, without what it does; None for an unknown id (BT061)."""
+        known = self.entries.get(entry.id)
+        if not known:
+            near = nearest(entry.id, self.entries)
+            self._wrong(entry, f"no entry has the id '{entry.id}'" + (f"; similar: {', '.join(near)}" if near else ""))
+            return None
+        slots = {slot.name for slot in known[0].slots}
+        try:
+            parts = {part for text in entry.phrases for form in forms(text) for part in form}
+        except PatternError as error:
+            self._wrong(entry, str(error))
+            return None
+        used = {part.name for part in parts if isinstance(part, Slot)}
+        for name in sorted(used - slots):
+            self._wrong(entry, f"{entry.id} has no slot {{{name}}}")
+        said = {"quantity" if known[0].measures else "phrases": entry.phrases}
+        made: Entry = known[0].replace(**{"phrases": (), **said}, call="", ros=None, replaces=False, span=entry.span)
+        made = self._with_comparisons(made) if made.measures else made
+        return made if used <= slots else None
+
+    def _declared(self, entry: Entry) -> Entry | None:
+        """An entry with what the words of the language make of it; None where the type of a slot is unknown (BT061)."""
         if entry.replaces and not entry.id:
             entry = entry.replace(id=self._replaced_id(entry))
         if entry.measures:
             entry = self._with_comparisons(entry)
-        types = {slot.name: slot.type for slot in entry.slots}
         unknown = [slot for slot in entry.slots if slot.type not in self.types]
         for slot in unknown:
             known = ", ".join(sorted(self.types))
             self._wrong(entry, f"the slot {{{slot.name}}} has no type '{slot.type}'; known are {known}")
         if unknown:
+            return None
+        made: Entry = entry.replace(slots=tuple(self._with_port_default(entry, slot) for slot in entry.slots))
+        return made
+
+    def _add_entry(self, given: Entry) -> None:
+        entry = self._declared(given) if given.sort else self._phrases_of(given)
+        if entry is None:
             return
-        entry = entry.replace(slots=tuple(self._with_port_default(entry, slot) for slot in entry.slots))
+        types = {slot.name: slot.type for slot in entry.slots}
         same = self.entries.setdefault(entry.id, [])
         if same and same[0].sort != entry.sort:
             self._wrong(entry, f"the id {entry.id} is already that of the {same[0].sort} in {same[0].file}")
@@ -225,7 +290,8 @@ class Lexicon:
         ways = [way for name, patterns in self.comparisons.items() for way in _compared(name, patterns)]
         phrases = tuple(f"{quantity} {way}" for way in ways for quantity in entry.quantity)
         compared = tuple(SlotSpec(name, entry.measures) for name in COMPARISONS)
-        made: Entry = entry.replace(phrases=phrases, slots=(*entry.slots, *compared))
+        own = (slot for slot in entry.slots if slot.name not in COMPARISONS)
+        made: Entry = entry.replace(phrases=phrases, slots=(*own, *compared))
         return made
 
     def _with_port_default(self, entry: Entry, slot: SlotSpec) -> SlotSpec:
@@ -303,33 +369,3 @@ def _compared(name: str, patterns: Iterable[str]) -> list[str]:
     """The words of a comparison with the names of ports in their slots."""
     ports = {"value": name, "low": "at_least", "high": "at_most"}
     return [re.sub(r"\{(\w+)\}", lambda slot: f"{{{ports[slot[1]]}}}", pattern) for pattern in patterns]
-
-
-_LANGUAGE: dict[str, Any] = {
-    "language": "", "articles": [], "politeness": [], "unit_joiner": [], "quantifiers": [], "halting": [],
-    "roles": {}, "about": {}, "comparisons": {}, "counts": {}, "negations": {},
-    "pronouns": {}, "nodes": {}, "meanings": {}, "numbers": {}, "multipliers": {}, "fractions": {},
-}  # fmt: skip
-
-
-def _merged(files: Iterable[KeywordFile]) -> dict[str, Any]:
-    """The language tables of all files; a later file replaces single roles and words of an earlier one."""
-    merged = {key: type(value)(value) for key, value in _LANGUAGE.items()}
-    for file in files:
-        for key, value in file.language.items():
-            if isinstance(value, dict):
-                merged[key] |= value
-            else:
-                merged[key] = value
-    return merged
-
-
-def _about(files: Iterable[KeywordFile]) -> dict[str, About]:
-    """What the files tell of the roles, the latest of each; a role with new words loses its example in old ones."""
-    about: dict[str, About] = {}
-    for file in files:
-        told = file.language.get("about", {})
-        replaced = [role for role in file.language.get("roles", {}) if role in about and role not in told]
-        about |= {role: about[role].replace(example="") for role in replaced}
-        about |= {role: About(**table) for role, table in told.items()}
-    return about | {role: About() for role in EXPLAINED if role not in about}

@@ -76,7 +76,7 @@ def _has(words: Iterable[str], wanted: Sequence[str]) -> bool:
 
 def _said_so(known: Sequence[Item], text: str, vocabulary: Lexicon) -> list[Item]:
     """What is said with exactly these words, whatever stands in its slots."""
-    words = split(Source(text), vocabulary.articles)
+    words = split(Source(text), vocabulary.orthography)
     bare = tuple(words.words[: len(words.words) - 2])
     found = [item for item in known if text.lower() in map(str.lower, item.names)]
     found += [item for item in known if item not in found and bare in _spoken(item, vocabulary.articles)]
@@ -88,7 +88,7 @@ def _said_so(known: Sequence[Item], text: str, vocabulary: Lexicon) -> list[Item
 
 def _begun_so(known: Sequence[Item], text: str, vocabulary: Lexicon) -> list[Item]:
     """The phrase that the text begins with."""
-    match = longest(vocabulary.trie, split(Source(text), vocabulary.articles), 0, vocabulary.context)
+    match = longest(vocabulary.trie, split(Source(text), vocabulary.orthography), 0, vocabulary.context)
     if match is None:
         return []
     name = match.meaning.entry.id if match.meaning.entry else match.meaning.role

@@ -11,7 +11,7 @@ from btlang.text.source import Source, Span
 from btlang.vocabulary.cache import cached, recent, stamp
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
-from btlang.vocabulary.shipped import keyword_files
+from btlang.vocabulary.shipped import ENGLISH, keyword_files, language_folder, languages, shipped, shown_name
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -21,49 +21,62 @@ ENTRY_POINTS = "btlang.keywords"
 
 
 def load_vocabulary(
-    keywords: Sequence[str | Entry | Callable[..., Any]] = (), names: Mapping[str, Sequence[str]] | None = None
+    keywords: Sequence[str | Entry | Callable[..., Any]] = (),
+    names: Mapping[str, Sequence[str]] | None = None,
+    language: str = ENGLISH,
 ) -> Lexicon:
-    """The shipped words and those of `keywords`: paths of keyword files, names of installed packs, entries, or
+    """The words of a language and those of `keywords`: paths of keyword files, names of installed packs, entries, or
     functions that carry one (see `btlang.action`). `names` adds values of types, such as the places of a world.
 
     A pack is an entry point of the group `btlang.keywords` whose value is a module beside which, or a function that
-    returns the path at which, its keyword file lies. Raises MissionError (BT001, BT002, BT060 to BT063).
+    returns the path at which, its keyword file lies. `language` is one that ships or the path of a folder like theirs.
+    Raises MissionError (BT001, BT002, BT060 to BT065).
     """
+    folder = language_folder(language)
+    if folder is None:
+        known = ", ".join(languages())
+        raise MissionError([diagnostic("BT065", Span(Source("", "--language"), 0, 0), name=language, known=known)])
     paths = [_path(item) for item in keywords if isinstance(item, str)]
     entries = [_entry(item) for item in keywords if not isinstance(item, str)]
-    vocabulary = _words([*keyword_files(), *paths], entries)
+    vocabulary = _words(folder, paths, entries)
     return vocabulary.with_names(names) if names else vocabulary
 
 
 _own: dict[tuple[object, ...], tuple[Sequence[Entry], Lexicon]] = {}  # the entries stay, so that no id is used again
 
 
-def _words(files: Sequence[str], entries: Sequence[Entry]) -> Lexicon:
+def _words(folder: str, paths: Sequence[str], entries: Sequence[Entry]) -> Lexicon:
     """Made once in a process for the same files and entries."""
+    english = shipped("keywords", ENGLISH)
+    files = [*keyword_files(folder), *paths]
+    known = [] if folder == english else keyword_files(english)  # another language is made of these, too
+
+    def make() -> Lexicon:
+        return _made(files, entries, folder, _words(english, (), ()) if known else None)
+
     if not entries:
-        return cached("words", files, lambda: _made(files, ()))
+        return cached("words", [*known, *files], make)
     try:
-        key = (*map(stamp, files), *map(id, entries))
+        key = (*map(stamp, [*known, *files]), *map(id, entries))
     except OSError:
-        return _made(files, entries)
-    return recent(_own, key, lambda: (entries, _made(files, entries)))[1]
+        return make()
+    return recent(_own, key, lambda: (entries, make()))[1]
 
 
-def _made(paths: Sequence[str], entries: Iterable[Entry]) -> Lexicon:
-    """The vocabulary of keyword files, the shipped ones among them, and of entries."""
+def _made(paths: Sequence[str], entries: Iterable[Entry], folder: str, english: Lexicon | None) -> Lexicon:
+    """The vocabulary of keyword files, those of a language among them, and of entries."""
     from btlang.vocabulary.keyword_file import KeywordFile, read_keyword_file  # not where the cache has it
 
-    shown = {path: "keywords/" + os.path.basename(path) for path in keyword_files()}
     files: list[KeywordFile] = []
     problems = []
     for path in paths:
         try:
-            files.append(read_keyword_file(Source(read_source(path).text, shown.get(path, path))))
+            files.append(read_keyword_file(Source(read_source(path).text, shown_name(path))))
         except MissionError as error:
             problems += error.diagnostics
     if problems:
         raise MissionError(problems)
-    return Lexicon(files, entries)
+    return Lexicon(files, entries, english, folder)
 
 
 def _entry(word: Entry | Callable[..., Any]) -> Entry:

@@ -21,9 +21,31 @@ def shipped(*parts: str) -> str:
     return installed if os.path.exists(installed) else os.path.join(os.path.dirname(PACKAGE), *parts)
 
 
+def shown_name(path: str) -> str:
+    """What messages call a keyword file: `keywords/en/motion.toml` one that ships, any other by its path."""
+    folder = shipped("keywords") + os.sep
+    return "keywords/" + path[len(folder) :].replace(os.sep, "/") if path.startswith(folder) else path
+
+
+ENGLISH = "en"
+"""The language of missions where none is named. Its entries say what each word does, in any language."""
+_JOINING = "language.toml"  # what makes a folder a language
+
+
 @cache
-def keyword_files() -> tuple[str, ...]:
-    """The shipped keyword files: the connective file, then the phrases by name."""
-    folder = shipped("keywords")
-    names = sorted(os.listdir(folder), key=lambda name: (name != "english.toml", name))
+def languages() -> tuple[str, ...]:
+    """The names of the languages that ship."""
+    names = sorted(os.listdir(shipped("keywords")))
+    return tuple(name for name in names if os.path.isfile(shipped("keywords", name, _JOINING)))
+
+
+def language_folder(language: str) -> str | None:
+    """The folder of a language that ships, or the path of another one; None where it is no language."""
+    folder = shipped("keywords", language) if language in languages() else language
+    return folder if folder and os.path.isfile(os.path.join(folder, _JOINING)) else None
+
+
+def keyword_files(folder: str) -> tuple[str, ...]:
+    """The keyword files in the folder of a language: the joining words, then the phrases by name."""
+    names = sorted(os.listdir(folder), key=lambda name: (name != _JOINING, name))
     return tuple(os.path.join(folder, name) for name in names if name.endswith(".toml"))

@@ -11,7 +11,7 @@ from marshal import dumps, loads  # a copy of a trie, at a tenth of the time tha
 
 from btlang.record import Record
 from btlang.text.source import Source
-from btlang.text.words import Words, split
+from btlang.text.words import Orthography, Words, split
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -86,7 +86,7 @@ def find(tree: WordTree, words: Sequence[str], at: int) -> tuple[Any, int] | Non
 
 
 class Values:
-    """Reads values at a place in a text. `types` by name; `language` holds the word tables of english.toml.
+    """Reads values at a place in a text. `types` by name; `language` holds the word tables of the language.
 
     Nothing of it changes once the names are added, so all missions of a process share it.
     """
@@ -96,7 +96,7 @@ class Values:
         self._numbers: Mapping[str, float] = language["numbers"]
         self._multipliers: Mapping[str, float] = language["multipliers"]
         self._joiner = frozenset(language["unit_joiner"])
-        self._articles = frozenset(language["articles"])
+        self._orthography = Orthography(frozenset(language["articles"]))
         # words that an article before them makes no text: `print a then wave`
         self._connectives = frozenset(phrase for phrases in language["roles"].values() for phrase in phrases)
         joining = (phrase for role in ("and", "or") for phrase in language["roles"].get(role, ()))
@@ -162,7 +162,7 @@ class Values:
 
     def is_number(self, words: Sequence[str]) -> bool:
         """Whether the words are a number, and nothing else."""
-        text = split(Source(" ".join(words)), frozenset())
+        text = split(Source(" ".join(words)), Orthography())
         number = self.number(text, 0)
         return number is not None and number[1] == len(text.words) - 2
 
@@ -273,7 +273,7 @@ class Values:
 
     def _quoted_name(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
         word = text.words[at]
-        words = [*(w for w in word[1:].lower().split() if w not in self._articles), "\n"]
+        words = [*self._orthography.words(word[1:]), "\n"]
         found = find(self._names[kind], words, 0) if len(words) > 1 else None
         return (found[0], at + 1) if found and found[1] == len(words) - 1 else None
 

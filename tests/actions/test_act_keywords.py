@@ -18,7 +18,7 @@ ENTRIES = [entry for entries in VOCABULARY.entries.values() for entry in entries
 
 
 def meaning(text):
-    words = split(Source(text), VOCABULARY.articles)
+    words = split(Source(text), VOCABULARY.orthography)
     match = longest(VOCABULARY.trie, words, 0, VOCABULARY.values)
     return match.meaning.entry.id, {value.name: value.text for value in match.values}
 

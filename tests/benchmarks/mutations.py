@@ -205,7 +205,7 @@ def repaired(mutant: Mutant, problems: tuple[Diagnostic, ...]) -> str:
 
 def cure_of(mutant: Mutant, problems: tuple[Diagnostic, ...]) -> str:
     """As `repaired`, "another word" where the slip made one that is correct English and nothing repairs it."""
-    is_right = mutant.written.lower() in correct_words("english")
+    is_right = mutant.written.lower() in correct_words(vocabulary(None).word_list)
     cure = repaired(mutant, problems)
     return "another word" if is_right and cure == "no suggestion" else cure
 

@@ -69,10 +69,10 @@ def comments(text: str) -> list[str]:
 
 
 def check_layout(text: str, vocabulary: Lexicon) -> None:
-    before = split(Source(text), vocabulary.articles)
-    done = laid_out(Source(text), vocabulary.articles)
-    assert laid_out(Source(done), vocabulary.articles) == done
-    after = split(Source(done), vocabulary.articles)
+    before = split(Source(text), vocabulary.orthography)
+    done = laid_out(Source(text), vocabulary.orthography)
+    assert laid_out(Source(done), vocabulary.orthography) == done
+    after = split(Source(done), vocabulary.orthography)
     assert [w for w in after.words if w != "\n"] == [w for w in before.words if w != "\n"]
     assert len(after.lines) == len(before.lines)
     assert len(after.articles) == len(before.articles)

@@ -65,7 +65,7 @@ def described(vocabulary: Lexicon) -> list[object]:
     for entries in vocabulary.entries.values():
         for entry in entries:
             for pattern in (entry.example, *entry.phrases):
-                text = split(Source(pattern.replace("{", "").replace("}", "")), vocabulary.articles)
+                text = split(Source(pattern.replace("{", "").replace("}", "")), vocabulary.orthography)
                 said += [
                     longest(trie, text, 0, vocabulary.context) for trie in (vocabulary.trie, vocabulary.quantities)
                 ]

@@ -25,7 +25,7 @@ from btlang.vocabulary.entry import Entry, SlotSpec
 from btlang.vocabulary.keyword_file import KeywordFile, read_keyword_file
 from btlang.vocabulary.language_tables import WORD_LISTS
 from btlang.vocabulary.lexicon import Lexicon
-from btlang.vocabulary.shipped import keyword_files
+from btlang.vocabulary.shipped import ENGLISH, keyword_files, shipped
 from btlang.vocabulary.values import Unit, ValueType
 
 GOOD = Path(__file__).parents[1] / "samples" / "good"
@@ -76,7 +76,7 @@ def _language(tables: dict[str, Any]) -> dict[str, Any]:
 @cache
 def invented_vocabulary() -> Lexicon:
     files = []
-    for path in keyword_files():
+    for path in keyword_files(shipped("keywords", ENGLISH)):
         file = read_keyword_file(read_source(path))
         names = tuple((kind, invented(words), invented(name)) for kind, words, name in file.names)
         made = KeywordFile(

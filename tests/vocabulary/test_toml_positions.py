@@ -70,7 +70,7 @@ def paths(value: object, path: Keys = ()) -> list[Keys]:
 
 
 @pytest.mark.parametrize(
-    "file", [*ROOT.glob("keywords/*.toml"), *ROOT.glob("btlang/robots/*/*.toml"), ROOT / "pyproject.toml"]
+    "file", [*ROOT.glob("keywords/*/*.toml"), *ROOT.glob("btlang/robots/*/*.toml"), ROOT / "pyproject.toml"]
 )
 def test_all_keys_of_real_files_are_found(file: Path) -> None:
     text = file.read_text(encoding="utf-8")

@@ -97,6 +97,8 @@ def is_phrase(name: str, vocabulary: Lexicon) -> bool:
     own = (key.replace("_", "x") for key in keys)
     if not all(word.isalnum() for word in (*words, *own)) or name != name.lower() or len(keys) > len(set(keys)):
         return False
-    text = split(Source(f"{name} {vocabulary.word('define_strong')} {vocabulary.word('nothing')}"), vocabulary.articles)
+    text = split(
+        Source(f"{name} {vocabulary.word('define_strong')} {vocabulary.word('nothing')}"), vocabulary.orthography
+    )
     found = find_definitions(Phrases(text, vocabulary))
     return not found.problems and [header.name for header in found.headers.values()] == [name]

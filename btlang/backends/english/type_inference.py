@@ -240,7 +240,7 @@ class TypeInference:
             return False
         vocabulary = self._vocabulary
         said = f"{vocabulary.word('set')} {spelt(key, vocabulary)} {vocabulary.word('set_to')} 0"
-        prefixes = find_prefixes(split(Source(said), vocabulary.articles), vocabulary)
+        prefixes = find_prefixes(split(Source(said), vocabulary.orthography), vocabulary)
         return [prefix.key for prefix in prefixes.values()] == [key]
 
 

@@ -259,7 +259,7 @@ class _Corrections:
 
     def _changes_of_names(self, suspects: list[int]) -> Iterator[Change]:
         """Words of names that nothing else explains, as the problem has them where that is how they mostly stand."""
-        articles, right = self._vocabulary.articles, correct_words(self._vocabulary.language)
+        articles, right = self._vocabulary.articles, correct_words(self._vocabulary.word_list)
         near = articles.union(self._text.words[word] for word in suspects[:_NEAR_WORDS])
         for word in self._strange:
             written = self._text.words[word]

@@ -28,7 +28,7 @@ def silence(compilation: Compilation) -> Iterator[Diagnostic]:
     source, vocabulary = compilation.mission.span.source, compilation.vocabulary
     if "#" not in source.text or not re.search(_ALLOW, source.text):
         return
-    words = split(source, vocabulary.articles)
+    words = split(source, vocabulary.orthography)
     silent: dict[str, list[tuple[int, int]]] = {}
     for comment in words.comments:
         match = re.fullmatch(_ALLOW, comment.text.rstrip())

@@ -62,6 +62,7 @@ def serve(options: argparse.Namespace) -> int:
     setup = Setup(
         options.name, options.robot, options.over, options.sim_time, options.namespace, options.speed,
         options.mission, options.keywords, options.world, options.parser, options.include_root, options.allow_keywords,
+        options.language,
     )  # fmt: skip
     controls = Controls()
     with ending_signals() as came:

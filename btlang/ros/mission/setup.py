@@ -12,6 +12,7 @@ from btlang.record import Record
 from btlang.robots.registry import connector
 from btlang.session import Session
 from btlang.text.source import Source, Span
+from btlang.vocabulary.shipped import ENGLISH
 
 _NOT_ALLOWED = "other programs may not use it; the node allows it with --allow-keywords and its name or folder"
 
@@ -35,6 +36,7 @@ class Setup(Record):
     parser: str = "shunting-yard"
     include_root: str | None = None
     allowed_keywords: Sequence[str] = ()
+    language: str = ENGLISH
 
     def session(self) -> Session:
         """The robot in its world. Raises MissionError."""
@@ -61,4 +63,5 @@ class Setup(Record):
 
     def compiled(self, source: Source, keywords: Sequence[str] = ()) -> Mission:
         """A mission, with further keyword files. Raises MissionError."""
-        return parse_tree(source, parser=self.parser, keywords=[*self.keywords, *keywords], world=self.world)
+        known = [*self.keywords, *keywords]
+        return parse_tree(source, parser=self.parser, keywords=known, world=self.world, language=self.language)

@@ -56,7 +56,7 @@ def serve(options: argparse.Namespace) -> int:
         options.refuse("btc serve-actions serves the actions itself: it takes no robot that runs on actions")
     if over != "ros" and options.sim_time:
         options.refuse("--sim-time is for --robot ros")
-    vocabulary = world_vocabulary(options.keywords, options.world)
+    vocabulary = world_vocabulary(options.keywords, options.world, options.language)
     try:
         ids = chosen(options.only, servable(vocabulary, ros=over == "ros"), vocabulary)
     except ValueError as problem:

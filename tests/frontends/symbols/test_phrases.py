@@ -47,7 +47,7 @@ def test_tokens_are_those_of_a_lexer_that_looks_all_up_itself(text: str, monkeyp
 
 def test_a_phrase_with_a_pronoun_is_not_shared() -> None:
     vocabulary = world_vocabulary()
-    text = split(Source("wave at him"), vocabulary.articles)
+    text = split(Source("wave at him"), vocabulary.orthography)
     phrases = Phrases(text, vocabulary)
     phrases.at(0)
     assert not phrases.fixed
@@ -56,5 +56,5 @@ def test_a_phrase_with_a_pronoun_is_not_shared() -> None:
 
 def test_a_phrase_is_looked_up_once() -> None:
     vocabulary = world_vocabulary()
-    phrases = Phrases(split(Source("go to the lab"), vocabulary.articles), vocabulary)
+    phrases = Phrases(split(Source("go to the lab"), vocabulary.orthography), vocabulary)
     assert phrases.at(0) is phrases.at(0) is phrases.fixed[0]

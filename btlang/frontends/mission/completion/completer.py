@@ -114,7 +114,7 @@ class Completer:
         options = {option.text: option for option in self._options("")}
         firsts = {text: text.split()[0].lower() for text in options}
         written = self._partial.lower()
-        is_right = written in correct_words(self._vocabulary.language)  # no slip, whatever else is like it
+        is_right = written in correct_words(self._vocabulary.word_list)  # no slip, whatever else is like it
         likely = [] if is_right else nearest(written, dict.fromkeys(firsts.values()))
         found = [options[text].replace(spelling=True) for word in likely for text in options if firsts[text] == word]
         return found[:_MOST_CORRECTIONS]
@@ -238,7 +238,7 @@ def _shortest_first(way: tuple[tuple[str, ...], TrieNode]) -> tuple[int, tuple[s
 def _openings(vocabulary: Lexicon) -> list[tuple[str, TrieNode]]:
     """The words, up to the first slot, of the first phrase of each role and entry, and where they lead in the trie."""
     found: dict[str, TrieNode] = {}
-    entries = [entry.phrases[0] for entries in vocabulary.entries.values() for entry in entries]
+    entries = [entry.phrases[0] for entries in vocabulary.entries.values() for entry in entries if entry.phrases]
     roles = [phrases[0] for role, phrases in vocabulary.roles.items() if role not in (*NO_PHRASES, "politeness")]
     for pattern in (*entries, *roles, *vocabulary.counts):
         node, words = vocabulary.trie, []

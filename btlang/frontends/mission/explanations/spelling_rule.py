@@ -3,14 +3,11 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator
 from functools import lru_cache
 
 from btlang.text.spelling import distance, fewest_slips, is_misspelling
 from btlang.vocabulary.correct_words import correct_words
-from btlang.vocabulary.lexicon import NO_PHRASES, NODE_ROLES, Lexicon
-from btlang.vocabulary.trie import SLOTS, TrieNode
-from btlang.vocabulary.values import END
+from btlang.vocabulary.lexicon import NODE_ROLES, Lexicon
 
 _PIECE = re.compile(r"[^\W\d_]+(?:['\N{RIGHT SINGLE QUOTATION MARK}][^\W\d_]+)?|\d+(?:\.\d+)?")
 
@@ -42,26 +39,26 @@ def is_respelling(written: str, meant: str, vocabulary: Lexicon, before: str = "
 
 def _are_slips(words: list[str], vocabulary: Lexicon, before: str) -> bool:
     """Whether none of the words is one that somebody may have meant."""
-    right, known = correct_words(vocabulary.language), words_of(vocabulary)
+    right, known = correct_words(vocabulary.word_list), words_of(vocabulary)
     if before.lower() in vocabulary.halting or not all(word.isalpha() for word in words):
         return False
     return not any(word in right or word in known or word in vocabulary.quantifiers for word in words)
 
 
 def _is_slip(written: str, meant: str, vocabulary: Lexicon) -> bool:
-    if distance(written, meant) > 2 * _fewest_slips(written, vocabulary.language):
+    if distance(written, meant) > 2 * _fewest_slips(written, vocabulary.word_list):
         return False  # another word of English is nearer
     return is_misspelling(written, meant, _turned(written, vocabulary))
 
 
 @lru_cache(maxsize=1024)  # mistakes repeat
-def _fewest_slips(written: str, language: str) -> int:
-    return fewest_slips(written, correct_words(language))
+def _fewest_slips(written: str, word_list: str) -> int:
+    return fewest_slips(written, correct_words(word_list))
 
 
 def _turned(written: str, vocabulary: Lexicon) -> frozenset[str]:
     """What would turn the meaning round, if it was meant: negations, and those with a word that they run into."""
-    right, known, quantifiers = correct_words(vocabulary.language), words_of(vocabulary), vocabulary.quantifiers
+    right, known, quantifiers = correct_words(vocabulary.word_list), words_of(vocabulary), vocabulary.quantifiers
     apart = ((written[:at], written[at:]) for at in range(1, len(written)))  # `nowave`
     found = (pair for pair in apart if not quantifiers.isdisjoint(pair) and all(p in right or p in known for p in pair))
     return (quantifiers - known).union(map(" ".join, found))  # those that can be read are tried like any word
@@ -70,21 +67,4 @@ def _turned(written: str, vocabulary: Lexicon) -> frozenset[str]:
 @lru_cache(maxsize=4)
 def words_of(vocabulary: Lexicon) -> frozenset[str]:
     """Every word that the vocabulary knows, also those in names and values."""
-    words: set[str] = set(vocabulary.articles)
-    pending: list[TrieNode] = [vocabulary.trie, vocabulary.quantities]
-    pending += [vocabulary.values.names_tree(name) for name, kind in vocabulary.types.items() if kind.kind == "names"]
-    pending += vocabulary.values.word_trees()
-    while pending:
-        words.update(_keys(pending.pop(), pending))
-    for role in NO_PHRASES:
-        words.update(word for phrase in vocabulary.roles[role] for word in phrase.split())
-    return frozenset(word for word in words if word.isalpha())
-
-
-def _keys(node: TrieNode, pending: list[TrieNode]) -> Iterator[str]:
-    for key, child in node.items():
-        if key == SLOTS:
-            pending += [below for _, _, below in child]
-        elif key != END:
-            yield key
-            pending.append(child)
+    return vocabulary.words()

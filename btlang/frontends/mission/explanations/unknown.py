@@ -68,7 +68,7 @@ def explain_unknown(
 def misread_head(text: Words, at: int, role: str, vocabulary: Lexicon) -> Diagnostic:
     """BT039 for a statement about a value of the mission that is not put together as one."""
     word, places = vocabulary.word, vocabulary.values.names("place")
-    measured = (entry.quantity[0] for entries in vocabulary.entries.values() for entry in entries if entry.measures)
+    measured = (entry.quantity[0] for entries in vocabulary.entries.values() for entry in entries if entry.quantity)
     examples = {
         "set": f"{word('set')} counter {word('set_to')} 3",
         "increase": f"{word('increase')} counter {word('by')} 1",

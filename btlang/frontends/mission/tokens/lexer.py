@@ -41,7 +41,7 @@ class Lexer:
         known: Mapping[str, Known] | None = None,
     ) -> None:
         self._explain, self._given, self._shared = explain, vocabulary, known
-        self.text: Words = split(source, vocabulary.articles)
+        self.text: Words = split(source, vocabulary.orthography)
         self.problems: list[Diagnostic] = [
             diagnostic("BT004", span, fix=(Span(source, span.end, span.end), '"')) for span in self.text.open_quotes
         ]
@@ -218,7 +218,7 @@ class Lexer:
         text = value.text
         if "{" not in text or self.context.types[value.type].kind != "text":
             return text
-        text = renamed(text, lambda name: key_of(w for w in name.lower().split() if w not in self.vocabulary.articles))
+        text = renamed(text, lambda name: key_of(self.vocabulary.orthography.words(name)))
         known = self.context.known or {}
         for key in keys_in(text):
             if key not in known:

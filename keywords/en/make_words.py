@@ -1,7 +1,7 @@
 """Writes `english.words`, the words of correct English, and their licence, from Debian's package `scowl`.
 
     apt-get download scowl && dpkg -x scowl_*.deb FOLDER
-    python keywords/make_words.py FOLDER
+    python keywords/en/make_words.py FOLDER
 
 A correction never replaces one of them: see docs/messages.md. They are SCOWL's common words with their inflected forms
 in American and British spelling, and common names; proper names of people matter, since one is no slip for another.
