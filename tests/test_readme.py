@@ -175,7 +175,7 @@ def commands_with(file: str) -> list[str]:
 def test_missions_compile(block: Block, folder: Path) -> None:
     """With the world and the words of the first command that runs it, and without a warning."""
     line = next(iter(commands_with(block.file)), "")
-    options = re.findall(r"--(?:world|keywords) \S+", line)
+    options = re.findall(r"--(?:world|keywords|language) \S+", line)
     (folder / "shown.txt").write_text(block.text, encoding="utf-8")
     done = btc(f"btc check shown.txt {' '.join(options)}", folder)
     assert (done.returncode, done.stdout) == (0, "No problems found.\n")

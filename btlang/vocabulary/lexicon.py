@@ -61,7 +61,7 @@ class Lexicon:
             if missing := list(missing_words(files[0], language)):
                 raise MissionError(missing)
             for node_id, known in english.entries.items():
-                self.entries[node_id] = [entry.replace(phrases=(), quantity=()) for entry in known]
+                self.entries[node_id] = [entry.replace(phrases=(), quantity=(), example="") for entry in known]
         self.articles = frozenset(language["articles"])
         self.orthography = Orthography(self.articles, language["decimal_comma"], language["contractions"])
         self._with_names: dict[tuple[tuple[str, tuple[str, ...]], ...], Lexicon] = {}
@@ -283,7 +283,7 @@ class Lexicon:
         """`battery` becomes `battery is below {below}` and so on, for each way to compare."""
         for pattern in entry.quantity:
             try:
-                for form in forms(pattern, self.articles):
+                for form in self._forms(pattern):
                     add(self.quantities, form, {s.name: s.type for s in entry.slots}, Meaning("quantity", entry))
             except PatternError:
                 return entry  # the keyword file has told
@@ -306,8 +306,14 @@ class Lexicon:
             return slot
         return SlotSpec(slot.name, slot.type, value)
 
+    def _forms(self, pattern: str) -> Iterator[Form]:
+        """Every way to say a pattern, in words as they are read."""
+        read = self.orthography.spellings
+        for form in forms(pattern, self.articles):
+            yield tuple(read.get(part, part) if isinstance(part, str) else part for part in form)
+
     def _add_phrase(self, phrase: str, meaning: Meaning, types: dict[str, str]) -> None:
-        for form in forms(phrase, self.articles):
+        for form in self._forms(phrase):
             self._add_form(form, meaning, types)
 
     def _add_form(self, form: Form, meaning: Meaning, types: dict[str, str]) -> None:
@@ -317,7 +323,7 @@ class Lexicon:
             self._collide(before, meaning)
 
     def _add_negations(self, phrase: str, meaning: Meaning, types: dict[str, str]) -> None:
-        for form in forms(phrase, self.articles):
+        for form in self._forms(phrase):
             for negated in self.negated(form):
                 self._add_form(negated, meaning, types)
 

@@ -218,6 +218,9 @@ class Values:
         if unit is None:
             return None
         (kind, unit_of), end = unit
+        half = find(self._fractions, text.words, end)  # "a minute and a half"
+        if half is not None and half[1] > end + 1 and not find(self._units, text.words, half[1]):
+            value, end = value + half[0], half[1]
         amount = value * unit_of.numerator / unit_of.denominator
         return (amount, kind, end) if abs(amount) <= _LARGEST else None
 

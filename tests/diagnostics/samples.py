@@ -15,16 +15,17 @@ from btlang.passes import errors_of, run_passes
 from btlang.passes.compilation import Compilation
 from btlang.text.source import Source
 from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.shipped import ENGLISH
 
 BAD = Path(__file__).parent.parent / "samples" / "bad"
 
 
 def told(source: Source, command: str = "") -> list[Diagnostic]:
-    """What is told of a mission, with the options `--keywords` and `--world` of a command line; errors and warnings."""
+    """Errors and warnings of a mission, with the options `--keywords`, `--world` and `--language` of a command line."""
     words = command.split()
     options = {word: words[at + 1] for at, word in enumerate(words) if word.startswith("--") and at + 1 < len(words)}
     try:
-        vocabulary = words_of(options.get("--keywords"), options.get("--world"))
+        vocabulary = words_of(options.get("--keywords"), options.get("--world"), options.get("--language", ENGLISH))
         if source.text.startswith("<"):
             compilation = Compilation(vocabulary, tree=read_xml(source))
         else:
@@ -36,9 +37,9 @@ def told(source: Source, command: str = "") -> list[Diagnostic]:
 
 
 @cache
-def words_of(keywords: str | None, world: str | None) -> Lexicon:
-    """The words of a keyword file and the names of a world."""
-    return world_vocabulary([keywords] if keywords else [], world)
+def words_of(keywords: str | None, world: str | None, language: str) -> Lexicon:
+    """The words of a language and a keyword file, and the names of a world."""
+    return world_vocabulary([keywords] if keywords else [], world, language)
 
 
 @cache
