@@ -15,6 +15,9 @@ from btlang.diagnostics.diagnostic import MissionError
 from btlang.frontends.mission.completion.completer import completions
 from btlang.frontends.mission.reader import PARSERS
 from btlang.printer.sentence import english
+from btlang.repl.draft import MissionDraft
+from btlang.ros.mission.setup import Setup
+from btlang.text.source import Source
 from btlang.text.words import without_accents
 from btlang.vocabulary.load import load_vocabulary
 from btlang.vocabulary.shipped import ENGLISH, language_folder, languages
@@ -207,6 +210,21 @@ def test_completion_offers_spanish_words() -> None:
     assert "kitchen" in {option.text for option in completions("ve a la ", vocabulary)}
     assert {"metros", "m"} & {option.text for option in completions("avanza 2 ", vocabulary)}
     assert not any(option.text.startswith("move ") for option in completions("mo", vocabulary))
+
+
+def test_the_prompt_and_the_ros_node_read_it() -> None:
+    draft = MissionDraft(language="es")
+    draft.use_world(None)
+    assert draft.compile("¡saluda!").mission.tree == btlang.parse_tree("wave").tree
+    assert Setup(language="es").compiled(Source("saluda")).tree == btlang.parse_tree("wave").tree
+
+
+def test_a_slip_is_corrected_in_spanish(capsys: pytest.CaptureFixture[str]) -> None:
+    assert main(["check", "-c", "avansa 1 m, luego saluda", "--language", "es"]) == 2
+    assert "Did you mean: avanza 1 m, luego saluda" in capsys.readouterr().err
+    with pytest.raises(MissionError) as caught:
+        btlang.parse_tree("nunca saluda", language="es")
+    assert [problem.fix for problem in caught.value.diagnostics] == [None]
 
 
 def test_an_unknown_language(capsys: pytest.CaptureFixture[str]) -> None:
