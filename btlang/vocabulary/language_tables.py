@@ -4,8 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
 
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.text.source import Span
 from btlang.vocabulary.entry import COMPARISONS, About
 from btlang.vocabulary.pattern import PatternError, Slot, forms
 
@@ -147,15 +145,6 @@ def merged(files: Iterable[KeywordFile]) -> dict[str, Any]:
             else:
                 found[key] = value
     return found
-
-
-def missing_words(file: KeywordFile, language: Mapping[str, Any]) -> Iterator[Diagnostic]:
-    """BT060 where a language has no words for some role: messages and printed missions need some of each."""
-    for table, names in (("roles", ROLES), ("comparisons", COMPARING)):
-        missing = [name for name in names if not language[table].get(name)]
-        if missing:
-            reason = f"the language has no words in [{table}] for {', '.join(missing)}"
-            yield diagnostic("BT060", Span(file.source, 0, 0), reason=reason)
 
 
 def about_roles(files: Iterable[KeywordFile], known: Mapping[str, About]) -> dict[str, About]:

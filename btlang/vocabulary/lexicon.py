@@ -13,7 +13,7 @@ from btlang.text.spelling import nearest
 from btlang.text.words import Orthography, split
 from btlang.vocabulary.cache import recent
 from btlang.vocabulary.entry import COMPARISONS, About, Entry, Meaning, SlotSpec
-from btlang.vocabulary.language_tables import about_roles, merged, missing_words
+from btlang.vocabulary.language_tables import about_roles, merged
 from btlang.vocabulary.pattern import Form, PatternError, Slot, forms
 from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.trie import SLOTS, TrieNode, add, collisions
@@ -58,8 +58,8 @@ class Lexicon:
         files = list(files)
         language = merged(files)
         if english is not None:
-            if missing := list(missing_words(files[0], language)):
-                raise MissionError(missing)
+            language["roles"] = {**english.roles, **language["roles"]}  # a role without words keeps the English ones
+            language["comparisons"] = {**english.comparisons, **language["comparisons"]}
             for node_id, known in english.entries.items():
                 self.entries[node_id] = [entry.replace(phrases=(), quantity=(), example="") for entry in known]
         self.articles = frozenset(language["articles"])

@@ -250,8 +250,8 @@ def test_a_folder_of_a_user(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
     assert main(["words", "--language", str(folder)]) == 0
     assert "node: Dock" not in capsys.readouterr().out
     (folder / "language.toml").write_text('language = "galego"\n[roles]\nthen = ["despois"]\n', encoding="utf-8")
-    with pytest.raises(MissionError, match=r"no words in \[roles\] for and, or"):
-        btlang.parse_tree("abanea", language=str(folder))
+    mixed = btlang.parse_tree("abanea despois abanea 3 times", language=str(folder))  # other roles keep English words
+    assert mixed.tree == btlang.parse_tree("wave then wave 3 times").tree
 
 
 @pytest.mark.parametrize(
