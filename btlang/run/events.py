@@ -106,9 +106,12 @@ class StatusesChanged(Event):
 
     def __iter__(self) -> Iterator[StatusChanged]:
         nodes, number = self.nodes, self.number
+        common = [getattr(self, name) for name in Event.fields]
+        numbered = Event.fields.index("number")
         for index, status, before, reason in self.without_paths():
+            common[numbered] = number
             path, node = nodes.path(index), nodes.node(index)
-            yield StatusChanged(self.t, self.run, number, self.wall, path, node, status, before, index, reason)
+            yield StatusChanged(*common, path, node, status, before, index, reason)  # type: ignore[call-arg]
             number += 1
 
 

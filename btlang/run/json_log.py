@@ -58,7 +58,7 @@ def as_json(event: Event, label: Callable[[Node], str]) -> dict[str, Any]:
             written |= {"id": value.id, "name": label(value), "ports": dict(value.ports)}
         else:
             written[name] = NAMES[value] if name in _STATUSES else value
-    written |= {"number": event.number, "wall": event.wall, "run": event.run}
+    written |= {name: getattr(event, name) for name in Event.fields}
     return {name: round(value, 6) if isinstance(value, float) else value for name, value in written.items()}
 
 
