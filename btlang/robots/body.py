@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from math import pi
 
 from btlang.record import Record
 from btlang.vocabulary.capabilities import POSTURE
@@ -11,7 +12,7 @@ BEARING = "bearing"
 """In a posture the angle towards what the robot points or looks at."""
 
 Step = Mapping[str, float | str]
-"""Joint -> degrees or BEARING."""
+"""Joint -> degrees (metres where it slides) or BEARING."""
 
 
 class Limits(Record):
@@ -44,7 +45,7 @@ class Navigation(Record):
 
 
 class Joint(Record):
-    """Degrees, and degrees a second. `part` is what it belongs to: "head", "right arm"."""
+    """Degrees, and degrees a second; metres where it `slides`. `part` is what it belongs to: "head", "lift"."""
 
     name: str
     part: str
@@ -52,6 +53,17 @@ class Joint(Record):
     high: float
     speed: float
     rest: float = 0.0
+    slides: bool = False
+
+    @property
+    def si(self) -> float:
+        """What one of its units is in radians or metres."""
+        return 1.0 if self.slides else pi / 180
+
+    @property
+    def close_enough(self) -> float:
+        """A centimetre or a degree from where it should be."""
+        return 0.01 if self.slides else 1.0
 
 
 class HandPart(Record):

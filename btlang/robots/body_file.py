@@ -113,7 +113,7 @@ def _joint(table: Table) -> Joint:
     high = table.number("high", low=low)
     speed = table.number("speed", low=_LEAST)
     rest = table.number("rest", 0.0, low=low, high=high)
-    return table.finish(Joint(name, part, low, high, speed, rest))
+    return table.finish(Joint(name, part, low, high, speed, rest, table.flag("slides")))
 
 
 def _postures(table: Table, joints: tuple[Joint, ...]) -> dict[str, tuple[Step, ...]]:

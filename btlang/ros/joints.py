@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import ceil, degrees, isfinite, radians
+from math import ceil, isfinite
 
 from rclpy.node import Node
 from sensor_msgs.msg import JointState
@@ -18,19 +18,21 @@ from btlang.ros.subscription_cache import SubscriptionCache
 
 STATES, TRAJECTORY = "joint_states", "joint_trajectory"
 _SILENT = 2.0  # seconds without joint states
-_CLOSE_ENOUGH = 1.0  # degrees
 _STALLED = 5.0  # seconds in which a joint on its way gets no nearer
-_PROGRESS = 0.5  # degrees that count as nearer
+_PROGRESS = 0.5  # of what is close enough counts as nearer
 
 
 class RosJoints:
-    """Degrees here, radians on the wire, where names have `_` for blanks. `freeze` may be called from any thread."""
+    """Degrees here, radians on the wire, metres in both of a joint that slides; names have `_` for blanks there.
+
+    `freeze` may be called from any thread.
+    """
 
     def __init__(self, node: Node, subscriptions: SubscriptionCache, body: Body) -> None:
         self._body = body
         self._subscriptions = subscriptions
         self._targets: dict[str, float] = {}
-        self._nearest: dict[str, tuple[float, float]] = {}  # degrees left at the nearest, and since when
+        self._nearest: dict[str, tuple[float, float]] = {}  # what was left at the nearest, and since when
         self._publisher = node.create_publisher(JointTrajectory, TRAJECTORY, 10)
         subscriptions.listen(STATES, JointState, "joint states")
 
@@ -41,13 +43,13 @@ class RosJoints:
 
     def angle(self, name: str) -> float:
         """Raises RobotError for an unknown joint, and where the joint states are silent."""
-        joint_of(self._body, name)
+        joint = joint_of(self._body, name)
         states = self._subscriptions.get(STATES, _SILENT)
         wire = _on_wire(name)
         position = positions(states).get(wire)
         if position is None:
             raise SensorSilent(f'{self._subscriptions.shown(STATES)} tells nothing of the joint "{wire}"')
-        return degrees(position)
+        return position / joint.si
 
     def move(self, targets: Mapping[str, float]) -> None:
         """Sets off towards the targets, clipped to the limits. Raises RobotError as `angle` does."""
@@ -74,20 +76,22 @@ class RosJoints:
             return  # nobody knows where they are
 
     def _arrived(self, name: str, left: float) -> bool:
-        if left <= _CLOSE_ENOUGH:
+        joint = joint_of(self._body, name)
+        if left <= joint.close_enough:
             return True
         nearest, since = self._nearest[name]
         now = AWAKE.now()
-        if left < nearest - _PROGRESS:
+        if left < nearest - _PROGRESS * joint.close_enough:
             self._nearest[name] = left, now
         elif now - since > _STALLED:
-            raise RobotError(f"the {name} does not move: it is {left:.0f} degrees from where it should be")
+            far = f"{left:.2f} m" if joint.slides else f"{left:.0f} degrees"
+            raise RobotError(f"the {name} does not move: it is {far} from where it should be")
         return False
 
     def _tell(self, targets: Mapping[str, float], seconds: float) -> None:
         if not targets:
             return
-        angles = {_on_wire(name): radians(target) for name, target in targets.items()}
+        angles = {_on_wire(name): target * joint_of(self._body, name).si for name, target in targets.items()}
         self._publisher.publish(trajectory(angles, ceil(seconds)))
 
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from functools import partial
-from math import degrees, isfinite, radians
+from math import isfinite
 from typing import Any
 
 from rclpy.node import Node
@@ -28,6 +28,7 @@ class Body:
         self._robot = robot
         self._calls = calls
         self._names = {joint.name.replace(" ", "_"): joint.name for joint in robot.body.joints}
+        self._si = {joint.name: joint.si for joint in robot.body.joints}
         hands = [hand for hand in _HANDS if robot.body.hand(hand) is not None]
         self._joints = node.create_publisher(JointState, "joint_states", COMMANDS)
         self._joints_due = Every(20)
@@ -50,7 +51,7 @@ class Body:
         if self._joints_due.is_due(now.seconds):
             state = JointState(name=list(self._names))
             state.header.stamp = now.stamp
-            state.position = [radians(self._robot.joint(name)) for name in self._names.values()]
+            state.position = [self._robot.joint(name) * self._si[name] for name in self._names.values()]
             self._joints.publish(state)
 
     def _hand_over(self, act: Callable[[Any], None], message: Any) -> None:
@@ -77,7 +78,7 @@ class Body:
             return
         positions = dict(zip(message.joint_names, message.points[-1].positions, strict=False))
         known = {self._names[name]: at for name, at in positions.items() if name in self._names}
-        targets = {name: degrees(at) for name, at in known.items() if isfinite(at)}
+        targets = {name: at / self._si[name] for name, at in known.items() if isfinite(at)}
         if targets:
             self._robot.move_joints(targets)
 
