@@ -16,14 +16,17 @@ from btlang.printer.exact import exact, quoted
 from btlang.printer.pieces import COMMA, LEAF, Piece, Pieces, mark
 from btlang.printer.printer import AND, FORM, OR, THEN, WHOLE, Doc, Printer, bracketed
 from btlang.tree import ast
+from btlang.vocabulary.language_tables import CONNECTIVES
 from btlang.vocabulary.lexicon import Lexicon
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+_LEVELS = {"sequence": THEN, "fallback": OR, "parallel": AND}
 _CHAINS = {
-    "sequence": (THEN, "then"), "fallback": (OR, "or"), "parallel": (AND, "and"), "any": (OR, "or"), "all": (AND, "and")
+    **{operator: (_LEVELS.get(operator, THEN), role) for role, operator in reversed(CONNECTIVES.items())},
+    "any": (OR, "or"), "all": (AND, "and"),
 }  # fmt: skip
 
 

@@ -9,12 +9,13 @@ from btlang.frontends.mission.tokens.lexer import Lexer
 from btlang.record import Record
 from btlang.repl.draft import Compiled, MissionDraft
 from btlang.text.source import Source
+from btlang.vocabulary.language_tables import CONNECTIVES
 from btlang.vocabulary.lexicon import Lexicon
 
 _UNFINISHED = frozenset(("BT004", "BT023", "BT027"))  # an open quote, bracket or block
 _UNKNOWN = frozenset(("BT010", "BT013"))
 _ENDS_NOTHING = frozenset((
-    "unknown", "then", "and", "or", "after", "otherwise", "comma", "semi", "colon", "open", "define", "not", "if",
+    *CONNECTIVES, "unknown", "otherwise", "comma", "semi", "colon", "open", "define", "not", "if",
     "unless", "while", "until", "provided", "repeat", "try", "retry", "check", "wait_until",
     "whenever", "in_parallel", "in_order",
 ))  # fmt: skip

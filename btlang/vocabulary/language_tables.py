@@ -13,8 +13,11 @@ if TYPE_CHECKING:
 
     from btlang.vocabulary.keyword_file import KeywordFile
 
+CONNECTIVES = {"then": "sequence", "and": "parallel", "or": "fallback", "after": "sequence"}
+"""The roles that join commands, each with the operator of the chain that it makes."""
+
 _NO_SLOT = (
-    "then", "and", "or", "after", "otherwise", "if", "unless", "while", "until", "whenever", "provided", "not",
+    *CONNECTIVES, "otherwise", "if", "unless", "while", "until", "whenever", "provided", "not",
     "repeat", "try", "retry", "if_possible", "wait_until", "check", "nothing", "fail", "in_parallel", "in_order",
     "define_strong", "define", "fact", "facing",
     "set", "set_to", "increase", "decrease", "by", "remember", "remember_as", "each", "each_in", "include",
@@ -30,9 +33,6 @@ ROLES = {
 COMPARING = {**dict.fromkeys(COMPARISONS, "value"), "between": "low high"}
 """The ways to compare a quantity, each with the slots that its phrases hold."""
 
-BETWEEN = ("then", "and", "or", "after")
-"""The roles that a connective may have between commands."""
-
 EXPLAINED = (*ROLES, "compare", "politeness")
 """What the table `about` tells of."""
 
@@ -46,7 +46,7 @@ def _words(value: object) -> bool:
 
 
 def _between(value: object) -> bool:
-    return value in BETWEEN
+    return value in CONNECTIVES
 
 
 def _number(value: object) -> bool:
@@ -71,7 +71,7 @@ TABLES: dict[str, tuple[Callable[[object], bool], str]] = {
     "comparisons": (_words, "a list of phrases"),
     "negations": (_words, "a list of words"),
     "pronouns": (_words, "a list of types"),
-    "meanings": (_between, "one of " + ", ".join(BETWEEN)),
+    "meanings": (_between, "one of " + ", ".join(CONNECTIVES)),
     "nodes": (_is_text, "the words of a node"),
     "contractions": (_is_text, "a word"),
     "counts": (_rounds, "a whole number from 1 on, or -1 for without end"),

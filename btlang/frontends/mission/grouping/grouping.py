@@ -18,6 +18,7 @@ from btlang.frontends.mission.grouping.scan import Scan, Unit
 from btlang.frontends.mission.token import Token
 from btlang.record import Record
 from btlang.text.source import Source
+from btlang.vocabulary.language_tables import CONNECTIVES
 
 
 class Grouped(Record):
@@ -60,7 +61,7 @@ _OPERAND: dict[str, Callable[[Scan, Token], None]] = {
 }
 
 _OPERATOR: dict[str, Callable[[Scan, Token], None]] = {
-    **dict.fromkeys(("then", "and", "or", "after"), operators.connective),
+    **dict.fromkeys(CONNECTIVES, operators.connective),
     **dict.fromkeys(("within", "if_possible", "every", "delay"), operators.postfix),
     **dict.fromkeys(("if", "unless", "while", "until", "provided"), operators.form_after),
     **dict.fromkeys(STARTS_OPERAND, problems.side_by_side),

@@ -8,6 +8,7 @@ from btlang.frontends.mission.grouping.problems import both_readings, is_alone, 
 from btlang.frontends.mission.grouping.scan import ENDS, Scan, Unit
 from btlang.frontends.mission.grouping.stack import StackEntry
 from btlang.frontends.mission.token import Token
+from btlang.vocabulary.language_tables import CONNECTIVES
 
 _CONDITION_FORMS = frozenset(("if", "unless", "while", "until", "provided"))
 
@@ -25,7 +26,7 @@ def comma(scan: Scan, token: Token) -> None:
         scan.stack[-1].connective(scan.emit("WIDE_" + following.kind.upper(), following))
         scan.next(token, True)
         scan.next(following, True)
-    elif following.kind in ("then", "otherwise", "after", "and", "or"):
+    elif following.kind == "otherwise" or following.kind in CONNECTIVES:
         scan.at += 1
     elif following.kind in _CONDITION_FORMS and closes_statement(scan, scan.at + 2):
         scan.close_forms()

@@ -5,6 +5,7 @@ from __future__ import annotations
 from btlang.frontends.mission.grouping.scan import ENDS, STARTS_STATEMENT, Scan
 from btlang.frontends.mission.token import Token
 from btlang.text.source import Span
+from btlang.vocabulary.language_tables import CONNECTIVES
 
 _COMMANDS = frozenset(("command", "wait", "nothing", "fail", "open"))
 _FOUND = {"newline": "the line ends", "semi": "the sentence ends", "close": "the bracket closes"}
@@ -24,7 +25,7 @@ def no_operand(scan: Scan, token: Token) -> None:
         scan.fail(
             "BT032", scan.span(token), (with_blanks(scan, token), ""), place="at the start", advice="Take it away."
         )
-    elif starts or token.kind not in ENDS | {"then", "and", "or", "after", "otherwise", "comma"}:
+    elif starts or token.kind not in ENDS | {*CONNECTIVES, "otherwise", "comma"}:
         scan.fail("BT022", scan.span(token), word=scan.words(token), example="wave")
     elif before is not None and before.kind == "comma" and token.kind in ENDS:
         advice = "Take it away, or say what follows."

@@ -35,6 +35,7 @@ from btlang.tree.ast import (
     Within,
 )
 from btlang.vocabulary.entry import Entry
+from btlang.vocabulary.language_tables import CONNECTIVES
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -42,8 +43,8 @@ if TYPE_CHECKING:
 
 CHAINS = {
     "SEMI": "sequence", "BLOCK_AND": "parallel", "BLOCK_OR": "fallback", "BLOCK_CHILD": "children",
-    "OR_ELSE": "fallback", "WIDE_AND": "parallel", "THEN": "sequence", "AFTER": "sequence",
-    "OR": "fallback", "AND": "parallel",
+    "OR_ELSE": "fallback", "WIDE_AND": "parallel",
+    **{role.upper(): operator for role, operator in CONNECTIVES.items()},
     "COND_OR_ELSE": "any", "COND_WIDE_AND": "all", "COND_OR": "any", "COND_AND": "all",
 }  # fmt: skip
 """What each connective makes of its operands."""

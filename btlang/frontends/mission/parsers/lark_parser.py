@@ -31,7 +31,7 @@ def parse(tokens: Sequence[Token], build: Builder) -> Ast:
             symbol, callback, length, flag = rules[-1 - step]
             parts = values[-length:]
             del stack[-length:], values[-length:]
-            values.append(_reduced(flag, parts, getattr(to_ast, callback, None)))
+            values.append(_reduced(flag, parts, getattr(to_ast, callback, to_ast.chain)))
             stack.append(states[stack[-1]][symbol])
             if token is None and stack[-1] == end:
                 whole: Ast = values[-1]
@@ -68,18 +68,18 @@ def _tables() -> dict[str, Any]:
 
 
 class _ToAst:
-    """Called at each reduction, so that no parse tree is made and depth does not matter."""
+    """Called at each reduction, so that no parse tree is made and depth does not matter.
+
+    A rule that has no method of its name is a chain.
+    """
 
     def __init__(self, build: Builder) -> None:
         self.build = build
 
-    def _chain(self, children: list[Any]) -> Ast:
+    def chain(self, children: list[Any]) -> Ast:
         items, connective = children[::2], children[1].kind
         start, end = items[0].span.start, items[-1].span.end
         return self.build.chain(CHAINS[connective], items, start, end)
-
-    statements = fallback = wide_parallel = sequence = either = parallel = _chain
-    condition = wide_all = any = all = _chain
 
     def after(self, children: list[Any]) -> Ast:
         items = children[::2]

@@ -14,6 +14,7 @@ from btlang.text.source import Span
 from btlang.text.words import END_OF_STATEMENT, Words, statements
 from btlang.tree.ast import Definition
 from btlang.vocabulary.entry import Entry, Meaning, SlotSpec
+from btlang.vocabulary.language_tables import CONNECTIVES
 from btlang.vocabulary.lexicon import DEFINING, NODE_ROLES, Lexicon
 from btlang.vocabulary.pattern import Part, Slot, name_form
 from btlang.vocabulary.trie import SLOTS, Match, TrieNode, add, longest
@@ -23,7 +24,7 @@ from btlang.vocabulary.values import END, key_of
 _STARTS_NO_NAME = frozenset((
     "if", "unless", "while", "until", "whenever", "otherwise", "then", "check", "wait_until",
 ))  # fmt: skip
-_NOT_IN_A_NAME = frozenset(("if", "unless", "while", "until", "otherwise", "then", "and", "or", "after", "provided"))
+_NOT_IN_A_NAME = frozenset((*CONNECTIVES, "if", "unless", "while", "until", "otherwise", "provided"))
 
 
 class Definitions:
