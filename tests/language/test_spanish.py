@@ -229,7 +229,7 @@ def test_a_slip_is_corrected_in_spanish(capsys: pytest.CaptureFixture[str]) -> N
 
 
 def test_an_unknown_language(capsys: pytest.CaptureFixture[str]) -> None:
-    assert languages() == ("en", "es")
+    assert {"en", "es"} <= set(languages())
     for name in ("klingon", "", "../keywords"):
         assert main(["tree", "-c", "wave", "--language", name]) == 2
         told = capsys.readouterr().err
