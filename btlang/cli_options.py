@@ -11,13 +11,11 @@ from btlang.arguments import between, duration, picture, speed
 from btlang.diagnostics.report import FORMATS
 from btlang.frontends.mission.reader import DEFAULT_PARSER, PARSERS
 from btlang.run.limits import RATES
-from btlang.text.output import show
+from btlang.text.output import WIDEST, columns, show
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
-
-WIDEST = 120  # columns; longer lines are hard to read
 
 
 def parsed(arguments: Sequence[str] | None) -> argparse.Namespace:
@@ -197,9 +195,7 @@ class _Help(argparse.HelpFormatter):
         super().__init__(prog, width=WIDEST)
 
     def format_help(self) -> str:
-        from shutil import get_terminal_size
-
-        self._width = get_terminal_size().columns - 2
+        self._width = columns(80) - 2
         return super().format_help()
 
 

@@ -17,6 +17,7 @@ from btlang.record import Record
 from btlang.session import Session
 from btlang.text.source import Source
 from btlang.tree.ast import Ast, Chain, Definition, Fact, Include, Program, all_facts, parts
+from btlang.tree.dump import Outline
 from btlang.tree.node import Tree
 from btlang.tree.visit import used_subtrees
 from btlang.vocabulary.reading_context import Known
@@ -38,6 +39,11 @@ class Compiled(Record):
 
     entry: Entry
     mission: Mission
+
+    def outline(self) -> Outline:
+        """The tree as `btc tree` shows it; of definitions alone only their subtrees."""
+        whole = self.mission.__rich__()
+        return whole if self.entry.has_command else whole.replace(trees=whole.trees[1:])
 
 
 class MissionDraft:

@@ -9,14 +9,14 @@ from contextlib import contextmanager, nullcontext
 
 from btlang.api import Mission
 from btlang.diagnostics.diagnostic import MissionError
-from btlang.diagnostics.render import has_colour, render
+from btlang.diagnostics.render import render
 from btlang.frontends.mission.reader import DEFAULT_PARSER
 from btlang.repl.commands import Commands, Leave, command_of
 from btlang.repl.draft import MissionDraft
 from btlang.repl.entering import entries
 from btlang.repl.store import Kept, Store, state_folder
-from btlang.run.command import ENDING_SIGNALS, can_draw, run_mission
-from btlang.text.output import show
+from btlang.run.command import ENDING_SIGNALS, run_mission
+from btlang.text.output import can_draw, has_colour, show
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
