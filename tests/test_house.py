@@ -131,8 +131,11 @@ def test_contracts_name_every_part() -> None:
 
 
 LIGHT = [
-    (["check", "-c", "move forward 1 m then say done"], "lark rich asyncio numpy rclpy interegular"),
-    (["run", "-c", "move forward 1 m then wave", "--speed", "max", "--quiet"], "lark rich numpy rclpy"),
+    (["check", "-c", "move forward 1 m then say done"], "lark rich prompt_toolkit asyncio numpy rclpy interegular"),
+    (["run", "-c", "move forward 1 m then wave", "--speed", "max", "--quiet"], "lark rich prompt_toolkit numpy rclpy"),
+    (["tree", "-c", "wave then nod"], "rich prompt_toolkit"),
+    (["words"], "rich prompt_toolkit"),
+    (["explain"], "rich prompt_toolkit"),
 ]
 """Commands, and what they must not import: it would take longer than all that they do."""
 

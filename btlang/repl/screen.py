@@ -177,7 +177,7 @@ class Screen:
             return
         menu = _MENU_ROWS if self.buffer.complete_state else 0
         room = max(3, self._rows() - self.buffer.text.count("\n") - 4 - menu)
-        more = str(seen.tree).count("\n") + 1 - room
+        more = seen.tree.height - room
         tree = Styled(seen.tree, _UNFINISHED if seen.errors else "")
         drawn = lines(tree, self._columns() - len(CONTINUED), has_colour(sys.stdout), fold=False)
         for line in islice(drawn, room - (more > 0)):

@@ -10,6 +10,7 @@ from btlang.tree.node import Node, Tree
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from rich.console import Console, ConsoleOptions, RenderableType
+    from rich.text import Text
     from rich.tree import Tree as RichTree
 
 _DEEPEST = 100  # levels; below it the level is a number, since the text would grow with the square of the depth
@@ -50,6 +51,12 @@ class Outline(Record):
             "\n".join([*([f"{name}:"] if name else []), *_branches(root, self.label)]) for name, root in self.trees
         )
 
+    @property
+    def height(self) -> int:
+        """How many lines it has, where none is folded."""
+        names = sum(1 for name, _ in self.trees if name)
+        return sum(1 for _, root in self.trees for _ in _nodes(root)) + names + len(self.trees) - 1
+
     def __rich_console__(self, console: Console, options: ConsoleOptions) -> Iterator[RenderableType]:
         from rich.text import Text
 
@@ -69,20 +76,28 @@ def outline(tree: Tree, label: Callable[[Node], str] = described) -> str:
 
 
 def _rich_tree(root: Node, label: Callable[[Node], str]) -> RichTree:
-    from rich.text import Text
     from rich.tree import Tree as RichTree
 
-    def drawn(node: Node) -> Text:
-        text = Text(label(node), overflow="fold")
-        text.highlight_regex(r"^\w+", "bold")
-        return text
-
-    trunk = RichTree(drawn(root), guide_style="dim")
+    trunk = RichTree(_Label(root, label), guide_style="dim")
     stack = [(root, trunk)]
     while stack:
         node, branch = stack.pop()
-        stack += [(child, branch.add(drawn(child))) for child in node.children]
+        stack += [(child, branch.add(_Label(child, label))) for child in node.children]
     return trunk
+
+
+class _Label(Record):
+    """Worded when it is drawn: the prompt draws only as many as there is room for."""
+
+    node: Node
+    label: Callable[[Node], str]
+
+    def __rich__(self) -> Text:
+        from rich.text import Text
+
+        text = Text(self.label(self.node), overflow="fold")
+        text.highlight_regex(r"^\w+", "bold")
+        return text
 
 
 def _nodes(root: Node) -> Iterator[tuple[int, Node]]:

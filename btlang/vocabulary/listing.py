@@ -16,10 +16,9 @@ from btlang.vocabulary.vocabulary import Vocabulary
 _WIDTH = 80  # columns, of a text that is for no terminal
 _FEW = 3  # of so few found, all is told
 _KEY = (
-    "[...] may be left out, {...} takes a value (see the end), a/b is a choice,",
+    "[...] may be left out, {{...}} takes a value (see the end), a/b is a choice,",
     "time(s) is time or times. A condition is no command: it needs a word such as",
     "'{if}' or '{until}'. btc words TOPIC shows a topic, btc words WORD what has a word.",
-    "",
 )
 
 
@@ -32,7 +31,8 @@ def listing(vocabulary: Vocabulary, search: str = "", width: int = _WIDTH) -> li
     known = items(vocabulary)
     if not search.strip():
         examples = {role: vocabulary.word(role) for role in ("if", "until")}
-        return [*_KEY[:2], _KEY[2].format(**examples), *_KEY[3:], *_by_topic(known, width)]
+        key = [part for line in _KEY for part in _wrapped(line.format(**examples), "", "  ", width)]
+        return [*key, "", *_by_topic(known, width)]
     found = _found(known, search)
     whole = len(found) <= _FEW and not any(_is_called(item, search) for item in found)
     return _by_topic(found, width, whole) or _unknown(known, search)
