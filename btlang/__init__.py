@@ -12,9 +12,9 @@ __version__ = "0.1.0"
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.api import Mission, parse_file, parse_tree
+    from btlang.decorators import action, condition, quantity
     from btlang.diagnostics.diagnostic import Diagnostic, MissionError
-    from btlang.engine.leaf import ActionFailed, Unknown
-    from btlang.own_words import action, condition, quantity
+    from btlang.engine.leaves.leaf import ActionFailed, Unknown
     from btlang.run.runner import Outcome
     from btlang.run.statuses import Status
     from btlang.session import Run, Session
@@ -25,17 +25,17 @@ __all__ = [
 ]  # fmt: skip
 
 _HOMES = {
-    "ActionFailed": "btlang.engine.leaf",
+    "ActionFailed": "btlang.engine.leaves.leaf",
     "Diagnostic": "btlang.diagnostics.diagnostic",
     "MissionError": "btlang.diagnostics.diagnostic",
     "Outcome": "btlang.run.runner",
     "Run": "btlang.session",
     "Session": "btlang.session",
     "Status": "btlang.run.statuses",
-    "Unknown": "btlang.engine.leaf",
-    "action": "btlang.own_words",
-    "condition": "btlang.own_words",
-    "quantity": "btlang.own_words",
+    "Unknown": "btlang.engine.leaves.leaf",
+    "action": "btlang.decorators",
+    "condition": "btlang.decorators",
+    "quantity": "btlang.decorators",
 }
 
 

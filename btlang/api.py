@@ -8,7 +8,7 @@ from functools import partial
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.frontends.mission.reader import DEFAULT_PARSER, read_mission
 from btlang.frontends.table import frontend_of, read_text
-from btlang.garbage import no_collection
+from btlang.gc_pause import gc_paused
 from btlang.passes import compile_mission, errors_of, lower_mission, run_passes
 from btlang.passes.compilation import Compilation
 from btlang.record import Record
@@ -16,11 +16,11 @@ from btlang.text.output import show
 from btlang.text.source import Source, Span
 from btlang.tree.ast import Fact, Program, all_facts, exact_nodes
 from btlang.tree.node import Node, Tree
-from btlang.vocabulary.cache import kept
+from btlang.vocabulary.cache import cached
 from btlang.vocabulary.entry import Entry
+from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.load import load_vocabulary
 from btlang.vocabulary.shipped import DEFAULT_WORLD, STANDARD_BODY
-from btlang.vocabulary.vocabulary import Vocabulary
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ def parse_tree(
     MissionError, which holds every diagnostic.
     """
     source = Source(text) if isinstance(text, str) else text
-    with no_collection:
+    with gc_paused:
         vocabulary = world_vocabulary(keywords, world)
         read = read_text(source, main, vocabulary=vocabulary, parser=parser, errors_of=errors_of)
         if isinstance(read, Tree):
@@ -85,22 +85,22 @@ def format_mission(
 
     A text that only defines names has a layout too. Raises MissionError where something is wrong with the mission.
     """
-    from btlang.english.layout import laid_out
+    from btlang.printer.layout import laid_out
 
     source = Source(text) if isinstance(text, str) else text
     if frontend_of(source) != "english":
         raise MissionError([diagnostic("BT001", Span(source, 0, 1), file=source.name, reason="this is no English")])
-    with no_collection:
+    with gc_paused:
         vocabulary = world_vocabulary(keywords, world)
         mission = read_mission(source, vocabulary, parser, errors_of=errors_of).mission
         compile_mission(mission, vocabulary, needs_command=False)
     return laid_out(source, vocabulary.articles)
 
 
-def world_vocabulary(keywords: Sequence[str | Entry | Callable[..., Any]] = (), world: str | None = None) -> Vocabulary:
+def world_vocabulary(keywords: Sequence[str | Entry | Callable[..., Any]] = (), world: str | None = None) -> Lexicon:
     """The words of the keyword files and the names of a world. Raises MissionError."""
     file = DEFAULT_WORLD if world is None else world
-    return load_vocabulary(keywords, kept("world", [file, STANDARD_BODY], partial(_names_by_type, world)))
+    return load_vocabulary(keywords, cached("world", [file, STANDARD_BODY], partial(_names_by_type, world)))
 
 
 def _names_by_type(world: str | None) -> dict[str, tuple[str, ...]]:
@@ -124,7 +124,7 @@ class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax")):
     """
 
     tree: Tree
-    vocabulary: Vocabulary
+    vocabulary: Lexicon
     world: str | None = None
     warnings: tuple[Diagnostic, ...] = ()
     syntax: Program | None = None
@@ -192,7 +192,7 @@ class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax")):
 
     def label(self, node: Node) -> str:
         """The English of a leaf, `Id port=value` of any other node."""
-        from btlang.english.phrase import phrase_of
+        from btlang.printer.phrase import phrase_of
 
         return node.name or phrase_of(node, self.vocabulary)
 

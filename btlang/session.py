@@ -23,12 +23,12 @@ from btlang.robots.world_problem import read_world
 from btlang.run.bus import INLINE, Bus
 from btlang.run.controls import Controls, disable
 from btlang.run.events import PeriodPassed
+from btlang.run.failure_history import FailureHistory
 from btlang.run.limits import RATES, SLOWEST
 from btlang.run.report import failure_report
 from btlang.run.runner import Outcome, Runner, traced_engine
 from btlang.run.snapshot import Follower, Snapshot
 from btlang.run.statuses import Status
-from btlang.run.story import Story
 from btlang.text.output import RED
 from btlang.text.source import NOWHERE
 
@@ -43,7 +43,7 @@ if TYPE_CHECKING:
     from btlang.run.events import Event, Sink
     from btlang.tree.ast import Fact
     from btlang.tree.node import Node, Tree
-    from btlang.vocabulary.vocabulary import Vocabulary
+    from btlang.vocabulary.lexicon import Lexicon
 
     class Runnable(Protocol):
         """What a session asks of a mission; see btlang.api.Mission."""
@@ -52,7 +52,7 @@ if TYPE_CHECKING:
         def tree(self) -> Tree: ...
 
         @property
-        def vocabulary(self) -> Vocabulary: ...
+        def vocabulary(self) -> Lexicon: ...
 
         @property
         def facts(self) -> Sequence[Fact]: ...
@@ -184,7 +184,7 @@ class Run:
         self._error: BaseException | None = None
         self._under_way = False
         self._engine = self._bound(connection, sinks, values, timed=speed < math.inf)
-        self._story = Story(self._engine)
+        self._story = FailureHistory(self._engine)
         self._follower = Follower(self._engine)
         self._recent = _Recent()
         for own in (self._story, self._follower, self._recent):
@@ -324,7 +324,7 @@ class Run:
         return tree_problems(mission.tree, mission.vocabulary, bind, {"robot": connection.robot}) or [refused]
 
 
-def _bind(vocabulary: Vocabulary, connection: Connection, node_id: str) -> Any:
+def _bind(vocabulary: Lexicon, connection: Connection, node_id: str) -> Any:
     return bind_leaf(node_id, vocabulary, connection.bind)
 
 

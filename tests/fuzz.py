@@ -20,11 +20,11 @@ from functools import partial
 
 from btlang.api import Mission, world_vocabulary
 from btlang.diagnostics.diagnostic import MissionError
-from btlang.english.layout import laid_out
 from btlang.examples import examples
 from btlang.frontends.mission.completion.completer import completions
 from btlang.frontends.mission.reader import read_mission
 from btlang.passes import compile_mission
+from btlang.printer.layout import laid_out
 from btlang.text.source import Source
 
 VOCABULARY = world_vocabulary()

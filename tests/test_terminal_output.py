@@ -52,7 +52,7 @@ def test_missions(verb: list[str], text: str, capsys: pytest.CaptureFixture[str]
 
 def test_a_line_cannot_be_forged(capsys: pytest.CaptureFixture[str], tmp_path: Path) -> None:
     (tmp_path / "talk.py").write_text(
-        "from btlang.engine.leaf import Failed\n"
+        "from btlang.engine.leaves.leaf import Failed\n"
         "def talk(robot):\n    robot.say('hi\\n   9.99  done   stop')\n"
         "    return Failed('no\\nThe mission succeeded')\n"
     )

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 from btlang.actions.motion import Steps
 from btlang.actions.watch import Watch
-from btlang.engine.leaf import ActionFailed
+from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.body import BEARING
 from btlang.robots.robot import Robot
 

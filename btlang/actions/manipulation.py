@@ -5,7 +5,7 @@ from __future__ import annotations
 from btlang.actions.joints import take
 from btlang.actions.motion import Steps
 from btlang.actions.navigation import accomplish, travel
-from btlang.engine.leaf import ActionFailed
+from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.robot import Hand, Robot
 from btlang.robots.world import said
 

@@ -9,7 +9,7 @@ from collections.abc import Callable, Generator
 from math import copysign, sqrt
 
 from btlang.actions.watch import Watch
-from btlang.engine.leaf import ActionFailed, unheard
+from btlang.engine.leaves.leaf import ActionFailed, unheard
 from btlang.robots.geometry import wrap
 from btlang.robots.progress import PATIENCE, Progress
 from btlang.robots.robot import Robot

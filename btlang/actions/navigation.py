@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from btlang.actions.motion import Steps
-from btlang.engine.leaf import ActionFailed
+from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.capabilities import Navigation
-from btlang.robots.robot import Deed
+from btlang.robots.robot import Operation
 
 
 def go_to(robot: Navigation, place: str) -> Steps:
@@ -28,12 +28,12 @@ def travel(robot: Navigation, name: str) -> Steps:
     yield from accomplish(robot.navigate_to(name))
 
 
-def accomplish(deed: Deed) -> Steps:
+def accomplish(operation: Operation) -> Steps:
     """Waits until the robot has done it; halted, it gives up. Raises ActionFailed with the robot's reason."""
     try:
-        while not deed.done:
+        while not operation.done:
             yield
     finally:
-        deed.cancel()
-    if deed.failure is not None:
-        raise ActionFailed(deed.failure)
+        operation.cancel()
+    if operation.failure is not None:
+        raise ActionFailed(operation.failure)

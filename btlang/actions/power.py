@@ -5,7 +5,7 @@ from __future__ import annotations
 from btlang.actions.motion import Steps, drive_straight
 from btlang.actions.navigation import accomplish, travel
 from btlang.actions.watch import Watch
-from btlang.engine.leaf import ActionFailed
+from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.robot import Robot
 
 

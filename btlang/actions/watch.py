@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from btlang.engine.leaf import ActionFailed
+from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.robot import Robot
 
 

@@ -8,14 +8,14 @@ from functools import cache, partial
 from btlang.backends.engine import bind_leaf, leaf_binding
 from btlang.backends.keywords import Draft, drafts
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic, in_order
-from btlang.engine.build import EngineError
 from btlang.engine.faults import UnknownNode, UnknownSubTree, faults
-from btlang.engine.leaf import LeafBinding
+from btlang.engine.instance import EngineError
+from btlang.engine.leaves.leaf import LeafBinding
 from btlang.text.source import NOWHERE, Span
 from btlang.text.spelling import nearest
 from btlang.tree.catalogue import CATALOGUE
 from btlang.tree.node import Node, Tree
-from btlang.vocabulary.vocabulary import Vocabulary
+from btlang.vocabulary.lexicon import Lexicon
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 def tree_problems(
     tree: Tree,
-    vocabulary: Vocabulary,
+    vocabulary: Lexicon,
     bind: Callable[[str], LeafBinding | None] | None = None,
     services: Mapping[str, Any] = {},
 ) -> list[Diagnostic]:
@@ -43,7 +43,7 @@ def tree_problems(
     return in_order(problems)
 
 
-def misnamed(tree: Tree, vocabulary: Vocabulary) -> Iterator[Diagnostic]:
+def misnamed(tree: Tree, vocabulary: Lexicon) -> Iterator[Diagnostic]:
     """Names of places and the like that nothing has (BT132): no phrase could hold them."""
     for node in tree.walk():
         slots = {slot.name: slot.type for entry in vocabulary.entries.get(node.id, ()) for slot in entry.slots}
@@ -56,7 +56,7 @@ def misnamed(tree: Tree, vocabulary: Vocabulary) -> Iterator[Diagnostic]:
             yield diagnostic("BT132", node.span or NOWHERE, id=node.id, reason=reason)
 
 
-def _told(error: EngineError, tree: Tree, vocabulary: Vocabulary, entries: dict[str, Draft | None]) -> Diagnostic:
+def _told(error: EngineError, tree: Tree, vocabulary: Lexicon, entries: dict[str, Draft | None]) -> Diagnostic:
     node = error.node
     span = node.span or NOWHERE
     if isinstance(error, UnknownSubTree):
@@ -104,7 +104,7 @@ def _entry(node: Node, entries: dict[str, Draft | None]) -> str:
     return f"This entry of a keyword file would define it:\n{draft.text}"
 
 
-def _bound(vocabulary: Vocabulary, node_id: str) -> LeafBinding | None:
+def _bound(vocabulary: Lexicon, node_id: str) -> LeafBinding | None:
     """A leaf that takes the ports of its `call`, and does nothing."""
     entries = vocabulary.entries.get(node_id, ())
     if not entries:

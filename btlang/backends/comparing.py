@@ -9,7 +9,7 @@ import operator
 from collections.abc import Callable, Mapping
 from inspect import Parameter, signature
 
-from btlang.engine.leaf import Failed
+from btlang.engine.leaves.leaf import Failed
 from btlang.vocabulary.entry import MEASURED
 
 TYPE_CHECKING = False

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 
-from btlang.english.phrase import phrase_of
+from btlang.printer.phrase import phrase_of
 from btlang.tree.catalogue import CATALOGUE, SUBTREE
 from btlang.tree.dump import described
 from btlang.tree.node import Node, Tree
-from btlang.vocabulary.vocabulary import Vocabulary
+from btlang.vocabulary.lexicon import Lexicon
 
 _LOOKS = {
     "control": 'shape=box, style=filled, fillcolor="#dfe8f3"',
@@ -20,7 +20,7 @@ _LOOKS = {
 _LONGEST = 60  # characters of a line in a box
 
 
-def to_dot(tree: Tree, vocabulary: Vocabulary) -> str:
+def to_dot(tree: Tree, vocabulary: Lexicon) -> str:
     """A digraph. Each named subtree is a cluster, to which a dashed edge leads from each SubTree node that uses it.
 
     Nodes are `n0`, `n1` and so on, in the order of Tree.walk.
@@ -65,7 +65,7 @@ def _numbered(root: Node, first: int) -> Iterator[tuple[int, Node, int]]:
         number += 1
 
 
-def _kind(node: Node, vocabulary: Vocabulary, kinds: dict[str, str]) -> str:
+def _kind(node: Node, vocabulary: Lexicon, kinds: dict[str, str]) -> str:
     if node.id == SUBTREE:
         return "subtree"
     known = CATALOGUE.get(node.id)
@@ -78,7 +78,7 @@ def _kind(node: Node, vocabulary: Vocabulary, kinds: dict[str, str]) -> str:
     return "condition" if asks or (known is not None and known.kind == "Condition") else "action"
 
 
-def _label(node: Node, vocabulary: Vocabulary) -> str:
+def _label(node: Node, vocabulary: Lexicon) -> str:
     plain = not node.children and not any(port.startswith("_") for port, _ in node.ports)
     words = phrase_of(node, vocabulary) if plain else described(node)
     return _quoted(words if len(words) <= _LONGEST else words[: _LONGEST - 1] + "\N{HORIZONTAL ELLIPSIS}")

@@ -9,13 +9,13 @@ from importlib.util import find_spec
 from types import ModuleType
 
 from btlang.backends.comparing import comparing
-from btlang.engine.build import EngineError
-from btlang.engine.leaf import LeafBinding, described
-from btlang.engine.script_values import as_text
-from btlang.english.phrase import leaf_words
+from btlang.engine.instance import EngineError
+from btlang.engine.leaves.leaf import LeafBinding, described
+from btlang.engine.script.values import as_text
+from btlang.printer.phrase import leaf_words
 from btlang.tree.node import Node
 from btlang.vocabulary.entry import MEASURED, Entry, SlotSpec
-from btlang.vocabulary.vocabulary import Vocabulary
+from btlang.vocabulary.lexicon import Lexicon
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 
 
 def bind_leaf(
-    node_id: str, vocabulary: Vocabulary, own: Callable[[Entry, Vocabulary], LeafBinding | None] | None = None
+    node_id: str, vocabulary: Lexicon, own: Callable[[Entry, Lexicon], LeafBinding | None] | None = None
 ) -> LeafBinding | None:
     """None where no keyword entry has the id. Raises EngineError where its `call` leads nowhere or is of no use.
 
@@ -45,7 +45,7 @@ def bind_leaf(
 
 
 def leaf_binding(
-    entry: Entry, vocabulary: Vocabulary, call: Callable[..., Any], slots: tuple[SlotSpec, ...]
+    entry: Entry, vocabulary: Lexicon, call: Callable[..., Any], slots: tuple[SlotSpec, ...]
 ) -> LeafBinding:
     """What does the work of an entry, with the values of slots as its parameters.
 
@@ -71,7 +71,7 @@ def leaf_binding(
         raise EngineError(f"{entry.call} cannot be a quantity: {error}", Node(entry.id, span=entry.span)) from error
 
 
-def _converter(slot: SlotSpec, vocabulary: Vocabulary) -> Callable[[str], Any]:
+def _converter(slot: SlotSpec, vocabulary: Lexicon) -> Callable[[str], Any]:
     kind = vocabulary.types[slot.type]
     if kind.kind == "quantity" or kind.kind == "number":
         return int if kind.whole else float

@@ -7,10 +7,10 @@ import textwrap
 from bisect import bisect_right
 from collections.abc import Callable, Iterator
 
-from btlang.english.blocks import lines_of
-from btlang.english.pieces import is_longer
-from btlang.english.sentence import speaker_of, statements
-from btlang.english.speaker import Speaker
+from btlang.printer.blocks import lines_of
+from btlang.printer.pieces import is_longer
+from btlang.printer.printer import Printer
+from btlang.printer.sentence import printer_of, statements
 from btlang.record import Record
 from btlang.text.source import Source
 from btlang.text.words import END_OF_STATEMENT, Words, split
@@ -19,7 +19,7 @@ from btlang.tree.catalogue import SEQUENCE
 from btlang.tree.dump import outline
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import fold
-from btlang.vocabulary.vocabulary import Vocabulary
+from btlang.vocabulary.lexicon import Lexicon
 
 INDENT = "  "
 _READ_AS = f"{INDENT}read as: "
@@ -38,7 +38,7 @@ class Statement(Record):
 
 
 def explain_mission(
-    mission: ast.Program, tree: Tree, vocabulary: Vocabulary, label: Callable[[Node], str], width: int = 100
+    mission: ast.Program, tree: Tree, vocabulary: Lexicon, label: Callable[[Node], str], width: int = 100
 ) -> str:
     """Every statement and definition in the order of the text, below each other and at most `width` columns wide.
 
@@ -46,14 +46,14 @@ def explain_mission(
     """
     width = max(width, LEAST_WIDTH)
     sentences = _Sentences(mission.span.source, vocabulary)
-    speaker = speaker_of(mission, vocabulary, "all")
+    printer = printer_of(mission, vocabulary, "all")
     facts = [Statement(sentences.number(part.span.start), (part,)) for part in (*mission.includes, *mission.facts)]
     found = [*facts, *_definitions(mission, tree, sentences), *_commands(mission.body, tree.root, sentences)]
     blocks = []
     for statement in sorted(found, key=lambda statement: statement.at):
         number, written = sentences.written(statement.at)
         lines = textwrap.wrap(f"line {number}: {written}", width, subsequent_indent=INDENT * 2)
-        lines += _reading(statement, speaker, width)
+        lines += _reading(statement, printer, width)
         if statement.node is not None:
             lines.append("")
             shown = outline(Tree(_pruned(statement.node, width // len(_BRANCH))), label)
@@ -88,20 +88,20 @@ def _commands(body: ast.Ast | None, root: Node, sentences: _Sentences) -> Iterat
         yield Statement(number, tuple(item for item, _ in pairs), node, joined)
 
 
-def _reading(statement: Statement, speaker: Speaker, width: int) -> Iterator[str]:
+def _reading(statement: Statement, printer: Printer, width: int) -> Iterator[str]:
     """`read as:` and the sentence behind it, or its lines below it."""
     items, joined = statement.items, statement.joined
     whole = items[0] if len(items) == 1 else ast.Chain(joined, items, False, items[0].span)
-    said = speaker.say(whole)
+    said = printer.say(whole)
     room = width - len(_READ_AS)
     if not said.in_lines and not is_longer(said.pieces, room):
-        line = speaker.line(whole, said, joined if len(items) == 1 else "")
+        line = printer.line(whole, said, joined if len(items) == 1 else "")
         if len(line) <= room:
             yield _READ_AS + line
             return
     yield _READ_AS.rstrip()
     for item in items:
-        for part in lines_of(item, speaker, width - 2 * len(INDENT), joined):
+        for part in lines_of(item, printer, width - 2 * len(INDENT), joined):
             text = part.lstrip(" ")
             indent = INDENT * 2 + " " * (len(part) - len(text))
             yield from textwrap.wrap(
@@ -132,7 +132,7 @@ def _cut(line: str, width: int) -> str:
 class _Sentences:
     """The sentences of a text: what stands between line ends, `;` and full stops outside brackets and blocks."""
 
-    def __init__(self, source: Source, vocabulary: Vocabulary) -> None:
+    def __init__(self, source: Source, vocabulary: Lexicon) -> None:
         self._words: Words = split(source, vocabulary.articles)
         self._sentences: list[tuple[int, int, int]] = []  # first character, first word, the word at which it ends
         words = self._words

@@ -10,12 +10,12 @@ import os
 import re
 
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
-from btlang.english.phrase import phrase_of
 from btlang.frontends.json.reader import FORMAT, PORT_KEYS
+from btlang.printer.phrase import phrase_of
 from btlang.text.source import NOWHERE
 from btlang.tree.model import NodeModel
 from btlang.tree.node import Node, Tree
-from btlang.vocabulary.vocabulary import Vocabulary
+from btlang.vocabulary.lexicon import Lexicon
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ _LONGEST = 200  # characters of a sentence: that of the root is the whole missio
 _UNFIT_WRITTEN = re.compile(r"(?<!\\)(?:\\\\)*\\u0000|[\ud800-\udfff]")
 
 
-def to_json(tree: Tree, vocabulary: Vocabulary) -> str:
+def to_json(tree: Tree, vocabulary: Lexicon) -> str:
     """One document, one line a node. `read_json` gives an equal tree; spans are told, and not read back.
 
     Raises MissionError (BT134) for a text with NUL or a lone surrogate, which `read_json` would refuse.
@@ -53,7 +53,7 @@ def to_json(tree: Tree, vocabulary: Vocabulary) -> str:
     return f'{{\n  "format": {FORMAT},\n  "trees": [\n{all_trees}\n  ],\n  "models": {listed}\n}}\n'
 
 
-def _items(root: Node, vocabulary: Vocabulary) -> list[dict[str, Any]]:
+def _items(root: Node, vocabulary: Lexicon) -> list[dict[str, Any]]:
     """The nodes in preorder; what is empty is left out, but for the id."""
     items: list[dict[str, Any]] = []
     stack: list[tuple[Node, int]] = [(root, -1)]

@@ -11,9 +11,9 @@ from btlang.tree.catalogue import CATALOGUE
 from btlang.tree.model import NodeModel, PortModel
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.entry import Entry, Meaning, SlotSpec
+from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.pattern import PatternError, forms
 from btlang.vocabulary.trie import TrieNode, add, collisions
-from btlang.vocabulary.vocabulary import Vocabulary
 
 MODULE = "my_robot.leaves"
 """Stands for the user's module in what is drafted."""
@@ -47,7 +47,7 @@ class Draft(Record):
         return "\n".join(lines)
 
 
-def unknown_leaves(tree: Tree, vocabulary: Vocabulary) -> dict[str, list[Node]]:
+def unknown_leaves(tree: Tree, vocabulary: Lexicon) -> dict[str, list[Node]]:
     """The leaves whose id is that of no entry and no node of the engine, by id, in the order of Tree.walk."""
     found: dict[str, list[Node]] = {}
     for node in tree.walk():
@@ -57,7 +57,7 @@ def unknown_leaves(tree: Tree, vocabulary: Vocabulary) -> dict[str, list[Node]]:
     return found
 
 
-def drafts(tree: Tree, vocabulary: Vocabulary) -> dict[str, Draft | None]:
+def drafts(tree: Tree, vocabulary: Lexicon) -> dict[str, Draft | None]:
     """A draft for each of these ids, None where no keyword entry can have such an id: it is no word."""
     models = {model.id: model for model in tree.models}
     taken: TrieNode = {}
@@ -69,7 +69,7 @@ def drafts(tree: Tree, vocabulary: Vocabulary) -> dict[str, Draft | None]:
     return made
 
 
-def to_keywords(tree: Tree, vocabulary: Vocabulary) -> str:
+def to_keywords(tree: Tree, vocabulary: Lexicon) -> str:
     """The text of a keyword file with an entry for each unknown leaf; it loads as it is."""
     found = drafts(tree, vocabulary)
     lines = [
@@ -86,7 +86,7 @@ def to_keywords(tree: Tree, vocabulary: Vocabulary) -> str:
     return "\n".join(lines) + "\n"
 
 
-def _draft(nodes: list[Node], model: NodeModel, vocabulary: Vocabulary, taken: TrieNode) -> Draft:
+def _draft(nodes: list[Node], model: NodeModel, vocabulary: Lexicon, taken: TrieNode) -> Draft:
     ports = {port.name: port for port in model.ports}
     for node in nodes:
         ports |= {name: PortModel(name) for name, _ in node.ports if name not in ports and name[:1] != "_"}
@@ -121,7 +121,7 @@ def _phrases(words: str, said: str) -> Iterator[str]:
     yield from (f"{_PREFIXES[-1]}{number} {words}{said}" for number in range(2, 1000))
 
 
-def _is_free(entry: Entry, vocabulary: Vocabulary, taken: TrieNode) -> bool:
+def _is_free(entry: Entry, vocabulary: Lexicon, taken: TrieNode) -> bool:
     """Whether no other phrase matches the same words; then this one is `taken`."""
     [phrase] = entry.phrases
     types = {slot.name: slot.type for slot in entry.slots}
@@ -161,7 +161,7 @@ def _words(name: str) -> list[str]:
     return [word.lower() for word in re.findall(r"[A-Z]+(?![a-z])|[A-Z]?[^\WA-Z\d_]+|\d+", name)]
 
 
-def _port_words(slot: SlotSpec, vocabulary: Vocabulary) -> str:
+def _port_words(slot: SlotSpec, vocabulary: Lexicon) -> str:
     words = _words(slot.name)
     return " ".join(words) if any(word not in vocabulary.articles for word in words) else " ".join(["with", *words])
 

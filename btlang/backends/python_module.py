@@ -8,8 +8,8 @@ from collections.abc import Sequence
 from btlang.backends.python_source import Source, Statements, called, literal
 from btlang.tree.ast import Fact
 from btlang.tree.node import Node, Tree
+from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.shipped import keyword_files
-from btlang.vocabulary.vocabulary import Vocabulary
 
 _HEAD = '''"""A behavior tree that runs on the simulated robot: python FILE [--speed max]. Needs btlang.
 
@@ -31,7 +31,7 @@ if __name__ == "__main__":
 """
 
 
-def to_python(tree: Tree, vocabulary: Vocabulary, *, world: str | None = None, facts: Sequence[Fact] = ()) -> str:
+def to_python(tree: Tree, vocabulary: Lexicon, *, world: str | None = None, facts: Sequence[Fact] = ()) -> str:
     """The text of a module with a name `mission`, a Mission with the keyword files of its leaves.
 
     Words that are Python objects (`btlang.action`) cannot be told; the leaf is then unknown there. Nor can the places
@@ -82,7 +82,7 @@ def _node(node: Node, children: list[Source]) -> Source:
     return called("Node", arguments)
 
 
-def _files(tree: Tree, vocabulary: Vocabulary) -> list[str]:
+def _files(tree: Tree, vocabulary: Lexicon) -> list[str]:
     """The keyword files of the leaves, without those that ship."""
     shipped = {"keywords/" + os.path.basename(path) for path in keyword_files()}
     found = {entry.file for node in tree.walk() for entry in vocabulary.entries.get(node.id, ())}

@@ -8,7 +8,7 @@ from importlib import import_module
 
 from btlang.record import Record
 from btlang.tree.node import Tree
-from btlang.vocabulary.vocabulary import Vocabulary
+from btlang.vocabulary.lexicon import Lexicon
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -62,9 +62,7 @@ def target_of(path: str) -> str:
     return next((name for name, target in TARGETS.items() if ending in target.suffixes), "")
 
 
-def compiled(
-    tree: Tree, vocabulary: Vocabulary, name: str, given: Mapping[str, Any] = {}, **options: Any
-) -> str | bytes:
+def compiled(tree: Tree, vocabulary: Lexicon, name: str, given: Mapping[str, Any] = {}, **options: Any) -> str | bytes:
     """The tree as a target; of the options those count that are not None, of what is `given` what the target uses.
 
     Raises ValueError for a name or an option that is not known, MissionError where the tree cannot be told so.
@@ -82,7 +80,7 @@ def compiled(
     return made
 
 
-def to_plain(tree: Tree, vocabulary: Vocabulary) -> str:
+def to_plain(tree: Tree, vocabulary: Lexicon) -> str:
     """The tree as `btc tree --plain` prints it."""
     from btlang.tree.dump import plain
 

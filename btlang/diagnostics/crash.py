@@ -8,8 +8,8 @@ import sys
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.render import render
-from btlang.folders import user_folder
 from btlang.text.source import Source, Span
+from btlang.user_dirs import user_dir
 
 _KNOWN = {MemoryError: "there is not enough memory for this", RecursionError: "this is nested too deep"}
 
@@ -27,7 +27,7 @@ def crashed(error: Exception) -> str:
 def _written(error: Exception) -> str:
     from traceback import format_exception
 
-    path = os.path.join(user_folder("state"), "crash.txt")
+    path = os.path.join(user_dir("state"), "crash.txt")
     os.makedirs(os.path.dirname(path), 0o700, exist_ok=True)
     head = f"btlang {sys.modules['btlang'].__version__}, Python {sys.version}, {platform.platform()}\n{sys.argv}\n"
     descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)

@@ -48,7 +48,7 @@ def _plain(name: str) -> str:
 
 def _page(code: str) -> str:
     with open(os.path.join(PAGES, f"{code}.md"), encoding="utf-8") as file:
-        return file.read().rstrip("\n")
+        return f"{file.read().rstrip()}\n\nSince btlang {CODES[code].since}, {CODES[code].status}."
 
 
 def _unknown(written: str) -> Diagnostic:

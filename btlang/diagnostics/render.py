@@ -20,7 +20,7 @@ def render(diagnostic: Diagnostic, colour: bool = False) -> str:
       go to labb then wave
             ^^^^
       Similar: lab
-      Perhaps: go to lab then wave
+      Did you mean: go to lab then wave
     """
     severity = diagnostic.kind.severity
     own, noted = (_COLOURS[severity], CYAN) if colour else ("", "")
@@ -34,7 +34,7 @@ def render(diagnostic: Diagnostic, colour: bool = False) -> str:
     if line:
         number = diagnostic.span.source.position(diagnostic.fix[0].start)[0] if diagnostic.fix is not None else 0
         elsewhere = number != diagnostic.span.source.position(diagnostic.span.start)[0]
-        lines.append(f"  Perhaps{f', in line {number}' if elsewhere else ''}: {line}")
+        lines.append(f"  Did you mean{f', in line {number}' if elsewhere else ''}: {line}")
     for span, text in diagnostic.notes:
         lines += [f"  {one_line(span.place)}: {text}", *underlined(span, noted)]
     return "\n".join(lines)

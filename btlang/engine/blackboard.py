@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from btlang.engine.leaf import ActionFailed
+from btlang.engine.leaves.leaf import ActionFailed
 
 MOST_TEXT = 1_000_000
 """Characters of the longest text that is kept: a script that doubles one would fill the memory."""
@@ -24,7 +24,7 @@ class Blackboard:
     One difference: a subtree that unsets a key of its parent's unsets it there. In C++ it only forgets it itself.
     """
 
-    __slots__ = ("_outermost", "_remapped", "_shared", "_values", "_writes")
+    __slots__ = ("_outermost", "_remapped", "_state", "_values", "_writes")
 
     def __init__(
         self,
@@ -37,7 +37,7 @@ class Blackboard:
         self._values = dict(values or {})
         self._remapped = dict(remapped or {})
         self._outermost: Blackboard = self if parent is None else parent._outermost
-        self._shared = parent if shares else None
+        self._state = parent if shares else None
         self._writes: dict[str, int] = {}  # only of keys that somebody has asked for
 
     def _owner(self, key: str) -> tuple[Blackboard, str]:
@@ -49,8 +49,8 @@ class Blackboard:
                 scope, key = scope._outermost, key[1:]
             elif key in scope._remapped:
                 scope, key = scope._remapped[key]
-            elif scope._shared is not None and key[:1] != "_":
-                scope = scope._shared
+            elif scope._state is not None and key[:1] != "_":
+                scope = scope._state
             else:
                 return scope, key
 
@@ -95,7 +95,7 @@ class Blackboard:
         scope: Blackboard | None = self
         while scope is not None:  # a loop: subtrees that share their keys may be nested deeply
             found.update(dict.fromkeys(key for key in scope._remapped if key in self))
-            scope = scope._shared
+            scope = scope._state
             if scope is not None:
                 found.update(dict.fromkeys(key for key in scope._values if key[:1] != "_"))
         return list(found)

@@ -4,13 +4,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
-from btlang.engine import (
+from btlang.engine.blackboard import Blackboard
+from btlang.engine.clock import Clock
+from btlang.engine.conditions import conditioned
+from btlang.engine.fused import fused
+from btlang.engine.instance import EngineError, EngineState, NodeInstance, halt_nothing
+from btlang.engine.leaves.binding import LeafSignature, bound_leaf
+from btlang.engine.leaves.leaf import ActionFailed
+from btlang.engine.nodes import (
     blackboard_nodes,
     branch,
+    constants,
     control,
     decorators,
     guards,
-    leaves,
     loops,
     nav2,
     reactive,
@@ -18,27 +25,21 @@ from btlang.engine import (
     timed,
     updates,
 )
-from btlang.engine.bind import Plan, bound_leaf
-from btlang.engine.blackboard import Blackboard
-from btlang.engine.build import EngineError, Shared, Site, halt_nothing
-from btlang.engine.clock import Clock
-from btlang.engine.conditions import conditioned
-from btlang.engine.leaf import ActionFailed
-from btlang.engine.region import at_top, below, regions
-from btlang.engine.subtree import child_scope, subtree
-from btlang.engine.switch import switch
-from btlang.engine.try_catch import try_catch
-from btlang.engine.watch import Trace, Watch, repeats
-from btlang.engine.whenever import whenever
+from btlang.engine.nodes.subtree import child_scope, subtree
+from btlang.engine.nodes.switch import switch
+from btlang.engine.nodes.try_catch import try_catch
+from btlang.engine.nodes.whenever import whenever
+from btlang.engine.resume_path import resumable, resume_paths, resuming
+from btlang.engine.status_trace import NodeTrace, StatusTrace, repeats
 from btlang.tree.catalogue import CATALOGUE, MOST_NODES, SUBTREE, NodeKind
 from btlang.tree.node import Node, Tree
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.engine.build import Compiled
+    from btlang.engine.instance import Compiled
 
 
-SEMANTICS: dict[str, Callable[[Site, Sequence[Compiled]], Compiled]] = {
+SEMANTICS: dict[str, Callable[[NodeInstance, Sequence[Compiled]], Compiled]] = {
     "Sequence": control.sequence,
     "Fallback": control.fallback,
     "AsyncSequence": control.async_sequence,
@@ -75,8 +76,8 @@ SEMANTICS: dict[str, Callable[[Site, Sequence[Compiled]], Compiled]] = {
     "WaitValueUpdate": updates.wait_value_update,
     "WasEntryUpdated": updates.was_entry_updated,
     "Sleep": timed.sleep,
-    "AlwaysSuccess": leaves.always_success,
-    "AlwaysFailure": leaves.always_failure,
+    "AlwaysSuccess": constants.always_success,
+    "AlwaysFailure": constants.always_failure,
     "SetBlackboard": blackboard_nodes.set_blackboard,
     "UnsetBlackboard": blackboard_nodes.unset_blackboard,
     "Script": script_nodes.script,
@@ -86,23 +87,23 @@ SEMANTICS: dict[str, Callable[[Site, Sequence[Compiled]], Compiled]] = {
 """What compiles each node of the catalogue."""
 
 
-def expand(tree: Tree, blackboard: Blackboard, shared: Shared) -> list[Site]:
+def expand(tree: Tree, blackboard: Blackboard, state: EngineState) -> list[NodeInstance]:
     """All nodes in preorder; a SubTree's only child is the root of its tree."""
     subtrees = dict(tree.subtrees)
-    sites: list[Site] = []
+    instances: list[NodeInstance] = []
     within: set[str] = set()  # names of the subtrees around the present node
-    # what is to come: a node, the site above it, its position there and its blackboard; a str: this subtree ends here
-    stack: list[tuple[Node, Site | None, int, Blackboard] | str] = [(tree.root, None, 0, blackboard)]
+    # to come: a node, the instance above it, its position there and its blackboard; a str: this subtree ends here
+    stack: list[tuple[Node, NodeInstance | None, int, Blackboard] | str] = [(tree.root, None, 0, blackboard)]
     while stack:
         top = stack.pop()
         if isinstance(top, str):
             within.remove(top)
             continue
         node, above, position, scope = top
-        if len(sites) == MOST_NODES:
+        if len(instances) == MOST_NODES:
             raise EngineError(f"the tree has more than {MOST_NODES:,} nodes", node)
-        site = Site(node, len(sites), above, position, scope, shared)
-        sites.append(site)
+        instance = NodeInstance(node, len(instances), above, position, scope, state)
+        instances.append(instance)
         children = node.children
         if node.id == SUBTREE:
             name = node.port("ID")
@@ -114,14 +115,16 @@ def expand(tree: Tree, blackboard: Blackboard, shared: Shared) -> list[Site]:
             within.add(name)
             stack.append(name)
             scope = child_scope(node, scope)
-        stack += [(children[at], site, at, scope) for at in range(len(children) - 1, -1, -1)]
-    return sites
+        stack += [(children[at], instance, at, scope) for at in range(len(children) - 1, -1, -1)]
+    return instances
 
 
 def outline(tree: Tree) -> tuple[list[Node], list[int]]:
     """All nodes in preorder, after expansion of subtrees, and the index of each one's parent, -1 for the root."""
-    sites = expand(tree, Blackboard(), Shared(lambda id: None, Clock(), {}, {}, None))
-    return [site.node for site in sites], [-1 if site.above is None else site.above.index for site in sites]
+    instances = expand(tree, Blackboard(), EngineState(lambda id: None, Clock(), {}, {}, None))
+    return [instance.node for instance in instances], [
+        -1 if instance.above is None else instance.above.index for instance in instances
+    ]
 
 
 def _root_of(node: Node, name: str, subtrees: dict[str, Node]) -> Node:
@@ -132,87 +135,87 @@ def _root_of(node: Node, name: str, subtrees: dict[str, Node]) -> Node:
     return subtrees[name]
 
 
-def compile_sites(sites: Sequence[Site], trace: Trace | None) -> Compiled:
+def compile_instances(instances: Sequence[NodeInstance], trace: StatusTrace | None) -> Compiled:
     """Compiles from the last node to the root, so that children are there before their parents."""
     waiting: list[Compiled] = []  # compiled nodes whose parents come later, so that the last ones are the next one's
-    watches: list[Watch] = []
-    around = regions(sites, _waits)
-    for site in reversed(sites):
-        node = site.node
+    traces: list[NodeTrace] = []
+    around = resume_paths(instances, _waits)
+    for instance in reversed(instances):
+        node = instance.node
         count = 1 if node.id == SUBTREE else len(node.children)
         children: Sequence[Compiled] = ()
         if count:
             children = waiting[: -count - 1 : -1]
             del waiting[-count:]
-        above, watch = site.above, None
+        above, node_trace = instance.above, None
         if trace is not None:
-            lower = watches[: -count - 1 : -1] if count else []
-            watch = Watch(site.index, above is not None and repeats(above.node), lower, trace)
-            watches[len(watches) - count :] = [watch]
-        site.shared.watch = watch
-        compiled = compile_node(site, children)
+            lower = traces[: -count - 1 : -1] if count else []
+            node_trace = NodeTrace(instance.index, above is not None and repeats(above.node), lower, trace)
+            traces[len(traces) - count :] = [node_trace]
+        instance.state.node_trace = node_trace
+        compiled = compile_node(instance, children)
         lasts = compiled[1] is not halt_nothing
-        region = around[site.index]
-        if region is not None and region.used and region.top == site.index:
-            compiled = at_top(region, compiled)
-        if watch is not None:
-            compiled = watch.wrap(compiled)
-        if region is None and above is not None and lasts:
+        path = around[instance.index]
+        if path is not None and path.used and path.top == instance.index:
+            compiled = resuming(path, compiled)
+        if node_trace is not None:
+            compiled = node_trace.wrap(compiled)
+        if path is None and above is not None and lasts:
             wider = around[above.index]
             if wider is not None and wider.top != above.index:  # else the way down is not longer
-                compiled = below(wider, compiled)
+                compiled = resumable(wider, compiled)
         waiting.append(compiled)
     [root] = waiting
     return root
 
 
-def _waits(site: Site) -> bool:
-    kind = CATALOGUE.get(site.node.id)
+def _waits(instance: NodeInstance) -> bool:
+    kind = CATALOGUE.get(instance.node.id)
     if kind is None or not kind.waits:
         return False
-    for port, text in site.node.ports:
+    for port, text in instance.node.ports:
         if (port[:1] == "_" and port != "_autoremap") or ("{" in text and not kind.any_ports):
             return False  # pre-conditions are asked, and a port is read, at each tick
     return True
 
 
-def compile_node(site: Site, children: Sequence[Compiled]) -> Compiled:
+def compile_node(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
     """One node whose children are compiled. Raises EngineError."""
-    node = site.node
+    node = instance.node
     kind = CATALOGUE.get(node.id)
     if kind is None:
-        compiled = _compile_leaf(site, children)
+        compiled = _compile_leaf(instance, children)
     else:
         if not kind.least <= len(children) <= kind.most and kind.id != SUBTREE:
-            raise site.error(f"{node.id} has {len(children)} children instead of {_how_many(kind)}")
-        compiled = _compile_built_in(site, kind, children)
-    return conditioned(site, compiled) if node.ports else compiled
+            raise instance.error(f"{node.id} has {len(children)} children instead of {_how_many(kind)}")
+        compiled = _compile_built_in(instance, kind, children)
+    return conditioned(instance, compiled) if node.ports else compiled
 
 
-def _compile_built_in(site: Site, kind: NodeKind, children: Sequence[Compiled]) -> Compiled:
+def _compile_built_in(instance: NodeInstance, kind: NodeKind, children: Sequence[Compiled]) -> Compiled:
     ports = kind.ports
     from_blackboard = False
-    for port, text in site.node.ports:
+    for port, text in instance.node.ports:
         if port in ports:
             from_blackboard = from_blackboard or "{" in text
         elif port[:1] != "_" and not kind.any_ports:
-            raise site.error(f"{kind.id} takes no port {port}")
-    compiled = SEMANTICS[kind.id](site, children)
-    return _checked(site, compiled) if from_blackboard and not kind.any_ports else compiled
+            raise instance.error(f"{kind.id} takes no port {port}")
+    compiled = fused(SEMANTICS[kind.id], instance, children)(instance, children)
+    return _checked(instance, compiled) if from_blackboard and not kind.any_ports else compiled
 
 
-def _compile_leaf(site: Site, children: Sequence[Compiled]) -> Compiled:
-    node_id, shared = site.node.id, site.shared
-    plan = shared.plans.get(node_id)
-    if plan is None:
-        binding = shared.bind(node_id)
+def _compile_leaf(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
+    node_id, state = instance.node.id, instance.state
+    signature = state.signatures.get(node_id)
+    if signature is None:
+        binding = state.bind(node_id)
         if binding is None:
-            raise site.error(f"nothing is bound to {node_id}")
-        plan = shared.plans[node_id] = Plan(binding)
+            raise instance.error(f"nothing is bound to {node_id}")
+        signature = state.signatures[node_id] = LeafSignature(binding)
     if children:
-        raise site.error(f"{node_id} is a leaf, which takes no children")
-    compiled = bound_leaf(site, plan)
-    return compiled if shared.stopwatch is None else shared.stopwatch.wrap(site.index, compiled)
+        raise instance.error(f"{node_id} is a leaf, which takes no children")
+    compiled = bound_leaf(instance, signature)
+    return compiled if state.stopwatch is None else state.stopwatch.wrap(instance.index, compiled)
 
 
 def _how_many(kind: NodeKind) -> str:
@@ -221,7 +224,7 @@ def _how_many(kind: NodeKind) -> str:
     return str(kind.least) if kind.least == kind.most else f"{kind.least} or {kind.most}"
 
 
-def _checked(site: Site, compiled: Compiled) -> Compiled:
+def _checked(instance: NodeInstance, compiled: Compiled) -> Compiled:
     """A node that reads a number from the blackboard and fails where there is none."""
     tick, halt = compiled
 
@@ -230,6 +233,6 @@ def _checked(site: Site, compiled: Compiled) -> Compiled:
             return tick()
         except ActionFailed as failed:
             halt(False)
-            return site.fail(str(failed))
+            return instance.fail(str(failed))
 
     return checked, halt

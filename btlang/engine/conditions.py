@@ -22,11 +22,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from btlang.engine.blackboard import Blackboard
-from btlang.engine.build import Fault, Site
-from btlang.engine.leaf import ActionFailed
-from btlang.engine.leaves import skipped
-from btlang.engine.script import truth
-from btlang.engine.script_nodes import read_script
+from btlang.engine.instance import Fault, NodeInstance
+from btlang.engine.leaves.leaf import ActionFailed
+from btlang.engine.nodes.constants import skipped
+from btlang.engine.nodes.script_nodes import read_script
+from btlang.engine.script.script import truth
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 from btlang.tree.catalogue import SUBTREE
 
@@ -34,7 +34,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, TypeAlias
 
-    from btlang.engine.build import Compiled
+    from btlang.engine.instance import Compiled
 
     Script: TypeAlias = Callable[[Blackboard], Any]
 
@@ -49,29 +49,29 @@ OF_EDITORS = frozenset(("_description", "_fullpath", "_uid"))
 """Attributes that Groot2 and BehaviorTree.CPP write into every node; they do nothing."""
 
 
-def conditioned(site: Site, compiled: Compiled) -> Compiled:
+def conditioned(instance: NodeInstance, compiled: Compiled) -> Compiled:
     """The node with its pre- and post-conditions; the node itself where it has none."""
     texts: dict[str, str] = {}
-    for port, text in site.node.ports:
+    for port, text in instance.node.ports:
         if port[:1] != "_":
             continue
         if port in _DECIDES or port in _AFTER:
             texts[port] = text
-        elif port not in OF_EDITORS and (port != "_autoremap" or site.node.id != SUBTREE):
-            raise site.error(f"{site.node.id} takes no port {port}")
+        elif port not in OF_EDITORS and (port != "_autoremap" or instance.node.id != SUBTREE):
+            raise instance.error(f"{instance.node.id} takes no port {port}")
     if texts.get("_skipIf") == "false":
         del texts["_skipIf"]
     if not texts:
         return compiled
     if texts == {"_skipIf": "true"}:
-        return skipped(site, ())
-    return _watched_by_scripts(site, compiled, texts)
+        return skipped(instance, ())
+    return _watched_by_scripts(instance, compiled, texts)
 
 
-def _watched_by_scripts(site: Site, compiled: Compiled, texts: Mapping[str, str]) -> Compiled:
+def _watched_by_scripts(instance: NodeInstance, compiled: Compiled, texts: Mapping[str, str]) -> Compiled:
     tick_node, halt_node = compiled
-    scope = site.scope
-    scripts = {port: read_script(site, port, text) for port, text in texts.items()}
+    scope = instance.scope
+    scripts = {port: read_script(instance, port, text) for port, text in texts.items()}
     before = [(port, scripts[port], *rule) for port, rule in _DECIDES.items() if port in scripts]
     goes_on = scripts.get("_while")
     after = {
@@ -102,13 +102,13 @@ def _watched_by_scripts(site: Site, compiled: Compiled, texts: Mapping[str, str]
         else:
             halt(False)
             if status == FAILURE:
-                site.fail(reason)
+                instance.fail(reason)
         if status in (SUCCESS, FAILURE):
             try:
                 for script in after[status]:
                     script(scope)
             except ActionFailed as failed:
-                return (site.fail if status == SUCCESS else site.pass_on)(str(failed))
+                return (instance.fail if status == SUCCESS else instance.pass_on)(str(failed))
         return status
 
     def halt(keep: bool) -> None:
@@ -120,6 +120,6 @@ def _watched_by_scripts(site: Site, compiled: Compiled, texts: Mapping[str, str]
                 try:
                     on_halted(scope)
                 except ActionFailed as failed:
-                    site.shared.halt_faults.append(Fault(site.index, str(failed), failed))
+                    instance.state.halt_faults.append(Fault(instance.index, str(failed), failed))
 
     return tick, halt

@@ -7,14 +7,14 @@ from _thread import get_ident  # `threading` takes longer to import
 from collections.abc import Callable, Mapping, Sequence
 
 from btlang.engine.blackboard import Blackboard
-from btlang.engine.build import EngineError, Fault, Shared, Site, blackboard_key
 from btlang.engine.clock import Clock
-from btlang.engine.compile import compile_sites, expand
-from btlang.engine.leaf import REFUSED, LeafBinding, told, unheard
-from btlang.engine.script_values import as_text
+from btlang.engine.compile import compile_instances, expand
+from btlang.engine.instance import EngineError, EngineState, Fault, NodeInstance, blackboard_key
+from btlang.engine.leaves.leaf import REFUSED, LeafBinding, reason_text, unheard
+from btlang.engine.script.values import as_text
 from btlang.engine.status import FAILURE, IDLE
-from btlang.engine.watch import Changes, Trace
-from btlang.garbage import no_collection
+from btlang.engine.status_trace import Changes, StatusTrace
+from btlang.gc_pause import gc_paused
 from btlang.record import Record
 from btlang.text.source import Span
 from btlang.tree.node import Node, Tree
@@ -25,10 +25,10 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+    from btlang.engine.status_trace import Listener
     from btlang.engine.timing import Stopwatch
-    from btlang.engine.watch import Listener
 
-# A node, its watch, its pre-conditions, and the check of ports from the blackboard; twice, because what starts at the
+# A node, its trace, its pre-conditions, and the check of ports from the blackboard; twice, because what starts at the
 # end of one branch may halt another one.
 _FRAMES_PER_LEVEL = 8
 _FRAMES_FOR_LEAVES = 1000
@@ -59,8 +59,8 @@ class Engine:
     `Work.in_tick`, what background leaves get; its `let_go` is called when such a leaf was halted or has failed.
 
     Raises EngineError where the tree cannot be compiled. `listener` gets lists of status changes, children before
-    parents; see watch.py for what counts as one and when they are told. `on_unknown` is called during a tick where a
-    condition does not know (Unknown), once for each until the tree is halted.
+    parents; see status_trace.py for what counts as one, and when it gets them. `on_unknown` is called during a tick if
+    a condition does not know (Unknown), once for each until the tree is halted.
     """
 
     def __init__(
@@ -82,20 +82,20 @@ class Engine:
         self.on_wake: Callable[[], object] | None = None
         """What the service `wake` calls, in the thread of whoever asks for it: "tick again now"."""
         own = {"wake": self._wake, "wake_at": clock.leaf_wake_at, "progress": unheard}
-        self._shared = Shared(bind, clock, {**own, **services}, enums, stopwatch, proxies)
+        self._state = EngineState(bind, clock, {**own, **services}, enums, stopwatch, proxies)
         if on_unknown is not None:
-            self._shared.on_unknown = lambda fault: on_unknown(self._failure(fault))
-        with no_collection:
-            self._sites = expand(tree, self.blackboard, self._shared)
-            self._trace = None if listener is None else Trace(self._shared, listener)
-            self._tick, self._halt = compile_sites(self._sites, self._trace)
-        self._frames = _depth(self._sites) * _FRAMES_PER_LEVEL + _FRAMES_FOR_LEAVES
+            self._state.on_unknown = lambda fault: on_unknown(self._failure(fault))
+        with gc_paused:
+            self._instances = expand(tree, self.blackboard, self._state)
+            self._trace = None if listener is None else StatusTrace(self._state, listener)
+            self._tick, self._halt = compile_instances(self._instances, self._trace)
+        self._frames = _depth(self._instances) * _FRAMES_PER_LEVEL + _FRAMES_FOR_LEAVES
         self._deep = self._frames > _FRAMES_ASSUMED
-        listened = self._sites if listener is not None else ()
+        listened = self._instances if listener is not None else ()
         self._keyed = frozenset([s.index for s in listened if any("{" in text for _, text in s.node.ports)])
         self._busy = False
         self.status = IDLE
-        self._fault: Fault | Site | None = None
+        self._fault: Fault | NodeInstance | None = None
 
     def tick(self) -> int:
         """Ticks the tree once; returns its status.
@@ -110,9 +110,9 @@ class Engine:
         self._busy = True
         try:
             self.status = status = self._tick()
-            self._fault = self._shared.fault if status is FAILURE else None
+            self._fault = self._state.fault if status is FAILURE else None
             if self._trace is not None:
-                self._trace.tell()
+                self._trace.flush()
             return status
         except BaseException:
             self._halt_all(False, cut_short=True)
@@ -131,11 +131,11 @@ class Engine:
         Only a SequenceWithMemory keeps its place, as in BehaviorTree.CPP. What `catch_on_halt` of a TryCatch starts
         to clean up does not run in an emergency.
         """
-        self._shared.emergency = emergency
+        self._state.emergency = emergency
         try:
             self._stop(False)
         finally:
-            self._shared.emergency = False
+            self._state.emergency = False
 
     def suspend(self) -> None:
         """Halts every running leaf but keeps positions, counts and timers; the next tick starts those leaves anew."""
@@ -144,11 +144,11 @@ class Engine:
     def take_halt_failures(self) -> list[Failure]:
         """What leaves raised while they were halted since it was last asked, oldest first.
 
-        What a background leaf raises that ends after its halt is told once it has ended.
+        What a background leaf raises that ends after its halt is among them once it has ended.
         """
-        faults = self._shared.halt_faults
-        if self._shared.background is not None:
-            faults += self._shared.background.take_faults()
+        faults = self._state.halt_faults
+        if self._state.background is not None:
+            faults += self._state.background.take_faults()
         if not faults:
             return []
         failures = [self._failure(fault) for fault in faults]
@@ -160,7 +160,7 @@ class Engine:
 
         It waits for them at most `patience` seconds of real time. The engine can be ticked again.
         """
-        background = self._shared.background
+        background = self._state.background
         if background is None:
             return []
         return [self._failure(Fault(index, "it did not end")) for index in background.close(patience)]
@@ -168,30 +168,30 @@ class Engine:
     @property
     def works_beside(self) -> bool:
         """Whether a leaf works in a thread or on the event loop."""
-        background = self._shared.background
+        background = self._state.background
         return background is not None and background.is_working
 
     @property
     def nodes(self) -> list[tuple[str, Node]]:
         """Path and node of all nodes in preorder, after expansion of subtrees; made at each call."""
         paths: list[str] = []
-        for site in self._sites:
-            above = paths[site.above.index] if site.above is not None and site.above.index else ""
-            paths.append(f"{above}/{site.position}" if site.above is not None else "/")
-        return [(path, site.node) for path, site in zip(paths, self._sites, strict=True)]
+        for instance in self._instances:
+            above = paths[instance.above.index] if instance.above is not None and instance.above.index else ""
+            paths.append(f"{above}/{instance.position}" if instance.above is not None else "/")
+        return [(path, instance.node) for path, instance in zip(paths, self._instances, strict=True)]
 
     @property
     def size(self) -> int:
         """The number of nodes, after expansion of subtrees."""
-        return len(self._sites)
+        return len(self._instances)
 
     def node(self, index: int) -> Node:
         """The node with an index in preorder."""
-        return self._sites[index].node
+        return self._instances[index].node
 
     def filled(self, index: int) -> Node:
         """As `node`, with the arguments of the subtrees around it in place of their `{names}`."""
-        node, scope = self._sites[index].node, self._sites[index].scope
+        node, scope = self._instances[index].node, self._instances[index].scope
         keys = [(port, text, blackboard_key(port, text)) for port, text in node.ports]
         ports = tuple((port, text if key is None else _argument(scope, key, text)) for port, text, key in keys)
         return node if ports == node.ports else node.replace(ports=ports)
@@ -203,50 +203,50 @@ class Engine:
         """
         if not self._keyed:
             return {}
-        return {index: self._with_values(self._sites[index]) for index in changes.indices if index in self._keyed}
+        return {index: self._with_values(self._instances[index]) for index in changes.indices if index in self._keyed}
 
     def path(self, index: int) -> str:
         """Where a node is: `/` is the root, `/0/1` the second child of its first child; a SubTree's tree is child 0."""
         steps: list[str] = []
-        site = self._sites[index]
-        while site.above is not None:
-            steps.append(str(site.position))
-            site = site.above
+        instance = self._instances[index]
+        while instance.above is not None:
+            steps.append(str(instance.position))
+            instance = instance.above
         return "/" + "/".join(reversed(steps))
 
-    def tell(self) -> None:
-        """Hands to the listener what has changed since it was last told; also from within a leaf.
+    def flush(self) -> None:
+        """Hands the pending status changes to the listener; also from within a leaf.
 
         In another thread than that of the latest tick it does nothing: that tick may go on.
         """
         if self._trace is not None and self._trace.thread == get_ident():
-            self._trace.tell()
+            self._trace.flush()
 
     def parent(self, index: int) -> int:
         """The node above a node, -1 for the root."""
-        above = self._sites[index].above
+        above = self._instances[index].above
         return -1 if above is None else above.index
 
     def span(self, index: int) -> Span | None:
         """The sentence of a node, or of the nearest one around it that has one."""
-        site = self._sites[index]
-        while site.node.span is None and site.above is not None:
-            site = site.above
-        return site.node.span
+        instance = self._instances[index]
+        while instance.node.span is None and instance.above is not None:
+            instance = instance.above
+        return instance.node.span
 
-    def reason(self, index: int, fault: Fault | Site | None = None) -> str:
+    def reason(self, index: int, fault: Fault | NodeInstance | None = None) -> str:
         """What a failure, by default the latest, or one that caused it, says about a node.
 
         "" where only a node below it can say that.
         """
-        fault = fault or self._shared.fault
+        fault = fault or self._state.fault
         while fault is not None and fault.index < index:  # causes are below
             fault = fault.cause
         return self._text(fault) if fault is not None and fault.index == index else ""
 
-    def _with_values(self, site: Site) -> Node:
-        ports = tuple((port, _valued(site.scope, port, text)) for port, text in site.node.ports)
-        return site.node.replace(ports=ports)  # type: ignore[no-any-return]
+    def _with_values(self, instance: NodeInstance) -> Node:
+        ports = tuple((port, _valued(instance.scope, port, text)) for port, text in instance.node.ports)
+        return instance.node.replace(ports=ports)  # type: ignore[no-any-return]
 
     def _wake(self) -> None:
         if self.on_wake is not None:
@@ -278,8 +278,8 @@ class Engine:
         TryCatch starts to clean up.
         """
         interrupted: BaseException | None = None
-        for _ in range(len(self._sites) + 1):  # each leaf interrupts it once at most, and so does each TryCatch
-            self._shared.interrupts.clear()
+        for _ in range(len(self._instances) + 1):  # each leaf interrupts it once at most, and so does each TryCatch
+            self._state.interrupts.clear()
             try:
                 if cut_short:
                     self._halt(True)
@@ -291,25 +291,25 @@ class Engine:
         if not keep:
             self._failed = self.failure
             self.status = IDLE
-            self._shared.warned.clear()
+            self._state.warned.clear()
         if self._trace is not None:
-            self._trace.tell()
+            self._trace.flush()
         if interrupted is not None:
             raise interrupted
 
-    def _text(self, fault: Fault | Site) -> str:
+    def _text(self, fault: Fault | NodeInstance) -> str:
         if fault.reason is REFUSED:
-            return self._shared.plans[self.node(fault.index).id].binding.refusal
-        return told(fault.reason) or "it gave no reason"
+            return self._state.signatures[self.node(fault.index).id].binding.refusal
+        return reason_text(fault.reason) or "it gave no reason"
 
-    def _failure(self, fault: Fault | Site) -> Failure:
+    def _failure(self, fault: Fault | NodeInstance) -> Failure:
         around: list[Failure] = []
         while fault.cause is not None:
-            around.append(self._told(fault))
+            around.append(self._described(fault))
             fault = fault.cause
-        return self._told(fault, tuple(reversed(around)))
+        return self._described(fault, tuple(reversed(around)))
 
-    def _told(self, fault: Fault | Site, around: tuple[Failure, ...] = ()) -> Failure:
+    def _described(self, fault: Fault | NodeInstance, around: tuple[Failure, ...] = ()) -> Failure:
         index = fault.index
         return Failure(
             index, self.node(index), self.path(index), self._text(fault), fault.exception, self.span(index), around
@@ -327,9 +327,9 @@ def _valued(scope: Blackboard, port: str, text: str) -> str:
     return as_text(value) if isinstance(value, str | int | float) else text
 
 
-def _depth(sites: Sequence[Site]) -> int:
-    depths = [0] * len(sites)
-    for site in sites:
-        if site.above is not None:
-            depths[site.index] = depths[site.above.index] + 1
+def _depth(instances: Sequence[NodeInstance]) -> int:
+    depths = [0] * len(instances)
+    for instance in instances:
+        if instance.above is not None:
+            depths[instance.index] = depths[instance.above.index] + 1
     return max(depths)

@@ -5,12 +5,12 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 
 from btlang.engine.blackboard import Blackboard
-from btlang.engine.build import EngineError, Shared, Site, halt_nothing
 from btlang.engine.clock import Clock
 from btlang.engine.compile import compile_node
-from btlang.engine.leaf import LeafBinding
+from btlang.engine.instance import EngineError, EngineState, NodeInstance, halt_nothing
+from btlang.engine.leaves.leaf import LeafBinding
+from btlang.engine.nodes.subtree import child_scope
 from btlang.engine.status import SUCCESS
-from btlang.engine.subtree import child_scope
 from btlang.tree.catalogue import CATALOGUE, SUBTREE
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import used_subtrees
@@ -19,7 +19,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from btlang.engine.build import Compiled
+    from btlang.engine.instance import Compiled
 
 
 class UnknownNode(EngineError):
@@ -36,19 +36,19 @@ def faults(tree: Tree, bind: Callable[[str], LeafBinding | None], services: Mapp
     Trees that are not used are not looked at. `bind` and `services` are as for an Engine, which would refuse the tree
     where there is a fault; it refuses one of too many nodes, too.
     """
-    shared = Shared(bind, Clock(), {"wake": None, "wake_at": None, **services}, {}, None)
+    state = EngineState(bind, Clock(), {"wake": None, "wake_at": None, **services}, {}, None)
     found: list[EngineError] = []
     uses: dict[str, list[Node]] = {}
     used = dict(used_subtrees(tree))
     for name, root in (("", tree.root), *used.items()):
         for node in Tree(root).walk():
-            found += _wrong_with(node, used, shared)
+            found += _wrong_with(node, used, state)
             if node.id == SUBTREE and node.port("ID") in used:
                 uses.setdefault(name, []).append(node)
     return found + [EngineError(f"the subtree {node.port('ID')} contains itself", node) for node in _circles(uses)]
 
 
-def _wrong_with(node: Node, subtrees: dict[str, Node], shared: Shared) -> Iterator[EngineError]:
+def _wrong_with(node: Node, subtrees: dict[str, Node], state: EngineState) -> Iterator[EngineError]:
     if node.id == SUBTREE:
         name = node.port("ID")
         if node.children:
@@ -59,7 +59,7 @@ def _wrong_with(node: Node, subtrees: dict[str, Node], shared: Shared) -> Iterat
             yield UnknownSubTree(f"there is no subtree {name}", node)
     elif node.id not in CATALOGUE:
         try:
-            bound = shared.bind(node.id)
+            bound = state.bind(node.id)
         except EngineError as error:
             yield EngineError(error.message, node)
             return
@@ -71,7 +71,7 @@ def _wrong_with(node: Node, subtrees: dict[str, Node], shared: Shared) -> Iterat
     try:
         if node.id == SUBTREE:
             child_scope(node, Blackboard())
-        compile_node(Site(node, 0, None, 0, Blackboard(), shared), [standing_in] * count)
+        compile_node(NodeInstance(node, 0, None, 0, Blackboard(), state), [standing_in] * count)
     except EngineError as error:
         yield EngineError(error.message, node)
 

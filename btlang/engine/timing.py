@@ -6,7 +6,7 @@ from time import perf_counter
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.engine.build import Compiled
+    from btlang.engine.instance import Compiled
 
 
 class Stopwatch:

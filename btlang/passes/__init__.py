@@ -23,7 +23,7 @@ from btlang.passes.size import check_size
 from btlang.passes.types import check_types
 from btlang.tree.ast import Program
 from btlang.tree.node import Tree
-from btlang.vocabulary.vocabulary import Vocabulary
+from btlang.vocabulary.lexicon import Lexicon
 
 LOWERING = (Pass("names", order_names, needs_text=True), Pass("lowering", lower_names, needs_text=True))
 CHECKS = (
@@ -59,7 +59,7 @@ def run_passes(compilation: Compilation, passes: Iterable[Pass] = PASSES) -> Com
     return compilation
 
 
-def compile_mission(mission: Program, vocabulary: Vocabulary, *, needs_command: bool = True) -> Tree:
+def compile_mission(mission: Program, vocabulary: Lexicon, *, needs_command: bool = True) -> Tree:
     """The checked tree of a mission, without lints. Subtrees that are used come before their users.
 
     Raises MissionError (BT005, BT014, BT040 to BT042).
@@ -67,12 +67,12 @@ def compile_mission(mission: Program, vocabulary: Vocabulary, *, needs_command: 
     return run_passes(Compilation(vocabulary, mission, needs_command=needs_command), CHECKS).tree
 
 
-def lower_mission(mission: Program, vocabulary: Vocabulary) -> Tree:
+def lower_mission(mission: Program, vocabulary: Lexicon) -> Tree:
     """As `compile_mission`, without the checks of the tree."""
     return run_passes(Compilation(vocabulary, mission), LOWERING).tree
 
 
-def errors_of(mission: Program, vocabulary: Vocabulary) -> Iterable[Diagnostic]:
+def errors_of(mission: Program, vocabulary: Lexicon) -> Iterable[Diagnostic]:
     """What is wrong with a mission that could be read, for corrections of one that could not."""
     try:
         compile_mission(mission, vocabulary, needs_command=False)

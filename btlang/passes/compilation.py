@@ -10,7 +10,7 @@ from btlang.record import Record
 from btlang.tree.ast import Definition, Program
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import children_first
-from btlang.vocabulary.vocabulary import Vocabulary
+from btlang.vocabulary.lexicon import Lexicon
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ class Compilation:
 
     def __init__(
         self,
-        vocabulary: Vocabulary,
+        vocabulary: Lexicon,
         mission: Program | None = None,
         tree: Tree | None = None,
         *,

@@ -28,6 +28,13 @@ def behind(scripts: Sequence[Node], node: Node) -> Node:
     return Node(SEQUENCE, (*scripts, node), span=node.span) if scripts else node
 
 
+def is_prepared(node: Node) -> bool:
+    """Whether `behind` made a node: all its children but the last only compute values for that one."""
+    *scripts, last = node.children or (node,)
+    unsaid = all(child.span is None for child in scripts)
+    return bool(scripts) and unsaid and node.id == SEQUENCE and node.span is not None and node.span is last.span
+
+
 def prepared(
     arguments: Iterable[tuple[str, str]], scope: Scope, kinds: Mapping[str, str] = {}
 ) -> tuple[list[Node], Ports]:

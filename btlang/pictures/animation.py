@@ -26,17 +26,18 @@ _EACH, _LAST = 90, 2500  # milliseconds that a frame is shown, and the last one
 _LEAST = 0.25  # seconds of the mission between two frames, at least
 _COLOURS = 96
 _DPI = 90
-_MARGIN, _HEAD = 10.0, 36.0
+_MARGIN, _HEAD = 10.0, 48.0
+_LINE = 30.0  # of the commands under way, below the title
 _ROOM = Area(_MARGIN, _HEAD, 540.0, 420.0)
 _BLUE = "#2a6fb0"
 _SPOKEN = 10  # frames that a text is shown, at least
 
 
-def animated(world: World, record: RunRecord) -> bytes:
+def animated(world: World, record: RunRecord, title: str) -> bytes:
     """The bytes of a GIF of at most 140 frames that runs for ever."""
     from PIL.Image import Dither
 
-    frames = _Film(world, record).frames()
+    frames = _Film(world, record, title).frames()
     palette = _palette(frames)
     flat = [frame.quantize(palette=palette, dither=Dither.NONE) for frame in frames]
     out = io.BytesIO()
@@ -60,7 +61,7 @@ def _palette(frames: list[Image]) -> Image:
 class _Film:
     """What stands still is drawn once; onto it the way grows; robot, things and text are drawn anew on each frame."""
 
-    def __init__(self, world: World, record: RunRecord) -> None:
+    def __init__(self, world: World, record: RunRecord, title: str) -> None:
         self._record = record
         self._times = [sample.t for sample in record.track]
         self._things = {thing.name: thing for thing in world.objects if thing.name in record.moved}
@@ -68,7 +69,9 @@ class _Film:
         extent = [*way(record), *((thing.x, thing.y) for thing in self._things.values())]
         self._map = WorldMap(still, _ROOM, extent)
         area = self._map.area
-        self._canvas = Canvas(max(area.width, 300.0) + 2 * _MARGIN, area.y + area.height + _MARGIN)
+        self._canvas = Canvas(max(area.width, 300.0) + 2 * _MARGIN, area.y + area.height + _MARGIN, title)
+        text = letters.clipped(title, self._canvas.width - 2 * _MARGIN - 4, SMALL)
+        self._canvas.text(_MARGIN + 2, 12, text, size=SMALL, colour=SOFT)
         self._map.draw(self._canvas)
         placer = Placer(area)
         placer.avoid(along([self._map.at(*place) for place in way(record)], 4.0))
@@ -125,7 +128,7 @@ class _Film:
             radius = max(self._things[name].radius * self._map.scale, 2.6)
             self._canvas.circle(x, y, radius, fill=OBJECT, edge="white", line=0.6, z=7)
             if place is not None:
-                text = letters.clipped(letters.shown(name), 100, SMALL, False, letters.width)
+                text = letters.clipped(letters.shown(name), 100, SMALL)
                 self._canvas.text(x + radius + 2, y, text, size=SMALL, colour=OBJECT, halo=True, z=5)
 
     def _speech(self, now: float, pose: Pose, least: float) -> None:
@@ -133,7 +136,7 @@ class _Film:
         said = [mark for mark in self._record.marks if mark.kind in ("say", "print") and mark.t <= now]
         if not said or now > said[-1].t + max(least, 0.35 + 0.06 * len(said[-1].text)):
             return
-        text = letters.clipped(letters.shown(said[-1].text), 180, SMALL, False, letters.width)
+        text = letters.clipped(letters.shown(said[-1].text), 180, SMALL)
         width = letters.width(text, SMALL) + 12
         x, y = self._map.at(pose.x, pose.y)
         area = self._map.area
@@ -150,14 +153,14 @@ class _Film:
     def _headline(self, before: float, now: float, sample: Sample, last: bool) -> None:
         right = self._canvas.width - _MARGIN
         clock = f"{now:.1f} s   ·   battery {sample.battery:.0f} %"
-        self._canvas.text(right, _HEAD / 2, clock, size=SMALL, colour=SOFT, align="right", z=9)
+        self._canvas.text(right, _LINE, clock, size=SMALL, colour=SOFT, align="right", z=9)
         room = right - _MARGIN - 130
         colour, title = INK, self._title(before, now)
         if last:
             look, words = outcome(self._record)
             colour, title = look.strong, f"{look.sign} {words}"
-        title = letters.clipped(letters.shown(title), room, TITLE, True, letters.width)
-        self._canvas.text(_MARGIN + 2, _HEAD / 2, title, size=TITLE, bold=True, colour=colour, z=9)
+        title = letters.clipped(letters.shown(title), room, TITLE, True)
+        self._canvas.text(_MARGIN + 2, _LINE, title, size=TITLE, bold=True, colour=colour, z=9)
 
     def _title(self, before: float, now: float) -> str:
         under_way = [c.text for c in self._record.commands if c.start.t <= now and (c.end > now or c.start.t > before)]

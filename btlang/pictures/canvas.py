@@ -1,15 +1,16 @@
-"""A sheet to draw on, in points from the upper left corner. All use of matplotlib's figures is here."""
+"""A surface for pictures of trees and of runs. All use of matplotlib's figures and fonts is here."""
 
 from __future__ import annotations
 
 import io
 import logging
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Iterator
+from contextlib import AbstractContextManager, contextmanager, nullcontext
+from functools import cache
 from math import sqrt
 
 from btlang.pictures.files import missing
-from btlang.pictures.letters import font
+from btlang.pictures.letters import CAP_HEIGHT, FAMILY, UNKNOWN, width
 from btlang.pictures.style import INK, PAPER, TEXT
 
 TYPE_CHECKING = False
@@ -17,13 +18,27 @@ if TYPE_CHECKING:
     from typing import Any
 
     from matplotlib.artist import Artist
+    from matplotlib.font_manager import FontProperties
 
-    Points = Sequence[tuple[float, float]]
+    from btlang.pictures.surface import Points
 
 _DPI = 144.0
 _MOST_PIXELS = 36e6  # of a PNG; a larger picture gets fewer pixels a point
 _LONGEST_SIDE = 32000  # pixels; many programs show no more
-_CAP_HEIGHT = 0.73  # of the font, as a share of its size
+
+
+@cache
+def _font(size: float, bold: bool) -> FontProperties:
+    from matplotlib.font_manager import FontProperties
+
+    return FontProperties(family=FAMILY, size=size, weight="bold" if bold else "normal")
+
+
+@cache
+def _known() -> frozenset[str]:
+    from matplotlib.font_manager import findfont, get_font
+
+    return frozenset(map(chr, get_font(findfont(_font(10, False))).get_charmap()))
 
 
 @contextmanager
@@ -51,12 +66,12 @@ def drawing(path: str) -> Iterator[None]:
 class Canvas:
     """What is drawn later lies above, unless `z` says otherwise."""
 
-    def __init__(self, width: float, height: float, paper: str = PAPER) -> None:
+    def __init__(self, width: float, height: float, title: str) -> None:
         from matplotlib.backends.backend_agg import FigureCanvasAgg
         from matplotlib.figure import Figure
 
-        self.width, self.height = width, height
-        self.figure = Figure(figsize=(width / 72, height / 72), dpi=72, facecolor=paper)
+        self.width, self.height, self._title = width, height, title
+        self.figure = Figure(figsize=(width / 72, height / 72), dpi=72, facecolor=PAPER)
         self._agg: Any = FigureCanvasAgg(self.figure)
         self.axes = self.figure.add_axes((0, 0, 1, 1))
         self.axes.set_xlim(0, width)
@@ -73,25 +88,16 @@ class Canvas:
         return self.axes.add_artist(artist)
 
     def text(
-        self,
-        x: float,
-        y: float,
-        text: str,
-        *,
-        size: float = TEXT,
-        colour: str = INK,
-        bold: bool = False,
-        align: str = "left",
-        z: float = 0,
-        halo: bool = False,
-    ) -> Artist:
+        self, x: float, y: float, text: str, *, size: float = TEXT,
+        colour: str = INK, bold: bool = False, align: str = "left", z: float = 0, halo: bool = False,
+    ) -> Artist:  # fmt: skip
         """One line whose capitals are centred on `y`. A halo keeps it legible above lines."""
         from matplotlib.patheffects import withStroke
         from matplotlib.text import Text
 
-        artist = Text(
-            x, y + size * _CAP_HEIGHT / 2, text, color=colour, fontproperties=font(size, bold), parse_math=False
-        )
+        baseline, known = y + size * CAP_HEIGHT / 2, _known()
+        text = "".join(c if c in known else UNKNOWN if width(c, size) else "" for c in text)
+        artist = Text(x, baseline, text, color=colour, fontproperties=_font(size, bold), parse_math=False)
         artist.set_horizontalalignment(align)  # type: ignore[arg-type]
         artist.set_verticalalignment("baseline")
         if halo:
@@ -99,19 +105,9 @@ class Canvas:
         return self.add(artist, z)
 
     def box(
-        self,
-        x: float,
-        y: float,
-        width: float,
-        height: float,
-        *,
-        round: float = 0,
-        fill: str = "none",
-        edge: str = "none",
-        line: float = 1,
-        dashed: bool = False,
-        z: float = 0,
-    ) -> Artist:
+        self, x: float, y: float, width: float, height: float, *,
+        round: float = 0, fill: str = "none", edge: str = "none", line: float = 1, dashed: bool = False, z: float = 0,
+    ) -> Artist:  # fmt: skip
         """A rectangle with corners rounded to a radius."""
         from matplotlib.patches import FancyBboxPatch
 
@@ -129,32 +125,18 @@ class Canvas:
         return self.add(Polygon(points, closed=True, fc=fill, ec=edge, lw=line, joinstyle="round"), z)
 
     def circle(
-        self,
-        x: float,
-        y: float,
-        radius: float,
-        *,
-        fill: str = "none",
-        edge: str = "none",
-        line: float = 1,
-        dashed: bool = False,
-        z: float = 0,
-    ) -> Artist:
+        self, x: float, y: float, radius: float, *,
+        fill: str = "none", edge: str = "none", line: float = 1, dashed: bool = False, z: float = 0,
+    ) -> Artist:  # fmt: skip
         """A disc or a ring."""
         from matplotlib.patches import Circle
 
         return self.add(Circle((x, y), radius, fc=fill, ec=edge, lw=line, ls=(0, (2, 1.5)) if dashed else "solid"), z)
 
     def line(
-        self,
-        points: Points,
-        *,
-        colour: str = INK,
-        line: float = 1,
-        dashed: bool = False,
-        round: bool = True,
-        z: float = 0,
-    ) -> Artist:
+        self, points: Points, *,
+        colour: str = INK, line: float = 1, dashed: bool = False, round: bool = True, z: float = 0,
+    ) -> Artist:  # fmt: skip
         """A line through the points."""
         from matplotlib.lines import Line2D
 
@@ -163,6 +145,10 @@ class Canvas:
         artist = Line2D(xs, ys, color=colour, lw=line, solid_capstyle=end, solid_joinstyle="round")  # type: ignore[arg-type]
         artist.set_linestyle((0, (2, 2)) if dashed else "solid")
         return self.add(artist, z)
+
+    def group(self, title: str) -> AbstractContextManager[object]:
+        """Shapes have no names here."""
+        return nullcontext()
 
     def begin_film(self, dpi: float) -> None:
         """Draws all that is there; what is added from now on is drawn by `lay`."""
@@ -194,9 +180,10 @@ class Canvas:
         """The bytes of a file, `kind` is ".svg" or ".png"; the same picture gives the same bytes."""
         out = io.BytesIO()
         if kind == ".svg":
-            self.figure.savefig(out, format="svg", metadata={"Date": None, "Creator": "btlang"})
+            options: dict[str, Any] = {"metadata": {"Title": self._title, "Creator": "btlang", "Date": None}}
         else:
-            self.figure.savefig(out, format="png", dpi=self._dpi(), metadata={"Software": "btlang"})
+            options = {"metadata": {"Title": self._title, "Software": "btlang"}, "dpi": self._dpi()}
+        self.figure.savefig(out, format=kind[1:], **options)
         return out.getvalue()
 
     def _dpi(self) -> float:

@@ -36,7 +36,7 @@ def pictures_of(mission: Mission, run: str | None, tree: str | None) -> Iterator
     """
     for path in (run, tree):
         if path is not None:
-            check_picture(path)
+            check_picture(path, of_run=path is run)
     sinks: list[Sink] = []
     if tree is not None:
         from btlang.pictures.statuses import LastStatuses
@@ -45,9 +45,10 @@ def pictures_of(mission: Mission, run: str | None, tree: str | None) -> Iterator
         sinks.append(statuses)
     if run is not None:
         from btlang.pictures.run_picture import RunPicture
+        from btlang.pictures.tree_boxes import title_of
         from btlang.robots.world_file import load_world
 
-        picture = RunPicture(load_world(mission.world), mission.label, mission.is_action)
+        picture = RunPicture(load_world(mission.world), mission.label, mission.is_action, title_of(mission.tree))
         sinks.append(picture)
     try:
         yield sinks
@@ -57,4 +58,4 @@ def pictures_of(mission: Mission, run: str | None, tree: str | None) -> Iterator
         if tree is not None and statuses.by_path:
             from btlang.pictures.tree_picture import draw_tree
 
-            draw_tree(mission.tree, mission.label, mission.is_action, tree, statuses=statuses.by_path)
+            draw_tree(mission.tree, mission.label, mission.is_action, tree, run=statuses)

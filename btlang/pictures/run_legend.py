@@ -84,9 +84,9 @@ class Legend:
 
 def _lines(command: Command) -> tuple[list[str], list[str]]:
     room = WIDTH - _LEFT - _RIGHT
-    text = letters.wrapped(letters.shown(command.text), room, 2, TEXT, False, letters.width)
+    text = letters.wrapped(letters.shown(command.text), room, 2, TEXT, False)
     reason = command.reason or ("halted before its end" if LOOKS[command.status] is HALTED else "")
-    why = letters.wrapped(letters.shown(reason), room, 2, SMALL, False, letters.width) if reason else []
+    why = letters.wrapped(letters.shown(reason), room, 2, SMALL, False) if reason else []
     return text, why
 
 

@@ -12,7 +12,7 @@ from btlang.pictures.files import MOVING, STILL, ending
 from btlang.pictures.placing import Area, Placer, along
 from btlang.pictures.run_legend import WIDTH, Legend, listed
 from btlang.pictures.run_record import Command, Mark, RunRecord
-from btlang.pictures.style import INK, LOOKS, SMALL, SOFT
+from btlang.pictures.style import HEADING, INK, LOOKS, SMALL, SOFT, TITLE
 from btlang.pictures.track import END, START, draw_body, draw_track, shade, way
 from btlang.pictures.world_map import WorldMap
 from btlang.robots.world import World
@@ -20,8 +20,9 @@ from btlang.run.bus import INLINE
 from btlang.tree.node import Node
 
 _MARGIN, _GUTTER, _STRIP = 16.0, 22.0, 26.0
+_TOP = _MARGIN + HEADING
 _LEAST_WIDE = 440.0  # what is written below the map needs it
-_ROOM = Area(_MARGIN, _MARGIN, 600.0, 520.0)  # for the map
+_ROOM = Area(_MARGIN, _TOP, 600.0, 520.0)  # for the map
 _NEAR = 13.0  # points; commands that begin so near to each other share a mark
 _BUBBLES, _WIDEST_BUBBLE = 8, 130.0
 _SIGNS = {
@@ -34,12 +35,15 @@ _SIGNS = {
 
 
 class RunPicture:
-    """A sink of a run, and then its picture. `label` and `is_action` are those of btlang.api.Mission."""
+    """A sink of a run, and then its picture, under a title. `label` and `is_action` are those of btlang.api.Mission."""
 
     policy = INLINE
 
-    def __init__(self, world: World, label: Callable[[Node], str], is_action: Callable[[Node], bool]) -> None:
+    def __init__(
+        self, world: World, label: Callable[[Node], str], is_action: Callable[[Node], bool], title: str
+    ) -> None:
         self._world = world
+        self._title = title
         self.record = RunRecord(label, is_action)
 
     def __call__(self, event: object) -> None:
@@ -57,14 +61,14 @@ class RunPicture:
             if kind == ".gif":
                 from btlang.pictures.animation import animated
 
-                data = animated(self._world, self.record)
+                data = animated(self._world, self.record, self._title)
             else:
-                data = _Still(self._world, self.record).canvas.encoded(kind)
+                data = _Still(self._world, self.record, self._title).canvas.encoded(kind)
         write_file(path, data)
 
 
 class _Still:
-    def __init__(self, world: World, record: RunRecord) -> None:
+    def __init__(self, world: World, record: RunRecord, title: str) -> None:
         self._record = record
         self._way = way(record)
         self._map = WorldMap(world, _ROOM, self._way)
@@ -72,7 +76,9 @@ class _Still:
         self._key = self._key_items()
         wide = max(area.width, _LEAST_WIDE)
         height = max(area.height + _STRIP, legend.height)
-        self.canvas = Canvas(_MARGIN + wide + _GUTTER + WIDTH + _MARGIN, height + 2 * _MARGIN)
+        self.canvas = Canvas(_MARGIN + wide + _GUTTER + WIDTH + _MARGIN, _TOP + height + _MARGIN, title)
+        text = letters.clipped(title, wide + _GUTTER + WIDTH, TITLE, True)
+        self.canvas.text(_MARGIN, _MARGIN + 4, text, size=TITLE, bold=True)
         self._placer = Placer(area)
         self._map.draw(self.canvas)
         points = draw_track(self.canvas, self._map, record)
@@ -85,8 +91,8 @@ class _Still:
         self._map.draw_names(self.canvas, self._placer, record.moved)
         self._numbers(groups)
         self._bubbles(marks)
-        legend.draw(self.canvas, _MARGIN + wide + _GUTTER, _MARGIN)
-        self._strip(_MARGIN + area.height + _STRIP - 8, wide)
+        legend.draw(self.canvas, _MARGIN + wide + _GUTTER, _TOP)
+        self._strip(_TOP + area.height + _STRIP - 8, wide)
 
     def _bodies(self) -> None:
         track, radius = self._record.track, self._record.radius
@@ -138,7 +144,7 @@ class _Still:
         for mark in said:
             texts.setdefault(mark.text, mark)
         for mark in list(texts.values())[:_BUBBLES]:
-            text = letters.clipped(letters.shown(mark.text), _WIDEST_BUBBLE, SMALL, False, letters.width)
+            text = letters.clipped(letters.shown(mark.text), _WIDEST_BUBBLE, SMALL)
             x, y = self._map.at(mark.pose.x, mark.pose.y)
             width = letters.width(text, SMALL) + 10
             area, overlap = self._placer.place(x, y, width, 14.0, max(8.0, self._record.radius * self._map.scale + 4))

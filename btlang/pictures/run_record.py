@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from btlang.engine.leaf import ActionFailed
+from btlang.engine.leaves.leaf import ActionFailed
 from btlang.engine.status import IDLE, RUNNING, SKIPPED
 from btlang.record import Record
 from btlang.robots.geometry import Point, Pose
@@ -95,7 +95,7 @@ class RunRecord:
                 self._see(event.t, event.robot)
         elif isinstance(event, StatusesChanged) and self.track:
             for change in event:
-                self._changed(change)
+                self._changed(change, event.valued.get(change.index, change.node))
         elif self.track:
             self._happened(event)
 
@@ -134,7 +134,8 @@ class RunRecord:
         self.moved[name] = place
         self.moves.append((t, name, place))
 
-    def _changed(self, event: StatusChanged) -> None:
+    def _changed(self, event: StatusChanged, node: Node) -> None:
+        """`node` has the values that its ports name."""
         if event.path == "/":  # after a pause it runs again
             self.ended = None if event.status == RUNNING else (event.status, event.t)
         if not (is_asked_wait(event.node) or self._is_action(event.node)):
@@ -144,7 +145,7 @@ class RunRecord:
             if event.status in (IDLE, SKIPPED):
                 return
             start = self.track[-1].replace(t=event.t)
-            command = Command(len(self.commands) + 1, self._label(event.node), start)
+            command = Command(len(self.commands) + 1, self._label(node), start)
             self.commands.append(command)
         if event.status == RUNNING:
             self._running[event.path] = command

@@ -1,4 +1,4 @@
-"""The statuses that the nodes of a tree ended a run with."""
+"""The statuses that the nodes of a tree ended a run with, and the values that they had then."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from btlang.engine.status import IDLE, RUNNING
 from btlang.run.bus import INLINE
 from btlang.run.events import StatusesChanged
 from btlang.tree.catalogue import SUBTREE
-from btlang.tree.node import Tree
+from btlang.tree.node import Node, Tree
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -20,20 +20,30 @@ _LONGEST_PATH = 1000  # characters; no picture shows nodes so deep
 class LastStatuses:
     """A sink. `by_path` has the last status of each node that was reached, the latest change last.
 
-    IDLE stands for a node that was halted while it ran; a reset after it completed is no status.
+    IDLE stands for a node that was halted while it ran; a reset after it completed is no status. `nodes` has those
+    whose ports name values, with these values in them: the last ones, or, where they were not reached, their arguments.
     """
 
     policy = INLINE
 
     def __init__(self) -> None:
         self.by_path: dict[str, int] = {}
+        self.nodes: dict[str, Node] = {}
 
     def __call__(self, event: Event) -> None:
-        for change in event if isinstance(event, StatusesChanged) else ():
+        if not isinstance(event, StatusesChanged):
+            return
+        if not self.by_path:
+            nodes = event.nodes
+            filled = ((index, nodes.filled(index)) for index in range(nodes.size))
+            self.nodes = {nodes.path(index): node for index, node in filled if node is not nodes.node(index)}
+        for change in event:
             before = self.by_path.get(change.path)
             if len(change.path) <= _LONGEST_PATH and (change.status != IDLE or before == RUNNING):
                 self.by_path.pop(change.path, None)
                 self.by_path[change.path] = change.status
+                if change.index in event.valued:
+                    self.nodes[change.path] = event.valued[change.index]
 
 
 def by_definition(statuses: Mapping[str, int], tree: Tree) -> dict[tuple[str, str], int]:

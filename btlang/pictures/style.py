@@ -11,6 +11,7 @@ LINE = "#8a949e"
 PAPER = "#ffffff"
 
 SMALL, TEXT, TITLE = 7.5, 9.0, 11.0
+HEADING = 24.0  # room for the title of a picture
 
 
 class Look(Record):

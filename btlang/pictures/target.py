@@ -4,30 +4,32 @@ from __future__ import annotations
 
 from functools import partial
 
-from btlang.english.phrase import phrase_of
+from btlang.pictures.tree_boxes import Maker, title_of
 from btlang.pictures.tree_picture import picture_of
+from btlang.printer.phrase import phrase_of
 from btlang.tree.node import Node, Tree
-from btlang.vocabulary.vocabulary import Vocabulary
+from btlang.vocabulary.lexicon import Lexicon
 
 
-def to_svg(tree: Tree, vocabulary: Vocabulary) -> str:
-    """The text of an SVG file. Raises MissionError (BT081)."""
+def to_svg(tree: Tree, vocabulary: Lexicon) -> str:
+    """The text of an SVG file."""
     return _drawn(tree, vocabulary, ".svg").decode()
 
 
-def to_png(tree: Tree, vocabulary: Vocabulary) -> bytes:
+def to_png(tree: Tree, vocabulary: Lexicon) -> bytes:
     """The content of a PNG file. Raises MissionError (BT081)."""
     return _drawn(tree, vocabulary, ".png")
 
 
-def _drawn(tree: Tree, vocabulary: Vocabulary, kind: str) -> bytes:
-    return picture_of(tree, partial(_label, vocabulary), partial(_is_action, vocabulary), kind)
+def _drawn(tree: Tree, vocabulary: Lexicon, kind: str) -> bytes:
+    sheets = Maker(tree, partial(_label, vocabulary), partial(_is_action, vocabulary)).sheets()
+    return picture_of(sheets, title_of(tree), kind)
 
 
-def _label(vocabulary: Vocabulary, node: Node) -> str:
+def _label(vocabulary: Lexicon, node: Node) -> str:
     return node.name or phrase_of(node, vocabulary)
 
 
-def _is_action(vocabulary: Vocabulary, node: Node) -> bool:
+def _is_action(vocabulary: Lexicon, node: Node) -> bool:
     entry = vocabulary.entry(node.id)
     return entry is not None and entry.sort == "action"

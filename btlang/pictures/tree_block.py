@@ -6,13 +6,9 @@ from collections.abc import Sequence
 from itertools import pairwise
 from math import ceil, sqrt
 
-from btlang.pictures.letters import wrapped
-from btlang.pictures.style import TEXT
+from btlang.pictures.letters import width, wrapped
+from btlang.pictures.style import SMALL, TEXT
 from btlang.pictures.tree_boxes import Box
-
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    from btlang.pictures.letters import Measure
 
 LINE_HEIGHT = 12.0
 SIGN = 13.0  # room for the sign of a status
@@ -25,7 +21,8 @@ _LINES = 3
 _TOP = 4.5
 _GAP, _BIG_GAP = 5.0, 9.0  # between leaves, and between branches
 _JOG = 14.0  # a bend by less looks like a mistake
-_REACH, _REACH_WITH_ROLE = 22.0, 36.0  # from a box to its children
+_REACH = 22.0  # from a box to its children
+_ROLE = 5.0  # more than a role takes
 _COLUMN_GAP = 30.0
 _HIGH = 1100.0  # points; what is higher is put in columns
 _FLAT = 1.25  # how much wider than high a picture with columns may be
@@ -43,14 +40,14 @@ class Block:
     first column. `width` and `height` are those of the box itself.
     """
 
-    def __init__(self, box: Box, measure: Measure, signs: bool) -> None:
+    def __init__(self, box: Box, signs: bool) -> None:
         self.box = box
         self.is_frame = box.shape == "frame"
         bold = box.shape in ("control", "decorator", "frame", "subtree")
         widest = _WIDEST_LEAF if box.shape in ("action", "condition") else _WIDEST
-        lines = wrapped(box.text, widest, 1 if self.is_frame else _LINES, TEXT, bold, measure)
+        lines = wrapped(box.text, widest, 1 if self.is_frame else _LINES, TEXT, bold)
         self.lines = tuple(lines)
-        self.width = max(measure(line, TEXT, bold) for line in lines) + 2 * side(box)
+        self.width = max(width(line, TEXT, bold) for line in lines) + 2 * side(box)
         self.width += (SIGN if signs and box.shape != "more" else 0) + (SYMBOL if box.symbol else 0)
         self.height = len(lines) * LINE_HEIGHT + 2 * _TOP
         self.places: list[tuple[float, float]] = []
@@ -61,8 +58,8 @@ class Block:
         if self.is_frame:
             self._surround(blocks[0])
             return
-        has_roles = any(block.box.role for block in blocks)
-        self.column = self.width + (_REACH_WITH_ROLE if has_roles else _REACH)
+        roles = max((width(block.box.role, SMALL) for block in blocks), default=0.0)
+        self.column = self.width + max(_REACH, STUB + _ROLE + roles)
         columns = _columns(blocks) if in_columns else [list(blocks)]
         if len(columns) > 1:
             self._take(columns, HEAD)

@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Mapping
 
-from btlang.english.phrase import seconds
+from btlang.engine.status import FAILURE
+from btlang.passes.scripts import is_prepared
 from btlang.pictures.letters import shown
-from btlang.pictures.statuses import by_definition
+from btlang.pictures.statuses import LastStatuses, by_definition
+from btlang.printer.phrase import MARKUP, seconds
 from btlang.record import Record
 from btlang.tree.catalogue import CATALOGUE, SUBTREE
 from btlang.tree.node import Node, Tree
@@ -40,21 +43,38 @@ class Sheet(Record):
     boxes: tuple[Box, ...]
 
 
+def title_of(tree: Tree) -> str:
+    """What heads a picture: the name of the mission's file, else the name of the tree or the first line of the text."""
+    span = next((node.span for node in tree.walk() if node.span is not None), None)
+    given = tree.name or "mission"
+    if span is None:
+        return shown(given)
+    if span.source.name != "-" and not span.source.name.startswith("<"):
+        return shown(os.path.basename(span.source.name))
+    first = span.text.partition("\n")[0]
+    return shown(given if first.startswith(MARKUP) or not first.strip() else first)
+
+
 class Maker:
-    """Makes the sheets of a tree. `label` and `is_action` are those of btlang.api.Mission."""
+    """Makes the sheets of a tree. `label` and `is_action` are those of btlang.api.Mission.
+
+    `run` has the statuses and values of a run; in its picture what only computes the values of a command is left out.
+    """
 
     def __init__(
         self,
         tree: Tree,
         label: Callable[[Node], str],
         is_action: Callable[[Node], bool],
-        statuses: Mapping[str, int] | None = None,
+        run: LastStatuses | None = None,
     ) -> None:
         self._tree = tree
         self._subtrees = dict(tree.subtrees)
         self._label = label
         self._is_action = is_action
-        self._statuses = statuses or {}
+        self._has_run = run is not None
+        self._statuses = run.by_path if run is not None else {}
+        self._nodes = run.nodes if run is not None else {}
 
     def sheets(self, apart: bool = False) -> list[Sheet]:
         """One sheet, with the subtrees in place; or, if asked for or needed, the main tree and one of each subtree."""
@@ -79,10 +99,13 @@ class Maker:
     ) -> Sheet | None:
         """None where it must be `whole` and is larger than `most`."""
         boxes: list[Box] = []
+        nodes = {} if name else self._nodes  # a definition is drawn for all its uses
         cut: dict[int, int] = {}  # nodes left out, by the box that they would hang on
         stack = [(root, -1, "/", "", 0)]
         while stack:
             node, parent, path, role, depth = stack.pop()
+            if self._has_run:
+                node, path = _command(node, path, statuses)
             if len(boxes) >= most or depth > DEEPEST:
                 if whole and len(boxes) >= most:
                     return None
@@ -92,7 +115,7 @@ class Maker:
             children = node.children
             if node.id == SUBTREE and not apart and node.port("ID") in self._subtrees:
                 children = (self._subtrees[node.port("ID")],)
-            boxes.append(self._box(node, bool(children), parent, role, statuses.get(path)))
+            boxes.append(self._box(nodes.get(path, node), bool(children), parent, role, statuses.get(path)))
             kind = CATALOGUE.get(node.id)
             roles = kind.roles if kind is not None else ()
             for i in range(len(children) - 1, -1, -1):
@@ -103,8 +126,8 @@ class Maker:
 
     def _box(self, node: Node, has_children: bool, parent: int, role: str, status: int | None) -> Box:
         if node.id == SUBTREE:
-            text = shown(node.name or node.port("ID"))
-            return Box("frame" if has_children else "subtree", text, "", parent, role, status)
+            shape = "frame" if has_children else "subtree"
+            return Box(shape, shown(self._label(node)), "", parent, role, status)
         kind = CATALOGUE.get(node.id)
         if has_children:
             shape = "decorator" if kind is not None and kind.most == 1 else "control"
@@ -112,6 +135,14 @@ class Maker:
         shape = "action" if kind is not None or self._is_action(node) else "condition"
         skipped = " (skipped)" if node.port("_skipIf") == "true" else ""
         return Box(shape, shown(self._label(node.replace(ports=_plain(node))) + skipped), "", parent, role, status)
+
+
+def _command(node: Node, path: str, statuses: Mapping[str, int]) -> tuple[Node, str]:
+    """What is drawn for a node, with its path: the command that scripts prepare, unless one of these failed."""
+    last, above = len(node.children) - 1, path.rstrip("/")
+    if is_prepared(node) and all(statuses.get(f"{above}/{i}") != FAILURE for i in range(last)):
+        return node.children[last], f"{above}/{last}"
+    return node, path
 
 
 def _plain(node: Node) -> tuple[tuple[str, str], ...]:

@@ -8,10 +8,6 @@ from btlang.pictures.tree_block import HEAD, STUB, Block
 from btlang.pictures.tree_boxes import Box
 from btlang.record import Record
 
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    from btlang.pictures.letters import Measure
-
 
 class Spot(Record):
     """A box on the sheet: its upper left corner, its size, and its lines of text. A frame holds the boxes below it."""
@@ -40,7 +36,7 @@ class Layout(Record):
     height: float
 
 
-def laid_out(boxes: Sequence[Box], measure: Measure, signs: bool = False) -> Layout:
+def laid_out(boxes: Sequence[Box], signs: bool = False) -> Layout:
     """Places the boxes; with `signs`, each has room for one. No two overlap, but a frame and what is in it.
 
     Where many branches make the tree very high, they stand in columns, to be read one column after the other.
@@ -52,7 +48,7 @@ def laid_out(boxes: Sequence[Box], measure: Measure, signs: bool = False) -> Lay
     trunk = 0
     while len(children[trunk]) == 1:
         trunk = children[trunk][0]
-    blocks = [Block(box, measure, signs) for box in boxes]
+    blocks = [Block(box, signs) for box in boxes]
     for index in range(len(boxes) - 1, -1, -1):  # children come after their parents
         blocks[index].enclose([blocks[child] for child in children[index]], in_columns=index == trunk)
     spots: list[Spot] = []

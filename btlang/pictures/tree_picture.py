@@ -2,21 +2,26 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from math import sqrt
 
 from btlang.backends.files import write_file
 from btlang.pictures import letters
-from btlang.pictures.canvas import Canvas, drawing
 from btlang.pictures.files import STILL, ending
-from btlang.pictures.style import INK, LINE, LOOKS, NEVER, PAPER, SMALL, SOFT, TEXT, TITLE, Look
+from btlang.pictures.style import HEADING, INK, LINE, LOOKS, NEVER, PAPER, SMALL, SOFT, TEXT, TITLE, Look
 from btlang.pictures.tree_block import FRAME_TITLE, LINE_HEIGHT, SIGN, SYMBOL, side
-from btlang.pictures.tree_boxes import Maker, Sheet
+from btlang.pictures.tree_boxes import Maker, Sheet, title_of
 from btlang.pictures.tree_layout import Layout, Link, Spot, laid_out
 from btlang.tree.node import Node, Tree
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.pictures.statuses import LastStatuses
+    from btlang.pictures.surface import Surface
+
 _MARGIN = 16.0
 _LEGEND = 26.0
+_LEAST_WIDE = 260.0  # where the title needs it
 _TITLE = 24.0  # above a subtree that is drawn apart
 _WIDTH = 900.0  # subtrees that are drawn apart stand side by side up to it
 _FILLS = {
@@ -43,75 +48,81 @@ def draw_tree(
     path: str,
     *,
     apart: bool = False,
-    statuses: Mapping[str, int] | None = None,
+    run: LastStatuses | None = None,
+    title: str = "",
 ) -> None:
     """Draws a tree to a file that ends in .svg or .png.
 
     Named subtrees are framed in place; `apart` draws each once, below the main tree, and so does a tree that would
-    have more than 500 nodes. Of more than 2,000 nodes, or 60 levels, the rest is counted only. `statuses` by path are
-    those of LastStatuses.by_path; None draws the tree without. `label` and `is_action` are those of a Mission.
+    have more than 500 nodes. Of more than 2,000 nodes, or 60 levels, the rest is counted only. `run` was a sink of a
+    run, whose statuses and values are drawn. `label` and `is_action` are those of a Mission; the `title` is by default
+    the name of its file. An .svg file needs no matplotlib.
     Raises ValueError for another ending, MissionError (BT009, BT081).
     """
     kind = ending(path, STILL)
-    write_file(path, picture_of(tree, label, is_action, kind, path, apart=apart, statuses=statuses))
+    sheets = Maker(tree, label, is_action, run).sheets(apart)
+    title = letters.shown(title) or title_of(tree)
+    write_file(path, picture_of(sheets, title, kind, path, has_run=run is not None))
 
 
-def picture_of(
-    tree: Tree,
-    label: Callable[[Node], str],
-    is_action: Callable[[Node], bool],
-    kind: str,
-    path: str = "",
-    *,
-    apart: bool = False,
-    statuses: Mapping[str, int] | None = None,
-) -> bytes:
-    """As draw_tree, the content of a file of the `kind` ".svg" or ".png"; errors name its `path`."""
+def picture_of(sheets: list[Sheet], title: str, kind: str, path: str = "", *, has_run: bool = False) -> bytes:
+    """The content of a file of the `kind` ".svg" or ".png"; errors name its `path`. After a run, nodes have signs."""
+    if kind == ".svg":
+        from btlang.pictures.svg import SvgSurface
+
+        return _TreePicture(sheets, title, has_run, SvgSurface).surface.encoded(kind)
+    from btlang.pictures.canvas import Canvas, drawing
+
     with drawing(path):
-        picture = _TreePicture(Maker(tree, label, is_action, statuses).sheets(apart), statuses)
-        data: bytes = picture.canvas.encoded(kind)
-    return data
+        return _TreePicture(sheets, title, has_run, Canvas).surface.encoded(kind)
 
 
 class _TreePicture:
-    def __init__(self, sheets: list[Sheet], statuses: Mapping[str, int] | None) -> None:
-        self._signs = statuses is not None
-        pieces = [(sheet.name, laid_out(sheet.boxes, letters.width, self._signs)) for sheet in sheets]
-        corners = _arranged([layout for _, layout in pieces])
-        width = max(x + layout.width for (x, _), (_, layout) in zip(corners, pieces, strict=True)) + _MARGIN
-        height = max(y + layout.height for (_, y), (_, layout) in zip(corners, pieces, strict=True)) + _MARGIN
-        if statuses is not None:
-            looks = list(dict.fromkeys(LOOKS[status] for status in statuses.values()))
-            looks = [look for look in LOOKS.values() if look in looks] + [NEVER]
+    def __init__(
+        self, sheets: list[Sheet], title: str, has_run: bool, make_surface: Callable[[float, float, str], Surface]
+    ) -> None:
+        self._signs = has_run
+        layouts = [laid_out(sheet.boxes, has_run) for sheet in sheets]
+        pieces = list(zip(sheets, layouts, _arranged(layouts), strict=True))
+        width = max(x + layout.width for _, layout, (x, _) in pieces) + _MARGIN
+        width = max(width, min(letters.width(title, TITLE, True), _LEAST_WIDE) + 2 * _MARGIN)
+        height = max(y + layout.height for _, layout, (_, y) in pieces) + _MARGIN
+        if has_run:
+            statuses = {box.status for sheet in sheets for box in sheet.boxes}
+            looks = [*(look for status, look in LOOKS.items() if status in statuses), NEVER]
             width = max(width, self._legend_width(looks))
             height += _LEGEND + (10 if len(pieces) > 1 else 0)
-        self.canvas = Canvas(width, height)
-        for (x, y), (name, layout) in zip(corners, pieces, strict=True):
-            if name:
-                self._frame_of(name, x, y, layout)
+        self.surface = make_surface(width, height, title)
+        title = letters.clipped(title, width - 2 * _MARGIN, TITLE, True)
+        self.surface.text(_MARGIN, _MARGIN + 4, title, size=TITLE, bold=True)
+        for sheet, layout, (x, y) in pieces:
+            if sheet.name:
+                self._frame_of(sheet.name, x, y, layout)
             self._draw(layout, x, y)
-        if statuses is not None:
+        if has_run:
             self._draw_legend(looks, height - _MARGIN - 6)
 
     def _frame_of(self, name: str, x: float, y: float, layout: Layout) -> None:
         """A titled box around a subtree that is drawn apart."""
         pad = 10.0
-        title = letters.clipped(letters.shown(name), max(layout.width, 60.0), TEXT, True, letters.width)
-        self.canvas.box(
+        title = letters.clipped(letters.shown(name), max(layout.width, 60.0), TEXT, True)
+        self.surface.box(
             x - pad, y - _TITLE, layout.width + 2 * pad, layout.height + _TITLE + pad, round=6, fill="#f8faf8",
             edge=_EDGES["subtree"], line=0.9,
         )  # fmt: skip
-        self.canvas.text(x, y - _TITLE / 2, title, bold=True, colour=_EDGES["subtree"])
+        self.surface.text(x, y - _TITLE / 2, title, bold=True, colour=_EDGES["subtree"])
 
     def _draw(self, layout: Layout, dx: float, dy: float) -> None:
         for spot in layout.spots:
             if spot.box.shape == "frame":
-                self._frame(spot, dx, dy)
+                with self.surface.group(spot.box.text):
+                    self._frame(spot, dx, dy)
         for link in layout.links:
             self._link(link, dx, dy)
         for spot in layout.spots:
             if spot.box.shape != "frame":
-                self._box(spot, dx, dy)
+                with self.surface.group(spot.box.text):
+                    self._box(spot, dx, dy)
 
     def _look(self, spot: Spot) -> Look | None:
         if not self._signs or spot.box.shape == "more":
@@ -123,17 +134,17 @@ class _TreePicture:
         edge = look.strong if look else _EDGES["subtree"]
         fill = "#f8faf8"
         x, y = spot.x + dx, spot.y + dy
-        self.canvas.box(x, y, spot.width, spot.height, round=6, fill=fill, edge=edge, line=1, dashed=look is NEVER)
+        self.surface.box(x, y, spot.width, spot.height, round=6, fill=fill, edge=edge, line=1, dashed=look is NEVER)
         if look and look.sign:
-            self.canvas.text(x + 9, y + FRAME_TITLE / 2 + 1, look.sign, colour=edge, bold=True)
-        self.canvas.text(x + 9 + (SIGN if look else 0), y + FRAME_TITLE / 2 + 1, spot.lines[0], colour=edge, bold=True)
+            self.surface.text(x + 9, y + FRAME_TITLE / 2 + 1, look.sign, colour=edge, bold=True)
+        self.surface.text(x + 9 + (SIGN if look else 0), y + FRAME_TITLE / 2 + 1, spot.lines[0], colour=edge, bold=True)
 
     def _link(self, link: Link, dx: float, dy: float) -> None:
         points = [(x + dx, y + dy) for x, y in link.points]
-        self.canvas.line(points, colour=LINE)
+        self.surface.line(points, colour=LINE)
         if link.role:
             x, y = points[-1]
-            self.canvas.text(x - 2.5, y - 5, link.role, size=SMALL, colour=SOFT, align="right")
+            self.surface.text(x - 2.5, y - 5, link.role, size=SMALL, colour=SOFT, align="right")
 
     def _box(self, spot: Spot, dx: float, dy: float) -> None:
         shape, look = spot.box.shape, self._look(spot)
@@ -142,22 +153,14 @@ class _TreePicture:
         edge = look.strong if look else _EDGES.get(shape, "none")
         middle = (y + bottom) / 2
         if shape == "decorator":
-            tip = 6.0
-            points = [
-                (x, middle),
-                (x + tip, y),
-                (right - tip, y),
-                (right, middle),
-                (right - tip, bottom),
-                (x + tip, bottom),
-            ]
-            self.canvas.polygon(points, fill=fill, edge=edge)
+            points = [(x, middle), (x + 6, y), (right - 6, y), (right, middle), (right - 6, bottom), (x + 6, bottom)]
+            self.surface.polygon(points, fill=fill, edge=edge)
         elif shape != "more":
             radius = {"condition": spot.height / 2, "control": 4.0}.get(shape, 0.0)
-            self.canvas.box(x, y, spot.width, spot.height, round=min(radius, 10.5), fill=fill, edge=edge)
+            self.surface.box(x, y, spot.width, spot.height, round=min(radius, 10.5), fill=fill, edge=edge)
         if shape == "subtree":
             for side in (x + 4, right - 4):
-                self.canvas.line([(side, y), (side, bottom)], colour=edge, round=False)
+                self.surface.line([(side, y), (side, bottom)], colour=edge)
         self._words(spot, look, x, middle)
 
     def _words(self, spot: Spot, look: Look | None, x: float, middle: float) -> None:
@@ -166,14 +169,14 @@ class _TreePicture:
         colour = SOFT if look is NEVER or shape == "more" else INK
         x += side(spot.box)
         if look is not None:
-            self.canvas.text(x - 1.5, middle, look.sign, colour=look.strong, bold=True)
+            self.surface.text(x - 1.5, middle, look.sign, colour=look.strong, bold=True)
             x += SIGN if look.sign else SIGN / 2
         if spot.box.symbol:
-            self.canvas.text(x, middle, spot.box.symbol, size=TITLE, bold=True, colour=colour)
+            self.surface.text(x, middle, spot.box.symbol, size=TITLE, bold=True, colour=colour)
             x += SYMBOL
         first = middle - (len(spot.lines) - 1) * LINE_HEIGHT / 2
         for number, line in enumerate(spot.lines):
-            self.canvas.text(x, first + number * LINE_HEIGHT, line, bold=bold, colour=colour)
+            self.surface.text(x, first + number * LINE_HEIGHT, line, bold=bold, colour=colour)
 
     def _legend_width(self, looks: list[Look]) -> float:
         return 2 * _MARGIN + sum(letters.width(look.word, TEXT) + 40 for look in looks)
@@ -181,18 +184,18 @@ class _TreePicture:
     def _draw_legend(self, looks: list[Look], y: float) -> None:
         x = _MARGIN
         for look in looks:
-            self.canvas.box(x, y - 7, 16, 14, round=3, fill=look.pale, edge=look.strong)
-            self.canvas.text(x + 8, y, look.sign, bold=True, colour=look.strong, align="center")
-            self.canvas.text(x + 21, y, look.word, colour=SOFT)
+            self.surface.box(x, y - 7, 16, 14, round=3, fill=look.pale, edge=look.strong)
+            self.surface.text(x + 8, y, look.sign, bold=True, colour=look.strong, align="center")
+            self.surface.text(x + 21, y, look.word, colour=SOFT)
             x += letters.width(look.word, TEXT) + 40
 
 
 def _arranged(layouts: list[Layout]) -> list[tuple[float, float]]:
     """Upper left corners: the main tree, and below it the subtrees in rows."""
-    corners = [(_MARGIN, _MARGIN)]
+    corners = [(_MARGIN, _MARGIN + HEADING)]
     area = sum((layout.width + 36) * (layout.height + 30 + _TITLE) for layout in layouts)
     room = max(_WIDTH, layouts[0].width, sqrt(area * 1.3))
-    x, y, low = _MARGIN + 10, _MARGIN + layouts[0].height + 20 + _TITLE, 0.0
+    x, y, low = _MARGIN + 10, _MARGIN + HEADING + layouts[0].height + 20 + _TITLE, 0.0
     for layout in layouts[1:]:
         if low and x + layout.width > room:
             x, y, low = _MARGIN + 10, low + 30 + _TITLE, 0.0

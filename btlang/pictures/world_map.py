@@ -96,7 +96,7 @@ class WorldMap:
     def _name(
         self, canvas: Canvas, placer: Placer, name: str, at: tuple[float, float], colour: str, gap: float
     ) -> None:
-        text = letters.clipped(letters.shown(name), _LONGEST_NAME, SMALL, False, letters.width)
+        text = letters.clipped(letters.shown(name), _LONGEST_NAME, SMALL)
         area, _ = placer.place(*at, letters.width(text, SMALL), SMALL + 1, gap)
         x, y = area.middle
         canvas.text(x, y, text, size=SMALL, colour=colour, align="center", halo=True, z=3)

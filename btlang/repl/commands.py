@@ -119,13 +119,13 @@ class Commands:
 
     def do(self, name: str, rest: str) -> None:
         """Raises MissionError where a file or text is wrong, Leave where the user wants to leave."""
-        deed = getattr(self, f"_{name}", None) if name in _NAMES else None
-        if deed is None:
+        command = getattr(self, f"_{name}", None) if name in _NAMES else None
+        if command is None:
             self._write(f"There is no '{name}'; 'help' lists what there is.")
         elif rest and not _NAMES[name].arguments:
             self._write(f"'{name}' stands alone.")
         else:
-            deed(rest)
+            command(rest)
 
     def _help(self, rest: str) -> None:
         if not rest:

@@ -6,8 +6,8 @@ from collections.abc import Iterable, Iterator
 
 from btlang.text.source import Source
 from btlang.text.words import split
+from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.trie import longest
-from btlang.vocabulary.vocabulary import Vocabulary
 
 
 def needs_more(text: str) -> bool:
@@ -16,7 +16,7 @@ def needs_more(text: str) -> bool:
     return _opens_block(lines[-1]) or (len(lines) > 1 and bool(lines[-1].strip()))
 
 
-def entries(lines: Iterable[str], vocabulary: Vocabulary) -> Iterator[str]:
+def entries(lines: Iterable[str], vocabulary: Lexicon) -> Iterator[str]:
     """The entries of a text that nobody types: a block also ends where a line stands at the margin again."""
     text = ""
     for line in lines:
@@ -38,7 +38,7 @@ def _opens_block(line: str) -> bool:
     return line.split("#")[0].rstrip().endswith(":")
 
 
-def _goes_on(line: str, vocabulary: Vocabulary) -> bool:
+def _goes_on(line: str, vocabulary: Lexicon) -> bool:
     """Whether a line at the margin belongs to the statement above it."""
     match = longest(vocabulary.trie, split(Source(line), vocabulary.articles), 0, vocabulary.context)
     return match is not None and match.meaning.role == "otherwise"

@@ -10,7 +10,7 @@ from btlang.record import Record
 from btlang.repl.draft import MissionDraft
 from btlang.text.source import Source
 from btlang.tree.dump import Outline
-from btlang.vocabulary.vocabulary import Vocabulary
+from btlang.vocabulary.lexicon import Lexicon
 
 _UNFINISHED = frozenset(("BT004", "BT023", "BT027"))  # an open quote, bracket or block
 _UNKNOWN = frozenset(("BT010", "BT013"))
@@ -83,7 +83,7 @@ def _with_corrections(draft: MissionDraft, text: str) -> tuple[Diagnostic, ...]:
     return ()
 
 
-def _is_unfinished(problems: tuple[Diagnostic, ...], text: str, vocabulary: Vocabulary) -> bool:
+def _is_unfinished(problems: tuple[Diagnostic, ...], text: str, vocabulary: Lexicon) -> bool:
     """Whether all that is wrong is at the end, or waits for it."""
     errors = [problem for problem in problems if problem.is_error]
     rests = (text[p.span.end :].lower().split() for p in errors if p.code not in _UNFINISHED)

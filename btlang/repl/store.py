@@ -8,8 +8,8 @@ import time
 from pathlib import Path
 
 from btlang.diagnostics.reading import reason_of
-from btlang.folders import user_folder
 from btlang.record import Record
+from btlang.user_dirs import user_dir
 
 try:
     import fcntl
@@ -30,7 +30,7 @@ class Kept(Record):
 
 def state_folder() -> Path:
     """The platform's folder for such things, $XDG_STATE_HOME/btlang on Linux."""
-    return Path(user_folder("state"))
+    return Path(user_dir("state"))
 
 
 class Store:

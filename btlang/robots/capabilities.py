@@ -22,7 +22,7 @@ Hand = Literal["left", "right"]
 OnEvent = Callable[[str, Mapping[str, Any]], None]
 
 
-class Deed(Protocol):
+class Operation(Protocol):
     """What the robot has set about and may take time: a journey, a hand that closes, docking."""
 
     @property
@@ -37,8 +37,8 @@ class Deed(Protocol):
         """Gives up: a journey brakes, and nobody waits for a hand any more. Does nothing when done."""
 
 
-class Done:
-    """A deed that took no time."""
+class CompletedOperation:
+    """A operation that took no time."""
 
     done = True
     failure = None
@@ -141,10 +141,10 @@ class Base(Machine, Protocol):
 class Navigation(Base, Protocol):
     """Ways to what has a name."""
 
-    def navigate_to(self, name: str) -> Deed:
+    def navigate_to(self, name: str) -> Operation:
         """Sets out for a place, for an object (within arm's reach) or a person (within talking distance), and faces it.
 
-        Raises RobotError for an unknown name; all else that goes wrong is the deed's `failure`.
+        Raises RobotError for an unknown name; all else that goes wrong is the operation's `failure`.
         """
 
 
@@ -185,13 +185,13 @@ class Joints(Machine, Protocol):
 class Hands(Machine, Protocol):
     """What takes objects and puts them down."""
 
-    def grasp(self, hand: Hand, name: str | None = None) -> Deed:
+    def grasp(self, hand: Hand, name: str | None = None) -> Operation:
         """Closes a hand on the named object, else on the nearest within reach.
 
         Raises RobotError, or fails, when nothing (or not that object) is within reach or the hand is full.
         """
 
-    def release(self, hand: Hand) -> Deed:
+    def release(self, hand: Hand) -> Operation:
         """Opens a hand and puts down what it held."""
 
     def holding(self, hand: Hand) -> str | None:
@@ -238,10 +238,10 @@ class Docking(Machine, Protocol):
     def docked(self) -> bool:
         """True while connected to the dock."""
 
-    def dock(self) -> Deed:
+    def dock(self) -> Operation:
         """Connects to the charger. Raises RobotError, or fails, where the robot does not stand at the dock."""
 
-    def undock(self) -> Deed:
+    def undock(self) -> Operation:
         """Disconnects; moves nothing."""
 
 

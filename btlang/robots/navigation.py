@@ -1,4 +1,4 @@
-"""Journeys: plans a path to something that has a name, or to a pose, follows it, and faces what it went for."""
+"""Navigation: plans a path to something that has a name, or to a pose, follows it, and faces what it went for."""
 
 from __future__ import annotations
 
@@ -25,8 +25,8 @@ _LOOK_AHEAD = 0.25
 _NEAR, _FACING = 0.03, 1.0
 
 
-class Journey:
-    """One way to one goal; see `btlang.robots.robot.Deed`.
+class NavigationGoal:
+    """One way to one goal; see `btlang.robots.robot.Operation`.
 
     `name` is that of what it goes to, or shows the spot; with a `pose` it ends there, facing as the pose does.
     """
@@ -62,7 +62,7 @@ class Journey:
 
 
 class Navigator:
-    """Drives the base along the journey under way."""
+    """Drives the base along the goal under way."""
 
     def __init__(self, world: World, base: Base, obstacles: Obstacles, faults: Faults) -> None:
         self._places: dict[str, Place] = {place.name: place for place in world.places}
@@ -73,103 +73,103 @@ class Navigator:
         self._faults = faults
         self._world = world
         self._planner: Planner | None = None
-        self.journey: Journey | None = None
+        self.goal: NavigationGoal | None = None
 
     def name_places(self, places: Iterable[Place]) -> None:
         """These are the named places from now on."""
         self._places = {place.name: place for place in places}
 
-    def start(self, name: str, pose: Pose | None = None) -> Journey:
-        """Sets out at once; a journey under way is given up. Without a pose the name is one of the world's."""
+    def start(self, name: str, pose: Pose | None = None) -> NavigationGoal:
+        """Sets out at once; a goal under way is given up. Without a pose the name is one of the world's."""
         self.cancel(f"the robot set out for {said(name)} instead")
-        self.journey = Journey(name, self._base, pose)
-        self._check(self.journey)
-        return self.journey
+        self.goal = NavigationGoal(name, self._base, pose)
+        self._check(self.goal)
+        return self.goal
 
     def cancel(self, reason: str) -> None:
-        """Ends the journey under way, if there is one."""
-        if self.journey is not None:
-            self.journey.end(reason)
+        """Ends the goal under way, if there is one."""
+        if self.goal is not None:
+            self.goal.end(reason)
 
-    def control(self) -> Journey | None:
-        """Commands the base for the next moment; returns the journey when it ends with this call."""
-        journey = self.journey
-        if journey is None:
+    def control(self) -> NavigationGoal | None:
+        """Commands the base for the next moment; returns the goal when it ends with this call."""
+        goal = self.goal
+        if goal is None:
             return None
-        if not journey.done:
-            self._check(journey)
-        if not journey.done:
-            self._follow(journey)
-        if journey.done:
-            self.journey = None
-            return journey
+        if not goal.done:
+            self._check(goal)
+        if not goal.done:
+            self._follow(goal)
+        if goal.done:
+            self.goal = None
+            return goal
         return None
 
-    def _check(self, journey: Journey) -> None:
-        """Ends a journey that cannot go on; plans anew when something has moved."""
-        name = journey.name
-        if self._base.bumps > journey.bumps:
-            journey.end(f"bumped into {self._base.bumped_into} on the way to {said(name)}")
+    def _check(self, goal: NavigationGoal) -> None:
+        """Ends a goal that cannot go on; plans anew when something has moved."""
+        name = goal.name
+        if self._base.bumps > goal.bumps:
+            goal.end(f"bumped into {self._base.bumped_into} on the way to {said(name)}")
         elif self._base.stuck:
-            journey.end(f"stuck on the way to {said(name)}: the wheels turn but the robot does not move")
+            goal.end(f"stuck on the way to {said(name)}: the wheels turn but the robot does not move")
         elif self._faults.blocked(name):
-            journey.end(f"there is no free way to {said(name)}")
-        elif journey.version != self._obstacles.version:
-            self._plan(journey)
+            goal.end(f"there is no free way to {said(name)}")
+        elif goal.version != self._obstacles.version:
+            self._plan(goal)
 
-    def _plan(self, journey: Journey) -> None:
-        journey.version = self._obstacles.version
-        goal, reach = self._goal(journey)
+    def _plan(self, goal: NavigationGoal) -> None:
+        goal.version = self._obstacles.version
+        target, reach = self._target(goal)
         if self._planner is None:
             from btlang.robots.planning import Planner  # brings numpy, which takes longer to import than many missions
 
             self._planner = Planner(self._world, self._obstacles, self._body.radius)
-        path = self._planner.path((self._base.pose.x, self._base.pose.y), goal, reach)
+        path = self._planner.path((self._base.pose.x, self._base.pose.y), target, reach)
         if path is None:
-            journey.end(f"there is no free way to {said(journey.name)}")
+            goal.end(f"there is no free way to {said(goal.name)}")
         else:
-            journey.path, journey.at, journey.driven = path, 0, False
+            goal.path, goal.at, goal.driven = path, 0, False
 
-    def _goal(self, journey: Journey) -> tuple[Point, float]:
-        name = journey.name
-        if journey.pose is not None:
-            return (journey.pose.x, journey.pose.y), 0.0
+    def _target(self, goal: NavigationGoal) -> tuple[Point, float]:
+        name = goal.name
+        if goal.pose is not None:
+            return (goal.pose.x, goal.pose.y), 0.0
         if name in self._places:
             return (self._places[name].x, self._places[name].y), 0.0
         thing = self._obstacles.things[name]
         return (thing.x, thing.y), stand_off(self._body, thing, name in self._people)
 
-    def _follow(self, journey: Journey) -> None:
-        pose, path = self._base.pose, journey.path
+    def _follow(self, goal: NavigationGoal) -> None:
+        pose, path = self._base.pose, goal.path
         last = len(path) - 1
-        while journey.at < last and pose.distance_to(path[journey.at]) < _LOOK_AHEAD:
-            journey.at += 1
+        while goal.at < last and pose.distance_to(path[goal.at]) < _LOOK_AHEAD:
+            goal.at += 1
         left = pose.distance_to(path[-1])
-        if journey.driven or (journey.at == last and left < _NEAR):
-            journey.driven = True
-            self._face(journey)
+        if goal.driven or (goal.at == last and left < _NEAR):
+            goal.driven = True
+            self._face(goal)
             return
-        error = pose.bearing_to(path[journey.at])
-        if journey.at == last and left < 2 * _NEAR and abs(error) > 90.0:
-            journey.driven = True  # just past the goal: good enough, turning back would look silly
+        error = pose.bearing_to(path[goal.at])
+        if goal.at == last and left < 2 * _NEAR and abs(error) > 90.0:
+            goal.driven = True  # just past the goal: good enough, turning back would look silly
         driving = self._body.driving
         speed = min(driving.speed, sqrt(2 * driving.slowing * left), 3.0 * left)
         speed *= max(0.0, cos(radians(min(90.0, 2 * error))))
         speed = 0.0 if abs(error) > 45.0 else speed
         self._base.drive(speed, turn_rate(error, self._body.turning))
 
-    def _face(self, journey: Journey) -> None:
+    def _face(self, goal: NavigationGoal) -> None:
         pose = self._base.pose
-        if journey.pose is not None:
-            error = wrap(journey.pose.heading - pose.heading)
-        elif journey.name in self._places:
-            facing = self._places[journey.name].facing
+        if goal.pose is not None:
+            error = wrap(goal.pose.heading - pose.heading)
+        elif goal.name in self._places:
+            facing = self._places[goal.name].facing
             error = 0.0 if facing is None else wrap(facing - pose.heading)
         else:
-            thing = self._obstacles.things[journey.name]
+            thing = self._obstacles.things[goal.name]
             error = pose.bearing_to((thing.x, thing.y))
         if abs(error) <= _FACING:
-            journey.end(None)
+            goal.end(None)
         else:
             self._base.drive(0.0, turn_rate(error, self._body.turning))
 

@@ -12,17 +12,17 @@ from btlang.vocabulary.capabilities import POSTURE, part_of
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.tree.node import Node, Tree
-    from btlang.vocabulary.vocabulary import Vocabulary
+    from btlang.vocabulary.lexicon import Lexicon
 
 
-def needs_of(node: Node, vocabulary: Vocabulary) -> tuple[str, ...]:
+def needs_of(node: Node, vocabulary: Lexicon) -> tuple[str, ...]:
     """What a leaf needs, by the keyword entry that does its work."""
     entries = vocabulary.entries.get(node.id, ())
     chosen = next((entry for entry in reversed(entries) if entry.replaces), entries[0] if entries else None)
     return chosen.needs if chosen is not None else ()
 
 
-def lacking(body: Body, tree: Tree, vocabulary: Vocabulary, but: Collection[str] = ()) -> dict[str, Node]:
+def lacking(body: Body, tree: Tree, vocabulary: Lexicon, but: Collection[str] = ()) -> dict[str, Node]:
     """Each part that the body lacks, with the first leaf that needs it; but for leaves of some ids."""
     found: dict[str, Node] = {}
     for node in tree.walk():
@@ -33,7 +33,7 @@ def lacking(body: Body, tree: Tree, vocabulary: Vocabulary, but: Collection[str]
     return found
 
 
-def check_body(body: Body, tree: Tree, vocabulary: Vocabulary, but: Collection[str] = ()) -> None:
+def check_body(body: Body, tree: Tree, vocabulary: Lexicon, but: Collection[str] = ()) -> None:
     """Raises MissionError with all parts that the body lacks, each at the first leaf that needs it (BT072)."""
     by_leaf: dict[int, tuple[Node, list[str]]] = {}
     for part, node in lacking(body, tree, vocabulary, but).items():

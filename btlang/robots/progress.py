@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from btlang.engine.leaf import ActionFailed
+from btlang.engine.leaves.leaf import ActionFailed
 
 PATIENCE = 5.0
 """Seconds in which a drive or a turn has to get nearer."""

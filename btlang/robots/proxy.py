@@ -19,7 +19,7 @@ _UNDO: dict[str, Callable[..., object]] = {
 class RobotProxy:
     """Hands over what it is asked for with `in_tick`, and so gets it, or its exception, from the thread that ticks.
 
-    `stop` alone reaches the robot at once. See `btlang.engine.background.Work.in_tick`.
+    `stop` alone reaches the robot at once. See `btlang.engine.leaves.background.Work.in_tick`.
     """
 
     __slots__ = ("_in_tick", "_robot", "_undo")

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from btlang.engine.leaf import ActionFailed, Unknown
-from btlang.robots.capabilities import Deed, Done, Hand, OnEvent, Robot
+from btlang.engine.leaves.leaf import ActionFailed, Unknown
+from btlang.robots.capabilities import CompletedOperation, Hand, OnEvent, Operation, Robot
 
-__all__ = ["Deed", "Done", "Hand", "OnEvent", "Robot", "RobotError", "SensorSilent"]
+__all__ = ["CompletedOperation", "Hand", "OnEvent", "Operation", "Robot", "RobotError", "SensorSilent"]
 
 
 class RobotError(ActionFailed):

@@ -14,10 +14,10 @@ from btlang.robots.geometry import Point, Pose
 from btlang.robots.hands import Hands
 from btlang.robots.joints import Joints
 from btlang.robots.latch import Latch
-from btlang.robots.navigation import Journey, Navigator
+from btlang.robots.navigation import NavigationGoal, Navigator
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.power import Power
-from btlang.robots.robot import Done, Hand, OnEvent, RobotError, SensorSilent
+from btlang.robots.robot import CompletedOperation, Hand, OnEvent, RobotError, SensorSilent
 from btlang.robots.world import Place, World, said
 from btlang.run.standstill import Standstill
 from btlang.vocabulary.capabilities import part_of
@@ -150,11 +150,11 @@ class SimulatedRobot:
         """True when it has been told to move for a second and does not."""
         return self._base.stuck
 
-    def navigate_to(self, name: str) -> Journey:
+    def navigate_to(self, name: str) -> NavigationGoal:
         """Sets out for a place, an object or a person. Raises RobotError for an unknown name."""
         return self._set_out(self._known(name))
 
-    def navigate_to_pose(self, pose: Pose) -> Journey:
+    def navigate_to_pose(self, pose: Pose) -> NavigationGoal:
         """Sets out for a pose. On the spot of an object or a person it is a journey to that, as `navigate_to` makes it.
 
         On the spot of a place it is called by that name, and so knows that its way is blocked.
@@ -167,15 +167,15 @@ class SimulatedRobot:
                 return self._set_out(thing.name)
         return self._set_out(f"({pose.x:.2f}, {pose.y:.2f})", pose)
 
-    def _set_out(self, name: str, pose: Pose | None = None) -> Journey:
+    def _set_out(self, name: str, pose: Pose | None = None) -> NavigationGoal:
         self._need("navigation")
-        journey = self._navigator.start(name, pose)
+        goal = self._navigator.start(name, pose)
         if self._latch.refuses:
-            journey.end("the robot was told to stop")
+            goal.end("the robot was told to stop")
         if self._power.empty:
-            journey.end("the battery is empty")
+            goal.end("the battery is empty")
         self._emit("navigate", name=name)
-        return journey
+        return goal
 
     # Senses
     def scan(self) -> Array:
@@ -248,19 +248,19 @@ class SimulatedRobot:
         """True while docked and not full."""
         return self._power.charging
 
-    def dock(self) -> Done:
+    def dock(self) -> CompletedOperation:
         """Connects to the charger at once. Raises RobotError where the robot does not stand at the dock."""
         self._need("docking")
         self._power.connect(self.pose)
         self._emit("dock")
-        return Done()
+        return CompletedOperation()
 
-    def undock(self) -> Done:
+    def undock(self) -> CompletedOperation:
         """Disconnects at once; moves nothing."""
         if self._power.docked:
             self._power.docked = False
             self._emit("undock")
-        return Done()
+        return CompletedOperation()
 
     # Arms, hands, head
     def joint(self, name: str) -> float:
@@ -281,19 +281,19 @@ class SimulatedRobot:
         """These joints stay where they are now."""
         self._joints.freeze(names)
 
-    def grasp(self, hand: Hand, name: str | None = None) -> Done:
+    def grasp(self, hand: Hand, name: str | None = None) -> CompletedOperation:
         """Closes a hand at once on the named or the nearest object. Raises RobotError."""
         if self._latch.refuses:
             raise RobotError("the robot was told to stop")
         found = self._hands.grasp(hand, None if name is None else self._known(name), self.pose, self.time)
         self._emit("grasp", hand=hand, name=found)
-        return Done()
+        return CompletedOperation()
 
-    def release(self, hand: Hand) -> Done:
+    def release(self, hand: Hand) -> CompletedOperation:
         """Opens a hand at once and puts down what it held."""
         if not self._latch.refuses:
             self._emit("release", hand=hand, name=self._hands.release(hand, self.pose))
-        return Done()
+        return CompletedOperation()
 
     def holding(self, hand: Hand) -> str | None:
         """The name of what the hand holds."""

@@ -14,12 +14,12 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from btlang.engine.leaf import LeafBinding
+    from btlang.engine.leaves.leaf import LeafBinding
     from btlang.run.controls import Controls
     from btlang.run.pace import Pace
     from btlang.tree.node import Tree
     from btlang.vocabulary.entry import Entry
-    from btlang.vocabulary.vocabulary import Vocabulary
+    from btlang.vocabulary.lexicon import Lexicon
 
 
 class Simulation:
@@ -39,11 +39,11 @@ class Simulation:
             bus.emit_robot(kind, data)
         self._early.clear()
 
-    def bind(self, entry: Entry, vocabulary: Vocabulary) -> LeafBinding | None:
+    def bind(self, entry: Entry, vocabulary: Lexicon) -> LeafBinding | None:
         """None: words are done by their `call`."""
         return None
 
-    def check(self, tree: Tree, vocabulary: Vocabulary) -> None:
+    def check(self, tree: Tree, vocabulary: Lexicon) -> None:
         """Raises MissionError where its body lacks what a leaf needs (BT072)."""
         check_body(self.robot.body, tree, vocabulary)
 

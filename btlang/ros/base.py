@@ -16,10 +16,10 @@ from btlang.robots.geometry import Pose, wrap
 from btlang.robots.latch import Latch
 from btlang.robots.robot import RobotError
 from btlang.ros.commands import velocity
-from btlang.ros.inbox import Inbox
 from btlang.ros.poses import pose_of
+from btlang.ros.robot_interface import VELOCITY
+from btlang.ros.subscription_cache import SubscriptionCache
 from btlang.ros.times import seconds_of
-from btlang.ros.wire import VELOCITY
 from btlang.ros.word import type_name
 
 ODOMETRY, LOCATED = "odom", "amcl_pose"
@@ -46,9 +46,14 @@ class RosBase:
     """
 
     def __init__(
-        self, node: Node, inbox: Inbox, radius: float, fastest: tuple[float, float], latch: Latch | None = None
+        self,
+        node: Node,
+        subscriptions: SubscriptionCache,
+        radius: float,
+        fastest: tuple[float, float],
+        latch: Latch | None = None,
     ) -> None:
-        self._node, self._inbox = node, inbox
+        self._node, self._subscriptions = node, subscriptions
         self._radius, self._fastest = radius, fastest
         self._latch = latch or Latch()
         self._lock = RLock()  # a signal handler may halt while this thread drives
@@ -62,8 +67,8 @@ class RosBase:
         self._early: Any = None  # a localization that is newer than the odometry
         self._publisher: Any = None
         self._type = TWIST
-        inbox.listen(ODOMETRY, Odometry, "odometry", also=self._moved)
-        inbox.listen(LOCATED, PoseWithCovarianceStamped, "pose", qos="state", also=self._located)
+        subscriptions.listen(ODOMETRY, Odometry, "odometry", also=self._moved)
+        subscriptions.listen(LOCATED, PoseWithCovarianceStamped, "pose", qos="state", also=self._located)
 
     def adapt(self) -> str:
         """The type that those who listen take; from now on velocities are told in it."""
@@ -140,14 +145,14 @@ class RosBase:
             return None
 
     def _measured(self, age: float) -> tuple[float, float]:
-        twist = self._inbox.get(ODOMETRY, age).twist.twist
+        twist = self._subscriptions.get(ODOMETRY, age).twist.twist
         linear, angular = float(twist.linear.x), degrees(twist.angular.z)
         return (linear if abs(linear) > _REST else 0.0), (angular if abs(angular) > _TURN_REST else 0.0)
 
     @property
     def pose(self) -> Pose:
         """Where it is on the map. Raises RobotError where the odometry is silent."""
-        now = pose_of(self._inbox.get(ODOMETRY, _SILENT).pose.pose)
+        now = pose_of(self._subscriptions.get(ODOMETRY, _SILENT).pose.pose)
         return now if self._fix is None else _carried(*self._fix, now)
 
     def where(self) -> Pose | None:
@@ -169,7 +174,7 @@ class RosBase:
     def _watch(self, dt: float) -> None:
         """Counts the time in which it does not move as it is told to, by its pose. A command has to arrive first."""
         try:
-            message = self._inbox.get(ODOMETRY, _FRESH)
+            message = self._subscriptions.get(ODOMETRY, _FRESH)
         except RobotError:
             self._seen = None
             return  # what asks for the pose is told

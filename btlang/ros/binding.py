@@ -6,7 +6,7 @@ from collections.abc import Callable
 from inspect import Parameter, Signature, signature
 
 from btlang.backends.engine import leaf_binding
-from btlang.engine.leaf import LeafBinding
+from btlang.engine.leaves.leaf import LeafBinding
 from btlang.ros.clients import Clients, Unusable
 from btlang.ros.leaves.actions import action_leaf
 from btlang.ros.leaves.driving import drive_leaf
@@ -18,7 +18,7 @@ from btlang.ros.leaves.services import service_leaf
 from btlang.ros.leaves.topics import topic_leaf
 from btlang.ros.word import Word
 from btlang.vocabulary.entry import COMPARISONS, Entry
-from btlang.vocabulary.vocabulary import Vocabulary
+from btlang.vocabulary.lexicon import Lexicon
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ _LEAVES: dict[str, Callable[[Word, Clients], Callable[..., Any]]] = {
 }
 
 
-def bind_ros(entry: Entry, vocabulary: Vocabulary, clients: Clients, locate: Locate) -> LeafBinding | None:
+def bind_ros(entry: Entry, vocabulary: Lexicon, clients: Clients, locate: Locate) -> LeafBinding | None:
     """What does the work of an entry on a ROS 2 robot; None where it has no `ros` table.
 
     Makes the clients that it needs, and waits for nothing. `locate` gives the pose of a place (see Word). Raises

@@ -15,7 +15,7 @@ from rclpy.duration import Duration
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 
 from btlang.record import Record
-from btlang.ros.errands import Errands
+from btlang.ros.executor_thread import ExecutorThread
 from btlang.ros.gate import Gate
 from btlang.ros.graph import full_name, is_ready, no_listener, no_publisher, no_server
 from btlang.ros.latest import Latest, NodeClock
@@ -65,7 +65,7 @@ class Clients:
         self.clock = NodeClock(node)
         self.steady = Clock(clock_type=ClockType.STEADY_TIME)
         """For timers that go on while simulated time stands still."""
-        self.errands = Errands(node)
+        self.executor = ExecutorThread(node)
         self.endings: list[Ending] = []
         """What was halted and may not have ended yet."""
         self.lease: Lease | None = None
@@ -78,11 +78,11 @@ class Clients:
     @property
     def problems(self) -> list[str]:
         """What went wrong in requests, which nobody could be told of at once."""
-        return self.errands.problems
+        return self.executor.problems
 
     def post(self, work: Callable[[], object]) -> None:
         """Lets the thread that spins do it; from any thread, in the order of calls."""
-        self.errands.post(work)
+        self.executor.post(work)
 
     def publisher(self, cls: Any, name: str, latched: bool = False) -> Any:
         """Of messages that get to all who listen; those of a latched topic also to who listens later."""
@@ -154,7 +154,7 @@ class Clients:
         Says what has not ended.
         """
         until = time.monotonic() + limit
-        wait_until(lambda: not (self.left() or self.errands.left), limit)
+        wait_until(lambda: not (self.left() or self.executor.left), limit)
         left = self.left()
         for publisher in self._publishers:
             publisher.wait_for_all_acked(Duration(seconds=max(0.0, min(_HEARD, until - time.monotonic()))))

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
     from btlang.robots.world import World
     from btlang.ros.connection import RosConnection
     from btlang.tree.node import Tree
-    from btlang.vocabulary.vocabulary import Vocabulary
+    from btlang.vocabulary.lexicon import Lexicon
 
 _PACKAGES = ("geometry_msgs", "nav_msgs", "rosgraph_msgs", "sensor_msgs", "std_msgs", "std_srvs", "trajectory_msgs")
 
@@ -102,7 +102,7 @@ def platform_of(options: Namespace) -> str:
     return over
 
 
-def print_preflight(tree: Tree, vocabulary: Vocabulary, world: World, robot: Any) -> bool:
+def print_preflight(tree: Tree, vocabulary: Lexicon, world: World, robot: Any) -> bool:
     """Prints what a tree needs of the robot, a line each; returns whether all of it is there. Raises MissionError.
 
     `robot` is what `chosen_robot` gives for a ROS 2 robot.

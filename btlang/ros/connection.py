@@ -21,9 +21,9 @@ from btlang.ros.latest import NodeClock
 from btlang.ros.node import SpunNode
 from btlang.ros.pace import RosPace
 from btlang.ros.robot import RosRobot
+from btlang.ros.robot_interface import CLOCK, VELOCITY, Interface, needs
 from btlang.ros.serving.names import served
 from btlang.ros.waiting import wait_until
-from btlang.ros.wire import CLOCK, VELOCITY, Interface, needs
 from btlang.run.bus import Bus
 from btlang.run.controls import Controls
 from btlang.run.pace import Pace
@@ -32,9 +32,9 @@ from btlang.tree.node import Node, Tree
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.engine.leaf import LeafBinding
+    from btlang.engine.leaves.leaf import LeafBinding
     from btlang.vocabulary.entry import Entry
-    from btlang.vocabulary.vocabulary import Vocabulary
+    from btlang.vocabulary.lexicon import Lexicon
 
 _DISCOVERY = 7.0  # seconds of a node's life in which it has found all: DDS announces every 3 s, and two may get lost
 _ANNOUNCED = 3.0  # seconds of a node's life in which it has found nearly all
@@ -73,7 +73,7 @@ class RosConnection:
         try:
             self.robot = RosRobot(self._spun.node, world, on_event=self._report, now=now, body=body)
             if sim_time:
-                self.robot.inbox.listen(CLOCK.name, ClockMessage, "simulated time")
+                self.robot.subscriptions.listen(CLOCK.name, ClockMessage, "simulated time")
             self._clients = Clients(self._spun.node)
             self.robot.pending = self._clients.left
             self._spun.start()
@@ -81,7 +81,7 @@ class RosConnection:
             self._spun.close()
             raise
 
-    def bind(self, entry: Entry, vocabulary: Vocabulary) -> LeafBinding | None:
+    def bind(self, entry: Entry, vocabulary: Lexicon) -> LeafBinding | None:
         """As a client of what its `ros` table names, or of its server; None where neither is there.
 
         Raises MissionError (BT104 to BT106).
@@ -90,7 +90,7 @@ class RosConnection:
             entry = served(entry, vocabulary, self._servers)
         return bind_ros(entry, vocabulary, self._clients, self.robot.located)
 
-    def survey(self, tree: Tree, vocabulary: Vocabulary) -> dict[Interface, tuple[Node | None, str]]:
+    def survey(self, tree: Tree, vocabulary: Lexicon) -> dict[Interface, tuple[Node | None, str]]:
         """What a tree needs of the robot, the first leaf that needs it, and what is wrong with it, "" for nothing.
 
         Waits for what is missing: until the node is seven seconds old, at least for two seconds. Raises MissionError
@@ -114,7 +114,7 @@ class RosConnection:
         wait_until(has_all, max(self._discovers_until - time.monotonic(), _AGAIN))
         return {self._named(interface): lack for interface, lack in found.items()}
 
-    def lacking_parts(self, tree: Tree, vocabulary: Vocabulary) -> dict[str, Node]:
+    def lacking_parts(self, tree: Tree, vocabulary: Lexicon) -> dict[str, Node]:
         """The parts that a tree needs and the body lacks, each with the first leaf that needs it."""
         return lacking(self.robot.body, tree, vocabulary, but=self._bound(tree, vocabulary)[0])
 
@@ -146,14 +146,14 @@ class RosConnection:
         node, name = self._spun.node, self._named(wanted).name
         reason = absent(node, wanted.kind, name, wanted.type)
         if not reason and wanted.flows:
-            reason = self.robot.inbox.why_not(wanted.name)
+            reason = self.robot.subscriptions.why_not(wanted.name)
         return reason if reason or is_connected(node, name) else f"{name} is not connected yet"
 
     def _named(self, interface: Interface) -> Interface:
         named: Interface = interface.replace(name=full_name(self._spun.node, interface.kind, interface.name))
         return named
 
-    def _bound(self, tree: Tree, vocabulary: Vocabulary) -> tuple[set[str], dict[Interface, Node]]:
+    def _bound(self, tree: Tree, vocabulary: Lexicon) -> tuple[set[str], dict[Interface, Node]]:
         """The ids of leaves that are done by `ros` tables, and what these need, each with the first such leaf."""
         self._clients.begin()
         ids: set[str] = set()
@@ -167,13 +167,13 @@ class RosConnection:
                     own.setdefault(Interface(*need), node)
         return ids, own
 
-    def check(self, tree: Tree, vocabulary: Vocabulary) -> None:
+    def check(self, tree: Tree, vocabulary: Lexicon) -> None:
         """Raises MissionError with all that the tree needs and the robot lacks (BT072, BT101)."""
         check_body(self.robot.body, tree, vocabulary, but=self._bound(tree, vocabulary)[0])
         lacking = [(i, node, reason) for i, (node, reason) in self.survey(tree, vocabulary).items() if reason]
         if lacking:
             raise MissionError([_lack(*lack) for lack in lacking])
-        self.robot.inbox.read()
+        self.robot.subscriptions.read()
 
     def begin(self, bus: Bus) -> None:
         """A new run: what the robot reports goes on this bus."""

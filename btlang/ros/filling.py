@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from btlang.engine.leaf import ActionFailed
+from btlang.engine.leaves.leaf import ActionFailed
 from btlang.ros.fields import INTEGERS, array_of, field_types, inner_class, message_class
 from btlang.ros.poses import MAP, set_yaw
 from btlang.ros.times import duration

@@ -19,7 +19,7 @@ _NOBODY = {
 
 
 def full_name(node: Any, kind: str, name: str) -> str:
-    """With the namespace of the node, where the name has none. `kind` is as in `btlang.ros.wire.Interface`."""
+    """The name in the namespace of the node, unless it has one. `kind` is as in `robot_interface.Interface`."""
     resolve = node.resolve_topic_name if kind in ("publisher", "listener") else node.resolve_service_name
     return str(resolve(name))
 

@@ -13,9 +13,9 @@ from btlang.robots.body import Body
 from btlang.robots.geometry import Pose
 from btlang.robots.robot import Hand, RobotError
 from btlang.robots.world import said
-from btlang.ros.inbox import Inbox
 from btlang.ros.places import Places
 from btlang.ros.services import Call, Services
+from btlang.ros.subscription_cache import SubscriptionCache
 
 _HANDS: tuple[Hand, Hand] = ("left", "right")
 
@@ -26,7 +26,7 @@ class RosHands:
     def __init__(
         self,
         node: Node,
-        inbox: Inbox,
+        subscriptions: SubscriptionCache,
         services: Services,
         places: Places,
         where: Callable[[], Pose | None],
@@ -34,12 +34,12 @@ class RosHands:
         body: Body,
     ) -> None:
         self._hands: list[Hand] = [hand for hand in _HANDS if body.hand(hand) is not None]
-        self._inbox, self._services, self._places = inbox, services, places
+        self._subscriptions, self._services, self._places = subscriptions, services, places
         self._where, self._emit = where, emit
         self._holding: dict[Hand, str] = {}
         self._opening: dict[Hand, Call] = {}
         for hand in self._hands:
-            inbox.listen(_held(hand), String, f"word of the {hand} hand", qos="state")
+            subscriptions.listen(_held(hand), String, f"word of the {hand} hand", qos="state")
             services.add(_close(hand), SetBool)
 
     def grasp(self, hand: Hand, name: str | None) -> Call:
@@ -57,13 +57,13 @@ class RosHands:
         if hand not in self._hands:
             return None
         if hand not in self._holding:
-            self._inbox.get(_held(hand))
+            self._subscriptions.get(_held(hand))
         return self._holding.get(hand) or None
 
     def step(self) -> None:
         """Hears what the hands hold."""
         for hand in self._hands:
-            for message in self._inbox.events(_held(hand)):
+            for message in self._subscriptions.events(_held(hand)):
                 before = self._holding.get(hand, "")
                 self._holds(hand, message.data)
                 opens = hand in self._opening and not self._opening[hand].done  # and is about to answer

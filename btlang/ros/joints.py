@@ -14,7 +14,7 @@ from btlang.robots.joints import clipped, joint_of
 from btlang.robots.robot import RobotError, SensorSilent
 from btlang.ros.awake import AWAKE
 from btlang.ros.commands import trajectory
-from btlang.ros.inbox import Inbox
+from btlang.ros.subscription_cache import SubscriptionCache
 
 STATES, TRAJECTORY = "joint_states", "joint_trajectory"
 _SILENT = 2.0  # seconds without joint states
@@ -26,13 +26,13 @@ _PROGRESS = 0.5  # degrees that count as nearer
 class RosJoints:
     """Degrees here, radians on the wire, where names have `_` for blanks. `freeze` may be called from any thread."""
 
-    def __init__(self, node: Node, inbox: Inbox, body: Body) -> None:
+    def __init__(self, node: Node, subscriptions: SubscriptionCache, body: Body) -> None:
         self._body = body
-        self._inbox = inbox
+        self._subscriptions = subscriptions
         self._targets: dict[str, float] = {}
         self._nearest: dict[str, tuple[float, float]] = {}  # degrees left at the nearest, and since when
         self._publisher = node.create_publisher(JointTrajectory, TRAJECTORY, 10)
-        inbox.listen(STATES, JointState, "joint states")
+        subscriptions.listen(STATES, JointState, "joint states")
 
     @property
     def moving(self) -> bool:
@@ -42,11 +42,11 @@ class RosJoints:
     def angle(self, name: str) -> float:
         """Raises RobotError for an unknown joint, and where the joint states are silent."""
         joint_of(self._body, name)
-        states = self._inbox.get(STATES, _SILENT)
+        states = self._subscriptions.get(STATES, _SILENT)
         wire = _on_wire(name)
         position = positions(states).get(wire)
         if position is None:
-            raise SensorSilent(f'{self._inbox.shown(STATES)} tells nothing of the joint "{wire}"')
+            raise SensorSilent(f'{self._subscriptions.shown(STATES)} tells nothing of the joint "{wire}"')
         return degrees(position)
 
     def move(self, targets: Mapping[str, float]) -> None:

@@ -6,7 +6,7 @@ import math
 import time
 from collections.abc import Callable
 
-from btlang.engine.leaf import Unknown
+from btlang.engine.leaves.leaf import Unknown
 from btlang.ros.awake import AWAKE
 
 TYPE_CHECKING = False

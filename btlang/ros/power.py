@@ -9,8 +9,8 @@ from sensor_msgs.msg import BatteryState
 from std_msgs.msg import Bool
 from std_srvs.srv import Trigger
 
-from btlang.ros.inbox import Inbox
 from btlang.ros.services import Call, Services
+from btlang.ros.subscription_cache import SubscriptionCache
 
 BATTERY, DOCKED, DOCK, UNDOCK = "battery_state", "docked", "dock", "undock"
 STATUS = "status of the battery"
@@ -21,30 +21,32 @@ _SILENT = 30.0  # seconds without word of the battery
 class RosPower:
     """`emit` is told what happens. All raise RobotError where nothing tells what is asked for."""
 
-    def __init__(self, node: Node, inbox: Inbox, services: Services, emit: Callable[..., object]) -> None:
-        self._inbox, self._services, self._emit = inbox, services, emit
+    def __init__(
+        self, node: Node, subscriptions: SubscriptionCache, services: Services, emit: Callable[..., object]
+    ) -> None:
+        self._subscriptions, self._services, self._emit = subscriptions, services, emit
         self._docked: bool | None = None
-        inbox.listen(BATTERY, BatteryState, "battery state", refuses=_no_percentage)
-        inbox.listen(BATTERY, BatteryState, "battery state", key=STATUS)
-        inbox.listen(DOCKED, Bool, "word of the dock", qos="state")
+        subscriptions.listen(BATTERY, BatteryState, "battery state", refuses=_no_percentage)
+        subscriptions.listen(BATTERY, BatteryState, "battery state", key=STATUS)
+        subscriptions.listen(DOCKED, Bool, "word of the dock", qos="state")
         services.add(DOCK, Trigger)
         services.add(UNDOCK, Trigger)
 
     @property
     def battery(self) -> float:
         """Percent left."""
-        return 100.0 * float(self._inbox.get(BATTERY, _SILENT).percentage)
+        return 100.0 * float(self._subscriptions.get(BATTERY, _SILENT).percentage)
 
     @property
     def charging(self) -> bool:
         """True while the battery is being charged."""
-        state = self._inbox.get(STATUS, _SILENT)
+        state = self._subscriptions.get(STATUS, _SILENT)
         return bool(state.power_supply_status == BatteryState.POWER_SUPPLY_STATUS_CHARGING)
 
     @property
     def docked(self) -> bool:
         """True while connected to the dock."""
-        return self._docked if self._docked is not None else bool(self._inbox.get(DOCKED).data)
+        return self._docked if self._docked is not None else bool(self._subscriptions.get(DOCKED).data)
 
     def dock(self) -> Call:
         """Connects to the charger."""
@@ -56,7 +58,7 @@ class RosPower:
 
     def step(self) -> None:
         """Hears whether it is docked."""
-        for message in self._inbox.events(DOCKED):
+        for message in self._subscriptions.events(DOCKED):
             self._docked = bool(message.data)
 
     def _connected(self, docked: bool) -> None:

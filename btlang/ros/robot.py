@@ -1,4 +1,4 @@
-"""A robot that speaks ROS 2, as actions see it; `btlang/ros/wire.py` lists what it needs on the wire."""
+"""A robot that speaks ROS 2, as actions see it; `btlang/ros/robot_interface.py` lists what it needs on the wire."""
 
 from __future__ import annotations
 
@@ -16,24 +16,24 @@ from btlang.robots.body import Body
 from btlang.robots.body_file import standard_body
 from btlang.robots.geometry import Point, Pose
 from btlang.robots.latch import Latch
-from btlang.robots.robot import Deed, Done, Hand, OnEvent, RobotError
+from btlang.robots.robot import CompletedOperation, Hand, OnEvent, Operation, RobotError
 from btlang.robots.world import Place, World
 from btlang.ros.awake import AWAKE
 from btlang.ros.base import RosBase
-from btlang.ros.errands import Errands
+from btlang.ros.executor_thread import ExecutorThread
 from btlang.ros.hands import RosHands
-from btlang.ros.inbox import Inbox
 from btlang.ros.joints import RosJoints
 from btlang.ros.places import Places
 from btlang.ros.power import RosPower
-from btlang.ros.senses import RosSenses
+from btlang.ros.sensors import RosSensors
 from btlang.ros.services import Services
-from btlang.ros.voice import RosVoice
+from btlang.ros.speech import RosSpeech
+from btlang.ros.subscription_cache import SubscriptionCache
 from btlang.run.standstill import Standstill
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.ros.journey import RosNavigation
+    from btlang.ros.navigation_goal import RosNavigation
 
 _STOP = "stop"
 _TOLD_TO_STOP = "the robot was told to stop"
@@ -65,20 +65,22 @@ class RosRobot:
         self.on_event = on_event
         self.stops = 0
         self.time = 0.0
-        self.inbox = inbox = Inbox(node, now)
+        self.subscriptions = subscriptions = SubscriptionCache(node, now)
         self._node, self._now = node, now
         self._naps = AWAKE.naps
-        self._errands = Errands(node)
+        self._executor = ExecutorThread(node)
         self._places = Places(world, body)
         self._latch = Latch()
-        self._base = RosBase(node, inbox, body.radius, (body.driving.top_speed, body.turning.top_speed), self._latch)
-        self._joints = RosJoints(node, inbox, body)
-        self._voice = RosVoice(node, inbox)
-        self._services = Services(node, self._errands)
+        self._base = RosBase(
+            node, subscriptions, body.radius, (body.driving.top_speed, body.turning.top_speed), self._latch
+        )
+        self._joints = RosJoints(node, subscriptions, body)
+        self._voice = RosSpeech(node, subscriptions)
+        self._services = Services(node, self._executor)
         self._services.add(_STOP, Trigger)
-        self._senses = RosSenses(inbox, self._base, self._emit)
-        self._power = RosPower(node, inbox, self._services, self._emit)
-        self._hands = RosHands(node, inbox, self._services, self._places, self._base.where, self._emit, body)
+        self._senses = RosSensors(subscriptions, self._base, self._emit)
+        self._power = RosPower(node, subscriptions, self._services, self._emit)
+        self._hands = RosHands(node, subscriptions, self._services, self._places, self._base.where, self._emit, body)
         self._navigation: RosNavigation | None = None
         self.pending: Callable[[], Iterable[str]] = tuple
         """Further reasons why it may be moved on, beside its journeys."""
@@ -88,14 +90,14 @@ class RosRobot:
     def prepare_navigation(self) -> None:
         """Makes the client of the navigation server, which finds it in a moment. Needs nav2_msgs."""
         if self._navigation is None:
-            from btlang.ros.journey import RosNavigation
+            from btlang.ros.navigation_goal import RosNavigation
 
-            self._navigation = RosNavigation(self._node, self._errands, self._base.where, self._now)
+            self._navigation = RosNavigation(self._node, self._executor, self._base.where, self._now)
 
     def step(self, dt: float) -> None:
         """`dt` seconds have passed: reads what has come, and tells the wanted velocity again."""
         self.time += dt
-        self.inbox.read()
+        self.subscriptions.read()
         if self._naps != AWAKE.naps:
             self._naps = AWAKE.naps
             self._emit("warning", text=f"this computer was asleep for {AWAKE.nap:.0f} s, or btlang was suspended")
@@ -223,7 +225,7 @@ class RosRobot:
         facing = next((place.facing for place in self._places.world.places if place.name == name), None)
         return *point, None if facing is None else radians(facing)
 
-    def navigate_to(self, name: str) -> Deed:
+    def navigate_to(self, name: str) -> Operation:
         """Sends NavigateToPose. Raises RobotError for an unknown name, and where nobody knows where the robot is."""
         known = self._places.known(name)
         self._check_stop()  # a goal that is sent may be driven to, whatever becomes of its cancel
@@ -232,11 +234,11 @@ class RosRobot:
         assert self._navigation is not None
         if self._base.driving:
             self._base.halt()
-        journey = self._navigation.start(known, goal)
+        operation = self._navigation.start(known, goal)
         if self._latch.refuses:
-            journey.end(_TOLD_TO_STOP)  # `stop` came in between from another thread
+            operation.end(_TOLD_TO_STOP)  # `stop` came in between from another thread
         self._emit("navigate", name=known)
-        return journey
+        return operation
 
     # Senses
     def scan(self) -> npt.NDArray[np.float64]:
@@ -279,12 +281,12 @@ class RosRobot:
         """True while the battery is being charged. Raises RobotError where nothing tells of it."""
         return self._power.charging
 
-    def dock(self) -> Deed:
+    def dock(self) -> Operation:
         """Connects to the charger, or fails with the robot's reason. Raises RobotError where nothing serves it."""
         self._check_stop()
         return self._power.dock()
 
-    def undock(self) -> Deed:
+    def undock(self) -> Operation:
         """Disconnects, or fails with the robot's reason. Raises RobotError where nothing serves it."""
         self._check_stop()
         return self._power.undock()
@@ -310,7 +312,7 @@ class RosRobot:
         """These joints stay where they are now."""
         self._joints.freeze(names)
 
-    def grasp(self, hand: Hand, name: str | None = None) -> Deed:
+    def grasp(self, hand: Hand, name: str | None = None) -> Operation:
         """Closes a hand; where it closes on another object than the named one, it opens again and fails.
 
         Raises RobotError for an unknown name, and where nothing serves it.
@@ -318,9 +320,9 @@ class RosRobot:
         self._check_stop()
         return self._hands.grasp(hand, name)
 
-    def release(self, hand: Hand) -> Deed:
+    def release(self, hand: Hand) -> Operation:
         """Opens a hand, or fails with the robot's reason. Raises RobotError where nothing serves it."""
-        return Done() if self._latch.refuses else self._hands.release(hand)
+        return CompletedOperation() if self._latch.refuses else self._hands.release(hand)
 
     def holding(self, hand: Hand) -> str | None:
         """The name of what the hand holds. Raises RobotError where nothing tells of it."""

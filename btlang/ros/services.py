@@ -12,13 +12,13 @@ from rclpy.node import Node
 
 from btlang.robots.robot import RobotError
 from btlang.ros.awake import AWAKE
-from btlang.ros.errands import Errands
+from btlang.ros.executor_thread import ExecutorThread
 
 _ANSWER = 3.0  # seconds of real time
 
 
 class Call:
-    """A service that was called; see `btlang.robots.robot.Deed`. `end` may be called from any thread.
+    """A service that was called; see `btlang.robots.robot.Operation`. `end` may be called from any thread.
 
     A call cannot be taken back: when it is cancelled, nobody looks at the answer.
     """
@@ -66,8 +66,8 @@ class Call:
 class Services:
     """Clients of services by their names. `fire` and `stop` may be called from any thread."""
 
-    def __init__(self, node: Node, errands: Errands) -> None:
-        self._node, self._errands = node, errands
+    def __init__(self, node: Node, executor: ExecutorThread) -> None:
+        self._node, self._executor = node, executor
         self._clients: dict[str, Any] = {}
         self._types: dict[str, Any] = {}
         self._calls: list[Call] = []
@@ -117,7 +117,7 @@ class Services:
 
     def _send(self, name: str, fields: dict[str, Any], answered: Callable[[Any], object]) -> None:
         client, request = self._clients[name], self._types[name].Request(**fields)
-        self._errands.post(partial(_ask, client, request, answered))
+        self._executor.post(partial(_ask, client, request, answered))
 
 
 def _ask(client: Any, request: Any, answered: Callable[[Any], object]) -> None:

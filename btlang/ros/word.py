@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Mapping
 from importlib import import_module
 
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
-from btlang.engine.leaf import ActionFailed
+from btlang.engine.leaves.leaf import ActionFailed
 from btlang.text.source import Source, Span
 from btlang.text.spelling import nearest
 from btlang.vocabulary.ros_table import SLOT
@@ -17,9 +17,9 @@ if TYPE_CHECKING:
     from typing import Any, TypeAlias
 
     from btlang.vocabulary.entry import Entry
+    from btlang.vocabulary.lexicon import Lexicon
     from btlang.vocabulary.ros_binding import RosBinding
     from btlang.vocabulary.values import ValueType
-    from btlang.vocabulary.vocabulary import Vocabulary
 
     Locate: TypeAlias = Callable[[str], tuple[float, float, float | None]]
 
@@ -32,7 +32,7 @@ class Word:
     to face in radians, None for any, in the frame `map`; it raises KeyError for a place that it does not know.
     """
 
-    def __init__(self, entry: Entry, vocabulary: Vocabulary, locate: Locate) -> None:
+    def __init__(self, entry: Entry, vocabulary: Lexicon, locate: Locate) -> None:
         assert entry.ros is not None
         self.entry = entry
         self.ros: RosBinding = entry.ros

@@ -168,7 +168,7 @@ def _live_view(mission: Mission, controls: Controls, keys: bool, tree_stays: boo
         return None
     if columns < _LEAST_SIZE.columns or rows < _LEAST_SIZE.lines:
         return None
-    from btlang.engine.build import EngineError
+    from btlang.engine.instance import EngineError
     from btlang.run.live.view import LiveView
 
     try:

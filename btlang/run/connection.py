@@ -11,9 +11,9 @@ from btlang.tree.node import Tree
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.engine.leaf import LeafBinding
+    from btlang.engine.leaves.leaf import LeafBinding
     from btlang.vocabulary.entry import Entry
-    from btlang.vocabulary.vocabulary import Vocabulary
+    from btlang.vocabulary.lexicon import Lexicon
 
 
 class Connection(Protocol):
@@ -27,10 +27,10 @@ class Connection(Protocol):
     def bus(self) -> Bus:
         """That of the run under way."""
 
-    def bind(self, entry: Entry, vocabulary: Vocabulary) -> LeafBinding | None:
+    def bind(self, entry: Entry, vocabulary: Lexicon) -> LeafBinding | None:
         """How the robot itself does what an entry says; None where its `call` does. Raises MissionError."""
 
-    def check(self, tree: Tree, vocabulary: Vocabulary) -> None:
+    def check(self, tree: Tree, vocabulary: Lexicon) -> None:
         """Raises MissionError where the robot lacks what the leaves of the tree need."""
 
     def begin(self, bus: Bus) -> None:

@@ -13,20 +13,25 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, ClassVar, Protocol, TypeAlias
 
-    from btlang.engine.build import Fault, Site
-    from btlang.engine.watch import Changes
+    from btlang.engine.instance import Fault, NodeInstance
+    from btlang.engine.status_trace import Changes
     from btlang.run.robot_state import RobotState
 
     Sink: TypeAlias = Callable[["Event"], object]
 
     class Nodes(Protocol):
-        """The nodes of a tree by their numbers."""
+        """The nodes of a tree by their numbers; see btlang.engine.engine.Engine."""
+
+        @property
+        def size(self) -> int: ...
 
         def path(self, index: int) -> str: ...
 
         def node(self, index: int) -> Node: ...
 
-        def reason(self, index: int, fault: Fault | Site | None) -> str: ...
+        def filled(self, index: int) -> Node: ...
+
+        def reason(self, index: int, fault: Fault | NodeInstance | None) -> str: ...
 
     class Robot(Protocol):
         """What a run asks of a robot; see btlang.robots.robot.Robot. `moving`, `standstill`, `disable` and `enable` may

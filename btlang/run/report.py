@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator
 
 from btlang.diagnostics.render import underlined
 from btlang.engine.engine import Failure
-from btlang.run.story import Attempt, Attempts, Story
+from btlang.run.failure_history import Attempt, Attempts, FailureHistory
 from btlang.text.output import printable
 from btlang.tree.catalogue import CATALOGUE, SUBTREE
 from btlang.tree.node import Node
@@ -15,7 +15,7 @@ from btlang.tree.node import Node
 _LONGEST = 60  # of the words of a sentence beside a reason
 
 
-def failure_report(failure: Failure, story: Story, label: Callable[[Node], str], colour: str = "") -> str:
+def failure_report(failure: Failure, story: FailureHistory, label: Callable[[Node], str], colour: str = "") -> str:
     """Which sentence failed, its words underlined in a colour, at which leaf, why, and what had been tried before.
 
     `label` gives the words for a node.
@@ -24,7 +24,7 @@ def failure_report(failure: Failure, story: Story, label: Callable[[Node], str],
 
 
 class _Report:
-    def __init__(self, failure: Failure, story: Story, label: Callable[[Node], str]) -> None:
+    def __init__(self, failure: Failure, story: FailureHistory, label: Callable[[Node], str]) -> None:
         self._failure = failure
         self._story = story
         self._label = label

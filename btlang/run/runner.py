@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping
 
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.engine import Engine, Failure
-from btlang.engine.leaf import LeafBinding
+from btlang.engine.leaves.leaf import LeafBinding
 from btlang.engine.status import IDLE, NAMES, RUNNING
 from btlang.record import Record
 from btlang.run.bus import Bus
@@ -24,8 +24,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, Protocol
 
+    from btlang.engine.status_trace import Changes
     from btlang.engine.timing import Stopwatch
-    from btlang.engine.watch import Changes
     from btlang.run.events import Robot
 
     class Ticked(Protocol):
@@ -112,7 +112,7 @@ def traced_engine(
         on_unknown=unknown,
         proxies=proxies,
     )
-    bus.before = engine.tell
+    bus.before = engine.flush
     return engine
 
 

@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 from threading import Lock
 
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
-from btlang.engine.watch import repeats
+from btlang.engine.status_trace import repeats
 from btlang.record import Record
 from btlang.run.bus import INLINE
 from btlang.run.events import PeriodPassed, Said, StatusesChanged
@@ -47,7 +47,7 @@ class State:
     """Follows the status changes of a run. `statuses` holds one number for each node, in preorder.
 
     A node that is started again keeps nothing of its earlier round: what it has not reached yet is IDLE again. Where
-    that round was over within a tick, this is so once the new one is RUNNING (see btlang/engine/watch.py).
+    that round was over within a tick, this is so once the new one is RUNNING (see btlang/engine/status_trace.py).
     `nodes` are those of the tree.
     """
 

@@ -14,7 +14,7 @@ from collections.abc import Callable, Sequence
 from functools import cache
 from zlib import crc32
 
-from btlang.folders import user_folder
+from btlang.user_dirs import user_dir
 
 try:
     import _pickle as pickle  # the rest of the module takes as long to import as a vocabulary to load
@@ -37,7 +37,7 @@ _CODE = ("", "diagnostics", "robots", "text", "vocabulary")  # whose modules mak
 _OTHERS_MAY_WRITE = stat.S_IWGRP | stat.S_IWOTH
 
 
-def kept(kind: str, files: Sequence[str], make: Callable[[], Made]) -> Made:
+def cached(kind: str, files: Sequence[str], make: Callable[[], Made]) -> Made:
     """What `make` gives, from the cache where it was made before of the same files by the same code.
 
     `kind` and `files` tell it from other things that are kept. What `make` raises comes through, and nothing is kept.
@@ -79,7 +79,7 @@ def _from_folder(state: tuple[Any, ...], make: Callable[[], Made]) -> Made:
 
 def _own_folder() -> str:
     """The folder of the cache. Raises OSError where there is none that only the user can write to."""
-    folder = user_folder("cache")
+    folder = user_dir("cache")
     if not os.path.isabs(folder):  # a user without a home
         raise FileNotFoundError(folder)
     os.makedirs(folder, 0o700, exist_ok=True)

@@ -7,9 +7,9 @@ from collections.abc import Iterator
 
 from btlang.record import Record
 from btlang.vocabulary.entry import COMPARISONS, Entry
+from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.pattern import Slot, forms
 from btlang.vocabulary.values import ValueType, with_unit
-from btlang.vocabulary.vocabulary import Vocabulary
 
 # Commands come first; what packs bring follows, then the words of the language.
 _FIRST = ("motion", "navigation", "manipulation", "gestures", "speech", "sensing", "power")
@@ -45,7 +45,7 @@ def _words(*texts: str) -> frozenset[str]:
     return frozenset(re.findall(r"[^\W_]+(?:'\w+)?", " ".join(texts).lower()))
 
 
-def items(vocabulary: Vocabulary) -> list[Item]:
+def items(vocabulary: Lexicon) -> list[Item]:
     """Everything that can be said, by topic and in the order to show it."""
     commands = [_command(entry, vocabulary) for entries in vocabulary.entries.values() for entry in entries]
     words = [item for role in vocabulary.about if (item := _word(role, vocabulary)) is not None]
@@ -59,7 +59,7 @@ def items(vocabulary: Vocabulary) -> list[Item]:
     return sorted(found, key=lambda item: order.index(item.topic))
 
 
-def _command(entry: Entry, vocabulary: Vocabulary) -> Item:
+def _command(entry: Entry, vocabulary: Lexicon) -> Item:
     sort = "command" if entry.sort == "action" else "condition"
     details = list(_slots(entry, vocabulary))
     ways = entry.phrases
@@ -76,7 +76,7 @@ def _command(entry: Entry, vocabulary: Vocabulary) -> Item:
     )  # fmt: skip
 
 
-def _slots(entry: Entry, vocabulary: Vocabulary) -> Iterator[str]:
+def _slots(entry: Entry, vocabulary: Lexicon) -> Iterator[str]:
     always = [{part.name for part in form if isinstance(part, Slot)} for text in entry.phrases for form in forms(text)]
     for slot in entry.slots[: -len(COMPARISONS)] if entry.measures else entry.slots:
         kind = vocabulary.types[slot.type]
@@ -88,7 +88,7 @@ def _slots(entry: Entry, vocabulary: Vocabulary) -> Iterator[str]:
         yield line
 
 
-def _word(role: str, vocabulary: Vocabulary) -> Item | None:
+def _word(role: str, vocabulary: Lexicon) -> Item | None:
     about = vocabulary.about[role]
     counts = tuple(vocabulary.counts) if role == "count" else ()
     ways = (*counts, *vocabulary.roles.get(role, ()))
@@ -103,17 +103,17 @@ def _word(role: str, vocabulary: Vocabulary) -> Item | None:
     return Item(about.topic or "other words", "word", ways, about.help, about.example, (role,), details)
 
 
-def _comparisons(vocabulary: Vocabulary) -> tuple[str, ...]:
+def _comparisons(vocabulary: Lexicon) -> tuple[str, ...]:
     return tuple(pattern for patterns in vocabulary.comparisons.values() for pattern in patterns)
 
 
-def _value(kind: ValueType, vocabulary: Vocabulary) -> Item:
+def _value(kind: ValueType, vocabulary: Lexicon) -> Item:
     names = tuple(vocabulary.values.names(kind.name)) if kind.kind == "names" else ()
     topic = WORLD if kind.kind == "names" and not kind.names else VALUES
     return Item(topic, "value", (f"{{{kind.name}}}",), _described(kind, vocabulary), "", names)
 
 
-def _described(kind: ValueType, vocabulary: Vocabulary) -> str:
+def _described(kind: ValueType, vocabulary: Lexicon) -> str:
     """What a slot of a type takes."""
     if kind.kind == "quantity":
         return f"a number and one of {', '.join(unit.words[0] for unit in kind.units)}"

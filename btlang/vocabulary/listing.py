@@ -9,9 +9,9 @@ from btlang.text.source import Source
 from btlang.text.spelling import nearest
 from btlang.text.words import split
 from btlang.vocabulary.items import Item, items
+from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.pattern import Form, forms
 from btlang.vocabulary.trie import longest
-from btlang.vocabulary.vocabulary import Vocabulary
 
 _WIDTH = 80  # columns, of a text that is for no terminal
 _FEW = 3  # of so few found, all is told
@@ -22,7 +22,7 @@ _KEY = (
 )
 
 
-def listing(vocabulary: Vocabulary, search: str = "", width: int = _WIDTH) -> list[str]:
+def listing(vocabulary: Lexicon, search: str = "", width: int = _WIDTH) -> list[str]:
     """Everything that can be said, by topic, each with what it does and an example.
 
     With `search` only the topic or sort of that name ("conditions"), else what is said with all of its words, else
@@ -38,7 +38,7 @@ def listing(vocabulary: Vocabulary, search: str = "", width: int = _WIDTH) -> li
     return _by_topic(found, width, whole) or _unknown(known, search)
 
 
-def help_on(vocabulary: Vocabulary, text: str = "", width: int = _WIDTH) -> list[str]:
+def help_on(vocabulary: Lexicon, text: str = "", width: int = _WIDTH) -> list[str]:
     """Help on a topic, a phrase (with or without values), a node id, a word of the language or a type of values.
 
     Of a phrase or word: all ways to say it, what it does, its slots, what it needs of the robot, and an example.
@@ -74,7 +74,7 @@ def _has(words: Iterable[str], wanted: Sequence[str]) -> bool:
     return all(any(word.startswith(start) for word in words) for start in wanted)
 
 
-def _said_so(known: Sequence[Item], text: str, vocabulary: Vocabulary) -> list[Item]:
+def _said_so(known: Sequence[Item], text: str, vocabulary: Lexicon) -> list[Item]:
     """What is said with exactly these words, whatever stands in its slots."""
     words = split(Source(text), vocabulary.articles)
     bare = tuple(words.words[: len(words.words) - 2])
@@ -86,7 +86,7 @@ def _said_so(known: Sequence[Item], text: str, vocabulary: Vocabulary) -> list[I
     return _begun_so(known, text, vocabulary) if match is not None and match.last >= len(bare) else []
 
 
-def _begun_so(known: Sequence[Item], text: str, vocabulary: Vocabulary) -> list[Item]:
+def _begun_so(known: Sequence[Item], text: str, vocabulary: Lexicon) -> list[Item]:
     """The phrase that the text begins with."""
     match = longest(vocabulary.trie, split(Source(text), vocabulary.articles), 0, vocabulary.context)
     if match is None:

@@ -8,10 +8,10 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.diagnostics.reading import read_source
 from btlang.text.source import Source, Span
-from btlang.vocabulary.cache import kept, recent, stamp
+from btlang.vocabulary.cache import cached, recent, stamp
 from btlang.vocabulary.entry import Entry
+from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.shipped import keyword_files
-from btlang.vocabulary.vocabulary import Vocabulary
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ ENTRY_POINTS = "btlang.keywords"
 
 def load_vocabulary(
     keywords: Sequence[str | Entry | Callable[..., Any]] = (), names: Mapping[str, Sequence[str]] | None = None
-) -> Vocabulary:
+) -> Lexicon:
     """The shipped words and those of `keywords`: paths of keyword files, names of installed packs, entries, or
     functions that carry one (see `btlang.action`). `names` adds values of types, such as the places of a world.
 
@@ -35,13 +35,13 @@ def load_vocabulary(
     return vocabulary.with_names(names) if names else vocabulary
 
 
-_own: dict[tuple[object, ...], tuple[Sequence[Entry], Vocabulary]] = {}  # the entries stay, so that no id is used again
+_own: dict[tuple[object, ...], tuple[Sequence[Entry], Lexicon]] = {}  # the entries stay, so that no id is used again
 
 
-def _words(files: Sequence[str], entries: Sequence[Entry]) -> Vocabulary:
+def _words(files: Sequence[str], entries: Sequence[Entry]) -> Lexicon:
     """Made once in a process for the same files and entries."""
     if not entries:
-        return kept("words", files, lambda: _made(files, ()))
+        return cached("words", files, lambda: _made(files, ()))
     try:
         key = (*map(stamp, files), *map(id, entries))
     except OSError:
@@ -49,7 +49,7 @@ def _words(files: Sequence[str], entries: Sequence[Entry]) -> Vocabulary:
     return recent(_own, key, lambda: (entries, _made(files, entries)))[1]
 
 
-def _made(paths: Sequence[str], entries: Iterable[Entry]) -> Vocabulary:
+def _made(paths: Sequence[str], entries: Iterable[Entry]) -> Lexicon:
     """The vocabulary of keyword files, the shipped ones among them, and of entries."""
     from btlang.vocabulary.keyword_file import KeywordFile, read_keyword_file  # not where the cache has it
 
@@ -63,7 +63,7 @@ def _made(paths: Sequence[str], entries: Iterable[Entry]) -> Vocabulary:
             problems += error.diagnostics
     if problems:
         raise MissionError(problems)
-    return Vocabulary(files, entries)
+    return Lexicon(files, entries)
 
 
 def _entry(word: Entry | Callable[..., Any]) -> Entry:

@@ -7,7 +7,7 @@ from hypothesis import HealthCheck, assume, given, settings
 from hypothesis import strategies as st
 
 from btlang.actions import motion, sensing
-from btlang.engine.leaf import ActionFailed
+from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.geometry import Pose
 from btlang.robots.world import Box, Fault, Place, Thing
 from btlang.robots.world_file import load_world

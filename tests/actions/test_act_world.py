@@ -3,7 +3,7 @@
 import pytest
 
 from btlang.actions import gestures, manipulation, navigation, power, sensing, speech
-from btlang.engine.leaf import ActionFailed
+from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.geometry import Pose
 from btlang.robots.world import Fault
 from btlang.robots.world_file import load_world

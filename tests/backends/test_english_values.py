@@ -17,9 +17,9 @@ from btlang.text.source import Source
 from btlang.tree import ast
 from btlang.tree.dump import plain
 from btlang.tree.node import Node, Tree
-from btlang.vocabulary.vocabulary import Vocabulary
-from tests.english import trees
+from btlang.vocabulary.lexicon import Lexicon
 from tests.language.letters import letters
+from tests.printer import trees
 from tests.profiles import searches
 
 PARSERS = ("shunting-yard", "lark")
@@ -31,7 +31,7 @@ NOT_ALL_NATURAL = {
 _BY_ID = re.compile(r'\b(do|test) ("|subtree|script|sequence|set blackboard|recovery|reactive|pipeline)')
 
 
-def said_and_read(tree: Tree, vocabulary: Vocabulary, facts: Sequence[ast.Fact] = ()) -> str:
+def said_and_read(tree: Tree, vocabulary: Lexicon, facts: Sequence[ast.Fact] = ()) -> str:
     """The English of a tree, which both parsers read back as an equal one, that is said in the same words."""
     text = to_english(tree, vocabulary, facts=facts)
     for parser in PARSERS:

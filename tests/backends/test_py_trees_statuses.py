@@ -15,7 +15,7 @@ from btlang.backends.py_trees.build import to_py_trees
 from btlang.backends.py_trees.module import to_module
 from btlang.tree.model import NodeModel
 from btlang.tree.node import Node, Tree
-from btlang.vocabulary.vocabulary import Vocabulary
+from btlang.vocabulary.lexicon import Lexicon
 from tests.profiles import searches
 
 from ..engine.random_trees import letters
@@ -87,7 +87,7 @@ TREES = st.recursive(LEAVES, parents, max_leaves=12)
 
 
 @cache
-def vocabulary() -> Vocabulary:
+def vocabulary() -> Lexicon:
     return world_vocabulary()
 
 

@@ -27,7 +27,7 @@ from btlang.frontends.mission.parsers.build import Builder
 from btlang.frontends.mission.reader import PARSERS, read_mission
 from btlang.frontends.mission.token import Token
 from btlang.frontends.mission.tokens.lexer import Lexer
-from btlang.garbage import no_collection
+from btlang.gc_pause import gc_paused
 from btlang.text.source import Source
 from tests.benchmarks.missions import mission
 
@@ -79,7 +79,7 @@ def parsers(rounds: int) -> None:
             parse(tokens, build)
 
     def compared(works: dict[str, Callable[[], object]], what: str) -> None:
-        with no_collection:  # as in `parse_tree`
+        with gc_paused:  # as in `parse_tree`
             times = medians(works, rounds)
         yard, lark = times["shunting-yard"], times["lark"]
         told = f"shunting-yard {LINES / yard:,.0f} lines/s, Lark {LINES / lark:,.0f} lines/s"

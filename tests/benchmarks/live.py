@@ -74,7 +74,7 @@ def watched_run(mission: str, view: bool, seconds: float, report: Path) -> None:
         if isinstance(event, PeriodPassed) and LEFT_OUT <= event.t < seconds:
             marks.append((time.perf_counter(), time.process_time()))
 
-    Runner._tick = timed_tick  # type: ignore[method-assign]
+    Runner._tick = timed_tick  # type: ignore[method-assign, assignment]
     mark.policy = INLINE  # type: ignore[attr-defined]
     controls = Controls()
     live = LiveView(tree, controls, sys.stdout, sys.stdin) if view else None

@@ -29,7 +29,7 @@ from btlang.passes import compile_mission, errors_of
 from btlang.text.source import Source
 from btlang.tree.dump import plain
 from btlang.vocabulary.correct_words import correct_words
-from btlang.vocabulary.vocabulary import Vocabulary
+from btlang.vocabulary.lexicon import Lexicon
 
 ROOT = Path(__file__).parent.parent.parent
 PARSERS = ("shunting-yard", "lark")
@@ -82,7 +82,7 @@ def pool() -> tuple[Mission, ...]:
 
 
 @cache
-def vocabulary(world: str | None) -> Vocabulary:
+def vocabulary(world: str | None) -> Lexicon:
     """The words of a world; loading them takes longer than to compile a mission."""
     return world_vocabulary(world=world)
 

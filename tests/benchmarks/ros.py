@@ -97,9 +97,10 @@ def told(values: Sequence[float]) -> str:
 
 def share(runs: list[dict[str, Any]], clock: int) -> float:
     """The share of one core that a clock of `Marks` counted, as a median of runs."""
-    return median(
+    shares: list[float] = [
         (run["ticks"][-1][clock] - run["ticks"][0][clock]) / (run["ticks"][-1][0] - run["ticks"][0][0]) for run in runs
-    )
+    ]
+    return median(shares)
 
 
 def show(name: str, runs: list[dict[str, Any]]) -> None:

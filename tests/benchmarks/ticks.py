@@ -21,7 +21,7 @@ from py_trees.common import Status
 
 from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine
-from btlang.engine.leaf import LeafBinding
+from btlang.engine.leaves.leaf import LeafBinding
 from btlang.run.bus import Bus
 from btlang.run.runner import traced_engine
 from btlang.tree.node import Node, Tree
@@ -87,7 +87,7 @@ def peer(node: Node) -> py_trees.behaviour.Behaviour:
         return Answer(node.id, ANSWERS[node.id])
     children = [peer(child) for child in node.children]
     if node.id in DECORATORS:
-        return DECORATORS[node.id](node.id, children[0])
+        return DECORATORS[node.id](node.id, children[0])  # type: ignore[abstract]
     if node.id == "Parallel":
         policy = py_trees.common.ParallelPolicy.SuccessOnAll(synchronise=True)
         return py_trees.composites.Parallel(node.id, policy, children)

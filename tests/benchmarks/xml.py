@@ -15,7 +15,7 @@ from xml.etree import ElementTree
 from btlang.api import world_vocabulary
 from btlang.backends.btcpp import to_xml
 from btlang.frontends.btcpp.reader import read_xml
-from btlang.garbage import no_collection
+from btlang.gc_pause import gc_paused
 from btlang.text.source import Source
 
 LEAVES = 4  # below each Fallback
@@ -54,7 +54,7 @@ def measure(nodes: int, rounds: int, dialect: int) -> None:
     text, vocabulary = five_thousand(nodes, dialect), world_vocabulary()
     source = Source(text)
     tree, element = read_xml(source), ElementTree.fromstring(text)
-    with no_collection:  # as in `parse_tree`
+    with gc_paused:  # as in `parse_tree`
         taken = least(
             {
                 "parse": partial(ElementTree.fromstring, text),

@@ -10,7 +10,7 @@ from btlang.frontends.btcpp.reader import read_xml
 from btlang.frontends.btcpp.scan import scanned
 from btlang.text.source import Source
 from btlang.tree.node import Tree
-from btlang.vocabulary.vocabulary import Vocabulary
+from btlang.vocabulary.lexicon import Lexicon
 
 
 def content(text: str) -> object:
@@ -25,7 +25,7 @@ def content(text: str) -> object:
 
 
 @cache
-def words() -> Vocabulary:
+def words() -> Lexicon:
     """The shipped words."""
     return world_vocabulary()
 

@@ -14,7 +14,7 @@ from btlang.frontends.mission.reader import DEFAULT_PARSER, read_mission
 from btlang.passes import errors_of, run_passes
 from btlang.passes.compilation import Compilation
 from btlang.text.source import Source
-from btlang.vocabulary.vocabulary import Vocabulary
+from btlang.vocabulary.lexicon import Lexicon
 
 BAD = Path(__file__).parent.parent / "samples" / "bad"
 
@@ -36,7 +36,7 @@ def told(source: Source, command: str = "") -> list[Diagnostic]:
 
 
 @cache
-def words_of(keywords: str | None, world: str | None) -> Vocabulary:
+def words_of(keywords: str | None, world: str | None) -> Lexicon:
     """The words of a keyword file and the names of a world."""
     return world_vocabulary([keywords] if keywords else [], world)
 

@@ -97,10 +97,15 @@ def test_form(code: str) -> None:
     assert len([line for line in rest if line]) <= 30
 
 
+def printed(code: str) -> str:
+    """The page of a code, since when there is such a code, and whether it will stay."""
+    return f"{TEXTS[code]}\nSince btlang 0.1.0, stable.\n"
+
+
 def test_explain_prints_a_page(capsys: pytest.CaptureFixture[str]) -> None:
     for written in ("BT013", "bt013", "Bt13"):
         assert main(["explain", written]) == 0
-        assert capsys.readouterr() == (TEXTS["BT013"], "")
+        assert capsys.readouterr() == (printed("BT013"), "")
 
 
 def test_explain_lists_all_codes(capsys: pytest.CaptureFixture[str]) -> None:
@@ -137,4 +142,4 @@ def test_every_warning_has_a_name_that_its_page_tells() -> None:
 @pytest.mark.parametrize("written", ["two readings", "Two  Readings", "never runs"])
 def test_explain_knows_the_names_of_warnings(written: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert main(["explain", written]) == 0
-    assert capsys.readouterr() == (TEXTS[NAMES[" ".join(written.lower().split())]], "")
+    assert capsys.readouterr() == (printed(NAMES[" ".join(written.lower().split())]), "")

@@ -103,7 +103,7 @@ def test_the_command_colours_where_it_is_asked_to(
 def test_mended_line(mission: str, line: str) -> None:
     problem = next(p for p in told(Source(mission)) if p.fix is not None or p.code != "BT020")
     assert mended_line(problem) == line
-    assert render(problem).endswith(f"\n  Perhaps: {line}") is bool(line)
+    assert render(problem).endswith(f"\n  Did you mean: {line}") is bool(line)
 
 
 def test_a_fix_that_changes_nothing_is_none() -> None:

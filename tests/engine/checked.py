@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Generator
 from itertools import cycle
 from typing import Any
 
-from btlang.engine.leaf import LeafBinding
+from btlang.engine.leaves.leaf import LeafBinding
 from btlang.engine.status import RUNNING, SUCCESS
 
 from .random_trees import Drawn
@@ -121,7 +121,7 @@ class CheckedWorld(World):
     def generator(self, id: str, script: str) -> Any:
         letters = cycle(script)
 
-        def call() -> Iterator[None]:
+        def call() -> Generator[None, None, int | None]:
             run = object()
             self.begin(id, run)
             try:
@@ -135,6 +135,7 @@ class CheckedWorld(World):
             except GeneratorExit:
                 self.halts += 1
                 self.stumble()
+                return None
             finally:
                 self.end(id, run, "ended")
 

@@ -64,7 +64,7 @@ def _parents(children: st.SearchStrategy[Node]) -> st.SearchStrategy[Node]:
 
 def _conditioned(drawn: tuple[Node, list[tuple[str, str]]]) -> Node:
     node, conditions = drawn
-    return node.replace(ports=tuple({**dict(node.ports), **dict(conditions)}.items()))
+    return Node(node.id, node.children, tuple({**dict(node.ports), **dict(conditions)}.items()))
 
 
 def _more_parents(children: st.SearchStrategy[Node]) -> list[st.SearchStrategy[Node]]:

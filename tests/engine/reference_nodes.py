@@ -3,31 +3,38 @@
 from __future__ import annotations
 
 from collections import deque
-from typing import Any
+from typing import Any, cast
 
-from btlang.engine.script import ScriptFailed, compile_script, truth
+from btlang.engine.blackboard import Blackboard
+from btlang.engine.script.script import ScriptFailed, compile_script, truth
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
+
+from .reference_node import ReferenceNode
 
 STATUSES = {"SUCCESS": SUCCESS, "FAILURE": FAILURE, "SKIPPED": SKIPPED, "RUNNING": RUNNING}
 
 
-class MoreNodes:
-    """The half of Reference that is here; `working` tells that the child returned RUNNING when it was last ticked."""
+class MoreNodes(ReferenceNode):
+    """Scripts, leaves that ship, decorators and Nav2's nodes; reference.py has the others."""
 
     # scripts in ports
+
+    def run(self, code: str) -> Any:
+        """The value of a script. Raises ScriptFailed where it cannot go on."""
+        return compile_script(code)(cast(Blackboard, self.board))
 
     def run_script(self, port: str) -> Any:
         """The value of a script; None where there is none, or where it cannot go on."""
         text = self.node.port(port)
         try:
-            return compile_script(text)(self.board) if text else None
+            return self.run(text) if text else None
         except ScriptFailed:
             return None
 
     def asked(self, port: str) -> bool | None:
         """None where the port is empty. Raises ScriptFailed."""
         text = self.node.port(port)
-        return truth(compile_script(text)(self.board)) if text else None
+        return truth(self.run(text)) if text else None
 
     def decided(self) -> int:
         try:
@@ -48,7 +55,7 @@ class MoreNodes:
                 text = self.node.port(port)
                 try:
                     if text:
-                        compile_script(text)(self.board)
+                        self.run(text)
                 except ScriptFailed:
                     return FAILURE
         return result
@@ -57,7 +64,7 @@ class MoreNodes:
 
     def Script(self) -> int:
         try:
-            compile_script(self.node.port("code"))(self.board)
+            self.run(self.node.port("code"))
         except ScriptFailed:
             return FAILURE
         return SUCCESS

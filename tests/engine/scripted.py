@@ -8,7 +8,7 @@ from typing import Any
 
 from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine
-from btlang.engine.leaf import LeafBinding
+from btlang.engine.leaves.leaf import LeafBinding
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
 from btlang.tree.node import Node, Tree
 

@@ -12,9 +12,9 @@ from typing import Any
 
 import pytest
 
-from btlang.engine.build import EngineError
 from btlang.engine.engine import Engine
-from btlang.engine.leaf import ActionFailed, Failed, described
+from btlang.engine.instance import EngineError
+from btlang.engine.leaves.leaf import ActionFailed, Failed, described
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
 from btlang.tree.node import Node
 

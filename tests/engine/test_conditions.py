@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import pytest
 
-from btlang.engine.build import EngineError
+from btlang.engine.instance import EngineError
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
 from btlang.tree.node import Tree
 

@@ -7,7 +7,7 @@ from itertools import count, cycle
 import pytest
 
 from btlang.engine.engine import Engine
-from btlang.engine.leaf import ActionFailed
+from btlang.engine.leaves.leaf import ActionFailed
 from btlang.engine.status import FAILURE, RUNNING, SUCCESS
 from btlang.tree.node import Node
 
@@ -145,7 +145,7 @@ def test_failures_without_end_are_not_kept() -> None:
     engine = world.engine(n("Inverter", n("RetryUntilSuccessful", n("IfThenElse", A, A), num_attempts=2)))
     for _ in range(50):
         assert engine.tick() in (RUNNING, SUCCESS)
-    fault, depth = engine._shared.fault, 0
+    fault, depth = engine._state.fault, 0
     while fault is not None:
         fault, depth = fault.cause, depth + 1
     assert depth == 3

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from btlang.engine.blackboard import Blackboard
-from btlang.engine.build import EngineError
 from btlang.engine.engine import Engine
-from btlang.engine.leaf import ActionFailed, Failed, LeafBinding
+from btlang.engine.instance import EngineError
+from btlang.engine.leaves.leaf import ActionFailed, Failed, LeafBinding
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 from btlang.tree.node import Node, Tree
 

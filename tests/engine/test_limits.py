@@ -12,7 +12,7 @@ import pytest
 
 from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine
-from btlang.engine.leaf import LeafBinding
+from btlang.engine.leaves.leaf import LeafBinding
 from btlang.engine.status import FAILURE, RUNNING, SUCCESS
 from btlang.tree.dump import outline, plain
 from btlang.tree.node import Node, Tree
@@ -225,7 +225,7 @@ def test_changes_are_not_told_in_another_thread_than_that_of_the_tick() -> None:
     engines: list[Engine] = []
 
     def call() -> None:
-        thread = threading.Thread(target=engines[0].tell)
+        thread = threading.Thread(target=engines[0].flush)
         thread.start()
         thread.join(60)
         assert told == []

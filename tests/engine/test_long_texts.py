@@ -6,7 +6,7 @@ import pytest
 
 import btlang
 from btlang.engine.blackboard import MOST_TEXT, Blackboard
-from btlang.engine.leaf import ActionFailed
+from btlang.engine.leaves.leaf import ActionFailed
 
 TREE = '<root BTCPP_format="4"><BehaviorTree ID="M"><Sequence>{}</Sequence></BehaviorTree></root>'
 LONG = "x" * (MOST_TEXT + 1)

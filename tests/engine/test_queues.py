@@ -7,8 +7,8 @@ from typing import Any
 
 import pytest
 
-from btlang.engine.build import EngineError
 from btlang.engine.engine import Engine
+from btlang.engine.instance import EngineError
 from btlang.engine.status import FAILURE, SUCCESS
 from btlang.tree.node import Node
 

@@ -1,12 +1,14 @@
 """The engine does what the reference interpreter does, on random trees with random leaves.
 
 After every tick, halt, emergency stop and suspension: the same status, the same calls and halts of leaves in the same
-order, the same blackboards.
+order, the same blackboards. So do the plain nodes, where no faster variant of them is chosen.
 """
 
 from __future__ import annotations
 
+from contextlib import nullcontext
 from typing import Any
+from unittest.mock import patch
 
 from hypothesis import given
 from hypothesis import strategies as st
@@ -16,20 +18,24 @@ from btlang.tree.node import Node
 from tests.profiles import searches
 
 from .random_trees import BUSY, TREES, Drawn, letters
-from .reference import Mission, Reference
+from .reference import Reference
 from .reference_board import Board
+from .reference_node import Mission
 from .scripted import LETTER, World
 
 
 @searches(300, 20000)
-@given(TREES | BUSY, letters("ttttthpe", 3, 12), st.booleans())
-def test_engine_equals_reference(shape: Node, orders: str, watched: bool) -> None:
+@given(TREES | BUSY, letters("ttttthpe", 3, 12), st.booleans(), st.booleans())
+def test_engine_equals_reference(shape: Node, orders: str, watched: bool, fused: bool) -> None:
     drawn, world = Drawn(shape), World()
     drawn.bind(world)
-    engine = world.engine(drawn.tree, watched)
+    with nullcontext() if fused else patch("btlang.engine.compile.fused", lambda usual, *_: usual):
+        engine = world.engine(drawn.tree, watched)
     mission = Mission(drawn.tree, drawn.scripts, world.clock)
     reference = Reference(drawn.tree.root, mission, Board())
-    boards = [(site.scope, node.board) for site, node in zip(engine._sites, preorder(reference), strict=True)]
+    boards = [
+        (instance.scope, node.board) for instance, node in zip(engine._instances, preorder(reference), strict=True)
+    ]
     for order in orders:
         if order in "he":
             engine.halt(emergency=order == "e")

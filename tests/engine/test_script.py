@@ -11,9 +11,9 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from btlang.engine.blackboard import Blackboard
-from btlang.engine.leaf import ActionFailed
-from btlang.engine.script import ScriptError, ScriptFailed, as_text, compile_script
-from btlang.engine.script_values import literal
+from btlang.engine.leaves.leaf import ActionFailed
+from btlang.engine.script.script import ScriptError, ScriptFailed, as_text, compile_script
+from btlang.engine.script.values import literal
 from tests.profiles import searches
 
 ENUMS = {"RED": 1, "BLUE": 3}

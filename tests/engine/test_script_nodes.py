@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from btlang.engine.blackboard import Blackboard
-from btlang.engine.build import EngineError
 from btlang.engine.engine import Engine
+from btlang.engine.instance import EngineError
 from btlang.engine.status import FAILURE, SKIPPED, SUCCESS
 from btlang.tree.node import Node, Tree
 

@@ -6,7 +6,7 @@ import pytest
 
 from btlang.engine import compile as compiling
 from btlang.engine.blackboard import Blackboard
-from btlang.engine.build import EngineError
+from btlang.engine.instance import EngineError
 from btlang.engine.status import FAILURE, SUCCESS
 from btlang.tree.node import Node, Tree
 

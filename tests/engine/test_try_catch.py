@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import pytest
 
-from btlang.engine.leaf import ActionFailed
+from btlang.engine.leaves.leaf import ActionFailed
 from btlang.engine.status import FAILURE, RUNNING
 from btlang.tree.node import Node
 

@@ -6,7 +6,7 @@ import pytest
 
 from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine, Failure
-from btlang.engine.leaf import LeafBinding, Unknown
+from btlang.engine.leaves.leaf import LeafBinding, Unknown
 from btlang.engine.status import FAILURE, RUNNING, SUCCESS
 from btlang.tree.node import Node, Tree
 

@@ -8,15 +8,15 @@ from btlang.frontends.mission.reader import read_mission
 from btlang.text.source import Source
 from btlang.tree import ast
 from btlang.vocabulary.entry import Entry, SlotSpec
+from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.load import load_vocabulary
-from btlang.vocabulary.vocabulary import Vocabulary
 
 COMMANDS = "uvwxyz"
 CONDITIONS = "pqrs"
 
 
 @cache
-def letters() -> Vocabulary:
+def letters() -> Lexicon:
     entries = [Entry("action", letter.upper(), (letter,)) for letter in COMMANDS]
     entries += [Entry("condition", letter.upper(), (letter,)) for letter in CONDITIONS]
     entries.append(Entry("action", "Murmur", ("murmur {text}",), slots=(SlotSpec("text", "text"),)))

@@ -13,14 +13,14 @@ from hypothesis import strategies as st
 from btlang.api import world_vocabulary
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.frontends.mission.completion.completer import Completion, completions
-from btlang.vocabulary.vocabulary import Vocabulary
+from btlang.vocabulary.lexicon import Lexicon
 from tests.language.letters import letters, read
 from tests.language.sentences import broken_missions, english, missions
 from tests.profiles import searches
 
 
 @cache
-def shipped() -> Vocabulary:
+def shipped() -> Lexicon:
     return world_vocabulary()
 
 
@@ -28,7 +28,7 @@ _OPERANDS = ["", " u", " p", " p u", " s"]
 _BODIES = ["", " u", ": u"]
 
 
-def offered(text: str, vocabulary: Vocabulary | None = None) -> dict[str, Completion]:
+def offered(text: str, vocabulary: Lexicon | None = None) -> dict[str, Completion]:
     return {option.text: option for option in completions(text, vocabulary or shipped())}
 
 

@@ -185,7 +185,7 @@ def prompted(text: str, tmp_path: Path) -> str | None:
 def test_no_correction_changes_the_meaning(text: str, parser: str) -> None:
     for problem in errors(text, parser):
         assert problem.fix is None
-        assert "Perhaps" not in render(problem)
+        assert "Did you mean" not in render(problem)
         assert as_data(problem)["fix"] is None
 
 
@@ -200,7 +200,7 @@ def test_slips_are_corrected(broken: str, sound: str, parser: str) -> None:
 
 
 def test_the_text_shows_the_mended_line() -> None:
-    assert render(errors("go t the lab", PARSERS[0])[0]).endswith("\n  Perhaps: go to the lab")
+    assert render(errors("go t the lab", PARSERS[0])[0]).endswith("\n  Did you mean: go to the lab")
 
 
 def test_a_comma_that_two_readings_fit_shows_both() -> None:

@@ -11,17 +11,17 @@ from hypothesis import example, given, reject
 from hypothesis import strategies as st
 
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError
-from btlang.english.sentence import english
 from btlang.frontends.mission.reader import read_mission
 from btlang.passes import compile_mission
 from btlang.passes.compilation import Compilation
 from btlang.passes.lint.two_readings import two_readings
+from btlang.printer.sentence import english
 from btlang.text.source import Source
 from btlang.tree.node import Node, Tree
-from tests.english.trees import missions as trees
 from tests.language.letters import letters
 from tests.language.sentences import commands, missions
 from tests.language.sentences import english as text_of
+from tests.printer.trees import missions as trees
 from tests.profiles import searches
 
 _joints = st.sampled_from(["and", "or", "then", "after", ",", ", and", ", or", ", then", "otherwise"])

@@ -32,7 +32,6 @@ def run(mission: str, *arguments: object) -> int:
 def size_of(path: Path) -> tuple[float, float]:
     root = ElementTree.parse(path).getroot()
     assert root.tag == f"{SVG}svg"
-    assert root.find(f".//{SVG}text") is None, "text is drawn as paths"
     return float(root.attrib["width"].removesuffix("pt")), float(root.attrib["height"].removesuffix("pt"))
 
 
@@ -40,7 +39,10 @@ def test_a_run_as_svg_and_png(tmp_path: Path) -> None:
     assert run("go to Alice then wave and say hello", "--picture", tmp_path / "a.svg") == 0
     assert run("go to Alice then wave and say hello", "--picture", tmp_path / "a.PNG") == 0
     width, height = size_of(tmp_path / "a.svg")
+    title = ElementTree.parse(tmp_path / "a.svg").getroot().findtext(f"{SVG}title")
+    assert title == "go to Alice then wave and say hello"
     with Image.open(tmp_path / "a.PNG") as image:
+        assert image.info["Title"] == title
         image.load()
         assert image.format == "PNG"
         assert image.size == pytest.approx((2 * width, 2 * height), abs=2)
@@ -111,8 +113,9 @@ def test_a_tree(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert btc("tree", "-c", mission, "--picture", tmp_path / "b.svg", "--apart") == 0
     assert size_of(tmp_path / "a.svg") != size_of(tmp_path / "b.svg")
     assert btc("tree", "-c", mission, "--picture", tmp_path / "a.png") == 0
+    width, height = size_of(tmp_path / "a.svg")
     with Image.open(tmp_path / "a.png") as image:
-        assert image.format == "PNG"
+        assert image.size == pytest.approx((2 * width, 2 * height), abs=2), "one layout serves both"
 
 
 def test_a_tree_after_a_run(tmp_path: Path) -> None:
@@ -183,12 +186,20 @@ def test_a_mission_that_cannot_run_leaves_no_file(tmp_path: Path) -> None:
     assert list(tmp_path.glob("*.svg")) == []
 
 
-@pytest.mark.parametrize("arguments", [["run", "-c", "print hi", "--speed", "max"], ["tree", "-c", "wave"]])
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        ["run", "-c", "wave", "--speed", "max", "--picture", "a.svg"],
+        ["run", "-c", "wave", "--speed", "max", "--tree-picture", "a.png"],
+        ["tree", "-c", "wave", "--picture", "a.png"],
+    ],
+)
 def test_without_matplotlib(
     arguments: list[str], tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
 ) -> None:
+    monkeypatch.chdir(tmp_path)
     monkeypatch.setitem(sys.modules, "matplotlib", None)
-    assert btc(*arguments, "--picture", tmp_path / "a.svg") == 2
+    assert btc(*arguments) == 2
     out, err = capsys.readouterr()
     assert "BT081" in err
     assert "pip install 'btlang[pictures]'" in err
@@ -200,8 +211,9 @@ def test_matplotlib_stays_silent_and_is_only_loaded_for_pictures(tmp_path: Path)
     script = (
         "import sys; from btlang.cli import main\n"
         "main(['tree', '-c', 'wave']); main(['run', '-c', 'wave', '--speed', 'max', '--quiet'])\n"
-        "assert 'matplotlib' not in sys.modules\n"
         f"main(['tree', '-c', 'wave', '--picture', {str(tmp_path / 'a.svg')!r}])\n"
+        "assert 'matplotlib' not in sys.modules\n"
+        f"main(['tree', '-c', 'wave', '--picture', {str(tmp_path / 'a.png')!r}])\n"
     )
     unwritable = tmp_path / "file"
     unwritable.write_text("no folder for a font cache", encoding="utf-8")

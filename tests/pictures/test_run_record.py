@@ -5,7 +5,7 @@ from __future__ import annotations
 from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
-from btlang.engine.watch import Changes
+from btlang.engine.status_trace import Changes
 from btlang.pictures.run_picture import numbers
 from btlang.pictures.run_record import RunRecord
 from btlang.pictures.statuses import LastStatuses, by_definition
@@ -36,6 +36,11 @@ def test_commands_are_numbered_and_know_how_they_ended() -> None:
     assert record.commands[1].end - record.commands[1].start.t > 0.99
     assert record.ended is not None
     assert record.ended[0] == IDLE
+
+
+def test_commands_say_the_values_that_they_had() -> None:
+    record, _ = recorded("for each place in the kitchen, the lab: go to the place then say 'at {place}'")
+    assert [c.text for c in record.commands] == ["go to kitchen", 'say "at kitchen"', "go to lab", 'say "at lab"']
 
 
 def test_the_track_follows_the_robot() -> None:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import sys
+from typing import Any
 
 import pytest
 
@@ -26,7 +27,7 @@ def bind_words(file: str) -> int:
         clients = Clients(spun.node)
         for entry in (entry for same in vocabulary.entries.values() for entry in same):
             try:
-                bind_ros(entry, vocabulary, clients, {}.__getitem__)
+                bind_ros(entry, vocabulary, clients, dict[str, Any]().__getitem__)
             except MissionError as error:
                 problems += error.diagnostics
     if not problems:

@@ -9,7 +9,7 @@ import pytest
 
 from btlang.api import world_vocabulary
 from btlang.diagnostics.diagnostic import MissionError
-from btlang.engine.leaf import ActionFailed
+from btlang.engine.leaves.leaf import ActionFailed
 from btlang.vocabulary.entry import Entry, SlotSpec
 from btlang.vocabulary.ros_binding import RosBinding
 from btlang.vocabulary.ros_table import read_ros

@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from btlang.engine.leaf import ActionFailed
+from btlang.engine.leaves.leaf import ActionFailed
 from btlang.ros.latest import Latest, NodeClock
 
 

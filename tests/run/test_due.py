@@ -10,7 +10,7 @@ import pytest
 
 from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine
-from btlang.engine.leaf import LeafBinding
+from btlang.engine.leaves.leaf import LeafBinding
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SUCCESS
 from btlang.ros import pace as ros_pace
 from btlang.ros.pace import RosPace

@@ -14,7 +14,7 @@ import btlang
 from btlang.engine import timing
 from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine
-from btlang.engine.leaf import LeafBinding
+from btlang.engine.leaves.leaf import LeafBinding
 from btlang.engine.status import RUNNING, SUCCESS
 from btlang.engine.timing import Stopwatch
 from btlang.run import command, overruns

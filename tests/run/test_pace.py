@@ -12,7 +12,7 @@ import pytest
 
 from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine
-from btlang.engine.leaf import LeafBinding
+from btlang.engine.leaves.leaf import LeafBinding
 from btlang.engine.status import RUNNING, SUCCESS
 from btlang.run import pace
 from btlang.run.bus import Bus

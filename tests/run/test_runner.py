@@ -13,7 +13,7 @@ import pytest
 
 from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine
-from btlang.engine.leaf import ActionFailed, LeafBinding
+from btlang.engine.leaves.leaf import ActionFailed, LeafBinding
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 from btlang.run.bus import Bus
 from btlang.run.events import Ended, PeriodPassed, StatusChanged, StatusesChanged, Troubled

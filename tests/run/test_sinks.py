@@ -6,9 +6,9 @@ import io
 import json
 
 import btlang
-from btlang.engine.build import Fault, Site
+from btlang.engine.instance import Fault, NodeInstance
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
-from btlang.engine.watch import Changes
+from btlang.engine.status_trace import Changes
 from btlang.run.events import Bumped, Dropped, Event, FaultInjected, Printed, RobotEvent, Said, StatusesChanged, Stuck
 from btlang.run.json_log import JsonLog
 from btlang.run.lines import Lines
@@ -35,7 +35,7 @@ class One:
     def node(self, index: int) -> Node:
         return self._node
 
-    def reason(self, index: int, fault: Fault | Site | None) -> str:
+    def reason(self, index: int, fault: Fault | NodeInstance | None) -> str:
         return "" if fault is None else str(fault.reason)
 
 

@@ -15,14 +15,14 @@ import pytest
 
 from btlang.api import parse_tree, world_vocabulary
 from btlang.diagnostics.reading import read_source
-from btlang.english.sentence import english
 from btlang.frontends.mission.reader import read_mission
+from btlang.printer.sentence import english
 from btlang.tree import ast
 from btlang.tree.dump import plain
 from btlang.vocabulary.entry import COMPARISONS
 from btlang.vocabulary.language_tables import ROLES
+from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.pattern import forms
-from btlang.vocabulary.vocabulary import Vocabulary
 from tests.conftest import matches_golden
 from tests.language.letters import shown
 
@@ -67,7 +67,7 @@ def keywords(sample: Path) -> list[str]:
     return [str(own)] if own.exists() else []
 
 
-def mission(sample: Path, vocabulary: Vocabulary, parser: str = "shunting-yard") -> ast.Program:
+def mission(sample: Path, vocabulary: Lexicon, parser: str = "shunting-yard") -> ast.Program:
     return read_mission(read_source(str(sample)), vocabulary, parser).mission
 
 

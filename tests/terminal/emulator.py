@@ -199,7 +199,7 @@ class _Screen(pyte.HistoryScreen):
 
     def linefeed(self) -> None:
         if self._drawing:
-            self.buffer[self.cursor.y].goes_on = True
+            self.buffer[self.cursor.y].goes_on = True  # type: ignore[attr-defined]
         super().linefeed()
 
     def text(self, row: Mapping[int, Any]) -> str:

@@ -20,7 +20,7 @@ AT_HOME = {
     "passes/scripts.py",
 }
 """Where ids may be spelt, beside the folders that hold the English of a node and the nodes of py_trees."""
-FOLDERS = ("english/", "backends/english/", "backends/py_trees/")
+FOLDERS = ("printer/", "backends/english/", "backends/py_trees/")
 KINDS = pytest.mark.parametrize("kind", CATALOGUE.values(), ids=CATALOGUE.keys())
 
 

@@ -15,9 +15,9 @@ from btlang.diagnostics.diagnostic import MissionError
 from btlang.text.source import Source
 from btlang.text.words import split
 from btlang.vocabulary import cache
+from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.load import load_vocabulary
 from btlang.vocabulary.trie import longest
-from btlang.vocabulary.vocabulary import Vocabulary
 
 HOP = '[[action]]\nphrase = "hop [{length}]"\nid = "Hop"\n'
 NAMES = {"place": ["lab"], "person": ["Alice"], "object": ["cup"]}
@@ -34,7 +34,7 @@ class _Forgetful(dict[object, object]):
 def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """The folder of the cache, empty at first."""
     folder = tmp_path / "cache"
-    monkeypatch.setattr(cache, "user_folder", lambda kind: str(folder))
+    monkeypatch.setattr(cache, "user_dir", lambda kind: str(folder))
     monkeypatch.setattr(cache, "_in_process", _Forgetful())
     return folder
 
@@ -59,7 +59,7 @@ def is_read(make: Callable[[], object]) -> bool:
     return bool(reads)
 
 
-def described(vocabulary: Vocabulary) -> list[object]:
+def described(vocabulary: Lexicon) -> list[object]:
     """All that a vocabulary says, as values to compare."""
     said: list[object] = []
     for entries in vocabulary.entries.values():
@@ -194,7 +194,7 @@ def test_a_folder_that_cannot_be_written(folder: Path) -> None:
 
 def test_a_user_without_a_home(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     monkeypatch.chdir(tmp_path)
-    monkeypatch.setattr(cache, "user_folder", lambda kind: "~/.cache/btlang")
+    monkeypatch.setattr(cache, "user_dir", lambda kind: "~/.cache/btlang")
     assert "Wave" in load_vocabulary().entries
     assert not list(tmp_path.iterdir())
 
@@ -203,14 +203,14 @@ def test_the_number_of_files_is_bounded(folder: Path, tmp_path: Path) -> None:
     for number in range(cache.MOST_FILES + 3):
         pack = tmp_path / f"{number}.toml"
         pack.write_text("")
-        assert cache.kept("number", [str(pack)], lambda number=number: number) == number
+        assert cache.cached("number", [str(pack)], lambda number=number: number) == number
     assert len(list(folder.iterdir())) == cache.MOST_FILES
 
 
 def test_writers_at_the_same_time(folder: Path) -> None:
     code = (
         "from btlang.vocabulary import cache, load\n"
-        f"cache.user_folder = lambda kind: {str(folder)!r}\n"
+        f"cache.user_dir = lambda kind: {str(folder)!r}\n"
         "for _ in range(5):\n"
         "    cache._write(cache.os.path.join(cache._own_folder(), 'words-x'), b'key', load.load_vocabulary())\n"
         "    assert cache._loaded(cache.os.path.join(cache._own_folder(), 'words-x'), b'key') is not None\n"

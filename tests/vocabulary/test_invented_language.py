@@ -15,18 +15,18 @@ import pytest
 
 from btlang.api import world_vocabulary
 from btlang.diagnostics.reading import read_source
-from btlang.english.sentence import english
 from btlang.frontends.mission.reader import read_mission
 from btlang.passes import compile_mission
+from btlang.printer.sentence import english
 from btlang.robots.world_file import world_names
 from btlang.text.source import Source
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.entry import Entry, SlotSpec
 from btlang.vocabulary.keyword_file import KeywordFile, read_keyword_file
 from btlang.vocabulary.language_tables import WORD_LISTS
+from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.shipped import keyword_files
 from btlang.vocabulary.values import Unit, ValueType
-from btlang.vocabulary.vocabulary import Vocabulary
 
 GOOD = Path(__file__).parents[1] / "samples" / "good"
 # What a mission includes is in English; ids and ports of nodes, and the attribute `name`, are so in every language.
@@ -74,7 +74,7 @@ def _language(tables: dict[str, Any]) -> dict[str, Any]:
 
 
 @cache
-def invented_vocabulary() -> Vocabulary:
+def invented_vocabulary() -> Lexicon:
     files = []
     for path in keyword_files():
         file = read_keyword_file(read_source(path))
@@ -87,7 +87,7 @@ def invented_vocabulary() -> Vocabulary:
             _language(file.language),
         )
         files.append(made)
-    vocabulary = Vocabulary(files)
+    vocabulary = Lexicon(files)
     names_of_world = world_names(None)
     by_type = {"place": names_of_world.places, "person": names_of_world.people, "object": names_of_world.objects}
     return vocabulary.with_names({kind: tuple(map(invented, listed)) for kind, listed in by_type.items()})

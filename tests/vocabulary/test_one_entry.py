@@ -68,9 +68,9 @@ def test_it_is_suggested(pack: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert "juggle" not in printed(capsys, *mistake)
     suggested = printed(capsys, *mistake, "--keywords", pack)
     assert "Similar: juggle" in suggested
-    assert "Perhaps: wave then juggle 3 balls\n" in suggested
+    assert "Did you mean: wave then juggle 3 balls\n" in suggested
     missing = printed(capsys, "check", "-c", "juggle 3 balls for Alise", "--keywords", pack)
-    assert "Perhaps: juggle 3 balls for Alice\n" in missing
+    assert "Did you mean: juggle 3 balls for Alice\n" in missing
 
 
 def test_it_is_read_and_said(pack: str, capsys: pytest.CaptureFixture[str]) -> None:

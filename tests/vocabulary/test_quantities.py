@@ -10,10 +10,10 @@ import btlang
 from btlang.backends.comparing import comparing
 from btlang.backends.engine import bind_leaf
 from btlang.diagnostics.diagnostic import MissionError
-from btlang.engine.build import EngineError
 from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine
-from btlang.engine.leaf import Failed, told
+from btlang.engine.instance import EngineError
+from btlang.engine.leaves.leaf import Failed, reason_text
 from btlang.engine.status import FAILURE, SUCCESS
 from btlang.tree.dump import plain
 from btlang.tree.node import Node, Tree
@@ -128,7 +128,7 @@ def test_what_was_read_is_the_reason(condition: str, reason: str) -> None:
 def test_a_reading_is_rounded_so_that_it_still_fails(ports: dict[str, float], value: float, reason: str) -> None:
     refused = comparing(lambda: value, lambda given, read: read)(**ports)
     assert isinstance(refused, Failed)
-    assert told(refused.reason) == reason
+    assert reason_text(refused.reason) == reason
 
 
 def test_they_stop_a_loop() -> None:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from pathlib import Path
 
 import pytest
@@ -21,5 +22,5 @@ def test_shown_output_is_real(block: Block, tmp_path: Path) -> None:
     printed = btc(line, tmp_path).stdout
     if "--speed max" in line:
         assert printed == shown
-    else:  # in real time
-        assert [text.split()[1:] for text in printed.splitlines()] == [text.split()[1:] for text in shown.splitlines()]
+    else:  # in real time, which a busy machine prolongs
+        assert re.sub(r"\d+\.\d+", "?", printed) == re.sub(r"\d+\.\d+", "?", shown)

@@ -11,7 +11,7 @@ from btlang.tree.catalogue import BEHAVIOR_TREE_CPP, CATALOGUE, SUBTREE
 from btlang.tree.model import NodeModel, PortModel
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.entry import COMPARISONS, MEASURED, Entry
-from btlang.vocabulary.vocabulary import Vocabulary
+from btlang.vocabulary.lexicon import Lexicon
 
 _BUILT_IN = frozenset(kind.id for kind in CATALOGUE.values() if kind.origin == BEHAVIOR_TREE_CPP)
 
@@ -19,7 +19,7 @@ _BUILT_IN = frozenset(kind.id for kind in CATALOGUE.values() if kind.origin == B
 class Uses:
     """The nodes of a tree that need a model, with their kinds and models."""
 
-    def __init__(self, tree: Tree, vocabulary: Vocabulary, dialect: int) -> None:
+    def __init__(self, tree: Tree, vocabulary: Lexicon, dialect: int) -> None:
         self._vocabulary = vocabulary
         self._known = {model.id: model for model in tree.models}
         self._own = IN_3 | {SUBTREE} if dialect == 3 else _BUILT_IN

@@ -11,9 +11,9 @@ from __future__ import annotations
 import re
 from collections.abc import Callable, Iterator, Mapping
 
-from btlang.engine.build import blackboard_key
-from btlang.engine.script_tokens import ScriptError, Tokens
-from btlang.engine.script_values import literal
+from btlang.engine.instance import blackboard_key
+from btlang.engine.script.tokens import ScriptError, Tokens
+from btlang.engine.script.values import literal
 from btlang.passes.scripts import script
 from btlang.record import Record
 from btlang.tree.catalogue import CATALOGUE, SEQUENCE, SUBTREE

@@ -12,7 +12,7 @@ from btlang.frontends.btcpp.models import why_no_port
 from btlang.frontends.btcpp.origin import Element, Markup, TreeOrigin, XmlOrigin
 from btlang.frontends.btcpp.spelling import MAIN_TREE, SPELL, spelled_3
 from btlang.tree.node import Node, Tree
-from btlang.vocabulary.vocabulary import Vocabulary
+from btlang.vocabulary.lexicon import Lexicon
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ _DECLARATION = '<?xml version="1.0" encoding="UTF-8"?>'
 _NOTHING = TreeOrigin((), {}, {}, {})
 
 
-def to_xml(tree: Tree, vocabulary: Vocabulary, *, dialect: int = 4) -> str:
+def to_xml(tree: Tree, vocabulary: Lexicon, *, dialect: int = 4) -> str:
     """The XML of a tree, in lines, with a line end at the end.
 
     A tree that was read from a file of the same dialect, and not changed since, is written with all that stood in the
@@ -35,7 +35,7 @@ def to_xml(tree: Tree, vocabulary: Vocabulary, *, dialect: int = 4) -> str:
 
 
 class _Writer:
-    def __init__(self, tree: Tree, vocabulary: Vocabulary, dialect: int) -> None:
+    def __init__(self, tree: Tree, vocabulary: Lexicon, dialect: int) -> None:
         self._tree = tree
         self._vocabulary = vocabulary
         self._dialect = dialect

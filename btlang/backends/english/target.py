@@ -5,21 +5,21 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 
 from btlang.backends.english.comments import Comments, comments_of
-from btlang.backends.english.known import Known, Refused
-from btlang.backends.english.raising import Raiser
+from btlang.backends.english.lift import Lifter
+from btlang.backends.english.names import Names, Refused
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
-from btlang.english.exact import is_one_piece
-from btlang.english.sentence import mission_lines
-from btlang.english.speaker import Speaker
 from btlang.frontends.mission.reader import read_mission
 from btlang.passes import lower_mission
 from btlang.passes.order import used_first
+from btlang.printer.exact import is_one_piece
+from btlang.printer.printer import Printer
+from btlang.printer.sentence import mission_lines
 from btlang.text.source import NOWHERE, Source
 from btlang.tree.ast import Fact, Program, exact_nodes
 from btlang.tree.dump import plain
 from btlang.tree.model import NodeModel
 from btlang.tree.node import Tree
-from btlang.vocabulary.vocabulary import Vocabulary
+from btlang.vocabulary.lexicon import Lexicon
 
 _LEVELS = ("values", "sure values", "words", "ids")
 """How natural a mission is, most first: with values and parameters, with those alone that are read in one way only,
@@ -29,7 +29,7 @@ WIDTH = 100
 """Columns; what would be a longer line becomes a block where it can."""
 
 
-def to_english(tree: Tree, vocabulary: Vocabulary, *, facts: Sequence[Fact] = ()) -> str:
+def to_english(tree: Tree, vocabulary: Lexicon, *, facts: Sequence[Fact] = ()) -> str:
     """A mission that compiles to an equal tree: natural words where the language has them, else nodes by their ids.
 
     It begins with the `facts`, whose places it may name. Raises MissionError (BT142) for a tree that no text can say,
@@ -43,8 +43,8 @@ def to_english(tree: Tree, vocabulary: Vocabulary, *, facts: Sequence[Fact] = ()
     words = vocabulary.with_places(tuple(fact.name for fact in facts)) if facts else vocabulary
     comments, refused = comments_of(tree), Refused()
     for level in _LEVELS:
-        mission, speaker = _mission(tree, words, level, refused, comments)
-        text = "".join(f"{line}\n" for line in _lines(mission.replace(facts=tuple(facts)), speaker, comments))
+        mission, printer = _mission(tree, words, level, refused, comments)
+        text = "".join(f"{line}\n" for line in _lines(mission.replace(facts=tuple(facts)), printer, comments))
         try:
             again = lower_mission(read_mission(Source(text), vocabulary).mission, vocabulary)
         except MissionError as error:
@@ -60,7 +60,7 @@ def to_english(tree: Tree, vocabulary: Vocabulary, *, facts: Sequence[Fact] = ()
     raise _unsayable(tree, reason)
 
 
-def _said_both_ways(mission: Program, vocabulary: Vocabulary) -> list[str]:
+def _said_both_ways(mission: Program, vocabulary: Lexicon) -> list[str]:
     """Kinds of leaves that are conditions in one place and done in another: read again, they are conditions in all."""
     leaves = [node for node in exact_nodes(mission) if not node.items and node.id not in vocabulary.nodes]
     done = {node.id for node in leaves if not node.is_condition}
@@ -79,20 +79,20 @@ def _differing(tree: Tree, again: Tree) -> Iterator[str]:
             yield name
 
 
-def _lines(mission: Program, speaker: Speaker, comments: Comments) -> Iterator[str]:
+def _lines(mission: Program, printer: Printer, comments: Comments) -> Iterator[str]:
     yield from (f"# {line}" for line in comments.head)
-    yield from mission_lines(mission, speaker, WIDTH)
+    yield from mission_lines(mission, printer, WIDTH)
     yield from (f"# {line}" for line in comments.foot)
 
 
 def _mission(
-    tree: Tree, vocabulary: Vocabulary, level: str, refused: Refused, comments: Comments
-) -> tuple[Program, Speaker]:
+    tree: Tree, vocabulary: Lexicon, level: str, refused: Refused, comments: Comments
+) -> tuple[Program, Printer]:
     """With what is refused, and whatever else turns out not to be read back, said in another way."""
     values = level in ("values", "sure values")
     for _ in range(_MOST_TRIES if values else 1):
-        known = Known(tree, vocabulary, refused, values=values, sure=level == "sure values")
-        raiser = Raiser(tree, vocabulary, known, comments, natural=level != "ids")
+        known = Names(tree, vocabulary, refused, values=values, sure=level == "sure values")
+        raiser = Lifter(tree, vocabulary, known, comments, natural=level != "ids")
         bodies = {loop.name for loop in known.loops.values()}
         named = [(name, root) for name, root in used_first(tree)[:-1] if name not in bodies]
         definitions = tuple(raiser.definition(name, root) for name, root in named)
@@ -100,4 +100,4 @@ def _mission(
         before, refused = refused, known.refused_by(mission, refused, raiser.refused)
         if refused == before:
             break
-    return mission, raiser.speaker
+    return mission, raiser.printer

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
+from btlang.backends.english.candidate import Checked
 from btlang.backends.english.code import compared_by, given_by
-from btlang.backends.english.kinds import readable
-from btlang.backends.english.raised import Checked
+from btlang.backends.english.type_inference import readable
 from btlang.text.source import NOWHERE
 from btlang.tree import ast
 from btlang.tree.node import Node

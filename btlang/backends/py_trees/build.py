@@ -15,11 +15,11 @@ from btlang.backends.py_trees.plan import Name, Part, plan_of
 from btlang.backends.py_trees.values import engine_leaf, values_of
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
 from btlang.engine.blackboard import Blackboard
-from btlang.engine.build import EngineError
+from btlang.engine.instance import EngineError
 from btlang.text.source import NOWHERE
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import fold
-from btlang.vocabulary.vocabulary import Vocabulary
+from btlang.vocabulary.lexicon import Lexicon
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -28,7 +28,7 @@ if TYPE_CHECKING:
 
 def to_py_trees(
     tree: Tree,
-    vocabulary: Vocabulary,
+    vocabulary: Lexicon,
     *,
     bind: Callable[[Node], Behaviour] | None = None,
     is_action: Callable[[Node], bool] | None = None,

@@ -11,7 +11,7 @@ from btlang.backends.py_trees.plan import Name, Part, Plan, plan_of
 from btlang.backends.python_source import Source, Statements, called, literal
 from btlang.tree.node import Tree
 from btlang.tree.visit import fold
-from btlang.vocabulary.vocabulary import Vocabulary
+from btlang.vocabulary.lexicon import Lexicon
 
 _MODULES = ("node", "in_order", "choosing", "decorating")  # whose text is copied
 _HEAD = '''"""A behavior tree for py_trees 2.6; needs {needs}.
@@ -71,7 +71,7 @@ if __name__ == "__main__":
 _INDENT = "    "
 
 
-def to_module(tree: Tree, vocabulary: Vocabulary) -> str:
+def to_module(tree: Tree, vocabulary: Lexicon) -> str:
     """The text of the module; errors as for `plan_of`. It has the statuses that to_py_trees has (build.py)."""
     plan = plan_of(tree, vocabulary)
     with_values = "engine_leaf" in plan.uses

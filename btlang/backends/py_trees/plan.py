@@ -7,17 +7,17 @@ from collections.abc import Callable
 from btlang.backends.checking import anything, tree_problems
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.engine.blackboard import Blackboard
-from btlang.engine.build import Shared, Site
 from btlang.engine.clock import Clock
 from btlang.engine.compile import expand
 from btlang.engine.conditions import OF_EDITORS
-from btlang.engine.leaf import LeafBinding
-from btlang.english.phrase import phrase_of
+from btlang.engine.instance import EngineState, NodeInstance
+from btlang.engine.leaves.leaf import LeafBinding
+from btlang.printer.phrase import phrase_of
 from btlang.record import Record
 from btlang.text.source import NOWHERE
 from btlang.tree.catalogue import CATALOGUE, SUBTREE, Port
 from btlang.tree.node import Node, Tree
-from btlang.vocabulary.vocabulary import Vocabulary
+from btlang.vocabulary.lexicon import Lexicon
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -67,7 +67,7 @@ class _Untold(Exception):
     """Why a node cannot be told to py_trees."""
 
 
-def plan_of(tree: Tree, vocabulary: Vocabulary, is_action: Callable[[Node], bool] | None = None) -> Plan:
+def plan_of(tree: Tree, vocabulary: Lexicon, is_action: Callable[[Node], bool] | None = None) -> Plan:
     """The plan of a tree, each use of a subtree for itself. `is_action` says which leaves take more than one tick.
 
     Raises MissionError with all that is wrong with the tree (BT126, BT131, BT132), or all that cannot be told (BT134).
@@ -75,62 +75,64 @@ def plan_of(tree: Tree, vocabulary: Vocabulary, is_action: Callable[[Node], bool
     problems = tree_problems(tree, vocabulary, lambda id: LeafBinding(anything))
     if problems:
         raise MissionError(problems)
-    sites = expand(tree, Blackboard(), Shared(lambda id: None, Clock(), {}, {}, None))
-    planner = _Planner(sites, tree, vocabulary, is_action)
+    instances = expand(tree, Blackboard(), EngineState(lambda id: None, Clock(), {}, {}, None))
+    planner = _Planner(instances, tree, vocabulary, is_action)
     return planner.plan()
 
 
 class _Planner:
     def __init__(
-        self, sites: list[Site], tree: Tree, vocabulary: Vocabulary, is_action: Callable[[Node], bool] | None
+        self, instances: list[NodeInstance], tree: Tree, vocabulary: Lexicon, is_action: Callable[[Node], bool] | None
     ) -> None:
-        self._sites = sites
+        self._instances = instances
         self._vocabulary = vocabulary
         self._conditions = {model.id for model in tree.models if model.kind == "Condition"}
         self._is_action = is_action or self._takes_time
-        self._suspended = [False] * len(sites)  # below a Whenever: all must be able to stop and go on
-        self._asked = [False] * len(sites)  # again while others run
-        self._skips = [False] * len(sites)
-        self._acts = [False] * len(sites)  # holds an action
-        self._scopes = [""] * len(sites)  # of the children
-        self._depths = [0] * len(sites)
+        self._suspended = [False] * len(instances)  # below a Whenever: all must be able to stop and go on
+        self._asked = [False] * len(instances)  # again while others run
+        self._skips = [False] * len(instances)
+        self._acts = [False] * len(instances)  # holds an action
+        self._scopes = [""] * len(instances)  # of the children
+        self._depths = [0] * len(instances)
         self._problems: list[Diagnostic] = []
         self._uses: set[str] = set()
 
     def plan(self) -> Plan:
-        scopes = [scope for site in self._sites if (scope := self._look_down(site)) is not None]
+        scopes = [scope for instance in self._instances if (scope := self._look_down(instance)) is not None]
         waiting: list[tuple[int, Part]] = []  # parts whose parents come later, so that the last ones are the next one's
-        for site in reversed(self._sites):
-            count = 1 if site.node.id == SUBTREE else len(site.node.children)
+        for instance in reversed(self._instances):
+            count = 1 if instance.node.id == SUBTREE else len(instance.node.children)
             below = waiting[: -count - 1 : -1] if count else []
             del waiting[len(waiting) - count :]
-            part = self._part(site, [index for index, _ in below], tuple(part for _, part in below))
-            waiting.append((site.index, part))
+            part = self._part(instance, [index for index, _ in below], tuple(part for _, part in below))
+            waiting.append((instance.index, part))
         if self._problems:
             raise MissionError(self._problems)
         return Plan(waiting[0][1], tuple(scopes), frozenset(self._uses))
 
-    def _look_down(self, site: Site) -> Scope | None:
+    def _look_down(self, instance: NodeInstance) -> Scope | None:
         """What holds for a node because of those around it."""
-        index, above = site.index, site.above
+        index, above = instance.index, instance.above
         around = "values"
         if above is not None:
             around = self._scopes[above.index]
             self._depths[index] = self._depths[above.index] + 1
-            self._suspended[index] = self._suspended[above.index] or (above.node.id == "Whenever" and site.position > 0)
+            self._suspended[index] = self._suspended[above.index] or (
+                above.node.id == "Whenever" and instance.position > 0
+            )
             kind = CATALOGUE.get(above.node.id)
             before = 0
             if kind is not None and kind.reactive:
                 before = 1 if kind.asks_first else len(above.node.children) - 1
-            self._asked[index] = self._asked[above.index] or site.position < before
+            self._asked[index] = self._asked[above.index] or instance.position < before
         self._scopes[index] = around
-        if site.node.id != SUBTREE:
+        if instance.node.id != SUBTREE:
             return None
         self._scopes[index] = f"values_{index}"
-        return Scope(self._scopes[index], site.node.ports, around)
+        return Scope(self._scopes[index], instance.node.ports, around)
 
-    def _part(self, site: Site, below: list[int], children: tuple[Part, ...]) -> Part:
-        node, index = site.node, site.index
+    def _part(self, instance: NodeInstance, below: list[int], children: tuple[Part, ...]) -> Part:
+        node, index = instance.node, instance.index
         self._acts[index] = any(self._acts[i] for i in below) or (not node.children and self._is_action(node))
         part = Part("Skipped", self._name(node))
         try:
@@ -139,7 +141,7 @@ class _Planner:
             if self._always_skipped(node):
                 self._skips[index] = True
             else:
-                part = self._told(site, below, children)
+                part = self._told(instance, below, children)
         except _Untold as problem:
             span = node.span or NOWHERE
             self._problems.append(diagnostic("BT134", span, id=node.id, target="py_trees", reason=str(problem)))
@@ -148,10 +150,10 @@ class _Planner:
             self._uses.add("interrupting")
         return part
 
-    def _told(self, site: Site, below: list[int], children: tuple[Part, ...]) -> Part:
-        node, index = site.node, site.index
+    def _told(self, instance: NodeInstance, below: list[int], children: tuple[Part, ...]) -> Part:
+        node, index = instance.node, instance.index
         if not children:
-            return self._leaf(site)
+            return self._leaf(instance)
         skips = [self._skips[i] for i in below]
         kind = CATALOGUE.get(node.id)
         self._skips[index] = _SKIPPED[kind.skipped if kind is not None else "any"](skips)
@@ -163,8 +165,8 @@ class _Planner:
         make, arguments = _THEIRS[node.id] if native and node.id in _THEIRS else _ours(node)
         return Part(make, self._name(node), children, arguments)
 
-    def _leaf(self, site: Site) -> Part:
-        node, index = site.node, site.index
+    def _leaf(self, instance: NodeInstance) -> Part:
+        node, index = instance.node, instance.index
         ports = tuple((port, text) for port, text in node.ports if port != "_skipIf")
         scope = Name(self._scopes[index])
         if node.id == "Sleep" and "{" not in node.port("msec"):

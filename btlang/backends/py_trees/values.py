@@ -9,9 +9,9 @@ from py_trees.common import Status
 from btlang.backends.py_trees.node import SKIPPED, Asking, Node
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.engine import Engine
-from btlang.engine.leaf import LeafBinding
+from btlang.engine.leaves.leaf import LeafBinding
+from btlang.engine.nodes.subtree import child_scope
 from btlang.engine.status import FAILURE, RUNNING, SUCCESS
-from btlang.engine.subtree import child_scope
 from btlang.tree import node as btlang_node
 from btlang.tree.catalogue import SUBTREE
 

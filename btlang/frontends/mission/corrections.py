@@ -21,7 +21,7 @@ from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.frontends.mission.explanations.spelling_rule import is_respelling, words_of
 from btlang.frontends.mission.explanations.unknown import nearest_known
 from btlang.frontends.mission.grouping.grouping import Grouped, group
-from btlang.frontends.mission.symbols.prefixes import find_heads
+from btlang.frontends.mission.symbols.prefixes import find_prefixes
 from btlang.frontends.mission.token import Called, Header, Listed, Token
 from btlang.frontends.mission.tokens.lexer import Lexer
 from btlang.record import Record
@@ -135,8 +135,10 @@ class _Corrections:
         words = self._text.words
         named: list[tuple[int, int, tuple[str, ...] | None]]
         named = [(at, header.body - 1, None) for at, header in lexer.names.definitions.headers.items()]
-        heads = find_heads(self._text, self._vocabulary).items()
-        named += [(at, head.last, head.words) for at, head in heads if head.role not in ("increase", "decrease")]
+        prefixes = find_prefixes(self._text, self._vocabulary).items()
+        named += [
+            (at, prefix.last, prefix.words) for at, prefix in prefixes if prefix.role not in ("increase", "decrease")
+        ]
         for fact in lexer.names.facts:
             first = bisect_left(self._text.starts, fact.span.start)
             named.append((first, bisect_left(self._text.starts, fact.span.end), tuple(fact.name.split())))

@@ -16,14 +16,14 @@ from btlang.frontends.mission.tokens.lexer import Lexer
 from btlang.record import Record
 from btlang.text.source import Source, Span
 from btlang.tree.ast import Ast, Definition, Nothing, Program
+from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import Known
-from btlang.vocabulary.vocabulary import Vocabulary
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import TypeAlias
 
-    ErrorsOf: TypeAlias = Callable[[Program, Vocabulary], Iterable[Diagnostic]]
+    ErrorsOf: TypeAlias = Callable[[Program, Lexicon], Iterable[Diagnostic]]
 
 PARSERS = {
     "shunting-yard": "btlang.frontends.mission.parsers.shunting_yard",
@@ -41,7 +41,7 @@ class Reading(Record):
 
 def read_mission(
     source: Source,
-    vocabulary: Vocabulary,
+    vocabulary: Lexicon,
     parser: str = DEFAULT_PARSER,
     known: Mapping[str, Known] | None = None,
     errors_of: ErrorsOf | None = None,
@@ -60,7 +60,7 @@ def read_mission(
     return Reading(included.mission, tuple(reader.problems))
 
 
-def lexed(source: Source, vocabulary: Vocabulary) -> Lexer:
+def lexed(source: Source, vocabulary: Lexicon) -> Lexer:
     """The tokens of a text, with the names of what it includes; nothing is said of what is wrong."""
     reader = _Reader(vocabulary, DEFAULT_PARSER, {}, None)
     return Lexer(source, vocabulary, explain=False, load=reader.loader(source, (os.path.realpath(source.name),)))
@@ -70,7 +70,7 @@ class _Reader:
     """Reads a text and those that it includes, each once. `problems` are those of all of them."""
 
     def __init__(
-        self, vocabulary: Vocabulary, parser: str, known: Mapping[str, Known], errors_of: ErrorsOf | None
+        self, vocabulary: Lexicon, parser: str, known: Mapping[str, Known], errors_of: ErrorsOf | None
     ) -> None:
         self.problems: list[Diagnostic] = []
         self._vocabulary = vocabulary

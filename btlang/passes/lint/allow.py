@@ -16,8 +16,8 @@ from btlang.passes.compilation import Compilation
 from btlang.text.source import Span
 from btlang.text.spelling import nearest
 from btlang.text.words import Words, split
+from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.trie import longest
-from btlang.vocabulary.vocabulary import Vocabulary
 
 _ALLOW = r"(?i)#\s*allow\s*:(?P<names>[^\n]*)"
 _NAME = r"[^,\s](?:[^,]*[^,\s])?"
@@ -55,7 +55,7 @@ def silence(compilation: Compilation) -> Iterator[Diagnostic]:
     ]
 
 
-def _scope(comment: Span, words: Words, vocabulary: Vocabulary) -> tuple[int, int]:
+def _scope(comment: Span, words: Words, vocabulary: Lexicon) -> tuple[int, int]:
     """The characters that a comment counts for."""
     source = words.source
     lines = words.lines
@@ -73,6 +73,6 @@ def _scope(comment: Span, words: Words, vocabulary: Vocabulary) -> tuple[int, in
     return words.starts[lines[own].first], words.ends[lines[last].last]
 
 
-def _continues(at: int, words: Words, vocabulary: Vocabulary) -> bool:
+def _continues(at: int, words: Words, vocabulary: Lexicon) -> bool:
     match = longest(vocabulary.trie, words, at, vocabulary.context)
     return match is not None and match.meaning.role == "otherwise"

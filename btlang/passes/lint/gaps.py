@@ -7,7 +7,7 @@ from collections.abc import Sequence
 
 from btlang.text.source import Span
 from btlang.tree.ast import Ast
-from btlang.vocabulary.vocabulary import Vocabulary
+from btlang.vocabulary.lexicon import Lexicon
 
 _LINE_END = re.compile(r"[\n;]|[.!?](?!\w)")
 _WORD = re.compile(r"\w")
@@ -17,7 +17,7 @@ _QUOTED = re.compile(r'"[^"\n]*"')
 class Gaps:
     """The gaps of one chain, whose parts are given in the order of the text."""
 
-    def __init__(self, items: Sequence[Ast], vocabulary: Vocabulary) -> None:
+    def __init__(self, items: Sequence[Ast], vocabulary: Lexicon) -> None:
         self.items = items
         self._clauses = vocabulary.roles["otherwise"]
 

@@ -13,7 +13,7 @@ from btlang.passes.lint.gaps import Gaps, balanced
 from btlang.record import Record
 from btlang.text.source import Span
 from btlang.tree import ast
-from btlang.vocabulary.vocabulary import Vocabulary
+from btlang.vocabulary.lexicon import Lexicon
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -39,7 +39,7 @@ class Attachment(Record):
     readings: Callable[[], Readings]
 
 
-def in_chain(chain: ast.Chain, is_part: bool, vocabulary: Vocabulary) -> Iterator[Attachment]:
+def in_chain(chain: ast.Chain, is_part: bool, vocabulary: Lexicon) -> Iterator[Attachment]:
     """Those between the parts of a chain; `is_part`: it is itself a part of another one, without brackets.
 
     Only neighbours that could be read otherwise are looked at, so that a long chain of plain commands costs little.

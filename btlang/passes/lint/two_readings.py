@@ -21,7 +21,7 @@ from btlang.tree import ast
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.english.speaker import Speaker
+    from btlang.printer.printer import Printer
 
 _SENTENCE_END = re.compile(r"[\n;]|[.!?](?=\s)")
 
@@ -29,7 +29,7 @@ _SENTENCE_END = re.compile(r"[\n;]|[.!?](?=\s)")
 def two_readings(compilation: Compilation) -> Iterator[Diagnostic]:
     """At most one of each kind for each sentence: the first."""
     mission, told = compilation.mission, set[tuple[str, int, str]]()
-    speaker: Speaker | None = None
+    printer: Printer | None = None
     ends: dict[str, list[int]] = {}
     for root in (*mission.definitions, *([mission.body] if mission.body is not None else [])):
         source = root.span.source
@@ -40,10 +40,10 @@ def two_readings(compilation: Compilation) -> Iterator[Diagnostic]:
             if key in told:
                 continue
             told.add(key)
-            speaker = speaker or _speaker(compilation)
+            printer = printer or _printer(compilation)
             readings = found.readings()
-            if not speaker.say(readings.taken).in_lines:
-                yield _told(readings, speaker)
+            if not printer.say(readings.taken).in_lines:
+                yield _told(readings, printer)
 
 
 def _attachments(root: ast.Ast, compilation: Compilation) -> Iterator[Attachment]:
@@ -74,14 +74,14 @@ def _sentence_ends(source: Source) -> list[int]:
     return [match.start() for match in _SENTENCE_END.finditer(source.text)]
 
 
-def _speaker(compilation: Compilation) -> Speaker:
-    from btlang.english.sentence import speaker_of  # most missions have nothing to tell
+def _printer(compilation: Compilation) -> Printer:
+    from btlang.printer.sentence import printer_of  # most missions have nothing to tell
 
-    return speaker_of(compilation.mission, compilation.vocabulary, "all")
+    return printer_of(compilation.mission, compilation.vocabulary, "all")
 
 
-def _told(found: Readings, speaker: Speaker) -> Diagnostic:
-    taken, other = speaker.statement(found.taken), speaker.statement(found.other)
+def _told(found: Readings, printer: Printer) -> Diagnostic:
+    taken, other = printer.statement(found.taken), printer.statement(found.other)
     fix = None if "\n" in found.fix[0].text else found.fix
     fixed = taken if fix is None or "\n" in found.span.text else _changed(found.span, *found.fix)
     return diagnostic("BT050", found.span, (), fix, taken=taken, other=other, fixed=fixed)

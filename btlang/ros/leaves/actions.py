@@ -8,7 +8,7 @@ from math import inf
 from action_msgs.msg import GoalStatus
 from action_msgs.srv import CancelGoal
 
-from btlang.engine.leaf import ActionFailed, Failed, described
+from btlang.engine.leaves.leaf import ActionFailed, Failed, described
 from btlang.ros.awake import AWAKE
 from btlang.ros.clients import Clients
 from btlang.ros.filling import filler

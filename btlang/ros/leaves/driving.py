@@ -7,7 +7,7 @@ from collections.abc import Callable, Generator
 
 from nav_msgs.msg import Odometry
 
-from btlang.engine.leaf import ActionFailed
+from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.progress import PATIENCE, Progress
 from btlang.ros.clients import Clients
 from btlang.ros.commands import velocity

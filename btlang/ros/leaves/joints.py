@@ -6,7 +6,7 @@ from collections.abc import Callable, Generator, Mapping
 
 from sensor_msgs.msg import JointState
 
-from btlang.engine.leaf import ActionFailed, Failed
+from btlang.engine.leaves.leaf import ActionFailed, Failed
 from btlang.ros.clients import Clients
 from btlang.ros.commands import trajectory
 from btlang.ros.graph import no_listener

@@ -7,7 +7,7 @@ from collections.abc import Callable, Generator, Mapping
 from rcl_interfaces.srv import GetParameters, SetParameters
 from rclpy.parameter import Parameter, parameter_value_to_python
 
-from btlang.engine.leaf import Failed
+from btlang.engine.leaves.leaf import Failed
 from btlang.ros.clients import Clients
 from btlang.ros.graph import is_ready
 from btlang.ros.latest import AGE, Latest

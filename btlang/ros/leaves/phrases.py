@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 
-from btlang.engine.script_values import as_text
+from btlang.engine.script.values import as_text
 from btlang.ros.clients import Clients
 from btlang.ros.leaves.actions import goal_leaf
 from btlang.ros.serving.names import RUN_PHRASE, SILENCE

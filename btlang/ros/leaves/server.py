@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Generator
 
-from btlang.engine.leaf import ActionFailed, Failed
+from btlang.engine.leaves.leaf import ActionFailed, Failed
 from btlang.ros.clients import Clients
 from btlang.ros.fields import field_types
 from btlang.ros.graph import is_ready, no_server

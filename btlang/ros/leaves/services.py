@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Generator
 
-from btlang.engine.leaf import ActionFailed, Failed, described
+from btlang.engine.leaves.leaf import ActionFailed, Failed, described
 from btlang.ros.clients import Clients
 from btlang.ros.filling import filler
 from btlang.ros.graph import is_ready

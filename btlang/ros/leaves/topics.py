@@ -5,7 +5,7 @@ from __future__ import annotations
 import operator
 from collections.abc import Callable, Mapping
 
-from btlang.engine.leaf import ActionFailed, Failed, Unknown
+from btlang.engine.leaves.leaf import ActionFailed, Failed, Unknown
 from btlang.ros.clients import Clients
 from btlang.ros.fields import reader
 from btlang.ros.latest import AGE

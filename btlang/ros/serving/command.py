@@ -10,13 +10,13 @@ from btlang.api import world_vocabulary
 from btlang.arguments import between, node_name, real_speed
 from btlang.backends.engine import bind_leaf
 from btlang.diagnostics.diagnostic import MissionError, diagnostic
-from btlang.engine.build import EngineError
+from btlang.engine.instance import EngineError
 from btlang.robots.needs import lacking
 from btlang.ros.available import require_interfaces, require_ros
 from btlang.ros.command import add_body_options, add_namespace, platform_of
 from btlang.ros.mission.setup import Setup
-from btlang.ros.serving.choosing import chosen, servable
 from btlang.ros.serving.names import FOLDER
+from btlang.ros.serving.selection import chosen, servable
 from btlang.run.limits import RATES
 from btlang.text.output import show
 from btlang.text.source import NOWHERE
@@ -26,7 +26,7 @@ from btlang.tree.node import Node, Tree
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.run.connection import Connection
-    from btlang.vocabulary.vocabulary import Vocabulary
+    from btlang.vocabulary.lexicon import Lexicon
 
 _ANSWERS = 1.0  # seconds that the last answers to clients get
 
@@ -72,7 +72,7 @@ def serve(options: argparse.Namespace) -> int:
         return _spin(session.connection, ids, vocabulary, options)
 
 
-def _check(connection: Connection, ids: Sequence[str], vocabulary: Vocabulary) -> None:
+def _check(connection: Connection, ids: Sequence[str], vocabulary: Lexicon) -> None:
     """Tells what the robot lacks. Raises MissionError where an action cannot be bound."""
     everything = Tree(Node(SEQUENCE, tuple(Node(node_id) for node_id in ids)))
     survey = getattr(connection, "survey", None)  # of a ROS 2 robot
@@ -91,12 +91,12 @@ def _check(connection: Connection, ids: Sequence[str], vocabulary: Vocabulary) -
             raise MissionError([diagnostic("BT080", span, id=node_id, reason=error.message)]) from None
 
 
-def _spin(connection: Connection, ids: Sequence[str], vocabulary: Vocabulary, options: argparse.Namespace) -> int:
-    from btlang.english.phrase import phrase_of
+def _spin(connection: Connection, ids: Sequence[str], vocabulary: Lexicon, options: argparse.Namespace) -> int:
+    from btlang.printer.phrase import phrase_of
     from btlang.ros.ending import ending_signals
     from btlang.ros.node import SpunNode
+    from btlang.ros.serving.goal_executor import GoalExecutor
     from btlang.ros.serving.server import serve_actions
-    from btlang.ros.serving.work import Work
     from btlang.run.bus import Bus
     from btlang.run.command import STILL_MOVING, warn_of_motion
     from btlang.run.controls import Controls
@@ -108,17 +108,17 @@ def _spin(connection: Connection, ids: Sequence[str], vocabulary: Vocabulary, op
     bus.add(Lines(lambda node: phrase_of(node, vocabulary), lambda node: True, show))
     connection.begin(bus)
     controls = Controls()
-    work = Work(connection, vocabulary)
+    executor = GoalExecutor(connection, vocabulary)
     moves = False
     runner = Runner(
-        work, bus=bus, robot=connection.robot, rate=options.rate,
+        executor, bus=bus, robot=connection.robot, rate=options.rate,
         speed=1.0 if options.speed == "real" else options.speed, controls=controls, pace=connection.pace,
     )  # fmt: skip
     with ending_signals() as came, emergency_signal(controls.emergency_stop):
         came.on_arrival = controls.stop
         spun = SpunNode(options.name, namespace=options.namespace, use_sim_time=options.sim_time)
         try:
-            serve_actions(spun.node, ids, vocabulary, work, controls.emergency_stop)
+            serve_actions(spun.node, ids, vocabulary, executor, controls.emergency_stop)
             spun.start()
             where = f"{spun.node.get_namespace().rstrip('/')}/{FOLDER}"
             show(f"btlang serve-actions: ready with {len(ids)} actions in {where}; Ctrl-C ends it")
@@ -126,7 +126,7 @@ def _spin(connection: Connection, ids: Sequence[str], vocabulary: Vocabulary, op
                 outcome = runner.run()  # until a signal, or an emergency stop, after which it goes on
                 moves = warn_of_motion(outcome.standstill)
                 controls.take_emergency()
-                work.answer_all()
+                executor.answer_all()
             spun.settle(_ANSWERS)
         finally:
             spun.close()

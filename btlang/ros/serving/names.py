@@ -9,7 +9,7 @@ from btlang.vocabulary.ros_binding import RosBinding
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.vocabulary.entry import Entry
-    from btlang.vocabulary.vocabulary import Vocabulary
+    from btlang.vocabulary.lexicon import Lexicon
 
 RUN_PHRASE = "btlang_interfaces/action/RunPhrase"
 """The type of them all."""
@@ -25,7 +25,7 @@ def action_name(node_id: str) -> str:
     return name if re.fullmatch(r"[a-z][a-z0-9_]*", name) and "__" not in name else ""
 
 
-def served(entry: Entry, vocabulary: Vocabulary, servers: str) -> Entry:
+def served(entry: Entry, vocabulary: Lexicon, servers: str) -> Entry:
     """An action as one that is served by its name in the folder `servers`; what has a `ros` table stays as it is."""
     if entry.sort != "action" or entry.ros is not None:
         return entry

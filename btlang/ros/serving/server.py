@@ -8,13 +8,13 @@ from btlang_interfaces.action import RunPhrase
 from rclpy.node import Node
 from std_srvs.srv import Trigger
 
-from btlang.engine.leaf import ActionFailed
+from btlang.engine.leaves.leaf import ActionFailed
 from btlang.ros.goals import GoalServer, HeldGoal
 from btlang.ros.lease import Leases
-from btlang.ros.serving.asked import asked_leaf
+from btlang.ros.serving.goal_executor import GoalExecutor
 from btlang.ros.serving.names import FOLDER, action_name
-from btlang.ros.serving.work import Work
-from btlang.vocabulary.vocabulary import Vocabulary
+from btlang.ros.serving.request import requested_leaf
+from btlang.vocabulary.lexicon import Lexicon
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 
 class _Caller:
-    """See `btlang.ros.serving.job.Caller`."""
+    """See `btlang.ros.serving.goal.Caller`."""
 
     def __init__(self, goal: HeldGoal) -> None:
         self._goal = goal
@@ -35,7 +35,7 @@ class _Caller:
 
 
 def serve_actions(
-    node: Node, ids: Iterable[str], vocabulary: Vocabulary, work: Work, stop: Callable[[], object]
+    node: Node, ids: Iterable[str], vocabulary: Lexicon, executor: GoalExecutor, stop: Callable[[], object]
 ) -> None:
     """Each action by its name, see names.py; and ~/stop, the emergency stop, which calls `stop`.
 
@@ -50,19 +50,23 @@ def serve_actions(
     leases = Leases(node)
     node.create_service(Trigger, "~/stop", stopped)
     for node_id in ids:
-        GoalServer(node, RunPhrase, f"{FOLDER}/{action_name(node_id)}", _beginner(node_id, vocabulary, work), leases)
+        GoalServer(
+            node, RunPhrase, f"{FOLDER}/{action_name(node_id)}", _beginner(node_id, vocabulary, executor), leases
+        )
 
 
-def _beginner(node_id: str, vocabulary: Vocabulary, work: Work) -> Callable[[HeldGoal], Callable[[str], object]]:
+def _beginner(
+    node_id: str, vocabulary: Lexicon, executor: GoalExecutor
+) -> Callable[[HeldGoal], Callable[[str], object]]:
     entries = vocabulary.entries[node_id]
 
     def begin(goal: HeldGoal) -> Callable[[str], object]:
         caller, asked = _Caller(goal), goal.request
         try:
-            leaf = asked_leaf(asked.phrase, asked.names, asked.values, entries, vocabulary)
+            leaf = requested_leaf(asked.phrase, asked.names, asked.values, entries, vocabulary)
         except ActionFailed as problem:
             caller.end(False, str(problem))
             return lambda reason: None
-        return work.begin(leaf, caller)
+        return executor.begin(leaf, caller)
 
     return begin

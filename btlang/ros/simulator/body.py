@@ -15,7 +15,7 @@ from trajectory_msgs.msg import JointTrajectory
 
 from btlang.robots.robot import Hand
 from btlang.robots.simulated import SimulatedRobot
-from btlang.ros.simulator.inbox import Inbox
+from btlang.ros.simulator.call_queue import CallQueue
 from btlang.ros.simulator.publishing import COMMANDS, Every, Latched, Moment
 
 _HANDS: tuple[Hand, Hand] = ("left", "right")
@@ -24,9 +24,9 @@ _HANDS: tuple[Hand, Hand] = ("left", "right")
 class Body:
     """Moves joints, hands and voice as topics and services say."""
 
-    def __init__(self, node: Node, robot: SimulatedRobot, inbox: Inbox) -> None:
+    def __init__(self, node: Node, robot: SimulatedRobot, calls: CallQueue) -> None:
         self._robot = robot
-        self._inbox = inbox
+        self._calls = calls
         self._names = {joint.name.replace(" ", "_"): joint.name for joint in robot.body.joints}
         hands = [hand for hand in _HANDS if robot.body.hand(hand) is not None]
         self._joints = node.create_publisher(JointState, "joint_states", COMMANDS)
@@ -54,10 +54,10 @@ class Body:
             self._joints.publish(state)
 
     def _hand_over(self, act: Callable[[Any], None], message: Any) -> None:
-        self._inbox.post(lambda: act(message))
+        self._calls.post(lambda: act(message))
 
     def _close(self, hand: Hand, request: SetBool.Request, response: SetBool.Response) -> SetBool.Response:
-        response.success, response.message = self._inbox.ask(partial(self._turn, hand, request.data))
+        response.success, response.message = self._calls.ask(partial(self._turn, hand, request.data))
         return response
 
     def _turn(self, hand: Hand, closes: bool) -> str | None:

@@ -1,4 +1,4 @@
-"""The action server /navigate_to_pose: journeys to a pose, around obstacles."""
+"""The action server /navigate_to_pose: drives to a pose, around obstacles."""
 
 from __future__ import annotations
 
@@ -11,11 +11,11 @@ from rclpy.node import Node
 from rclpy.task import Future
 
 from btlang.robots.geometry import Pose
-from btlang.robots.navigation import Journey
+from btlang.robots.navigation import NavigationGoal
 from btlang.robots.simulated import SimulatedRobot
 from btlang.ros.lease import Leases
 from btlang.ros.poses import MAP, ODOM, pose_message, pose_of
-from btlang.ros.simulator.inbox import Inbox
+from btlang.ros.simulator.call_queue import CallQueue
 from btlang.ros.simulator.publishing import Every, Moment
 from btlang.ros.simulator.wheels import Wheels
 from btlang.ros.times import duration
@@ -26,13 +26,13 @@ _BRAKING = 1.0  # simulated seconds that a cancelled goal waits at most until th
 
 
 class Ride:
-    """A goal that has been accepted. Its journey begins with the next step, unless it is `refused`."""
+    """A goal that has been accepted. It sets out with the next step, unless it is `refused`."""
 
     def __init__(self, goal: ServerGoalHandle) -> None:
         self.goal = goal
         self.pose = pose_of(goal.request.pose.pose)
         self.refused = _refusal(goal.request.pose.header.frame_id, self.pose)
-        self.journey: Journey | None = None
+        self.navigation: NavigationGoal | None = None
         self.began = 0.0
         self.cancelled: float | None = None
         self.abandoned = False
@@ -46,16 +46,16 @@ class Ride:
     @property
     def failure(self) -> str | None:
         """Why it did not arrive."""
-        return self.refused if self.journey is None else self.journey.failure
+        return self.refused if self.navigation is None else self.navigation.failure
 
 
 class Navigation:
     """One goal at a time; a new one takes the place of the one under way, which is aborted."""
 
-    def __init__(self, node: Node, robot: SimulatedRobot, inbox: Inbox, wheels: Wheels) -> None:
+    def __init__(self, node: Node, robot: SimulatedRobot, calls: CallQueue, wheels: Wheels) -> None:
         self._node = node
         self._robot = robot
-        self._inbox = inbox
+        self._calls = calls
         self._wheels = wheels
         self._ride: Ride | None = None
         self._feedback_due = Every(5)
@@ -71,21 +71,21 @@ class Navigation:
     def publish(self, now: Moment) -> None:
         """Tells how far the goal has come, or that it is over."""
         ride = self._ride
-        if ride is None or ride.journey is None:
+        if ride is None or ride.navigation is None:
             return
         if ride.cancelled is None and (ride.goal.is_cancel_requested or ride.abandoned):
             ride.cancelled = now.seconds
-            ride.journey.cancel()
-        if ride.journey.done and not self._brakes(ride, now.seconds):
+            ride.navigation.cancel()
+        if ride.navigation.done and not self._brakes(ride, now.seconds):
             self._ride = None
             self._end(ride)
         elif self._feedback_due.is_due(now.seconds):
-            self._tell(ride, ride.journey, now)
+            self._tell(ride, ride.navigation, now)
 
     async def _execute(self, goal: ServerGoalHandle) -> NavigateToPose.Result:
         """Runs in the thread of the executor."""
         ride = Ride(goal)
-        self._inbox.post(lambda: self._begin(ride))
+        self._calls.post(lambda: self._begin(ride))
         goal_id = bytes(goal.goal_id.uuid)
         self._leases.watch(goal_id, ride.abandon)
         await ride.ended
@@ -103,10 +103,10 @@ class Navigation:
         if ride.refused is not None:
             self._end(ride)
             return
-        ride.journey, ride.began = self._robot.navigate_to_pose(ride.pose), self._robot.time
+        ride.navigation, ride.began = self._robot.navigate_to_pose(ride.pose), self._robot.time
         self._wheels.leave()
         if self._ride is not None:
-            self._end(self._ride)  # the new journey has ended its own
+            self._end(self._ride)  # the new goal has ended its own
         self._ride = ride
 
     def _brakes(self, ride: Ride, now: float) -> bool:
@@ -117,8 +117,8 @@ class Navigation:
         ride.ended.set_result(None)
         self._node.executor.wake()
 
-    def _tell(self, ride: Ride, journey: Journey, now: Moment) -> None:
-        left = journey.left
+    def _tell(self, ride: Ride, goal: NavigationGoal, now: Moment) -> None:
+        left = goal.left
         feedback = NavigateToPose.Feedback(distance_remaining=left)
         feedback.current_pose.header.stamp, feedback.current_pose.header.frame_id = now.stamp, MAP
         feedback.current_pose.pose = pose_message(self._robot.pose)

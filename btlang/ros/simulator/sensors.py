@@ -13,7 +13,7 @@ from std_srvs.srv import Trigger
 
 from btlang.robots.robot import RobotError
 from btlang.robots.simulated import SimulatedRobot
-from btlang.ros.simulator.inbox import Inbox
+from btlang.ros.simulator.call_queue import CallQueue
 from btlang.ros.simulator.publishing import COMMANDS, Every, Latched, Moment
 
 _SCANS = 10
@@ -22,7 +22,7 @@ _SCANS = 10
 class Sensors:
     """Publishes what the robot senses; a silent scanner publishes nothing."""
 
-    def __init__(self, node: Node, robot: SimulatedRobot, inbox: Inbox) -> None:
+    def __init__(self, node: Node, robot: SimulatedRobot, calls: CallQueue) -> None:
         self._robot = robot
         self._scan = node.create_publisher(LaserScan, "scan", qos_profile_sensor_data)
         self._battery = node.create_publisher(BatteryState, "battery_state", COMMANDS)
@@ -30,11 +30,11 @@ class Sensors:
         self._scan_due, self._battery_due = Every(_SCANS), Every(2)
 
         def dock(request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-            response.success, response.message = inbox.ask(robot.dock)
+            response.success, response.message = calls.ask(robot.dock)
             return response
 
         def undock(request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-            response.success, response.message = inbox.ask(robot.undock)
+            response.success, response.message = calls.ask(robot.undock)
             return response
 
         if robot.body.dock is not None:

@@ -15,7 +15,7 @@ from btlang.robots.simulated import SimulatedRobot
 from btlang.robots.world import World
 from btlang.ros.node import SpunNode
 from btlang.ros.simulator.body import Body
-from btlang.ros.simulator.inbox import Inbox
+from btlang.ros.simulator.call_queue import CallQueue
 from btlang.ros.simulator.publishing import Moment
 from btlang.ros.simulator.sensors import Sensors
 from btlang.ros.simulator.wheels import Wheels
@@ -48,30 +48,30 @@ class Simulator:
     ) -> None:
         self.robot = SimulatedRobot(world, body=body)
         self._show = show
-        self._inbox = Inbox()
+        self._calls = CallQueue()
         self._spun = SpunNode("btlang_sim", namespace=namespace)
         self.node = node = self._spun.node
-        self._wheels = Wheels(node, self.robot, self._inbox)
+        self._wheels = Wheels(node, self.robot, self._calls)
         self._parts: list[Part] = [
             self._wheels,
-            Sensors(node, self.robot, self._inbox),
-            Body(node, self.robot, self._inbox),
+            Sensors(node, self.robot, self._calls),
+            Body(node, self.robot, self._calls),
         ]
         if can_navigate() and self.robot.body.has("navigation"):
             from btlang.ros.simulator.navigation import Navigation
 
-            self._parts.append(Navigation(node, self.robot, self._inbox, self._wheels))
+            self._parts.append(Navigation(node, self.robot, self._calls, self._wheels))
         self._clock = node.create_publisher(Clock, "/clock", QoSProfile(depth=1)) if gives_clock else None
         node.create_service(Trigger, "stop", self._stop)
         self.robot.on_event = self._tell
 
     def work(self, seconds: float) -> None:
         """Does what the topics, services and actions ask for, within so many seconds of real time or until `wake`."""
-        self._inbox.work(seconds)
+        self._calls.work(seconds)
 
     def wake(self) -> None:
         """Ends `work`, from any thread and from handlers of signals."""
-        self._inbox.wake()
+        self._calls.wake()
 
     def step(self, seconds: float) -> None:
         """Lets simulated time pass and publishes what has become of the robot."""
@@ -88,7 +88,7 @@ class Simulator:
         return self
 
     def __exit__(self, *problem: object) -> None:
-        self._inbox.close()  # first: who waits in the thread of the executor would keep it from ending
+        self._calls.close()  # first: who waits in the thread of the executor would keep it from ending
         self._spun.close()
 
     def _now(self) -> Moment:

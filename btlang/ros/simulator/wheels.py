@@ -12,7 +12,7 @@ from std_msgs.msg import String
 from btlang.robots.simulated import SimulatedRobot
 from btlang.ros.node import LATCHED
 from btlang.ros.poses import BASE, MAP, ODOM, pose_message
-from btlang.ros.simulator.inbox import Inbox
+from btlang.ros.simulator.call_queue import CallQueue
 from btlang.ros.simulator.publishing import COMMANDS, Every, Moment
 
 _SILENCE = 0.5  # simulated seconds without a command after which the robot brakes
@@ -21,7 +21,7 @@ _SILENCE = 0.5  # simulated seconds without a command after which the robot brak
 class Wheels:
     """Drives as /cmd_vel says. A journey ends with a command to move; a zero, or silence, leaves it alone."""
 
-    def __init__(self, node: Node, robot: SimulatedRobot, inbox: Inbox) -> None:
+    def __init__(self, node: Node, robot: SimulatedRobot, calls: CallQueue) -> None:
         self._robot = robot
         self._driven = False
         self._told_at = 0.0
@@ -29,7 +29,7 @@ class Wheels:
         self._pose = node.create_publisher(PoseWithCovarianceStamped, "amcl_pose", LATCHED)
         self._bump = node.create_publisher(String, "bump", COMMANDS)
         self._due = Every(20)
-        node.create_subscription(Twist, "cmd_vel", lambda twist: inbox.post(lambda: self._drive(twist)), COMMANDS)
+        node.create_subscription(Twist, "cmd_vel", lambda twist: calls.post(lambda: self._drive(twist)), COMMANDS)
 
     def watch(self) -> None:
         """Brakes where commands have ceased; to be called before each step."""

@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from btlang.engine.clock import Clock
 from btlang.engine.compile import outline
 from btlang.engine.engine import Engine
-from btlang.engine.leaf import LeafBinding
+from btlang.engine.leaves.leaf import LeafBinding
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
 from btlang.run.events import StatusesChanged
 from btlang.run.shape import Shape
@@ -18,7 +18,7 @@ from btlang.tree.node import Node, Tree
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.engine.watch import Changes
+    from btlang.engine.status_trace import Changes
 
 LETTERS = {"r": RUNNING, "s": SUCCESS, "f": FAILURE, "k": SKIPPED}
 

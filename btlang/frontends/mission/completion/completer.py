@@ -13,7 +13,7 @@ from btlang.frontends.mission.completion.value_completion import value_options
 from btlang.frontends.mission.grouping.grouping import group
 from btlang.frontends.mission.reader import lexed
 from btlang.frontends.mission.symbols.includes import ROLE
-from btlang.frontends.mission.symbols.prefixes import JOINTS
+from btlang.frontends.mission.symbols.prefixes import SEPARATORS
 from btlang.frontends.mission.token import Token
 from btlang.record import Record
 from btlang.text.source import Source
@@ -21,10 +21,10 @@ from btlang.text.spelling import nearest
 from btlang.vocabulary.continuations import Begun, begun, meanings, values_on, ways_on
 from btlang.vocabulary.correct_words import correct_words
 from btlang.vocabulary.entry import Meaning
+from btlang.vocabulary.lexicon import DEFINING, NO_PHRASES, Lexicon
 from btlang.vocabulary.pattern import Slot, forms
 from btlang.vocabulary.trie import SLOTS, TrieNode
 from btlang.vocabulary.values import END
-from btlang.vocabulary.vocabulary import DEFINING, NO_PHRASES, Vocabulary
 
 _MOST_TOKENS_BACK = 6  # a phrase that is being written may look like that many shorter ones
 _LONG_ENOUGH = 3  # letters; a shorter word is no misspelling yet
@@ -55,7 +55,7 @@ class Completion(Record):
 
 
 @lru_cache(maxsize=4)  # an editor asks more than once while the text stands as it is
-def completions(text: str, vocabulary: Vocabulary) -> tuple[Completion, ...]:
+def completions(text: str, vocabulary: Lexicon) -> tuple[Completion, ...]:
     """All that may follow the text, what goes on a phrase first; none inside quotes or behind an error."""
     return tuple(Completer(text, vocabulary).found())
 
@@ -63,7 +63,7 @@ def completions(text: str, vocabulary: Vocabulary) -> tuple[Completion, ...]:
 class Completer:
     """Finds what may follow one text."""
 
-    def __init__(self, text: str, vocabulary: Vocabulary) -> None:
+    def __init__(self, text: str, vocabulary: Lexicon) -> None:
         self._vocabulary = vocabulary
         self._text = text
         self._partial = _last_word(text)
@@ -147,7 +147,7 @@ class Completer:
         slotted = [meaning for _, _, child in node.get(SLOTS, ()) for meaning in meanings(child)]
         for meaning in (*ends, *slotted):
             if self._may_stand(at, meaning.role):
-                more = "" if ends and meaning is ends[0] and meaning.role not in (*JOINTS, ROLE) else " "
+                more = "" if ends and meaning is ends[0] and meaning.role not in (*SEPARATORS, ROLE) else " "
                 kind, about = self._about(meaning)
                 yield Completion(words + more, self._start, kind, about)
                 return
@@ -235,7 +235,7 @@ def _shortest_first(way: tuple[tuple[str, ...], TrieNode]) -> tuple[int, tuple[s
 
 
 @lru_cache(maxsize=4)
-def _openings(vocabulary: Vocabulary) -> list[tuple[str, TrieNode]]:
+def _openings(vocabulary: Lexicon) -> list[tuple[str, TrieNode]]:
     """The words, up to the first slot, of the first phrase of each role and entry, and where they lead in the trie."""
     found: dict[str, TrieNode] = {}
     entries = [entry.phrases[0] for entries in vocabulary.entries.values() for entry in entries]

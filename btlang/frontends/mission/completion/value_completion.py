@@ -4,17 +4,17 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from btlang.frontends.mission.symbols.prefixes import JOINTS
+from btlang.frontends.mission.symbols.prefixes import SEPARATORS
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
 from btlang.vocabulary.continuations import begun, ways_on
+from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.values import END
-from btlang.vocabulary.vocabulary import Vocabulary
 
 
 def value_options(
-    text: Words, last: int, start: str, vocabulary: Vocabulary, context: ReadingContext
+    text: Words, last: int, start: str, vocabulary: Lexicon, context: ReadingContext
 ) -> Iterator[tuple[str, str]]:
     """(words, kind) that may follow the words before `last`, the next of which begins with `start`."""
     known: Mapping[str, Known] = context.known or {}
@@ -25,19 +25,19 @@ def value_options(
     at = last - 1
     while at >= 0 and text.words[at] not in (END_OF_STATEMENT, END_OF_TEXT):
         match = longest(vocabulary.trie, text, at, context)
-        if match is not None and match.meaning.role in JOINTS and match.last <= last:
+        if match is not None and match.meaning.role in SEPARATORS and match.last <= last:
             yield from _inside(match.meaning.role, text, match.last, last, start, vocabulary, names)
             return
         at -= 1
 
 
 def _inside(
-    role: str, text: Words, first: int, last: int, start: str, vocabulary: Vocabulary, names: list[str]
+    role: str, text: Words, first: int, last: int, start: str, vocabulary: Lexicon, names: list[str]
 ) -> Iterator[tuple[str, str]]:
     """What may follow behind `set`, `remember`, ..., of which the words from `first` on are written."""
-    joints = vocabulary.roles[JOINTS[role]]
+    separators = vocabulary.roles[SEPARATORS[role]]
     written = text.words[first:last]
-    if any(joint.split()[0] in written for joint in joints):
+    if any(joint.split()[0] in written for joint in separators):
         return
     if role == "remember":
         for node in begun(vocabulary.quantities, text, first, last, vocabulary.context).nodes:
@@ -46,4 +46,4 @@ def _inside(
     elif not written:
         yield from ((name, "value") for name in names if name.startswith(start))
     if written:
-        yield from ((f"{joint} ", "connective") for joint in joints if joint.startswith(start))
+        yield from ((f"{joint} ", "connective") for joint in separators if joint.startswith(start))

@@ -8,14 +8,14 @@ from functools import lru_cache
 
 from btlang.text.spelling import distance, fewest_slips, is_misspelling
 from btlang.vocabulary.correct_words import correct_words
+from btlang.vocabulary.lexicon import NO_PHRASES, NODE_ROLES, Lexicon
 from btlang.vocabulary.trie import SLOTS, TrieNode
 from btlang.vocabulary.values import END
-from btlang.vocabulary.vocabulary import NO_PHRASES, NODE_ROLES, Vocabulary
 
 _PIECE = re.compile(r"[^\W\d_]+(?:['\N{RIGHT SINGLE QUOTATION MARK}][^\W\d_]+)?|\d+(?:\.\d+)?")
 
 
-def is_respelling(written: str, meant: str, vocabulary: Vocabulary, before: str = "") -> bool:
+def is_respelling(written: str, meant: str, vocabulary: Lexicon, before: str = "") -> bool:
     """Whether two texts say the same but for slips in words that are no words; `before` is the word before them.
 
     They also do where only marks or blanks differ, where words are added to none, or to a number, or where the word of
@@ -40,7 +40,7 @@ def is_respelling(written: str, meant: str, vocabulary: Vocabulary, before: str 
     )
 
 
-def _are_slips(words: list[str], vocabulary: Vocabulary, before: str) -> bool:
+def _are_slips(words: list[str], vocabulary: Lexicon, before: str) -> bool:
     """Whether none of the words is one that somebody may have meant."""
     right, known = correct_words(vocabulary.language), words_of(vocabulary)
     if before.lower() in vocabulary.halting or not all(word.isalpha() for word in words):
@@ -48,7 +48,7 @@ def _are_slips(words: list[str], vocabulary: Vocabulary, before: str) -> bool:
     return not any(word in right or word in known or word in vocabulary.quantifiers for word in words)
 
 
-def _is_slip(written: str, meant: str, vocabulary: Vocabulary) -> bool:
+def _is_slip(written: str, meant: str, vocabulary: Lexicon) -> bool:
     if distance(written, meant) > 2 * _fewest_slips(written, vocabulary.language):
         return False  # another word of English is nearer
     return is_misspelling(written, meant, _turned(written, vocabulary))
@@ -59,7 +59,7 @@ def _fewest_slips(written: str, language: str) -> int:
     return fewest_slips(written, correct_words(language))
 
 
-def _turned(written: str, vocabulary: Vocabulary) -> frozenset[str]:
+def _turned(written: str, vocabulary: Lexicon) -> frozenset[str]:
     """What would turn the meaning round, if it was meant: negations, and those with a word that they run into."""
     right, known, quantifiers = correct_words(vocabulary.language), words_of(vocabulary), vocabulary.quantifiers
     apart = ((written[:at], written[at:]) for at in range(1, len(written)))  # `nowave`
@@ -68,7 +68,7 @@ def _turned(written: str, vocabulary: Vocabulary) -> frozenset[str]:
 
 
 @lru_cache(maxsize=4)
-def words_of(vocabulary: Vocabulary) -> frozenset[str]:
+def words_of(vocabulary: Lexicon) -> frozenset[str]:
     """Every word that the vocabulary knows, also those in names and values."""
     words: set[str] = set(vocabulary.articles)
     pending: list[TrieNode] = [vocabulary.trie, vocabulary.quantities]

@@ -18,11 +18,11 @@ from btlang.record import Record
 from btlang.text.source import Span
 from btlang.text.spelling import nearest, nearest_start
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
+from btlang.vocabulary.lexicon import NODE_ROLES, Lexicon
 from btlang.vocabulary.pattern import Slot, forms
 from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.trie import SLOTS, TrieNode, longest
 from btlang.vocabulary.values import ValueType, with_unit
-from btlang.vocabulary.vocabulary import NODE_ROLES, Vocabulary
 
 _NOT_A_VALUE = frozenset((END_OF_TEXT, END_OF_STATEMENT, ",", ":", "(", ")"))
 
@@ -31,7 +31,7 @@ def explain_unknown(
     text: Words,
     at: int,
     end: int,
-    vocabulary: Vocabulary,
+    vocabulary: Lexicon,
     context: ReadingContext,
     definitions: Definitions,
     before: list[Token],
@@ -65,7 +65,7 @@ def explain_unknown(
     return _unknown_phrase(text, at, end, vocabulary, definitions, before)
 
 
-def misread_head(text: Words, at: int, role: str, vocabulary: Vocabulary) -> Diagnostic:
+def misread_head(text: Words, at: int, role: str, vocabulary: Lexicon) -> Diagnostic:
     """BT039 for a statement about a value of the mission that is not put together as one."""
     word, places = vocabulary.word, vocabulary.values.names("place")
     measured = (entry.quantity[0] for entries in vocabulary.entries.values() for entry in entries if entry.measures)
@@ -130,7 +130,7 @@ def _misfit(
     first: int,
     end: int,
     misfits: list[_Misfit],
-    vocabulary: Vocabulary,
+    vocabulary: Lexicon,
     context: ReadingContext,
     definitions: Definitions,
 ) -> Diagnostic:
@@ -182,7 +182,7 @@ def _wrong_type(span: Span, known: Known, wanted: str) -> Diagnostic:
     return diagnostic("BT044", span, name=" ".join(known.words), kind=known.kinds[0], wanted=wanted)
 
 
-def _is_connective(text: Words, at: int, vocabulary: Vocabulary) -> bool:
+def _is_connective(text: Words, at: int, vocabulary: Lexicon) -> bool:
     match = longest(vocabulary.trie, text, at, vocabulary.context)
     return match is not None and match.meaning.entry is None and not match.values
 
@@ -195,7 +195,7 @@ def _number_misfit(
     head: str,
     example: str,
     wanted: str,
-    vocabulary: Vocabulary,
+    vocabulary: Lexicon,
 ) -> Diagnostic:
     span = text.span(at, number[1])
     measured = next((kind for kind in types if kind.kind == "quantity"), None)
@@ -224,7 +224,7 @@ def _ends_in_a_bare_text(command: Token) -> bool:
 
 
 def _unknown_phrase(
-    text: Words, at: int, end: int, vocabulary: Vocabulary, definitions: Definitions, before: list[Token]
+    text: Words, at: int, end: int, vocabulary: Lexicon, definitions: Definitions, before: list[Token]
 ) -> Diagnostic:
     span = text.span(at, end)
     start = Span(text.source, before[-1].start, before[-1].end) if before else span
@@ -233,26 +233,36 @@ def _unknown_phrase(
         quoted = f'{verb} "{word} {span.text}"'
         advice = f"A text of more than one word needs quotes: {quoted}"
         whole = Span(text.source, start.start, span.end)
-        return diagnostic("BT010", span, fix=(whole, quoted), words=span.text, help=advice)
+        return diagnostic("BT010", span, fix=(whole, quoted), kind="word", words=span.text, help=advice)
+    kind = "condition" if _asks(before) else "command"
     meant = longest(vocabulary.trie, text, at + 1, vocabulary.context) if end > at + 1 else None
     is_node = text.words[at] in (phrase for role in NODE_ROLES for phrase in vocabulary.roles[role])
     if is_node and meant is not None and meant.meaning.entry is not None:  # `do wave`
         rest = text.span(at + 1, meant.last).text
         whole = text.span(at, meant.last)
-        return diagnostic("BT010", span, fix=(whole, rest), words=span.text, help=nearest_known([rest]))
+        return diagnostic("BT010", span, fix=(whole, rest), kind=kind, words=span.text, help=nearest_known([rest]))
     node = misread_node(text, at, vocabulary) if is_node else None
     if node is not None:
         advice = f"A node by its id: {' or '.join(node[1])}"
-        return diagnostic("BT010", node[0], fix=(node[0], node[1][0]), words=node[0].text, help=advice)
+        return diagnostic("BT010", node[0], fix=(node[0], node[1][0]), kind="node", words=node[0].text, help=advice)
     names = [header.name for header in definitions.headers.values()]
     written = f" {' '.join(text.words[at:end])} "
     inside = [(name, end - at) for name in names if f" {name} " in written]
     near = dict(inside) | dict(_nearest_phrases(tuple(text.words[at:end]), vocabulary, tuple(names))) | dict(inside)
     if not near:
-        return diagnostic("BT010", span, words=span.text, help="'btc words' lists what I know.")
+        return diagnostic("BT010", span, kind=kind, words=span.text, help="'btc words' lists what I know.")
     likely, words = next(iter(near.items()))
     fix = (text.span(at, min(at + words, end)), likely.partition(" {")[0])
-    return diagnostic("BT010", span, fix=fix, words=span.text, help=nearest_known(near))
+    return diagnostic("BT010", span, fix=fix, kind=kind, words=span.text, help=nearest_known(near))
+
+
+_ASKING = frozenset(("if", "unless", "whenever", "while", "until", "check", "wait_until", "condition"))
+
+
+def _asks(before: list[Token]) -> bool:
+    """Whether a condition belongs after these tokens."""
+    kinds = (token.kind for token in reversed(before))
+    return next((kind for kind in kinds if kind not in ("not", "open", "and", "or")), "") in _ASKING
 
 
 def nearest_known(words: Iterable[str]) -> str:
@@ -261,7 +271,7 @@ def nearest_known(words: Iterable[str]) -> str:
 
 
 @lru_cache(maxsize=4)  # a text full of unknown words asks for them at each
-def _phrases(vocabulary: Vocabulary) -> dict[str, tuple[str, list[str]]]:
+def _phrases(vocabulary: Lexicon) -> dict[str, tuple[str, list[str]]]:
     """What can be said, as people would write it: its id, and the words up to the first slot; each such start once."""
     entries = [(entry.id, entry.phrases) for entries in vocabulary.entries.values() for entry in entries]
     known: dict[tuple[str, ...], tuple[str, str]] = {}
@@ -276,7 +286,7 @@ def _phrases(vocabulary: Vocabulary) -> dict[str, tuple[str, list[str]]]:
 
 @lru_cache(maxsize=256)  # mistakes repeat
 def _nearest_phrases(
-    all_written: tuple[str, ...], vocabulary: Vocabulary, names: tuple[str, ...]
+    all_written: tuple[str, ...], vocabulary: Lexicon, names: tuple[str, ...]
 ) -> list[tuple[str, int]]:
     """Phrases and names that may have been meant, each with the number of words that stand for it; one of each id."""
     phrases = {name: (name, name.split()) for name in names} | _phrases(vocabulary)
@@ -292,7 +302,7 @@ def _near_names(near: list[str], known: list[str]) -> str:
     return "Known: " + ", ".join(known) if known else "None is known in this world."
 
 
-def _value_example(kind: ValueType, vocabulary: Vocabulary) -> str:
+def _value_example(kind: ValueType, vocabulary: Lexicon) -> str:
     names = vocabulary.values.names(kind.name) if kind.kind == "names" else []
     return names[0] if names else kind.example
 

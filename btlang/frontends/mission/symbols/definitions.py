@@ -14,10 +14,10 @@ from btlang.text.source import Span
 from btlang.text.words import END_OF_STATEMENT, Words, statements
 from btlang.tree.ast import Definition
 from btlang.vocabulary.entry import Entry, Meaning, SlotSpec
+from btlang.vocabulary.lexicon import DEFINING, NODE_ROLES, Lexicon
 from btlang.vocabulary.pattern import Part, Slot, name_form
 from btlang.vocabulary.trie import SLOTS, Match, TrieNode, add, longest
 from btlang.vocabulary.values import END, key_of
-from btlang.vocabulary.vocabulary import DEFINING, NODE_ROLES, Vocabulary
 
 # A line that starts with one of these compares; it defines nothing.
 _STARTS_NO_NAME = frozenset((
@@ -80,7 +80,7 @@ def find_definitions(
     return found
 
 
-def add_name(header: Header, found: Definitions, vocabulary: Vocabulary, types: Mapping[str, str]) -> None:
+def add_name(header: Header, found: Definitions, vocabulary: Lexicon, types: Mapping[str, str]) -> None:
     """Makes a name known, with the types of its parameters (BT017, BT018)."""
     words = name_form(header.name)
     found.types[header.body] = tuple(types.items())
@@ -214,7 +214,7 @@ def _defining_word(phrases: Phrases, first: int, last: int) -> int | None:
     return None
 
 
-def _behind_node(text: Words, head: Match, last: int, vocabulary: Vocabulary) -> int:
+def _behind_node(text: Words, head: Match, last: int, vocabulary: Lexicon) -> int:
     """Where a node ends that is said by its id: what defines is a word in it like any other."""
     try:
         read = read_node(text, head.last, head.meaning, vocabulary)
@@ -223,7 +223,7 @@ def _behind_node(text: Words, head: Match, last: int, vocabulary: Vocabulary) ->
     return read[1] if read is not None else head.last
 
 
-def _is_compared(text: Words, first: int, at: int, vocabulary: Vocabulary) -> bool:
+def _is_compared(text: Words, first: int, at: int, vocabulary: Lexicon) -> bool:
     """Whether a quantity ends right before a word: what follows compares it."""
     if not vocabulary.quantities:
         return False

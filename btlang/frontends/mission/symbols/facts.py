@@ -5,8 +5,8 @@ from __future__ import annotations
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.text.words import Words, statements
 from btlang.tree.ast import Fact
+from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.trie import longest
-from btlang.vocabulary.vocabulary import Vocabulary
 
 _FARTHEST = 1e6  # metres, as in a world file
 _OPEN, _COMMA, _CLOSE = "(", ",", ")"
@@ -24,7 +24,7 @@ class Facts:
         self.problems: list[Diagnostic] = []
 
 
-def find_facts(text: Words, vocabulary: Vocabulary) -> Facts:
+def find_facts(text: Words, vocabulary: Lexicon) -> Facts:
     """Every fact of the text. Where a place is given twice both are listed; the later one counts."""
     facts = Facts()
     placing = [phrase.split() for phrase in vocabulary.roles["fact"]]
@@ -46,7 +46,7 @@ def find_facts(text: Words, vocabulary: Vocabulary) -> Facts:
     return facts
 
 
-def _fact(text: Words, start: int, is_at: int, at: int, last: int, vocabulary: Vocabulary) -> Fact | None:
+def _fact(text: Words, start: int, is_at: int, at: int, last: int, vocabulary: Lexicon) -> Fact | None:
     """None where it is not put together as a fact is."""
     if start == is_at or not all(word[0].isalnum() for word in text.words[start:is_at]):
         return None
@@ -77,14 +77,14 @@ def _fact(text: Words, start: int, is_at: int, at: int, last: int, vocabulary: V
     return Fact(name, numbers[0], numbers[1], facing, text.span(start, last))
 
 
-def _metres(text: Words, at: int, vocabulary: Vocabulary) -> tuple[float, int] | None:
+def _metres(text: Words, at: int, vocabulary: Lexicon) -> tuple[float, int] | None:
     quantity = vocabulary.values.quantity(text, at)
     if quantity is not None:
         return (quantity[0], quantity[2]) if quantity[1] == "length" else None
     return vocabulary.values.number(text, at)
 
 
-def _after_politeness(text: Words, at: int, last: int, vocabulary: Vocabulary) -> int:
+def _after_politeness(text: Words, at: int, last: int, vocabulary: Lexicon) -> int:
     while at < last:
         polite = longest(vocabulary.trie, text, at, vocabulary.context)
         if polite is None or polite.meaning.role != "politeness":
@@ -93,5 +93,5 @@ def _after_politeness(text: Words, at: int, last: int, vocabulary: Vocabulary) -
     return at
 
 
-def _facing(vocabulary: Vocabulary) -> str:
+def _facing(vocabulary: Lexicon) -> str:
     return vocabulary.roles["facing"][0]

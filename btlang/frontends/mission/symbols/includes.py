@@ -7,9 +7,9 @@ from btlang.record import Record
 from btlang.text.source import Span
 from btlang.text.words import Words, statements
 from btlang.tree.ast import Program
+from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import Known
 from btlang.vocabulary.trie import longest
-from btlang.vocabulary.vocabulary import Vocabulary
 
 ROLE = "include"
 
@@ -30,7 +30,7 @@ class Includes:
         self.ends: dict[int, int] = {}
 
 
-def find_includes(text: Words, vocabulary: Vocabulary) -> Includes:
+def find_includes(text: Words, vocabulary: Lexicon) -> Includes:
     """Every include of the text."""
     includes = Includes()
     firsts = {phrase.split()[0] for phrase in vocabulary.roles[ROLE]}
@@ -47,6 +47,6 @@ def find_includes(text: Words, vocabulary: Vocabulary) -> Includes:
     return includes
 
 
-def misplaced(span: Span, vocabulary: Vocabulary) -> Diagnostic:
+def misplaced(span: Span, vocabulary: Lexicon) -> Diagnostic:
     """BT047: an include that cannot be read, or not there."""
     return diagnostic("BT047", span, words=span.text, example=f'{vocabulary.word(ROLE)} "kitchen.txt"')

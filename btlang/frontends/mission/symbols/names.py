@@ -10,12 +10,12 @@ from btlang.frontends.mission.symbols.facts import find_facts
 from btlang.frontends.mission.symbols.includes import Included, find_includes
 from btlang.frontends.mission.symbols.nodes import find_main_names
 from btlang.frontends.mission.symbols.phrases import Phrases
-from btlang.frontends.mission.symbols.prefixes import find_heads
+from btlang.frontends.mission.symbols.prefixes import find_prefixes
 from btlang.text.source import Span
 from btlang.text.words import Words
 from btlang.tree.ast import Include, all_definitions, all_facts
+from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import Known
-from btlang.vocabulary.vocabulary import Vocabulary
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -31,13 +31,11 @@ class Names:
 
     `vocabulary` has the places of its facts; `phrases` are those that were looked up on the way; `known` are the
     values that hold in the whole text, by key; `others` are the words at which something stands that is no phrase:
-    `heads`, headers of `definitions`, and statements that end at `ends`. `bounds` are the words at which other values
-    begin to be known.
+    `prefixes`, headers of `definitions`, and statements that end at `ends`. `bounds` are the words at which other
+    values begin to be known.
     """
 
-    def __init__(
-        self, text: Words, vocabulary: Vocabulary, load: Load | None, shared: Mapping[str, Known] | None
-    ) -> None:
+    def __init__(self, text: Words, vocabulary: Lexicon, load: Load | None, shared: Mapping[str, Known] | None) -> None:
         includes = find_includes(text, vocabulary)
         loaded = [(path, span, load(path, span)) for path, span in includes.found] if load is not None else []
         self.includes = [Include(path, part.mission, span) for path, span, part in loaded if part is not None]
@@ -56,8 +54,8 @@ class Names:
         if places:
             vocabulary = vocabulary.with_places(tuple(dict.fromkeys(fact.name for fact in places)))
         self.vocabulary = vocabulary
-        self.heads = find_heads(text, vocabulary)
-        compared = {head.words for head in self.heads.values()}
+        self.prefixes = find_prefixes(text, vocabulary)
+        compared = {prefix.words for prefix in self.prefixes.values()}
         elsewhere = [definition for part in parts for definition in all_definitions(part.mission)]
         self.phrases = Phrases(text, vocabulary)
         self.definitions = find_definitions(self.phrases, self.ends, compared, elsewhere)
@@ -66,17 +64,17 @@ class Names:
             defined = [header.name for header in self.definitions.headers.values()]
             if self.main_name in (*defined, *(definition.name for definition in elsewhere)):
                 self.problems.append(diagnostic("BT127", main_span, name=self.main_name))
-        self.others = {*self.heads, *self.ends, *self.definitions.headers}
+        self.others = {*self.prefixes, *self.ends, *self.definitions.headers}
         self.bounds: list[int] = []
         self.known = {key: one for named in (shared or {}, *(p.known for p in parts)) for key, one in named.items()}
-        if self.known or self.heads or any(header.parameters for header in self.definitions.headers.values()):
+        if self.known or self.prefixes or any(header.parameters for header in self.definitions.headers.values()):
             self._name_values(text)
 
     def _name_values(self, text: Words) -> None:
         from btlang.frontends.mission.symbols.variables import Variables  # most missions have none
 
         before = len(self.definitions.problems)
-        self._variables = Variables(text, self.vocabulary, self.heads, self.definitions, self.known)
+        self._variables = Variables(text, self.vocabulary, self.prefixes, self.definitions, self.known)
         self.known, self.bounds = self._variables.everywhere, self._variables.bounds
         self.problems += self.definitions.problems[before:] + self._variables.problems
 

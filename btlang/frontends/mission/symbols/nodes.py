@@ -16,7 +16,7 @@ from btlang.text.spelling import respellings
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, statements
 from btlang.tree.catalogue import SUBTREE
 from btlang.vocabulary.entry import Meaning
-from btlang.vocabulary.vocabulary import Vocabulary
+from btlang.vocabulary.lexicon import Lexicon
 
 _MOST_WORDS = 12  # of the name of a port
 _IDENTIFIER = re.compile(r"(?=\w*_|\w+[A-Z])[A-Za-z_]\w*", re.ASCII)  # `maxSpeed`, `_skipIf`: no word of English
@@ -32,7 +32,7 @@ class Unreadable(Exception):
         self.wanted = wanted
 
 
-def read_node(text: Words, at: int, meaning: Meaning, vocabulary: Vocabulary) -> tuple[NodeCall, int] | None:
+def read_node(text: Words, at: int, meaning: Meaning, vocabulary: Lexicon) -> tuple[NodeCall, int] | None:
     """The node whose head (`do`, or `do` and the words of a node) ends before a word, and where it ends.
 
     None where no id follows the head, so that these are words like any other. Raises Unreadable.
@@ -64,7 +64,7 @@ def read_node(text: Words, at: int, meaning: Meaning, vocabulary: Vocabulary) ->
     return NodeCall(node_id, tuple(ports), name), at
 
 
-def find_main_names(text: Words, vocabulary: Vocabulary) -> Iterator[tuple[str, int, int]]:
+def find_main_names(text: Words, vocabulary: Lexicon) -> Iterator[tuple[str, int, int]]:
     """The names that a text gives to its tree, each with the words `first` to `last` (exclusive) of its statement."""
     phrases = [
         [word for word in phrase.split() if word not in vocabulary.articles] for phrase in vocabulary.roles["main_name"]
@@ -90,7 +90,7 @@ def unreadable(text: Words, at: int, problem: Unreadable) -> Diagnostic:
     return diagnostic("BT141", place, words=words.text, wanted=problem.wanted)
 
 
-def misread_node(text: Words, at: int, vocabulary: Vocabulary) -> tuple[Span, list[str]] | None:
+def misread_node(text: Words, at: int, vocabulary: Lexicon) -> tuple[Span, list[str]] | None:
     """For a `do` or `test` without a node: the words that look like one, and how it may have been meant.
 
     None where they look like words of a command: `do the dishes`.
@@ -116,7 +116,7 @@ def _rest(words: Sequence[str], at: int) -> Iterator[str]:
 
 
 class _Reader:
-    def __init__(self, text: Words, vocabulary: Vocabulary) -> None:
+    def __init__(self, text: Words, vocabulary: Lexicon) -> None:
         self._text = text
         self._vocabulary = vocabulary
 

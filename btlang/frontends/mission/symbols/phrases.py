@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from btlang.text.words import Words
+from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import Match, longest
-from btlang.vocabulary.vocabulary import Vocabulary
 
 
 class Phrases:
@@ -14,7 +14,7 @@ class Phrases:
     `fixed` are those that no value before them could make others.
     """
 
-    def __init__(self, text: Words, vocabulary: Vocabulary) -> None:
+    def __init__(self, text: Words, vocabulary: Lexicon) -> None:
         self.text = text
         self.vocabulary = vocabulary
         self.fixed: dict[int, Match | None] = {}

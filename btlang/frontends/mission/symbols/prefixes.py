@@ -7,19 +7,19 @@ from collections.abc import Iterable
 from btlang.record import Record
 from btlang.text.source import Span
 from btlang.text.words import Words
+from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.pattern import forms
 from btlang.vocabulary.trie import longest
 from btlang.vocabulary.values import key_of
-from btlang.vocabulary.vocabulary import Vocabulary
 
-JOINTS = {"set": "set_to", "increase": "by", "decrease": "by", "remember": "remember_as", "each": "each_in"}
+SEPARATORS = {"set": "set_to", "increase": "by", "decrease": "by", "remember": "remember_as", "each": "each_in"}
 """The roles that begin a statement about a value, each with the role of the words between the name and the value."""
 _MOST_WORDS = 4
 _MOST_MEASURED = 40  # words of what is remembered
 
 
-class Head(Record):
-    """The head of a statement about a value: its name, the word at which the value stands, and the word behind it.
+class Prefix(Record):
+    """The prefix of a statement about a value: its name, the word at which the value stands, and the word behind it.
 
     `value` is -1 where none is given. Of `remember ... as name` the value stands before the name and ends before the
     word `value_end`, and `last` is behind the name.
@@ -33,49 +33,51 @@ class Head(Record):
     value_end: int = -1
 
 
-def find_heads(text: Words, vocabulary: Vocabulary) -> dict[int, Head]:
+def find_prefixes(text: Words, vocabulary: Lexicon) -> dict[int, Prefix]:
     """The statements of a text that name a value."""
-    firsts = {str(form[0]) for role in JOINTS for phrase in vocabulary.roles[role] for form in forms(phrase)}
-    heads: dict[int, Head] = {}
+    firsts = {str(form[0]) for role in SEPARATORS for phrase in vocabulary.roles[role] for form in forms(phrase)}
+    prefixes: dict[int, Prefix] = {}
     if firsts.isdisjoint(text.words):
-        return heads
+        return prefixes
     vocabulary = vocabulary.with_references()
     for at, word in enumerate(text.words):
         if word in firsts:
             match = longest(vocabulary.trie, text, at, vocabulary.context)
-            if match is not None and match.meaning.role in JOINTS:
-                head = _head(text, match.meaning.role, match.last, vocabulary)
-                if head is not None:
-                    heads[at] = head
-    return heads
+            if match is not None and match.meaning.role in SEPARATORS:
+                prefix = _prefix(text, match.meaning.role, match.last, vocabulary)
+                if prefix is not None:
+                    prefixes[at] = prefix
+    return prefixes
 
 
-def _head(text: Words, role: str, at: int, vocabulary: Vocabulary) -> Head | None:
+def _prefix(text: Words, role: str, at: int, vocabulary: Lexicon) -> Prefix | None:
     """None where it is not put together as such a statement is."""
-    joint = _joint(text, at, vocabulary.roles[JOINTS[role]], _MOST_MEASURED if role == "remember" else _MOST_WORDS + 2)
+    separator = _separator(
+        text, at, vocabulary.roles[SEPARATORS[role]], _MOST_MEASURED if role == "remember" else _MOST_WORDS + 2
+    )
     if role == "remember":
-        if joint is None:
+        if separator is None:
             return None
-        last = _end_of_name(text, joint[1], vocabulary)
-        words = _name(text, joint[1], last, vocabulary)
-        return Head(role, key_of(words), words, at, last, joint[0]) if words else None
-    if joint is None:
+        last = _end_of_name(text, separator[1], vocabulary)
+        words = _name(text, separator[1], last, vocabulary)
+        return Prefix(role, key_of(words), words, at, last, separator[0]) if words else None
+    if separator is None:
         if role not in ("increase", "decrease"):
             return None
         last = _end_of_name(text, at, vocabulary)
         words = _name(text, at, last, vocabulary)
-        return Head(role, key_of(words), words, -1, last) if words else None
-    words = _name(text, at, joint[0], vocabulary)
-    return Head(role, key_of(words), words, joint[1], joint[1]) if words else None
+        return Prefix(role, key_of(words), words, -1, last) if words else None
+    words = _name(text, at, separator[0], vocabulary)
+    return Prefix(role, key_of(words), words, separator[1], separator[1]) if words else None
 
 
-def _joint(text: Words, at: int, phrases: Iterable[str], within: int) -> tuple[int, int] | None:
+def _separator(text: Words, at: int, phrases: Iterable[str], within: int) -> tuple[int, int] | None:
     """Where the words of one of the phrases stand first in the statement, so many words on, and where they end."""
-    joints = [phrase.split() for phrase in phrases]
+    separators = [phrase.split() for phrase in phrases]
     for i in range(at, min(at + within + 1, len(text.words))):
-        for joint in joints:
-            if text.words[i : i + len(joint)] == joint:
-                return i, i + len(joint)
+        for separator in separators:
+            if text.words[i : i + len(separator)] == separator:
+                return i, i + len(separator)
         if not _goes_on(text.words[i]):
             return None
     return None
@@ -85,7 +87,7 @@ def _goes_on(word: str) -> bool:
     return word[0].isalnum() or word[0] in '{}"-%°'
 
 
-def _end_of_name(text: Words, at: int, vocabulary: Vocabulary) -> int:
+def _end_of_name(text: Words, at: int, vocabulary: Lexicon) -> int:
     """Behind the words of a name: it ends at a mark, and before a connective."""
     first = at
     ends = "}" if text.words[at] == "{" else "{"
@@ -94,7 +96,7 @@ def _end_of_name(text: Words, at: int, vocabulary: Vocabulary) -> int:
     return at + (ends == "}" == text.words[at])
 
 
-def _name(text: Words, first: int, last: int, vocabulary: Vocabulary) -> tuple[str, ...]:
+def _name(text: Words, first: int, last: int, vocabulary: Lexicon) -> tuple[str, ...]:
     """The words of a name, without braces; () where they make none."""
     if last - first > 2 and text.words[first] == "{" and text.words[last - 1] == "}":
         first, last = first + 1, last - 1
@@ -103,7 +105,7 @@ def _name(text: Words, first: int, last: int, vocabulary: Vocabulary) -> tuple[s
     return words if is_name and "{" not in words and "}" not in words else ()
 
 
-def _is_part(text: Words, at: int, vocabulary: Vocabulary) -> bool:
+def _is_part(text: Words, at: int, vocabulary: Lexicon) -> bool:
     word = text.words[at]
     if word in ("{", "}"):
         return True

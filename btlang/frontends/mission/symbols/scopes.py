@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 
 from btlang.frontends.mission.symbols.definitions import reach
-from btlang.frontends.mission.symbols.prefixes import Head
+from btlang.frontends.mission.symbols.prefixes import Prefix
 from btlang.frontends.mission.token import Header
 from btlang.text.words import Words
 from btlang.vocabulary.reading_context import Known
@@ -22,14 +22,14 @@ else:
 class Scopes:
     """The values that are known `everywhere`, by key, and the `local` ones with the words where each is known.
 
-    `types` are what is known of the types of values, by the word of their head or body, and their key. A local value
+    `types` are what is known of the types of values, by the word of their prefix or body, and their key. A local value
     without one can be of any type.
     """
 
     def __init__(
         self,
         text: Words,
-        heads: Mapping[int, Head],
+        prefixes: Mapping[int, Prefix],
         headers: Iterable[Header],
         shared: Mapping[str, Known],
         types: Types,
@@ -40,19 +40,19 @@ class Scopes:
             for header in headers
             for key, words in header.parameters
         ]
-        for at, head in heads.items():
-            kinds = types.get((at, head.key))
-            if head.role == "each":
-                self.local.append((head.last, reach(text, at), Known(head.key, head.words, kinds or ())))
+        for at, prefix in prefixes.items():
+            kinds = types.get((at, prefix.key))
+            if prefix.role == "each":
+                self.local.append((prefix.last, reach(text, at), Known(prefix.key, prefix.words, kinds or ())))
             elif kinds is not None:
-                self.give(head, kinds)
+                self.give(prefix, kinds)
 
-    def give(self, head: Head, kinds: tuple[str, ...]) -> None:
+    def give(self, prefix: Prefix, kinds: tuple[str, ...]) -> None:
         """A value of the whole mission is given one of these types; those that fit all that it is given remain."""
-        others = self.everywhere.get(head.key)
+        others = self.everywhere.get(prefix.key)
         if others is not None:
             kinds = tuple(kind for kind in others.kinds if kind in kinds) or others.kinds
-        self.everywhere[head.key] = Known(head.key, head.words, kinds)
+        self.everywhere[prefix.key] = Known(prefix.key, prefix.words, kinds)
 
     def at(self, word: int) -> dict[str, Known]:
         """What is known there, the innermost of each name, by key."""

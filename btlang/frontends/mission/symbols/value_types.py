@@ -5,18 +5,18 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping, Sequence
 
 from btlang.frontends.mission.symbols.definitions import Definitions, add_name
-from btlang.frontends.mission.symbols.prefixes import Head
+from btlang.frontends.mission.symbols.prefixes import Prefix
 from btlang.frontends.mission.symbols.scopes import Scopes
 from btlang.frontends.mission.token import Header
 from btlang.text.words import Words
+from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.pattern import Slot, name_form
 from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.trie import Match, TrieNode, longest
-from btlang.vocabulary.vocabulary import Vocabulary
 
 
 class ValueTypes:
-    """Finds `types`, by the word of the head or body of a value and its key; a value may be of several.
+    """Finds `types`, by the word of the prefix or body of a value and its key; a value may be of several.
 
     Types follow from each other, so each is looked for until nothing new is found. Names with parameters come into the
     trie of `definitions` when all their types are known.
@@ -25,14 +25,14 @@ class ValueTypes:
     def __init__(
         self,
         text: Words,
-        vocabulary: Vocabulary,
-        heads: Mapping[int, Head],
+        vocabulary: Lexicon,
+        prefixes: Mapping[int, Prefix],
         definitions: Definitions,
         shared: Mapping[str, Known],
     ) -> None:
         self._text, self._vocabulary, self._definitions = text, vocabulary, definitions
         self._context = ReadingContext(vocabulary.values)
-        self._heads, self._shared = heads, shared
+        self._prefixes, self._shared = prefixes, shared
         self._headers = [header for header in definitions.headers.values() if header.parameters]
         self.types: dict[tuple[int, str], tuple[str, ...]] = {}
         for header in self._headers:
@@ -44,7 +44,7 @@ class ValueTypes:
 
     def scopes(self) -> Scopes:
         """Where the values are known, with the types found so far."""
-        return Scopes(self._text, self._heads, self._headers, self._shared, self.types)
+        return Scopes(self._text, self._prefixes, self._headers, self._shared, self.types)
 
     def _follow(self) -> None:
         before = -1
@@ -52,14 +52,14 @@ class ValueTypes:
             before, scopes = len(self.types), self.scopes()
             for header in self._headers:
                 self._from_body(header, scopes)
-            for at, head in self._heads.items():
-                if (at, head.key) not in self.types and head.role in ("set", "remember", "each"):
-                    is_type = head.role == "each" and head.key in self._vocabulary.types
-                    kinds = (head.key,) if is_type else self._given(at, head, scopes)
+            for at, prefix in self._prefixes.items():
+                if (at, prefix.key) not in self.types and prefix.role in ("set", "remember", "each"):
+                    is_type = prefix.role == "each" and prefix.key in self._vocabulary.types
+                    kinds = (prefix.key,) if is_type else self._given(at, prefix, scopes)
                     if kinds:
-                        self.types[at, head.key] = kinds
-                        if head.role != "each":
-                            scopes.give(head, kinds)
+                        self.types[at, prefix.key] = kinds
+                        if prefix.role != "each":
+                            scopes.give(prefix, kinds)
             for header in self._headers:
                 if all((header.body, key) in self.types for key, _ in header.parameters):
                     self._add(header)
@@ -70,9 +70,9 @@ class ValueTypes:
             for key, _ in header.parameters:
                 self.types.setdefault((header.body, key), ("text",))
             self._add(header)
-        for at, head in self._heads.items():
-            if head.role in ("set", "each"):
-                self.types.setdefault((at, head.key), ("text",))
+        for at, prefix in self._prefixes.items():
+            if prefix.role in ("set", "each"):
+                self.types.setdefault((at, prefix.key), ("text",))
 
     def _add(self, header: Header) -> None:
         if header.body not in self._definitions.types:
@@ -95,11 +95,11 @@ class ValueTypes:
                 kinds = tuple(self._fitting(at, match, key, known))
                 found[key] = tuple(kind for kind in found.get(key, kinds) if kind in kinds) or found[key]
             at = max(match.last, at + 1) if match is not None else at + 1
-        for at, head in self._heads.items():
-            if header.body <= at < header.last and head.role in ("increase", "decrease") and head.value >= 0:
-                named = self._context.named(self._text, head.value)
-                if named is not None and named[0] is not None and named[0].key in open_keys and head.key in known:
-                    found.setdefault(named[0].key, known[head.key].kinds)
+        for at, prefix in self._prefixes.items():
+            if header.body <= at < header.last and prefix.role in ("increase", "decrease") and prefix.value >= 0:
+                named = self._context.named(self._text, prefix.value)
+                if named is not None and named[0] is not None and named[0].key in open_keys and prefix.key in known:
+                    found.setdefault(named[0].key, known[prefix.key].kinds)
         self.types |= {(header.body, key): kinds[:1] for key, kinds in found.items() if kinds}
 
     def _longest(self, at: int, known: Mapping[str, Known]) -> Match | None:
@@ -154,28 +154,28 @@ class ValueTypes:
 
     # -- values that are given
 
-    def _given(self, at: int, head: Head, scopes: Scopes) -> tuple[str, ...]:
-        """The types that the value of a head can have, () where that is not known yet."""
-        if head.value < 0:
+    def _given(self, at: int, prefix: Prefix, scopes: Scopes) -> tuple[str, ...]:
+        """The types that the value of a prefix can have, () where that is not known yet."""
+        if prefix.value < 0:
             return ()
-        if head.role in ("set", "remember"):
-            quantity = longest(self._vocabulary.quantities, self._text, head.value, self._context)
+        if prefix.role in ("set", "remember"):
+            quantity = longest(self._vocabulary.quantities, self._text, prefix.value, self._context)
             if quantity is not None and quantity.meaning.entry is not None:
                 return (quantity.meaning.entry.measures,)
         self._context.set_known(scopes.at(at))
-        named = self._context.named(self._text, head.value)
+        named = self._context.named(self._text, prefix.value)
         if named is not None:
             return named[0].kinds if named[0] is not None else ()
-        value = self._context.any(self._text, head.value)
-        if value is None or (value[0] == ("text",) and self._is_open(head)):
+        value = self._context.any(self._text, prefix.value)
+        if value is None or (value[0] == ("text",) and self._is_open(prefix)):
             return ()
         return value[0]
 
-    def _is_open(self, head: Head) -> bool:
+    def _is_open(self, prefix: Prefix) -> bool:
         """Whether a bare word is no text: where something is remembered, and where a name without a value stands."""
-        word = self._text.words[head.value]
-        names = (other.words[0] for other in self._heads.values() if other.role != "each")
-        return word[0] != '"' and (head.role == "remember" or word in names)
+        word = self._text.words[prefix.value]
+        names = (other.words[0] for other in self._prefixes.values() if other.role != "each")
+        return word[0] != '"' and (prefix.role == "remember" or word in names)
 
 
 def _holds(match: Match, key: str) -> bool:

@@ -10,13 +10,13 @@ from collections.abc import Mapping
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.symbols.definitions import Definitions
-from btlang.frontends.mission.symbols.prefixes import Head
+from btlang.frontends.mission.symbols.prefixes import Prefix
 from btlang.frontends.mission.symbols.value_types import ValueTypes
 from btlang.text.words import Words
 from btlang.vocabulary.entry import COMPARISONS, Entry, Meaning
+from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import Known
 from btlang.vocabulary.trie import add
-from btlang.vocabulary.vocabulary import Vocabulary
 
 
 class Variables:
@@ -29,15 +29,15 @@ class Variables:
     def __init__(
         self,
         text: Words,
-        vocabulary: Vocabulary,
-        heads: Mapping[int, Head],
+        vocabulary: Lexicon,
+        prefixes: Mapping[int, Prefix],
         definitions: Definitions,
         shared: Mapping[str, Known],
     ) -> None:
         self.problems: list[Diagnostic] = []
         self._text, self._vocabulary, self._definitions = text, vocabulary, definitions
-        self._heads, self._shared = heads, shared
-        found = ValueTypes(text, vocabulary, heads, definitions, shared)
+        self._prefixes, self._shared = prefixes, shared
+        found = ValueTypes(text, vocabulary, prefixes, definitions, shared)
         self._types, self._scopes = found.types, found.scopes()
         self.everywhere, self.bounds = self._scopes.everywhere, self._scopes.bounds()
         self._check_names()
@@ -48,32 +48,34 @@ class Variables:
         return self._scopes.at(word)
 
     def _check_names(self) -> None:
-        for at, head in self._heads.items():
-            if head.role not in ("each", "remember") and self.everywhere.get(head.key) is None:
-                self._unknown(at, head)
+        for at, prefix in self._prefixes.items():
+            if prefix.role not in ("each", "remember") and self.everywhere.get(prefix.key) is None:
+                self._unknown(at, prefix)
         held: dict[str, tuple[str, ...]] = {key: known.kinds for key, known in self._shared.items()}
-        for at, head in self._heads.items():
-            kinds = self._types.get((at, head.key), ())
-            before = held.get(head.key, kinds)
-            if kinds and head.role != "each":
-                held[head.key] = tuple(kind for kind in before if kind in kinds) or kinds
+        for at, prefix in self._prefixes.items():
+            kinds = self._types.get((at, prefix.key), ())
+            before = held.get(prefix.key, kinds)
+            if kinds and prefix.role != "each":
+                held[prefix.key] = tuple(kind for kind in before if kind in kinds) or kinds
                 if not set(before) & set(kinds):
-                    span, name = self._text.span(at, head.last), " ".join(head.words)
+                    span, name = self._text.span(at, prefix.last), " ".join(prefix.words)
                     self.problems.append(diagnostic("BT048", span, name=name, kind=kinds[0], other=before[0]))
-        each = [(self._text.span(at, head.last), head) for at, head in self._heads.items() if head.role == "each"]
+        each = [
+            (self._text.span(at, prefix.last), prefix) for at, prefix in self._prefixes.items() if prefix.role == "each"
+        ]
         headers = [(header.span, header) for header in self._definitions.headers.values()]
-        local = [(span, head.key, head.words) for span, head in each]
+        local = [(span, prefix.key, prefix.words) for span, prefix in each]
         local += [(span, key, words) for span, header in headers for key, words in header.parameters]
         for span, key, words in local:
             if key in self.everywhere:
                 self.problems.append(diagnostic("BT045", span, name=" ".join(words)))
 
-    def _unknown(self, at: int, head: Head) -> None:
+    def _unknown(self, at: int, prefix: Prefix) -> None:
         vocabulary = self._vocabulary
-        example = f"{vocabulary.word('set')} {' '.join(head.words)} {vocabulary.word('set_to')} 0"
-        span = self._text.span(at, head.last)
+        example = f"{vocabulary.word('set')} {' '.join(prefix.words)} {vocabulary.word('set_to')} 0"
+        span = self._text.span(at, prefix.last)
         self.problems.append(
-            diagnostic("BT043", span, name=" ".join(head.words), help=f"Give it a value first: {example}")
+            diagnostic("BT043", span, name=" ".join(prefix.words), help=f"Give it a value first: {example}")
         )
 
     def _compare(self) -> None:

@@ -1,22 +1,22 @@
-"""Statements about values of the mission: set, increase, decrease, remember, and the head of `for each`."""
+"""Statements about values of the mission: set, increase, decrease, remember, and the prefix of `for each`."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
 
-from btlang.frontends.mission.symbols.prefixes import Head
+from btlang.frontends.mission.symbols.prefixes import Prefix
 from btlang.frontends.mission.token import Assigned, Each, Remembered, Token
 from btlang.text.words import Words
+from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.trie import Match, SlotValue, longest, reaches_beyond
-from btlang.vocabulary.vocabulary import Vocabulary
 
 
 def read_statement(
-    head: Head,
+    prefix: Prefix,
     text: Words,
     at: int,
-    vocabulary: Vocabulary,
+    vocabulary: Lexicon,
     context: ReadingContext,
     port_text: Callable[[SlotValue], str],
 ) -> tuple[Token, int] | None:
@@ -24,24 +24,24 @@ def read_statement(
 
     `port_text` gives the port text of a value.
     """
-    if head.role == "each":
-        return _each(head, text, at, vocabulary, context, port_text)
-    known = context.known.get(head.key) if context.known else None
+    if prefix.role == "each":
+        return _each(prefix, text, at, vocabulary, context, port_text)
+    known = context.known.get(prefix.key) if context.known else None
     if known is None:
         return None
     start = text.starts[at]
-    if head.role in ("set", "remember"):  # `set level to the battery` remembers, too
-        quantity = longest(vocabulary.quantities, text, head.value, context)
-        if quantity is not None and quantity.meaning.entry is not None and quantity.last >= head.value_end:
-            made = Remembered(head.key, quantity.meaning.entry, _arguments(quantity, port_text))
-            end = max(head.last, quantity.last)
+    if prefix.role in ("set", "remember"):  # `set level to the battery` remembers, too
+        quantity = longest(vocabulary.quantities, text, prefix.value, context)
+        if quantity is not None and quantity.meaning.entry is not None and quantity.last >= prefix.value_end:
+            made = Remembered(prefix.key, quantity.meaning.entry, _arguments(quantity, port_text))
+            end = max(prefix.last, quantity.last)
             return Token("command", start, text.ends[end - 1], made), end
-    found = _value(head, known, text, vocabulary, context)
-    if found is None or (head.role == "remember" and found.last != head.value_end):
+    found = _value(prefix, known, text, vocabulary, context)
+    if found is None or (prefix.role == "remember" and found.last != prefix.value_end):
         return None
-    operation = "set" if head.role == "remember" else head.role
-    end = max(head.last, found.last)
-    made_of = Assigned(head.key, operation, found.type, port_text(found))
+    operation = "set" if prefix.role == "remember" else prefix.role
+    end = max(prefix.last, found.last)
+    made_of = Assigned(prefix.key, operation, found.type, port_text(found))
     return Token("command", start, text.ends[end - 1], made_of), end
 
 
@@ -49,48 +49,50 @@ def _arguments(match: Match, port_text: Callable[[SlotValue], str]) -> tuple[tup
     return tuple((value.name, port_text(value)) for value in match.values)
 
 
-def _value(head: Head, known: Known, text: Words, vocabulary: Vocabulary, context: ReadingContext) -> SlotValue | None:
-    numbers = head.role in ("increase", "decrease")
-    named = context.named(text, head.value) if head.value >= 0 else None
+def _value(prefix: Prefix, known: Known, text: Words, vocabulary: Lexicon, context: ReadingContext) -> SlotValue | None:
+    numbers = prefix.role in ("increase", "decrease")
+    named = context.named(text, prefix.value) if prefix.value >= 0 else None
     if named is not None and named[0] is not None:
         kind = next((kind for kind in named[0].kinds if kind in known.kinds), None)
-        return SlotValue("value", kind, f"{{{named[0].key}}}", head.value, named[1]) if kind is not None else None
+        return SlotValue("value", kind, f"{{{named[0].key}}}", prefix.value, named[1]) if kind is not None else None
     for kind in known.kinds:
         is_number = vocabulary.types[kind].kind in ("quantity", "number")
-        if numbers and head.value < 0 and vocabulary.types[kind].kind == "number":
-            return SlotValue("value", kind, "1", head.last, head.last)
-        value = context.read(kind, text, head.value) if head.value >= 0 and (is_number or not numbers) else None
+        if numbers and prefix.value < 0 and vocabulary.types[kind].kind == "number":
+            return SlotValue("value", kind, "1", prefix.last, prefix.last)
+        value = context.read(kind, text, prefix.value) if prefix.value >= 0 and (is_number or not numbers) else None
         if value is not None:
-            return SlotValue("value", kind, value[0], head.value, value[1])
-    other = context.any(text, head.value) if head.value >= 0 and not numbers else None  # that it does not fit is told
-    if other is None or (head.role == "remember" and other[0] == ("text",) and text.words[head.value][0] != '"'):
+            return SlotValue("value", kind, value[0], prefix.value, value[1])
+    other = (
+        context.any(text, prefix.value) if prefix.value >= 0 and not numbers else None
+    )  # that it does not fit is told
+    if other is None or (prefix.role == "remember" and other[0] == ("text",) and text.words[prefix.value][0] != '"'):
         return None
-    return SlotValue("value", other[0][0], other[1], head.value, other[2])
+    return SlotValue("value", other[0][0], other[1], prefix.value, other[2])
 
 
 def _each(
-    head: Head,
+    prefix: Prefix,
     text: Words,
     at: int,
-    vocabulary: Vocabulary,
+    vocabulary: Lexicon,
     context: ReadingContext,
     port_text: Callable[[SlotValue], str],
 ) -> tuple[Token, int] | None:
-    others = {key: known for key, known in (context.known or {}).items() if key != head.key}
+    others = {key: known for key, known in (context.known or {}).items() if key != prefix.key}
     inner = ReadingContext(vocabulary.values, others)
-    first = inner.any(text, head.value)
-    kinds = (head.key,) if head.key in vocabulary.types else first[0] if first is not None else ()
-    lists = [(kind, _listed(kind, text, head.value, vocabulary, inner)) for kind in kinds]
+    first = inner.any(text, prefix.value)
+    kinds = (prefix.key,) if prefix.key in vocabulary.types else first[0] if first is not None else ()
+    lists = [(kind, _listed(kind, text, prefix.value, vocabulary, inner)) for kind in kinds]
     if not lists or not any(found for _, found in lists):
         return None
     kind, found = max(lists, key=lambda one: len(one[1]))
-    made = Each(head.key, kind, tuple(port_text(value) for value in found))
-    context.latest[kind] = f"{{{head.key}}}"
+    made = Each(prefix.key, kind, tuple(port_text(value) for value in found))
+    context.latest[kind] = f"{{{prefix.key}}}"
     last = found[-1].last
     return Token("each", text.starts[at], text.ends[last - 1], made), last
 
 
-def _listed(kind: str, text: Words, at: int, vocabulary: Vocabulary, context: ReadingContext) -> list[SlotValue]:
+def _listed(kind: str, text: Words, at: int, vocabulary: Lexicon, context: ReadingContext) -> list[SlotValue]:
     """A list goes on only while a value follows that starts no longer phrase."""
     found: list[SlotValue] = []
     while True:

@@ -10,17 +10,17 @@ from btlang.frontends.mission.symbols.includes import ROLE as INCLUDE
 from btlang.frontends.mission.symbols.includes import misplaced
 from btlang.frontends.mission.symbols.names import Load, Names
 from btlang.frontends.mission.symbols.nodes import Unreadable, read_node, unreadable
-from btlang.frontends.mission.symbols.prefixes import JOINTS, Head, span_of
+from btlang.frontends.mission.symbols.prefixes import SEPARATORS, Prefix, span_of
 from btlang.frontends.mission.token import Called, Listed, Token
 from btlang.frontends.mission.tokens.condition_names import called, condition_names
 from btlang.text.source import Source, Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, split
 from btlang.vocabulary.entry import Entry, Meaning
+from btlang.vocabulary.lexicon import NODE_ROLES, Lexicon
 from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.references import keys_in, renamed
 from btlang.vocabulary.trie import SLOTS, Match, SlotValue, longest
 from btlang.vocabulary.values import key_of
-from btlang.vocabulary.vocabulary import NODE_ROLES, Vocabulary
 
 _MARKS = {",": "comma", ";": "semi", ":": "colon", "(": "open", ")": "close"}
 
@@ -35,7 +35,7 @@ class Lexer:
     def __init__(
         self,
         source: Source,
-        vocabulary: Vocabulary,
+        vocabulary: Lexicon,
         explain: bool = True,
         load: Load | None = None,
         known: Mapping[str, Known] | None = None,
@@ -101,15 +101,15 @@ class Lexer:
         text, names, trie, context = self.text, self.names.definitions.trie, self.vocabulary.trie, self.context
         words, starts, ends, tokens = text.words, text.starts, text.ends, self.tokens
         found = self._found
-        headers, heads, others = self.names.definitions.headers, self.names.heads, self.names.others
+        headers, prefixes, others = self.names.definitions.headers, self.names.prefixes, self.names.others
         while at < last:
             word = words[at]
             if at >= self._bounds[0]:
                 self._bounds = self._bounds[bisect_right(self._bounds, at) :]
                 context.set_known(self.names.known_at(at))
             if at in others:
-                if at in heads:
-                    at = self._statement(heads[at], at)
+                if at in prefixes:
+                    at = self._statement(prefixes[at], at)
                 elif at in self.names.ends:
                     at = self.names.ends[at]
                 else:
@@ -140,7 +140,7 @@ class Lexer:
                 if named is not None and (match is None or named.last >= match.last):
                     match = named
             role = match.meaning.role if match is not None else ""
-            if match is None or role in JOINTS or role == INCLUDE:
+            if match is None or role in SEPARATORS or role == INCLUDE:
                 end = self._unknown_end(at, last)
                 if role == INCLUDE:
                     end += words[end][0] == '"'
@@ -230,17 +230,17 @@ class Lexer:
 
         self.problems.append(unknown_value(span, key, self.context.known or ()))
 
-    def _statement(self, head: Head, at: int) -> int:
+    def _statement(self, prefix: Prefix, at: int) -> int:
         """A statement about a value of the mission. Returns where to go on."""
         from btlang.frontends.mission.tokens.assignments import read_statement  # most missions have none
 
-        read = read_statement(head, self.text, at, self.vocabulary, self.context, self._port_text)
+        read = read_statement(prefix, self.text, at, self.vocabulary, self.context, self._port_text)
         if read is None:
             span = span_of(self.text, at)
             if self._explain and (
-                head.role in ("each", "remember") or head.key in self.names.known
+                prefix.role in ("each", "remember") or prefix.key in self.names.known
             ):  # else that has been told
-                self.problems.append(self._why(at, at, Match(Meaning(head.role), at)))
+                self.problems.append(self._why(at, at, Match(Meaning(prefix.role), at)))
             self.tokens.append(Token("unknown", span.start, span.end))
             return bisect_right(self.text.starts, span.end - 1)
         self.tokens.append(read[0])

@@ -1,0 +1,216 @@
+"""For each id of a node the forms of the language that may say it, the most natural first; see raised.py."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterator
+from decimal import Decimal
+
+from btlang.backends.english.candidate import REFERENCE, Candidate, Checked
+from btlang.text.source import NOWHERE
+from btlang.tree import ast
+from btlang.tree.node import Node
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+    Form: TypeAlias = Callable[[Node, tuple[Candidate, ...], Checked], Iterator[ast.Ast]]
+
+_WHOLE = re.compile(r"\d{1,15}")
+_ROUNDS = re.compile(r"-1|[1-9]\d{0,9}")
+_ENDLESS = "-1"
+
+
+def _chain(operator: str) -> Form:
+    def forms(_node: Node, children: tuple[Candidate, ...], checked: Checked) -> Iterator[ast.Ast]:
+        if len(children) < 2:
+            return
+        rounds = operator == "parallel"
+        items = [_round(child, checked, _line) if rounds else child.command for child in children]
+        if all(item is not None for item in items):
+            yield ast.Chain(operator, tuple(item for item in items if item is not None), True, NOWHERE)
+
+    return forms
+
+
+def _block(raised: Candidate) -> ast.Ast:
+    return raised.part
+
+
+def _line(raised: Candidate) -> ast.Ast:
+    return raised.command
+
+
+def _round(child: Candidate, checked: Checked, said: Callable[[Candidate], ast.Ast] = _block) -> ast.Ast | None:
+    """The body of a form that counts a skipped round as a round; None where that is not as it stands."""
+    if child.node.id == "Sequence" and len(child.children) == 2 and not child.node.ports and not child.node.name:
+        body, rest = child.children
+        if checked.can_skip(said(body)) and _is_plain(rest.node, "AlwaysSuccess"):
+            return said(body)
+    return said(child) if not checked.can_skip(said(child)) else None
+
+
+def _is_plain(node: Node, node_id: str) -> bool:
+    return node.id == node_id and not node.ports and not node.name and not node.children
+
+
+def _otherwise(last: Candidate, *ports: tuple[str, str]) -> ast.Ast | None:
+    """The branch behind `otherwise`; None where there is none to be said."""
+    node = last.node
+    return None if node.id == "AlwaysSuccess" and node.ports == ports and not node.name else last.part
+
+
+def _condition(raised: Candidate) -> tuple[bool, ast.Ast] | None:
+    """A condition, and whether it stands behind `unless` or `until`."""
+    if raised.condition is None:
+        return None
+    if isinstance(raised.condition, ast.Not):
+        return True, raised.condition.condition
+    return False, raised.condition
+
+
+def _if_then_else(_node: Node, children: tuple[Candidate, ...], _checked: Checked) -> Iterator[ast.Ast]:
+    found = _condition(children[0]) if len(children) == 3 else None
+    if found is not None:
+        otherwise = _otherwise(children[2], ("_skipIf", "true"))
+        negated, condition = found if otherwise is None else (False, children[0].condition)
+        assert condition is not None
+        yield ast.If(negated, condition, children[1].part, otherwise, NOWHERE)
+
+
+def _while_do_else(_node: Node, children: tuple[Candidate, ...], checked: Checked) -> Iterator[ast.Ast]:
+    found = _condition(children[0]) if len(children) == 3 else None
+    again = children[1] if len(children) == 3 else None
+    if found is None or again is None or again.node.id != "Repeat" or len(again.children) != 1:
+        return
+    body = _round(again.children[0], checked)
+    if body is not None:
+        yield ast.While(*found, body, _otherwise(children[2]), NOWHERE)
+
+
+def _provided(_node: Node, children: tuple[Candidate, ...], _checked: Checked) -> Iterator[ast.Ast]:
+    if len(children) == 2 and children[0].condition is not None and not children[1].in_lines:
+        yield ast.Provided(children[0].condition, children[1].command, NOWHERE)
+
+
+def _whenever(_node: Node, children: tuple[Candidate, ...], _checked: Checked) -> Iterator[ast.Ast]:
+    """The rule, and what it stands over as further lines of its block."""
+    if len(children) != 3 or children[0].condition is None:
+        return
+    rule = ast.Whenever(children[0].condition, children[1].part, NOWHERE)
+    rest = children[2]
+    if _is_plain(rest.node, "AlwaysSuccess"):
+        yield ast.Chain("sequence", (rule,), True, NOWHERE)
+    elif isinstance(rest.body, ast.Chain) and rest.body.operator == "sequence":
+        yield ast.Chain("sequence", (rule, *rest.body.items), True, NOWHERE)
+    else:
+        yield ast.Chain("sequence", (rule, rest.command), True, NOWHERE)
+
+
+def _repeat(node: Node, children: tuple[Candidate, ...], checked: Checked) -> Iterator[ast.Ast]:
+    if len(children) != 1:
+        return
+    rounds = node.port("num_cycles")
+    if rounds == _ENDLESS and children[0].node.id == "Parallel" and len(children[0].children) == 2:
+        body, timer = children[0].children
+        every = _round(body, checked)
+        if every is not None and timer.node.id == "Sleep":
+            yield from (ast.Every(seconds, every, NOWHERE) for seconds in _seconds(timer.node.port("msec"), checked))
+    part = _round(children[0], checked)
+    number = _rounds(rounds, checked)
+    if part is not None and number is not None:
+        yield ast.Repeat(number, part, NOWHERE)
+
+
+def _retry(node: Node, children: tuple[Candidate, ...], checked: Checked) -> Iterator[ast.Ast]:
+    if len(children) != 1:
+        return
+    attempts = node.port("num_attempts")
+    condition = children[0].condition if children[0].is_condition else None
+    if attempts == _ENDLESS and condition is not None:
+        yield ast.WaitUntil(condition, NOWHERE)
+    part = _round(children[0], checked)
+    number = _rounds(attempts, checked)
+    if part is not None and number is not None:
+        yield ast.Retry(number, part, NOWHERE)
+
+
+def _ignoring_failure(_node: Node, children: tuple[Candidate, ...], _checked: Checked) -> Iterator[ast.Ast]:
+    if len(children) == 1:
+        yield ast.Try(children[0].part, None, NOWHERE)
+
+
+def _parallel(node: Node, children: tuple[Candidate, ...], checked: Checked) -> Iterator[ast.Ast]:
+    if len(children) == 2 and children[0].node.id == "Sleep" and children[1].node.id == "Repeat":
+        again = children[1].children
+        body = _round(again[0], checked) if len(again) == 1 else None
+        if body is not None:
+            timer = children[0].node.port("msec")
+            yield from (ast.For(seconds, body, NOWHERE) for seconds in _seconds(timer, checked))
+    yield from _chain("parallel")(node, children, checked)
+
+
+def _fallback(node: Node, children: tuple[Candidate, ...], checked: Checked) -> Iterator[ast.Ast]:
+    """Two of which one is a sequence in lines of its own are said as blocks."""
+    if len(children) == 2 and any(child.part is not child.command for child in children):
+        yield ast.Try(children[0].part, children[1].part, NOWHERE)
+    yield from _chain("fallback")(node, children, checked)
+
+
+def _within(node: Node, children: tuple[Candidate, ...], checked: Checked) -> Iterator[ast.Ast]:
+    part = _round(children[0], checked) if len(children) == 1 and not children[0].in_lines else None
+    if part is not None:
+        yield from (ast.Within(seconds, part, NOWHERE) for seconds in _seconds(node.port("msec"), checked))
+
+
+def _delay(node: Node, children: tuple[Candidate, ...], checked: Checked) -> Iterator[ast.Ast]:
+    if len(children) == 1:
+        times = _seconds(node.port("delay_msec"), checked)
+        yield from (ast.Delay(seconds, children[0].part, NOWHERE) for seconds in times)
+
+
+def _wait(node: Node, _children: tuple[Candidate, ...], checked: Checked) -> Iterator[ast.Ast]:
+    yield from (ast.Wait(seconds, NOWHERE) for seconds in _seconds(node.port("msec"), checked))
+
+
+def _seconds(msec: str, checked: Checked) -> Iterator[str]:
+    """Milliseconds of a port as seconds, as precise; those that a script computes as the value that they come from."""
+    if _WHOLE.fullmatch(msec):
+        yield f"{(Decimal(msec) / 1000).normalize():f}"
+    elif msec[:1] == "{":
+        text = checked.text(msec)
+        if text is not None and REFERENCE.fullmatch(text):
+            yield text
+
+
+def _rounds(port: str, checked: Checked) -> str | None:
+    """A number of rounds that can be said."""
+    return checked.text(port) if port[:1] == "{" or _ROUNDS.fullmatch(port) else None
+
+
+def _nothing(_node: Node, _children: tuple[Candidate, ...], _checked: Checked) -> Iterator[ast.Ast]:
+    yield ast.Nothing(NOWHERE)
+
+
+def _fail(_node: Node, _children: tuple[Candidate, ...], _checked: Checked) -> Iterator[ast.Ast]:
+    yield ast.Fail(NOWHERE)
+
+
+INVERSE_RULES: dict[str, Form] = {
+    "Sequence": _chain("sequence"),
+    "Fallback": _fallback,
+    "Parallel": _parallel,
+    "IfThenElse": _if_then_else,
+    "WhileDoElse": _while_do_else,
+    "ReactiveSequence": _provided,
+    "Whenever": _whenever,
+    "Repeat": _repeat,
+    "RetryUntilSuccessful": _retry,
+    "ForceSuccess": _ignoring_failure,
+    "Timeout": _within,
+    "Delay": _delay,
+    "Sleep": _wait,
+    "AlwaysSuccess": _nothing,
+    "AlwaysFailure": _fail,
+}

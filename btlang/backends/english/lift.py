@@ -1,0 +1,265 @@
+"""Tree to AST: each node in the most natural form that means just it, and by its id where there is none."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Iterator, Mapping
+
+from btlang.backends.english.candidate import Candidate, Checked
+from btlang.backends.english.code import Computed, computed
+from btlang.backends.english.comments import Comments
+from btlang.backends.english.inverse_rules import INVERSE_RULES
+from btlang.backends.english.loops import Loop
+from btlang.backends.english.names import Names
+from btlang.backends.english.type_inference import Around
+from btlang.backends.english.values import assigned, can_say, compared, remembered, texts_of
+from btlang.passes.lower import Lowered
+from btlang.passes.scope import Scope
+from btlang.printer.phrase import leaf_words
+from btlang.printer.printer import Printer
+from btlang.record import Record
+from btlang.text.source import NOWHERE
+from btlang.tree import ast
+from btlang.tree.catalogue import CATALOGUE, SUBTREE
+from btlang.tree.node import Node, Tree
+from btlang.tree.visit import fold
+from btlang.vocabulary.entry import Entry
+from btlang.vocabulary.lexicon import Lexicon
+
+
+class _Place(Record):
+    """A node, and what is known where it stands."""
+
+    node: Node
+    around: Around
+
+
+class Lifter:
+    """Raises the nodes of one tree, of which `known` tells what can be said.
+
+    With `natural` False every node is said by its id. `comments` are those of the file that
+    the tree was read from, `refused` the bodies of loops that turned out to be none.
+    """
+
+    def __init__(self, tree: Tree, vocabulary: Lexicon, known: Names, comments: Comments, *, natural: bool) -> None:
+        self._vocabulary = vocabulary
+        self._natural = natural
+        self._known = known
+        self.refused: set[str] = set()
+        heads = [ast.Definition(name, known.parameters(name), ast.Nothing(NOWHERE), NOWHERE, NOWHERE)
+                 for name in sorted(known.names)]  # fmt: skip
+        self.printer = Printer(vocabulary, heads, "clear")
+        self._node_kinds = {model.id: model.kind for model in tree.models}
+        self._comments = comments
+        self._conditions: set[str] = set()  # the names that stand for conditions
+        bodies = {loop.name for loop in known.loops.values()}
+        names = [name for name, _ in tree.subtrees if name not in bodies]
+        self._checked = Checked(Scope(names, vocabulary.types), known.around(""))
+
+    def definition(self, name: str, root: Node) -> ast.Definition:
+        """A named subtree; those that it uses have been raised before."""
+        raised = self.raised(root, name)
+        is_natural = name in self._known.names
+        body = raised.body
+        if is_natural and raised.is_condition and raised.condition is not None:
+            body = raised.condition
+            self._conditions.add(name)
+        made = ast.Definition(name, self._known.parameters(name), body, NOWHERE, NOWHERE, not is_natural)
+        self.printer.note(made, self._comments.trees.get(name, ()))
+        if is_natural:
+            self._checked.scope.define(made, self._checked.can_skip(body))
+        return made
+
+    def main(self, root: Node) -> ast.Ast:
+        """The commands of the mission; the subtrees have been raised before."""
+        body = self.raised(root).body
+        self.printer.note(_first_line(body), self._comments.trees.get("", ()))
+        return body
+
+    def raised(self, root: Node, name: str = "") -> Candidate:
+        """What a tree is said as; `name` is that of a subtree."""
+        return fold(_Place(root, self._known.around(name)), self._parts, self._raise)
+
+    def _parts(self, place: _Place) -> list[_Place]:
+        """The body of a loop stands where the loop does."""
+        loop = self._known.loops.get(id(place.node))
+        if loop is not None:
+            return [_Place(loop.body, self._known.inside(place.around, loop))]
+        return [_Place(child, place.around) for child in place.node.children]
+
+    def _raise(self, place: _Place, children: list[Candidate]) -> Candidate:
+        node, parts = place.node, tuple(children)
+        self._checked.around = place.around
+        loop = self._known.loops.get(id(node))
+        if loop is not None:
+            return self._loop(node, loop, parts[0])
+        ways = [(Computed(node, {}), parts)]
+        made = computed(node) if self._natural and not node.name else None
+        if made is not None:
+            ways.insert(0, (made, parts[-1].children))
+        condition = self._condition(node, ways)
+        exact = self._exact(node, parts, condition)
+        is_condition = condition is not None and self._is_condition(made.node if made is not None else node, parts)
+        natural, inner = self._natural_form(node, ways, condition if is_condition else None)
+        is_condition = is_condition and not isinstance(natural, ast.Remember)
+        is_rule = natural is not None and node.id == "Whenever"
+        in_lines = any(part.in_lines for part in inner) or is_rule or (natural is None and bool(parts))
+        self._note([node] if inner is parts else [node, *node.children], natural or exact, condition)
+        if natural is None:
+            return Candidate(node, exact, exact, condition, is_condition, in_lines, parts)
+        is_chain = isinstance(natural, ast.Chain) and natural.operator == "sequence"
+        command = exact if in_lines and is_chain else natural  # no line can hold lines that are a sequence
+        return Candidate(node, command, natural, condition, is_condition, in_lines, parts)
+
+    def _note(self, nodes: Iterable[Node], said: ast.Ast, condition: ast.Ast | None = None) -> None:
+        """The comments of nodes that are said as one; those of a sequence stand before its first line."""
+        lines = tuple(line for node in nodes for line in self._comments.nodes.get(id(node), ()))
+        if not lines:
+            return
+        if condition is not None:
+            self.printer.note(condition, lines)
+        if not isinstance(said, ast.Check):
+            self.printer.note(_first_line(said), lines)
+
+    def _exact(self, node: Node, children: tuple[Candidate, ...], condition: ast.Ast | None) -> ast.Ast:
+        """A condition is said as one, as only its words tell of what kind it is where no keyword entry does."""
+        if isinstance(condition, ast.Exact) and self._kind(node.id) == "Condition":
+            made: ast.Ast = ast.Check(condition, NOWHERE)
+        else:
+            items = tuple(child.command for child in children)
+            made = ast.Exact(node.id, node.ports, node.name, items, False, NOWHERE)
+        assert self._checked.says(made, node)
+        return made
+
+    def _loop(self, node: Node, loop: Loop, body: Candidate) -> Candidate:
+        """One that does not mean the node is refused, and then all is said anew."""
+        kind = self._known.kind(loop.name, loop.key)
+        values: list[str] = []
+        for one in loop.rounds:
+            self._checked.texts = one.texts
+            text = self._checked.text(one.node.port(loop.key))
+            if text is not None and kind is not None and can_say(text, kind, self._checked):
+                values.append(text)
+        made: ast.Ast = ast.ForEach(loop.key, kind or "", tuple(values), body.part, NOWHERE)
+        if len(values) < len(loop.rounds) or not self._checked.says(made, node):
+            self.refused.add(loop.name)
+            made = ast.Nothing(NOWHERE)
+            self._checked.assume(made, Lowered(node))
+            return Candidate(node, made, made)
+        self.printer.note(_first_line(body.part), self._comments.trees.get(loop.name, ()))
+        self._note([node, *node.children], made)
+        return Candidate(node, made, made, in_lines=body.in_lines)
+
+    def _natural_form(
+        self, node: Node, ways: list[tuple[Computed, tuple[Candidate, ...]]], condition: ast.Ast | None
+    ) -> tuple[ast.Ast | None, tuple[Candidate, ...]]:
+        """None where no form means just this node; and the parts that are said in it."""
+        children = ways[-1][1]
+        if not self._natural or node.name:
+            return None, children
+        for way, inner in ways:
+            self._checked.texts = way.texts
+            for made in self._forms(way.node, inner, condition):
+                if self._checked.says(made, node):
+                    return made, inner
+        return None, children
+
+    def _forms(self, node: Node, children: tuple[Candidate, ...], condition: ast.Ast | None) -> Iterator[ast.Ast]:
+        """The commands that may say a node, the most natural first."""
+        form = INVERSE_RULES.get(node.id)
+        if form is not None:
+            yield from form(node, children, self._checked)
+        if children and not isinstance(condition, ast.Not):
+            return
+        if node.id == "Script":
+            yield from assigned(node, self._checked)
+        yield from remembered(node, self._vocabulary.entries.get(node.id, ()), self._checked)
+        if condition is not None:
+            if not isinstance(condition, ast.Exact):
+                yield ast.Check(condition, NOWHERE)
+        elif node.id == SUBTREE:
+            yield from self._name(node)
+        elif not children:
+            yield from self._phrase(node, "action")
+
+    def _condition(self, node: Node, ways: list[tuple[Computed, tuple[Candidate, ...]]]) -> ast.Ast | None:
+        if self._natural and not node.name:
+            for way, inner in ways:
+                self._checked.texts = way.texts
+                for made in self._condition_forms(way.node, inner):
+                    if self._checked.says(made, node):
+                        return made
+        return self._exact_condition(node) if not node.children else None
+
+    def _condition_forms(self, node: Node, children: tuple[Candidate, ...]) -> Iterator[ast.Ast]:
+        inner = [child.condition for child in children if child.condition is not None]
+        if len(inner) < len(children):
+            return
+        if node.id == "Inverter" and len(inner) == 1:
+            yield ast.Not(inner[0], NOWHERE)
+        elif node.id in ("Sequence", "Fallback") and len(inner) > 1:
+            yield ast.Chain("all" if node.id == "Sequence" else "any", tuple(inner), True, NOWHERE)
+        elif node.id == "ScriptCondition":
+            yield from compared(node, self._checked)
+        elif node.port("ID") in self._conditions:
+            yield from self._name(node)
+        elif not children:
+            yield from self._phrase(node, "condition")
+
+    def _exact_condition(self, node: Node) -> ast.Ast | None:
+        """None for what is no condition: an action would be asked, and a subtree done."""
+        known = self._kind(node.id)
+        if known not in ("", "Condition") or node.id == SUBTREE or node.id in INVERSE_RULES:
+            return None
+        if not known and node.id in self._vocabulary.nodes and not _asks(node):
+            return None
+        made = ast.Exact(node.id, node.ports, node.name, (), True, NOWHERE)
+        assert self._checked.says(made, node)
+        return made
+
+    def _is_condition(self, node: Node, children: tuple[Candidate, ...]) -> bool:
+        if node.children:
+            return all(child.is_condition for child in children)
+        if node.id == SUBTREE:
+            return True
+        return self._kind(node.id) == "Condition" or _asks(node)
+
+    def _kind(self, node_id: str) -> str:
+        """What the tree or a keyword entry tells of a kind of node, "" for one of the language itself."""
+        if node_id in self._vocabulary.nodes:
+            return ""
+        entry = self._vocabulary.entry(node_id)
+        return self._node_kinds.get(node_id) or (entry.sort.title() if entry is not None else "")
+
+    def _name(self, node: Node) -> Iterator[ast.Ast]:
+        """A defined name; what else its ports hold are values that it needs."""
+        name = node.port("ID")
+        kinds = dict(self._known.parameters(name))
+        ports = dict(node.ports)
+        if name in self._known.names and kinds.keys() <= ports.keys():
+            said = texts_of([(key, ports[key]) for key in kinds], self._checked)
+            if said is not None and all(can_say(text, kinds[key], self._checked) for key, text in said):
+                yield ast.Name(name, said, NOWHERE)
+
+    def _phrase(self, node: Node, sort: str) -> Iterator[ast.Ast]:
+        """The phrases that are read back as this leaf."""
+        for entry in self._vocabulary.entries.get(node.id, ()):
+            said = texts_of(node.ports, self._checked) if entry.sort == sort else None
+            if said is not None and self._words(node.id, dict(said), entry):
+                yield ast.Phrase(entry, said, NOWHERE)
+
+    def _words(self, node_id: str, texts: Mapping[str, str], entry: Entry) -> str:
+        slots = {slot.name for slot in entry.slots}
+        if not texts.keys() <= slots:
+            return ""
+        return leaf_words(node_id, texts, self._checked.around.vocabulary, self.printer.names, exactly=True)
+
+
+def _first_line(said: ast.Ast) -> ast.Ast:
+    """The statement that stands first where all of it are lines."""
+    is_chain = isinstance(said, ast.Chain) and said.operator == "sequence"
+    return ast.parts(said)[0] if is_chain else said
+
+
+def _asks(node: Node) -> bool:
+    kind = CATALOGUE.get(node.id)
+    return kind is not None and kind.kind == "Condition"

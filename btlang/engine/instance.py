@@ -1,0 +1,297 @@
+"""What a node is compiled to, and what its compiler may use.
+
+A compiled node is a pair of closures:
+- `tick()` returns a status. A node that returns SUCCESS or FAILURE has reset itself. One that returns SKIPPED may keep
+  a count (Repeat and RetryUntilSuccessful do, as in BehaviorTree.CPP), so a parent that goes past it halts it.
+  One that returns FAILURE has called `instance.fail`, or a node below it has, and that failure is the latest recorded.
+  So a node whose other children are ticked after the one that counts records the failure of that one again, and a
+  branch puts back what an answer of its condition has recorded when it is SKIPPED.
+- `halt(keep)` stops every leaf that runs below and resets. With `keep` it suspends: positions, counts and timers stay,
+  and the next tick goes on with them. It may be called at any time, also when an exception cut a tick short, and twice.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Mapping, Sequence
+from functools import cache
+
+from btlang.engine.blackboard import Blackboard
+from btlang.engine.clock import Clock
+from btlang.engine.leaves.leaf import REFUSED, ActionFailed, LeafBinding, Reason
+from btlang.engine.script.values import as_text
+from btlang.engine.status import FAILURE
+from btlang.record import Record
+from btlang.tree.catalogue import CATALOGUE
+from btlang.tree.node import Node
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any, TypeAlias
+
+    from btlang.engine.leaves.background import Background
+    from btlang.engine.leaves.binding import LeafSignature
+    from btlang.engine.status_trace import NodeTrace
+    from btlang.engine.timing import Stopwatch
+
+    Tick: TypeAlias = Callable[[], int]
+    Halt: TypeAlias = Callable[[bool], None]
+    Compiled: TypeAlias = tuple[Tick, Halt]
+
+
+class EngineError(Exception):
+    """The tree cannot be compiled; `node` is the node at fault."""
+
+    def __init__(self, message: str, node: Node) -> None:
+        super().__init__(message)
+        self.message = message
+        self.node = node
+
+
+class Fault(Record):
+    """A failure as it is recorded during a tick: index of the node, reason for people (see REFUSED).
+
+    `cause` is the failure below it, where that is why it failed and it has something to add.
+    """
+
+    index: int
+    reason: Reason
+    exception: BaseException | None = None
+    cause: Fault | NodeInstance | None = None
+
+
+class EngineState:
+    """What all nodes of one engine share."""
+
+    __slots__ = (
+        "background",
+        "bind",
+        "clock",
+        "emergency",
+        "enums",
+        "fault",
+        "halt_faults",
+        "interrupts",
+        "node_trace",
+        "on_unknown",
+        "proxies",
+        "service_names",
+        "services",
+        "signatures",
+        "stopwatch",
+        "unknown",
+        "unknowns",
+        "warned",
+    )  # fmt: skip
+
+    def __init__(
+        self,
+        bind: Callable[[str], LeafBinding | None],
+        clock: Clock,
+        services: Mapping[str, Any],
+        enums: Mapping[str, float],
+        stopwatch: Stopwatch | None,
+        proxies: Mapping[str, Callable[..., Any]] = {},
+    ) -> None:
+        self.bind = bind
+        self.proxies = proxies  # what background leaves get in place of services, see Engine
+        self.stopwatch = stopwatch
+        self.clock = clock
+        self.services = {"clock": clock, **services}
+        self.service_names = frozenset(("blackboard", *self.services))
+        self.signatures: dict[str, LeafSignature] = {}  # of the leaves that were bound so far, by id
+        self.enums = {name: float(value) for name, value in enums.items()}  # names that scripts and Switch nodes know
+        self.background: Background | None = None  # where a leaf works beside the tick
+        self.fault: Fault | NodeInstance | None = None  # the latest failure
+        self.unknown: Fault | NodeInstance | None = None  # the latest condition that could not know
+        self.unknowns = 0  # how many there have been
+        self.warned: set[int] = set()  # which of them `on_unknown` knows of
+        self.on_unknown: Callable[[Fault | NodeInstance], object] | None = None
+        # exceptions that leaves raised while they were halted; only the latest, should nobody ask for them
+        self.halt_faults: deque[Fault] = deque(maxlen=1000)
+        self.emergency = False  # whether the halt in progress is an emergency stop, which starts nothing
+        # what reactive nodes that are at another child want stopped before an action starts there
+        self.interrupts: list[Callable[[], None]] = []
+        self.node_trace: NodeTrace | None = None  # of the node that is being compiled
+
+
+class NodeInstance:
+    """A node where it is used, after expansion of subtrees: what its compiler may ask, and what names it later.
+
+    `above` is the instance of its parent, None for the root, and `position` its place among the children there;
+    `index` is its number in preorder; `scope` is its blackboard. It stands for a failure of its node that has no
+    reason of its own.
+    """
+
+    __slots__ = ("_usual", "above", "index", "node", "position", "scope", "state")
+
+    reason = REFUSED
+    exception = None
+    cause = None
+
+    def __init__(
+        self, node: Node, index: int, above: NodeInstance | None, position: int, scope: Blackboard, state: EngineState
+    ) -> None:
+        self.node = node
+        self.index = index
+        self.above = above
+        self.position = position
+        self.scope = scope
+        self.state = state
+        self._usual: Fault | None = None
+
+    @property
+    def parent_keeps_completed(self) -> bool:
+        """Whether the node above doesn't reset a child that has completed."""
+        kind = None if self.above is None else CATALOGUE.get(self.above.node.id)
+        return kind is not None and kind.keeps_completed
+
+    def refuse(self) -> int:
+        """Records that this leaf has returned False; returns FAILURE."""
+        self.state.fault = self
+        return FAILURE
+
+    def fail(self, reason: Reason, exception: BaseException | None = None) -> int:
+        """Records this node as what failed; returns FAILURE. Costs least with the same text as the time before."""
+        fault = self._usual
+        if fault is None or fault.reason is not reason or exception is not None:
+            fault = Fault(self.index, reason, exception)
+            if exception is None:  # which would keep what its frames hold
+                self._usual = fault
+        self.state.fault = fault
+        return FAILURE
+
+    def cannot_know(self, reason: Reason) -> int:
+        """Records that this condition failed because it does not know; returns FAILURE."""
+        self.fail(reason)
+        state = self.state
+        state.unknown = state.fault
+        state.unknowns += 1
+        if self.index not in state.warned and state.fault is not None:
+            state.warned.add(self.index)
+            if state.on_unknown is not None:
+                state.on_unknown(state.fault)
+        return FAILURE
+
+    def not_known(self, before: int) -> bool:
+        """Whether a condition below could not know, since `unknowns` was `before`; then that is the latest failure."""
+        state = self.state
+        if state.unknowns == before:
+            return False
+        state.fault = state.unknown
+        return True
+
+    def pass_on(self, reason: Reason) -> int:
+        """Adds why this node fails as well to the failure below it, which stays the cause; returns FAILURE."""
+        cause = self.state.fault
+        below = cause is not None and cause.index > self.index
+        self.state.fault = Fault(self.index, reason, None, cause if below else None)
+        return FAILURE
+
+    def service(self, name: str) -> Any:
+        """What a leaf asks for by name; a blackboard is that of its scope unless one was given to the engine."""
+        return self.state.services.get(name, self.scope)
+
+    def error(self, message: str) -> EngineError:
+        """An error to raise that blames this node."""
+        return EngineError(message, self.node)
+
+    def number(self, port: str, least: int = 0, most: int = 0) -> Callable[[], int]:
+        """A function that gives the whole number in a port; for a `{key}` it may raise ActionFailed.
+
+        `least` and `most` count where the catalogue has none. Raises EngineError where the port is missing and has no
+        default, or its number is not from `least` to `most`.
+        """
+        known = CATALOGUE[self.node.id].ports[port]
+        default = known.default
+        least = least if known.least is None else known.least
+        most = most if known.most is None else known.most
+        text = self.node.port(port)
+        key = blackboard_key(port, text)
+        if key is not None:
+            return lambda: _whole(value_of(self.scope, key), port, least, most)
+        if not text and default is None:
+            raise self.error(f"{self.node.id} needs a port {port}")
+        try:
+            value = _whole(text or default, port, least, most)
+        except ActionFailed as problem:
+            raise self.error(str(problem)) from None
+        return _always(value)
+
+    def arguments(
+        self, ports: Mapping[str, str], converters: Mapping[str, Callable[[str], Any]]
+    ) -> tuple[dict[str, Any], Callable[[], dict[str, Any]] | None]:
+        """Values of leaf ports by name: constants, and a function that reads the others where there are any.
+
+        That function raises ActionFailed where a `{key}` has no value. Constants are converted here, once; raises
+        EngineError where that fails.
+        """
+        constants: dict[str, Any] = {}
+        stored: list[tuple[str, str, Callable[[str], Any]]] = []
+        for port, text in ports.items():
+            convert = converters.get(port, str)
+            if "{" in text and (key := blackboard_key(port, text)) is not None:
+                stored.append((port, key, convert))
+                continue
+            try:
+                constants[port] = convert(text)
+            except Exception as problem:
+                raise self.error(f"{port} cannot be {text!r}: {problem}") from problem
+        if not stored:
+            return constants, None
+        return constants, lambda: {port: _convert(self.scope, port, key, convert) for port, key, convert in stored}
+
+
+def blackboard_key(port: str, text: str) -> str | None:
+    """The key that a text `{key}` refers to, None for any other text; `{=}` is the key named as the port.
+
+    Spaces around it do not count (TreeNode::isBlackboardPointer).
+    """
+    text = text.strip(" ")
+    key = text[1:-1]
+    if text[:1] != "{" or text[-1:] != "}" or not key or "{" in key or "}" in key:
+        return None
+    return port if key == "=" else key
+
+
+def value_of(scope: Blackboard, key: str) -> Any:
+    """The value that a `{key}` stands for; raises ActionFailed where there is none."""
+    try:
+        return scope.get(key)
+    except KeyError:
+        raise ActionFailed(f"{{{key}}} has no value") from None
+
+
+def halt_nothing(keep: bool) -> None:
+    """The `halt` of a leaf that never runs for longer than its tick."""
+
+
+def apart(children: Sequence[Compiled]) -> tuple[tuple[Tick, ...], tuple[Halt, ...]]:
+    """The ticks and the halts of compiled children."""
+    return tuple([tick for tick, _ in children]), tuple([halt for _, halt in children])
+
+
+@cache  # one function for all nodes that have the number
+def _always(value: int) -> Callable[[], int]:
+    return lambda: value
+
+
+def _convert(scope: Blackboard, port: str, key: str, convert: Callable[[str], Any]) -> Any:
+    value = value_of(scope, key)
+    if not isinstance(value, str) and convert is not as_text:
+        return value
+    try:
+        return convert(value)
+    except Exception as problem:
+        raise ActionFailed(f"{port} cannot be {value!r}: {problem}") from problem
+
+
+def _whole(value: Any, port: str, least: int, most: int) -> int:
+    """Raises ActionFailed for anything but a whole number within the limits; the text `1.0` is none, as in C++."""
+    try:
+        number = int(value)
+    except (TypeError, ValueError, OverflowError):
+        number = least - 1
+    if not least <= number <= most or (not isinstance(value, str) and number != value):
+        raise ActionFailed(f"{port} must be a whole number from {least} to {most}, not {str(value)!r}")
+    return number

@@ -1,0 +1,151 @@
+"""Binds a leaf of a tree to the Python object that does its work (see leaf.py): fills its parameters by name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Collection
+from functools import partial
+from weakref import WeakKeyDictionary
+
+from btlang.engine.instance import NodeInstance, blackboard_key
+from btlang.engine.leaves.callables import class_leaf, function_leaf, generator_leaf
+from btlang.engine.leaves.leaf import LeafBinding, described
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from inspect import Parameter
+    from typing import Any
+
+    from btlang.engine.instance import Compiled
+    from btlang.engine.leaves.callables import Stored
+
+
+# A signature costs more than the rest of a leaf. Weak, since a comparison is a function made for one run.
+_signatures: WeakKeyDictionary[Callable[..., Any], tuple[Parameter, ...]] = WeakKeyDictionary()
+
+
+class LeafSignature:
+    """What the leaves of one engine with the same id share, found once.
+
+    `kind` is "class", "async", "generator", "thread" or "function"; `given` keeps the names of the services that the
+    call gets, by the names of the ports that a node has; for a class `made_with` keeps those of its constructor.
+    """
+
+    __slots__ = ("binding", "given", "kind", "made_with")
+
+    def __init__(self, binding: LeafBinding) -> None:
+        from inspect import isclass, iscoroutinefunction, isgeneratorfunction
+
+        call = binding.call
+        self.binding = binding
+        self.given: dict[tuple[str, ...], list[str]] = {}
+        self.made_with: list[str] | None = None
+        if isclass(call):
+            self.kind = "class"
+        elif iscoroutinefunction(call) or iscoroutinefunction(type(call).__call__):
+            self.kind = "async"
+        elif isgeneratorfunction(call) or isgeneratorfunction(type(call).__call__):
+            self.kind = "generator"
+        else:
+            self.kind = "thread" if binding.thread else "function"
+
+
+def bound_leaf(instance: NodeInstance, plan: LeafSignature) -> Compiled:
+    """A leaf that is a Python object; raises EngineError where its parameters do not fit its ports."""
+    binding = plan.binding
+    call: Any = binding.call
+    ports = {**binding.defaults, **{port: text for port, text in instance.node.ports if port[:1] != "_"}}
+    if binding.thread and plan.kind != "thread":
+        raise instance.error(f"{instance.node.id} is to run in a thread, and only a plain function can")
+    names = tuple(ports)
+    if plan.kind == "class":
+        leaf = _make(instance, plan)
+        if names not in plan.given:
+            plan.given[names] = _fill(instance, leaf.start, names, ())
+        constants, stored = _arguments(instance, ports, binding)
+        start = partial(leaf.start, **constants) if constants else leaf.start
+        return class_leaf(instance, leaf, start, stored)
+    given = plan.given.get(names)
+    if given is None:
+        services = instance.state.service_names
+        given = plan.given[names] = _fill(instance, call, names, services | {"halted"} if binding.thread else services)
+    constants, stored = _arguments(instance, ports, binding) if ports else ({}, None)
+    beside = instance.state.proxies if plan.kind in ("async", "thread") else ()
+    for name in given:
+        if name not in beside and (name != "halted" or not binding.thread):
+            constants[name] = instance.service(name)
+    if constants:
+        call = partial(call, **constants)
+    if plan.kind in ("async", "thread"):
+        from btlang.engine.leaves.background import background_leaf
+
+        proxied = {name: instance.service(name) for name in given if name in beside}
+        background = background_leaf(instance, call, binding.thread, "halted" in given, proxied)
+        return class_leaf(instance, background, background.start, stored)
+    return generator_leaf(instance, call, stored) if plan.kind == "generator" else function_leaf(instance, call, stored)
+
+
+def _arguments(instance: NodeInstance, ports: dict[str, str], binding: LeafBinding) -> tuple[dict[str, Any], Stored]:
+    """As NodeInstance.arguments, with a function that writes for each output port."""
+    if not binding.outputs:
+        return instance.arguments(ports, binding.converters)
+    constants, stored = instance.arguments(
+        {port: text for port, text in ports.items() if port not in binding.outputs}, binding.converters
+    )
+    for port in binding.outputs:
+        if port in ports:
+            key = blackboard_key(port, ports[port])
+            if key is None:
+                raise instance.error(f"{port} is an output: it must be a {{key}}, not {ports[port]!r}")
+            constants[port] = partial(instance.scope.set, key)
+    return constants, stored
+
+
+def _make(instance: NodeInstance, plan: LeafSignature) -> Any:
+    cls: Any = plan.binding.call
+    if plan.made_with is None:
+        missing = [method for method in ("start", "tick", "halt") if not callable(getattr(cls, method, None))]
+        if missing:
+            raise instance.error(f"{cls.__name__} has no {' and no '.join(missing)}, so it is no leaf")
+        plan.made_with = _fill(instance, cls, (), instance.state.service_names)
+    try:
+        return cls(**{name: instance.service(name) for name in plan.made_with})
+    except KeyboardInterrupt:
+        raise
+    except BaseException as problem:
+        raise instance.error(f"{cls.__name__} cannot be made: {described(problem)}") from problem
+
+
+def _fill(
+    instance: NodeInstance, call: Callable[..., Any], ports: Collection[str], services: Collection[str]
+) -> list[str]:
+    """Checks that ports and services fill the parameters; returns the names of the services that do."""
+    try:
+        parameters = _parameters(call)
+    except (TypeError, ValueError) as problem:
+        raise instance.error(f"{instance.node.id} cannot be called: {problem}") from problem
+    named = {p.name: p for p in parameters if p.kind in (p.POSITIONAL_OR_KEYWORD, p.KEYWORD_ONLY)}
+    takes_any = any(p.kind == p.VAR_KEYWORD for p in parameters)
+    unknown = [port for port in ports if port not in named]
+    if unknown and not takes_any:
+        raise instance.error(f"{instance.node.id} takes no port {unknown[0]}" + _known(named, services))
+    for p in parameters:
+        required = p.default is p.empty and p.kind not in (p.VAR_POSITIONAL, p.VAR_KEYWORD)
+        if required and (p.name not in named or (p.name not in ports and p.name not in services)):
+            raise instance.error(f"{instance.node.id} needs a value for {p.name}")
+    return [name for name in named if name in services and name not in ports]
+
+
+def _parameters(call: Callable[..., Any]) -> tuple[Parameter, ...]:
+    from inspect import isfunction, signature
+
+    if not isfunction(call):
+        return tuple(signature(call).parameters.values())
+    found = _signatures.get(call)
+    if found is None:
+        found = _signatures[call] = tuple(signature(call).parameters.values())
+    return found
+
+
+def _known(named: Collection[str], services: Collection[str]) -> str:
+    ports = [name for name in named if name not in services]
+    return f"; it takes {', '.join(ports)}" if ports else ""

@@ -1,0 +1,198 @@
+"""Leaves that are Python objects: functions, generators and classes, as described in leaf.py.
+
+An exception, any but KeyboardInterrupt, becomes a FAILURE with its reason. A class that raises anything but
+ActionFailed is halted as well: it had no chance to stop what it moves. What `halt` itself raises is kept in the
+engine's `take_halt_failures`.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+
+from btlang.engine.instance import Fault, NodeInstance, halt_nothing
+from btlang.engine.leaves.leaf import ActionFailed, Failed, Unknown, described
+from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any, TypeAlias
+
+    from btlang.engine.instance import Compiled
+    from btlang.engine.status_trace import NodeTrace
+
+    Stored: TypeAlias = Callable[[], Mapping[str, Any]] | None  # reads ports from the blackboard
+
+
+_TRUTHS = ("bool", "bool_")  # what numpy's comparisons give goes by these names
+
+
+class FunctionLeaf:
+    """A function that is called as it is: none of its values come from the blackboard.
+
+    What ticks many children calls such a function itself (see fused.py) and hands on here what is no plain answer.
+    """
+
+    __slots__ = ("call", "instance")
+
+    def __init__(self, instance: NodeInstance, call: Callable[[], Any]) -> None:
+        self.instance = instance
+        self.call = call
+
+    def tick(self) -> int:
+        try:
+            result = self.call()
+        except KeyboardInterrupt:
+            raise
+        except BaseException as problem:
+            return unanswered(self.instance, problem)
+        return SUCCESS if result is True else status_of(self.instance, result)
+
+
+def as_function(tick: Any) -> FunctionLeaf | None:
+    """The leaf that a tick belongs to, where that is a function that is called as it is."""
+    leaf = getattr(tick, "__self__", None)
+    return leaf if leaf.__class__ is FunctionLeaf else None
+
+
+def function_leaf(instance: NodeInstance, call: Callable[..., Any], stored: Stored) -> Compiled:
+    """A function; `stored` gives the values that are read at each call."""
+    if stored is None:
+        return FunctionLeaf(instance, call).tick, halt_nothing
+
+    def tick() -> int:
+        try:
+            result = call(**stored())
+        except KeyboardInterrupt:
+            raise
+        except BaseException as problem:
+            return unanswered(instance, problem)
+        return status_of(instance, result)
+
+    return tick, halt_nothing
+
+
+def generator_leaf(instance: NodeInstance, call: Callable[..., Any], stored: Stored) -> Compiled:
+    """A generator function; `stored` gives the values that are read at each start."""
+    generator: Any = None
+    interrupts, trace = instance.state.interrupts, _trace_of(instance)
+
+    def tick() -> int:
+        nonlocal generator
+        try:
+            if generator is None:
+                values = None if stored is None else stored()
+                if interrupts or trace is not None:
+                    _begin(interrupts, trace)
+                generator = call() if values is None else call(**values)
+            next(generator)
+            return RUNNING
+        except StopIteration as stop:
+            generator = None
+            status = status_of(instance, stop.value)
+        except KeyboardInterrupt:
+            raise
+        except BaseException as problem:
+            generator = None
+            status = failed(instance, problem)
+        return status if trace is None else trace.ended(status)
+
+    def halt(keep: bool) -> None:
+        nonlocal generator
+        if generator is not None:
+            running, generator = generator, None
+            _stop(instance, running.close)
+
+    return tick, halt
+
+
+def class_leaf(instance: NodeInstance, leaf: Any, start: Callable[..., Any], stored: Stored) -> Compiled:
+    """An object with `tick` and `halt`, and what starts it; `stored` gives the values that are read at each start."""
+    go_on = leaf.tick
+    interrupts, trace = instance.state.interrupts, _trace_of(instance)
+    running = False
+
+    def tick() -> int:
+        nonlocal running
+        try:
+            if running:
+                result = go_on()
+            else:
+                values = None if stored is None else stored()
+                if interrupts or trace is not None:
+                    _begin(interrupts, trace)
+                running = True
+                result = start() if values is None else start(**values)
+            if result is None or result == RUNNING:
+                return RUNNING
+            running = False
+            status = SUCCESS if result is True else status_of(instance, result)
+        except ActionFailed as problem:
+            running = False
+            status = failed(instance, problem)
+        except KeyboardInterrupt:
+            raise
+        except BaseException as problem:
+            halt(False)
+            status = failed(instance, problem)
+        return status if trace is None else trace.ended(status)
+
+    def halt(keep: bool) -> None:
+        nonlocal running
+        if running:
+            running = False
+            _stop(instance, leaf.halt)
+
+    return tick, halt
+
+
+def _trace_of(instance: NodeInstance) -> NodeTrace | None:
+    """Its trace, to which the leaf itself tells how it ended unless conditions around it may change that."""
+    trace = instance.state.node_trace
+    if trace is not None and trace.index and not any(port[:1] == "_" for port, _ in instance.node.ports):
+        trace.reported_by_leaf = True
+    return trace
+
+
+def _begin(interrupts: list[Callable[[], None]], trace: NodeTrace | None) -> None:
+    """To be called before a generator or class leaf starts: running actions that it replaces are halted first."""
+    while interrupts:
+        interrupts.pop()()
+    if trace is not None:
+        trace.change(RUNNING)
+        trace.trace.flush()  # so that a monitor shows a leaf that hangs
+
+
+def _stop(instance: NodeInstance, halt: Callable[[], object]) -> None:
+    try:
+        halt()
+    except KeyboardInterrupt:
+        raise
+    except BaseException as problem:
+        instance.state.halt_faults.append(Fault(instance.index, described(problem), problem))
+
+
+def failed(instance: NodeInstance, problem: BaseException) -> int:
+    """FAILURE, for the reason that the leaf gave, or with the exception that it should not have raised."""
+    if isinstance(problem, ActionFailed):
+        return instance.fail(str(problem))
+    return instance.fail(described(problem), problem)
+
+
+def unanswered(instance: NodeInstance, problem: BaseException) -> int:
+    """As `failed`, for a function, which may be a condition that does not know."""
+    return instance.cannot_know(str(problem)) if isinstance(problem, Unknown) else failed(instance, problem)
+
+
+def status_of(instance: NodeInstance, result: object) -> int:
+    """The status that a returned value stands for; a FAILURE is recorded as that of the leaf."""
+    if result is True or result is None:
+        return SUCCESS
+    if result is False:
+        return instance.refuse()
+    if isinstance(result, Failed):
+        return instance.fail(result.reason)
+    if isinstance(result, int) and result in (RUNNING, SKIPPED):
+        return int(result)
+    if type(result).__name__ in _TRUTHS or (isinstance(result, int) and result in (FAILURE, SUCCESS)):
+        return SUCCESS if result else instance.refuse()
+    return instance.fail(f"it returned {result!r}, which is neither True, False, None nor a status")

@@ -1,0 +1,182 @@
+"""Nodes of Nav2 (nav2_behavior_tree/plugins/control and decorator) in the form they have for BehaviorTree.CPP 4.
+
+One difference: a RecoveryNode whose recovery was SKIPPED fails and forgets its count, as after any other failure. There
+the count stays, and the next run has fewer retries. What resets the count by distance or time is not here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from btlang.engine.instance import NodeInstance, apart
+from btlang.engine.nodes.ports import rate_port
+from btlang.engine.nodes.timed import Stopwatch
+from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.engine.instance import Compiled
+
+
+def pipeline_sequence(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
+    """Ticks all children up to the furthest one reached, again those that have completed (pipeline_sequence.cpp).
+
+    One before it may be RUNNING as well. A failure, or the last child's success, ends it and halts the others.
+    """
+    ticks, halts = apart(children)
+    count = len(ticks)
+    reached = 0
+
+    def tick() -> int:
+        nonlocal reached
+        skipped = 0
+        for index, child in enumerate(ticks):
+            status = child()
+            if status == RUNNING:
+                if index >= reached:
+                    reached = index
+                    return RUNNING
+            elif status == FAILURE:
+                halt(False)
+                return FAILURE
+            elif status == SKIPPED:
+                skipped += 1
+        halt(False)
+        return SKIPPED if skipped == count else SUCCESS
+
+    def halt(keep: bool) -> None:
+        nonlocal reached
+        for stop in halts:
+            stop(keep)
+        if not keep:
+            reached = 0
+
+    return tick, halt
+
+
+def recovery_node(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
+    """When the first child fails, the second one recovers, and the first is tried again (recovery_node.cpp).
+
+    At most number_of_retries (1) times, all within one tick where nothing is RUNNING. FAILURE also where the recovery
+    fails or is SKIPPED; SKIPPED where the first child is.
+    """
+    ticks, halts = apart(children)
+    retries = instance.number("number_of_retries")
+    position = count = 0  # of the child, and of the recoveries so far
+
+    def tick() -> int:
+        nonlocal position, count
+        most = retries()
+        while True:
+            status = ticks[position]()
+            if status == RUNNING:
+                return RUNNING
+            if position == 0 and status == FAILURE and count < most:
+                position = 1
+            elif position == 1 and status == SUCCESS:
+                position = 0
+                count += 1
+            else:
+                if status == SKIPPED:
+                    halts[position](False)
+                if position == 1:
+                    instance.pass_on("its recovery failed" if status == FAILURE else "its recovery was skipped")
+                    status = FAILURE
+                elif count and status == FAILURE:
+                    instance.pass_on(f"{count} {'recovery' if count == 1 else 'recoveries'} did not help")
+                position = count = 0
+                return status
+
+    def halt(keep: bool) -> None:
+        nonlocal position, count
+        halts[position](keep)
+        if not keep:
+            position = count = 0
+
+    return tick, halt
+
+
+def round_robin(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
+    """One child after the other until one succeeds; the next run begins after that one (round_robin_node.cpp).
+
+    FAILURE when all have failed or were SKIPPED, SKIPPED when all were SKIPPED; then, and when it is halted while it
+    runs, the next run begins with the first child.
+    """
+    ticks, halts = apart(children)
+    count = len(ticks)
+    position = failed = 0
+    running = False
+
+    def tick() -> int:
+        nonlocal position, failed, running
+        running = True
+        skipped = 0
+        while failed + skipped < count:
+            status = ticks[position]()
+            if status == RUNNING:
+                return RUNNING
+            if status == SKIPPED:
+                halts[position](False)
+                skipped += 1
+            position = (position + 1) % count
+            if status == SUCCESS:
+                failed, running = 0, False
+                return SUCCESS
+            if status == FAILURE:
+                failed += 1
+        position = failed = 0
+        running = False
+        return SKIPPED if skipped == count else FAILURE
+
+    def halt(keep: bool) -> None:
+        nonlocal position, failed, running
+        halts[position](keep)
+        if running and not keep:
+            position = failed = 0
+            running = False
+
+    return tick, halt
+
+
+def rate_controller(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
+    """Ticks its child at the start, while it is RUNNING, and when 1/hz s (hz: 10) have passed (rate_controller.cpp).
+
+    RUNNING in between. The time counts from the child's last success, and a PipelineSequence leaves it running.
+    """
+    [(child, halt_child)] = children
+    hz = rate_port(instance, "hz")
+    stopwatch = Stopwatch(instance.state.clock)
+    stays = instance.parent_keeps_completed  # it does not reset a child that has completed
+    fresh, running = True, False  # not yet started; the child was RUNNING at the last tick
+
+    def tick() -> int:
+        nonlocal fresh, running
+        period = 1000 / hz()
+        due = stopwatch.reached(period)
+        if not (fresh or running or due):
+            return stopwatch.wait(period)
+        fresh = False
+        status = child()
+        running = status == RUNNING
+        if not stays and status in (SUCCESS, FAILURE):
+            reset()
+        elif not running:
+            if status == SUCCESS:
+                stopwatch.halt(False)
+                stopwatch.reached(period)
+            stopwatch.wait(period)
+        return status
+
+    def reset() -> None:
+        nonlocal fresh, running
+        fresh, running = True, False
+        stopwatch.halt(False)
+
+    def halt(keep: bool) -> None:
+        halt_child(keep)
+        if keep:
+            stopwatch.halt(True)
+        else:
+            reset()
+
+    return tick, halt

@@ -1,0 +1,111 @@
+"""Nodes that wait for the clock: timeout_node.cpp, delay_node.cpp and sleep_node.cpp of BehaviorTree.CPP 4.10.
+
+The clock is read when they are ticked, and asked for a tick when their time is over; C++ has a timer thread instead. A
+Timeout whose child is SKIPPED starts its time anew; in C++ it goes on, or ends, by chance.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from btlang.engine.clock import SOONEST, Clock
+from btlang.engine.instance import NodeInstance
+from btlang.engine.status import RUNNING, SKIPPED, SUCCESS
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.engine.instance import Compiled
+
+_SLACK = 1e-9  # twenty ticks of 0.05 s are 1 s, whatever floating point makes of their sum
+
+
+class Stopwatch:
+    """Runs from its first reading; `halt(keep)` pauses or resets it."""
+
+    __slots__ = ("clock", "kept", "since")
+
+    def __init__(self, clock: Clock) -> None:
+        self.clock = clock
+        self.kept = 0.0
+        self.since: float | None = None
+
+    def reached(self, msec: float) -> bool:
+        """Whether so much time has passed."""
+        if self.since is None:
+            self.since = self.clock.now
+        return self.kept + self.clock.now - self.since >= msec / 1000 - _SLACK
+
+    def wait(self, msec: float) -> int:
+        """RUNNING, with a tick when so much time has passed since it began to run; at most a thousand a second."""
+        assert self.since is not None
+        self.clock.wake_at(self.since + max(msec / 1000, SOONEST) - self.kept)
+        return RUNNING
+
+    def halt(self, keep: bool) -> None:
+        if not keep:
+            self.kept = 0.0
+        elif self.since is not None:
+            self.kept += self.clock.now - self.since
+        self.since = None
+
+
+def sleep(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
+    """RUNNING until msec have passed, then SUCCESS."""
+    msec = instance.number("msec")
+    stopwatch = Stopwatch(instance.state.clock)
+
+    def tick() -> int:
+        time = msec()
+        if not stopwatch.reached(time):
+            return stopwatch.wait(time)
+        stopwatch.halt(False)
+        return SUCCESS
+
+    return tick, stopwatch.halt
+
+
+def delay(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
+    """RUNNING until delay_msec have passed, then its child; a SKIPPED child is ticked again without a delay."""
+    [(child, halt_child)] = children
+    msec = instance.number("delay_msec")
+    stopwatch = Stopwatch(instance.state.clock)
+
+    def tick() -> int:
+        time = msec()
+        if not stopwatch.reached(time):
+            return stopwatch.wait(time)
+        status = child()
+        if status != RUNNING and status != SKIPPED:
+            stopwatch.halt(False)
+        return status
+
+    def halt(keep: bool) -> None:
+        halt_child(keep)
+        stopwatch.halt(keep)
+
+    return tick, halt
+
+
+def timeout(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
+    """Its child; one that is still RUNNING when msec have passed is halted, not ticked again: FAILURE. 0: no limit."""
+    [(child, halt_child)] = children
+    msec = instance.number("msec")
+    stopwatch = Stopwatch(instance.state.clock)
+
+    def tick() -> int:
+        limit = msec()
+        if limit and stopwatch.reached(limit):
+            halt(False)
+            return instance.fail(f"took longer than {limit / 1000:g} s")
+        status = child()
+        if status != RUNNING:
+            stopwatch.halt(False)
+        elif limit:
+            stopwatch.wait(limit)
+        return status
+
+    def halt(keep: bool) -> None:
+        halt_child(keep)
+        stopwatch.halt(keep)
+
+    return tick, halt

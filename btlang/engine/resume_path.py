@@ -1,0 +1,75 @@
+"""Resumes what is RUNNING without asking all that is above it.
+
+A node that waits, such as a Sequence, does nothing while its child is RUNNING but ask that child. Such nodes below each
+other form a path: the node at its top asks the child that was RUNNING below the lowest of them, and only when that
+completes goes down the long way, where the child gives the status that it has already returned.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+
+from btlang.engine.status import RUNNING
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.engine.instance import Compiled, NodeInstance, Tick
+
+
+class ResumePath:
+    """`top` is the number of the highest node, `resumed` the tick of the child that is RUNNING."""
+
+    __slots__ = ("answer", "resumed", "top", "used")
+
+    def __init__(self, top: int) -> None:
+        self.top = top
+        self.used = False  # whether there is a child for which it is worth the effort
+        self.resumed: Tick | None = None
+        self.answer: int | None = None  # what that child has returned in this tick
+
+
+def resume_paths(instances: Sequence[NodeInstance], waits: Callable[[NodeInstance], bool]) -> list[ResumePath | None]:
+    """For each node the path that it is a part of, None for a node that does more than wait."""
+    found: list[ResumePath | None] = []
+    for instance in instances:
+        if not waits(instance):
+            found.append(None)
+            continue
+        around = None if instance.above is None else found[instance.above.index]
+        found.append(ResumePath(instance.index) if around is None else around)
+    return found
+
+
+def resumable(path: ResumePath, compiled: Compiled) -> Compiled:
+    """A node below the path that may be RUNNING for more than a tick."""
+    tick, halt = compiled
+    path.used = True
+
+    def tick_resumable() -> int:
+        status = path.answer
+        if status is None:
+            status = tick()
+        path.answer = None
+        path.resumed = tick if status == RUNNING else None
+        return status
+
+    def halt_resumable(keep: bool) -> None:
+        path.answer = path.resumed = None
+        halt(keep)
+
+    return tick_resumable, halt_resumable
+
+
+def resuming(path: ResumePath, compiled: Compiled) -> Compiled:
+    """The highest node of the path."""
+    tick, halt = compiled
+
+    def resume() -> int:
+        if path.resumed is not None:
+            status = path.resumed()
+            if status == RUNNING:
+                return RUNNING
+            path.answer = status
+        return tick()
+
+    return resume, halt

@@ -1,0 +1,145 @@
+"""A leaf as its phrase, in the first words that its keyword entry offers and that read back as the same leaf."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+
+from btlang.text.source import Source
+from btlang.text.words import split
+from btlang.tree.catalogue import SUBTREE
+from btlang.tree.dump import described
+from btlang.tree.node import Node
+from btlang.vocabulary.entry import MEASURED, Entry
+from btlang.vocabulary.lexicon import DEFINING, Lexicon
+from btlang.vocabulary.pattern import Form, Slot, forms, name_form
+from btlang.vocabulary.trie import TrieNode, longest
+from btlang.vocabulary.values import ValueType, with_unit
+
+MARKUP = ("<", '"')  # what XML and JSON begin with, and no sentence
+
+
+def phrase_of(node: Node, vocabulary: Lexicon) -> str:
+    """The English of a node: `move forward 2 m`, `wait 5 s`, the name of a subtree; else `Id port=value`.
+
+    What works with values of the mission is shown as it was written.
+    """
+    if node.id == SUBTREE:
+        return _filled_name(node)
+    computed = node.id in ("Script", "ScriptCondition") or any(text.startswith("{_") for _, text in node.ports)
+    if node.span is not None and (computed or node.port(MEASURED)) and node.span.text[:1] not in MARKUP:
+        return node.span.text
+    if node.id == "Sleep":
+        return f"{vocabulary.word('wait')} {seconds(node.port('msec'))}"
+    if node.id in ("AlwaysSuccess", "AlwaysFailure"):
+        return vocabulary.word("nothing" if node.id == "AlwaysSuccess" else "fail")
+    return leaf_words(node.id, dict(node.ports), vocabulary) or described(node)
+
+
+def _filled_name(node: Node) -> str:
+    """The name of a subtree with its arguments in place of its parameters."""
+    ports = dict(node.ports)
+    parts = name_form(node.port("ID"))
+    return " ".join(ports.get(part.name, f"{{{part.name}}}") if isinstance(part, Slot) else part for part in parts)
+
+
+def seconds(msec: str) -> str:
+    """Milliseconds of a port as seconds."""
+    return f"{int(msec) / 1000:g} s" if msec.isdigit() else msec
+
+
+def leaf_words(
+    node_id: str,
+    ports: Mapping[str, str],
+    vocabulary: Lexicon,
+    names: TrieNode | None = None,
+    *,
+    exactly: bool = False,
+) -> str:
+    """The phrase of a leaf with these ports, "" where no phrase of it has just these slots.
+
+    Preferred is one that is read back as the leaf where `names` are defined; with `exactly` no other will do. A port
+    may hold its default.
+    """
+    first = ""
+    for entry in vocabulary.entries.get(node_id, ()):
+        spoken = {name: text for name, text in ports.items() if _default(entry, name) != text}
+        for form, values in _fitting(entry, spoken):
+            words = _filled(form, values, entry, vocabulary)
+            if _reads_back(words, entry, spoken, vocabulary, names):
+                return words
+            first = first or words
+    return first if not exactly else ""
+
+
+def _default(entry: Entry, slot: str) -> str | None:
+    return next((known.default for known in entry.slots if known.name == slot), None)
+
+
+def _fitting(entry: Entry, spoken: Mapping[str, str]) -> Iterator[tuple[Form, Mapping[str, str]]]:
+    """The forms that say the values, the shortest of each phrase first; those that say a default too come last."""
+    defaults = {slot.name: slot.default for slot in entry.slots if slot.default is not None}
+    wordy: list[tuple[Form, Mapping[str, str]]] = []
+    for phrase in entry.phrases:
+        for form in reversed(forms(phrase)):
+            slots = {part.name for part in form if isinstance(part, Slot)}
+            if slots == spoken.keys():
+                yield form, spoken
+            elif spoken.keys() < slots <= spoken.keys() | defaults.keys():
+                wordy.append((form, {**defaults, **spoken}))
+    yield from wordy
+
+
+def _reads_back(
+    words: str, entry: Entry, spoken: Mapping[str, str], vocabulary: Lexicon, names: TrieNode | None
+) -> bool:
+    text = split(Source(words), vocabulary.articles)
+    match = longest(vocabulary.trie, text, 0, vocabulary.context)
+    if match is None or match.meaning.entry is None or match.meaning.role == "negated":
+        return False
+    if match.last != len(text.words) - 2 or match.meaning.entry.id != entry.id:
+        return False
+    if {value.name: value.text for value in match.values if _default(entry, value.name) != value.text} != spoken:
+        return False
+    named = longest(names, text, 0, vocabulary.context) if names else None
+    return named is None or named.last < match.last
+
+
+def _filled(form: Form, values: Mapping[str, str], entry: Entry, vocabulary: Lexicon) -> str:
+    types = {slot.name: vocabulary.types[slot.type] for slot in entry.slots}
+    words = (
+        value_of(values[part.name], types[part.name], vocabulary) if isinstance(part, Slot) else part for part in form
+    )
+    return " ".join(words)
+
+
+def value_of(text: str, kind: ValueType, vocabulary: Lexicon) -> str:
+    """A port text as a user would say it: `2 m`, `20%`, `hello`, `"two words"`.
+
+    A text that could be taken for something else is quoted.
+    """
+    if text.startswith("{") and kind.kind != "text":
+        return text
+    if kind.kind == "quantity":
+        return with_unit(text, kind.units[0].words[0])
+    if kind.kind == "number":
+        return text
+    ways = [f'"{text}"', f"'{text}'"]
+    if kind.kind == "names" or not _says_more(text, vocabulary):
+        ways.insert(0, text)
+    return next((way for way in ways if vocabulary.value(kind.name, way) == text), ways[0])
+
+
+def _says_more(text: str, vocabulary: Lexicon) -> bool:
+    """Whether a bare word would be more than a text: an article, or the begin of a phrase or definition."""
+    word = text.lower()
+    defines = any(word in vocabulary.roles[role] for role in DEFINING)
+    return not text.isalnum() or defines or word in vocabulary.articles or word in vocabulary.trie
+
+
+def holds_definer(words: str, vocabulary: Lexicon) -> bool:
+    """Whether a phrase or name holds a word that would define at the start of a line, and is no condition."""
+    text = split(Source(words), vocabulary.articles)
+    if not any(word in vocabulary.roles[role] for role in DEFINING for word in text.words):
+        return False
+    match = longest(vocabulary.trie, text, 0, vocabulary.context)
+    return match is None or match.meaning.role != "condition" or match.last < len(text.words) - 2

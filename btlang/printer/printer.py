@@ -1,0 +1,234 @@
+"""Says syntax trees: words of the vocabulary, values and brackets, which every form needs."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from btlang.printer.phrase import holds_definer, leaf_words, value_of
+from btlang.printer.pieces import CLOSE, LEAF, OPEN, WORD, Piece, Pieces, flat, last_of, mark, reads_on, text_of
+from btlang.record import Record
+from btlang.tree import ast
+from btlang.tree.visit import fold
+from btlang.vocabulary.entry import Meaning
+from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.pattern import Form, Slot, forms, name_form
+from btlang.vocabulary.trie import TrieNode, add
+
+THEN, OR, AND, FORM, WHOLE = range(5)
+"""How tightly what is said holds together, loosest first; WHOLE is a leaf or stands in brackets."""
+
+
+class Doc(Record):
+    """What is said of a node, and what may not stand around it without brackets.
+
+    `reaches`: what follows it would become part of it. `takes_otherwise`: an `otherwise` right behind it would.
+    `counts`: a count in it would close a `try` or `retry` before it. `behind`: it is a form behind its body.
+    `in_lines`: it holds a standing rule, which no bracket can, so that it is said in lines and blocks only (see
+    blocks.py). `joins` and `chooses`: it holds `then` or `and`, `or` or `otherwise` between commands.
+    `can_skip`: it may end SKIPPED.
+    """
+
+    pieces: Pieces
+    level: int
+    reaches: bool = False
+    takes_otherwise: bool = False
+    counts: bool = False
+    behind: bool = False
+    in_lines: bool = False
+    joins: bool = False
+    chooses: bool = False
+    can_skip: bool = False
+
+    @property
+    def is_mixed(self) -> bool:
+        """Whether people read it in one line in more ways than one, whatever the brackets."""
+        return self.joins and self.chooses
+
+
+class Printer:
+    """Says nodes in the words of a vocabulary, where `names` are defined.
+
+    With `brackets` "all" each chain and form inside another one is bracketed, with "needed" only those whose reading
+    needs it (see the table in docs/language/joining.md): what binds less tightly than what is around it,
+    a chain in an equal chain, and a form that reaches to the right where something follows it. With "clear" there
+    are also those without which people could read it in another way, and blocks where even these are too hard to read.
+    """
+
+    def __init__(
+        self, vocabulary: Lexicon, names: Iterable[str | ast.Definition] = (), brackets: str = "needed"
+    ) -> None:
+        if brackets not in ("needed", "clear", "all"):
+            raise ValueError(f'brackets are "needed", "clear" or "all": {brackets!r}')
+        self.vocabulary = vocabulary.with_references()
+        self.all_brackets = brackets == "all"
+        self.is_clear = brackets == "clear"
+        self.names: TrieNode = {}
+        self._said: dict[int, tuple[ast.Ast, Doc]] = {}  # with its node, whose id is then that of no other
+        self._forms: dict[str, Form] = {}
+        self._leaves: dict[tuple[str, tuple[tuple[str, str], ...]], str] = {}
+        self._reads_on: dict[tuple[Piece, Piece], bool] = {}
+        self._parameters: dict[str, dict[str, str]] = {}
+        self._comments: dict[int, tuple[ast.Ast, tuple[str, ...]]] = {}  # with its node, too
+        for defined in names:
+            name, types = (
+                (defined.name, dict(defined.parameters)) if isinstance(defined, ast.Definition) else (defined, {})
+            )
+            self._parameters[name] = types
+            if not (isinstance(defined, ast.Definition) and defined.is_quoted):
+                add(self.names, name_form(name), types, Meaning("name"))
+
+    def say(self, node: ast.Ast) -> Doc:
+        """What is said of a node (any but a Mission)."""
+        from btlang.printer.sentence import PRINTERS  # its functions need the printer
+
+        if id(node) in self._said:
+            return self._said[id(node)][1]
+
+        def combine(item: ast.Ast, parts: list[Doc]) -> Doc:
+            said: Doc = PRINTERS[type(item)](item, parts, self)
+            if any(part.in_lines for part in parts) or any(isinstance(part, ast.Whenever) for part in ast.parts(item)):
+                said = said.replace(in_lines=True)
+            if parts or isinstance(item, ast.Name):
+                said = _with_flags(item, said, parts)
+            self._said[id(item)] = item, said
+            return said
+
+        return fold(node, ast.parts, combine)
+
+    def statement(self, node: ast.Ast, joined: str = "") -> str:
+        """A line of its own, or one of several that make a chain of the operator `joined`."""
+        return self.line(node, self.say(node), joined)
+
+    def line(self, node: ast.Ast, said: Doc, joined: str) -> str:
+        """As `statement`, of what is said of the node."""
+        if isinstance(node, ast.Chain) and node.operator == joined:
+            said = bracketed(said)
+        text = self.text(said.pieces)
+        if not isinstance(node, ast.Definition) and self._would_define(flat(said.pieces)):
+            return f"{self.vocabulary.word('then')} {text}"  # a line that begins so defines nothing
+        return text
+
+    def _would_define(self, pieces: Iterable[Piece]) -> bool:
+        """Whether a word that defines stands in a command or name; in a condition it compares."""
+        return any(piece.kind == LEAF and holds_definer(piece.text, self.vocabulary) for piece in pieces)
+
+    def text(self, pieces: Pieces) -> str:
+        """The pieces as text."""
+        return text_of(pieces, self.vocabulary, self.names)
+
+    # -- comments
+
+    def note(self, node: ast.Ast, lines: tuple[str, ...]) -> None:
+        """Puts lines of comment before the statement in which a node is said."""
+        before = self._comments.get(id(node), (node, ()))[1]
+        self._comments[id(node)] = node, (*lines, *before)
+
+    def comments(self, node: ast.Ast, *, whole: bool) -> list[str]:
+        """The comments of a statement; of a block, which is not `whole`, without those of the lines below."""
+        if not self._comments:
+            return []
+        found: list[str] = []
+        stack = [node]
+        while stack:
+            item = stack.pop()
+            found += self._comments[id(item)][1] if id(item) in self._comments else ()
+            if whole or item is not node:
+                stack += reversed(ast.parts(item))
+            elif "condition" in item.parts:
+                stack.append(item.condition)  # type: ignore[attr-defined]
+        return found
+
+    # -- words
+
+    def word(self, role: str, **values: str) -> Piece:
+        """The word of a role, with the value of its slot: `then`, `within 5 s`."""
+        if role not in self._forms:
+            self._forms[role] = forms(self.vocabulary.first(role))[-1]
+        words = (values[part.name] if isinstance(part, Slot) else part for part in self._forms[role])
+        return Piece(" ".join(words), WORD)
+
+    def phrase(self, node_id: str, arguments: tuple[tuple[str, str], ...]) -> str:
+        """The phrase of a leaf, "" where there is none."""
+        key = node_id, arguments
+        if key not in self._leaves:
+            self._leaves[key] = leaf_words(node_id, dict(arguments), self.vocabulary, self.names)
+        return self._leaves[key]
+
+    def value(self, text: str, kind: str) -> str:
+        """A port text of a type as it is written."""
+        return value_of(text, self.vocabulary.types[kind], self.vocabulary)
+
+    def plain_value(self, text: str, kind: str) -> str:
+        """As `value` where no slot tells the type: a text is in quotes, as a bare word may be a name or a number."""
+        value = self.value(text, kind)
+        if kind != "text" or value != text or value.startswith("{"):
+            return value
+        return f'"{value}"'
+
+    def name(self, node: ast.Name) -> str:
+        """A defined name with its arguments."""
+        types, arguments = self._parameters.get(node.name, {}), dict(node.arguments)
+        parts = name_form(node.name)
+        return " ".join(
+            self.value(arguments[part.name], types.get(part.name, "text")) if isinstance(part, Slot) else part
+            for part in parts
+        )
+
+    def duration(self, role: str, seconds: str) -> Piece:
+        """The word of a role that has a duration."""
+        return self.word(role, duration=self.value(seconds, "duration"))
+
+    def rounds(self, number: str) -> Piece:
+        """`3 times`; one word for once and for a number without end."""
+        single = [word for word, rounds in self.vocabulary.counts.items() if str(rounds) == number]
+        return Piece(single[0], WORD) if single and number in ("-1", "1") else self.word("count", count=number)
+
+    # -- brackets
+
+    def inside(self, said: Doc, needs_brackets: bool) -> Doc:
+        """What is said inside another chain or form."""
+        if said.level < WHOLE and (needs_brackets or self.all_brackets):
+            return bracketed(said)
+        return said
+
+    def condition(self, said: Doc) -> Doc:
+        """The condition of a form: no reading needs brackets round it."""
+        return bracketed(said) if self.all_brackets and said.level < FORM else said
+
+    def reads_on(self, said: Doc, piece: Piece) -> bool:
+        """Whether the end of what is said and a connective behind it would be read as one."""
+        key = last_of(said.pieces), piece
+        if key not in self._reads_on:
+            self._reads_on[key] = reads_on(*key, self.vocabulary, self.names)
+        return self._reads_on[key]
+
+    def behind(self, body: Doc, word: Piece, *rest: Pieces, counts: bool = False) -> Doc:
+        """A form that stands behind its body."""
+        body = self.inside(body, body.level < FORM or body.reaches or self.reads_on(body, word))
+        return Doc((body.pieces, word, *rest), FORM, counts=counts or body.counts, behind=True)
+
+    def before(self, head: Pieces, body: Doc, otherwise: Doc | None = None) -> Doc:
+        """A form that stands before its body, and reaches to the right; its `otherwise` is as it is to be said."""
+        if otherwise is None:
+            body = self.inside(body, False)
+            return Doc((*head, body.pieces), FORM, True, body.takes_otherwise, body.counts)
+        word = self.word("otherwise")
+        body = self.inside(body, body.reaches or body.takes_otherwise or self.reads_on(body, word))
+        pieces = (*head, body.pieces, word, otherwise.pieces)
+        return Doc(pieces, FORM, True, otherwise.takes_otherwise, body.counts or otherwise.counts)
+
+
+def _with_flags(node: ast.Ast, said: Doc, parts: list[Doc]) -> Doc:
+    """What it holds, with what its parts hold."""
+    operator = node.operator if isinstance(node, ast.Chain) else ""
+    joins = operator in ("sequence", "parallel") or any(part.joins for part in parts)
+    branches = getattr(node, "otherwise", None) is not None
+    chooses = operator == "fallback" or branches or any(part.chooses for part in parts)
+    can_skip = isinstance(node, ast.If | ast.Name) or any(part.can_skip for part in parts)
+    flagged: Doc = said.replace(joins=joins, chooses=chooses, can_skip=can_skip)
+    return flagged
+
+
+def bracketed(said: Doc) -> Doc:
+    """The same in brackets."""
+    return Doc((mark(OPEN), said.pieces, mark(CLOSE)), WHOLE)

@@ -1,0 +1,213 @@
+"""An AST as canonical English: one function for each class of syntax node, in the table PRINTERS.
+
+What is said has exactly the reading of the AST: both parsers make of it an AST that lowers to an equal tree, and that
+one is said in the same words. Words come from the vocabulary, so another language is another keyword file. To keep the
+rules few, a sentence uses `then`, `or`, `and` without commas, forms with a condition before their command, and forms
+with a value behind it; brackets do the rest.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterable, Iterator, Sequence
+
+from btlang.printer import naming
+from btlang.printer.exact import exact, quoted
+from btlang.printer.pieces import COMMA, LEAF, Piece, Pieces, mark
+from btlang.printer.printer import AND, FORM, OR, THEN, WHOLE, Doc, Printer, bracketed
+from btlang.tree import ast
+from btlang.vocabulary.lexicon import Lexicon
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+_CHAINS = {
+    "sequence": (THEN, "then"), "fallback": (OR, "or"), "parallel": (AND, "and"), "any": (OR, "or"), "all": (AND, "and")
+}  # fmt: skip
+
+
+def english(node: ast.Ast, vocabulary: Lexicon, *, brackets: str = "needed", names: Iterable[str] = ()) -> str:
+    """Canonical English of any AST; a Mission is its facts, its definitions and then its commands.
+
+    Each is on a line, or in a block where a line cannot say it.
+    `brackets` is "needed", "clear" or "all" (see Printer); `names` are those that are defined where a part of a
+    mission stands.
+    """
+    from btlang.printer.blocks import lines_of
+
+    if not isinstance(node, ast.Program):
+        return "\n".join(lines_of(node, Printer(vocabulary, names, brackets)))
+    printer = printer_of(node, vocabulary, brackets)
+    return "\n".join(mission_lines(node, printer))
+
+
+def mission_lines(mission: ast.Program, printer: Printer, width: float = math.inf) -> Iterator[str]:
+    """The lines of a mission; see `lines_of`."""
+    from btlang.printer.blocks import lines_of
+
+    if mission.name:
+        yield f"{printer.word('main_name').text} {quoted(mission.name, printer.vocabulary)}"
+    named = (*mission.includes, *mission.facts, *mission.definitions)
+    for part, joined in [*((part, "") for part in named), *statements(mission.body)]:
+        yield from lines_of(part, printer, width, joined)
+
+
+def printer_of(mission: ast.Program, vocabulary: Lexicon, brackets: str = "needed") -> Printer:
+    """Says the parts of a mission, where its names and places are known."""
+    facts = ast.all_facts(mission)
+    if facts:
+        vocabulary = vocabulary.with_places(tuple(fact.name for fact in facts))
+    return Printer(vocabulary, ast.all_definitions(mission), brackets)
+
+
+def statements(body: ast.Ast | None) -> Iterator[tuple[ast.Ast, str]]:
+    """The commands that a body has as lines of its own, each with the operator of the chain that they make."""
+    if isinstance(body, ast.Chain) and body.operator == "sequence":
+        yield from ((item, body.operator) for item in body.items)
+    elif body is not None:
+        yield body, ""
+
+
+def _leaf(text: str) -> Doc:
+    return Doc((Piece(text, LEAF),), WHOLE)
+
+
+def _phrase(node: ast.Phrase, _parts: list[Doc], printer: Printer) -> Doc:
+    return _leaf(printer.phrase(node.entry.id, node.arguments) or node.span.text)
+
+
+def _name(node: ast.Name, _parts: list[Doc], printer: Printer) -> Doc:
+    return _leaf(printer.name(node))
+
+
+def _chain(node: ast.Chain, parts: list[Doc], printer: Printer) -> Doc:
+    level, role = _CHAINS[node.operator]
+    word = printer.word(role)
+    inner = [printer.inside(p, p.level <= level or p.reaches or printer.reads_on(p, word)) for p in parts[:-1]]
+    inner.append(printer.inside(parts[-1], parts[-1].level <= level))
+    if printer.is_clear:
+        inner = [printer.inside(p, p.level < FORM or p.reaches or (p.behind and i > 0)) for i, p in enumerate(inner)]
+    return Doc(tuple(_joined(inner, word)), level, *_flags(inner))
+
+
+def _joined(parts: Sequence[Doc], word: Piece) -> Iterator[Pieces | Piece]:
+    for i, part in enumerate(parts):
+        if i:
+            yield word
+        yield part.pieces
+
+
+def _flags(parts: Sequence[Doc]) -> tuple[bool, bool, bool]:
+    return parts[-1].reaches, parts[-1].takes_otherwise, any(part.counts for part in parts)
+
+
+def _not(_node: ast.Not, parts: list[Doc], printer: Printer) -> Doc:
+    inner = printer.inside(parts[0], parts[0].level < FORM)
+    return Doc((printer.word("not"), inner.pieces), FORM)
+
+
+def _branching(positive: str, negative: str) -> Callable[[Any, list[Doc], Printer], Doc]:
+    def said(node: Any, parts: list[Doc], printer: Printer) -> Doc:
+        condition = printer.condition(parts[0])
+        head = (printer.word(negative if node.negated else positive), condition.pieces, mark(COMMA))
+        if node.otherwise is not None:
+            return printer.before(head, parts[1], printer.inside(parts[2], False))
+        whose = printer.is_clear and parts[1].reaches and parts[1].chooses  # an `otherwise` could be of both
+        return printer.before(head, printer.inside(parts[1], whose))
+
+    return said
+
+
+def _whenever(_node: ast.Whenever, parts: list[Doc], printer: Printer) -> Doc:
+    return printer.before((printer.word("whenever"), printer.condition(parts[0]).pieces, mark(COMMA)), parts[1])
+
+
+def _provided(_node: ast.Provided, parts: list[Doc], printer: Printer) -> Doc:
+    return printer.behind(parts[1], printer.word("provided"), printer.condition(parts[0]).pieces)
+
+
+def _repeat(node: ast.Repeat, parts: list[Doc], printer: Printer) -> Doc:
+    return printer.behind(parts[0], printer.rounds(node.rounds), counts=True)
+
+
+def _retry(node: ast.Retry, parts: list[Doc], printer: Printer) -> Doc:
+    """Its count closes it, so nothing else in it may count."""
+    body = printer.inside(parts[0], parts[0].reaches or parts[0].counts)
+    return Doc((printer.word("retry"), body.pieces, printer.rounds(node.attempts)), FORM, takes_otherwise=True)
+
+
+def _try(node: ast.Try, parts: list[Doc], printer: Printer) -> Doc:
+    body = parts[0]
+    if node.otherwise is None:
+        return printer.behind(body, printer.word("if_possible"))
+    otherwise = parts[1]
+    if not is_flat_fallback(node.otherwise):
+        otherwise = printer.inside(otherwise, otherwise.level == OR)
+    if isinstance(node.body, ast.Retry) and not printer.all_brackets:
+        pieces = (body.pieces, printer.word("otherwise"), otherwise.pieces)
+        return Doc(pieces, FORM, True, otherwise.takes_otherwise, otherwise.counts)
+    return printer.before((printer.word("try"),), bracketed(body) if body.counts else body, otherwise)
+
+
+def is_flat_fallback(otherwise: ast.Ast) -> bool:
+    """Whether the `otherwise` of a `try` makes one node with it, from which brackets would part it."""
+    return isinstance(otherwise, ast.Chain) and otherwise.operator == "fallback" and not otherwise.bracketed
+
+
+def _timed(role: str) -> Callable[[Any, list[Doc], Printer], Doc]:
+    def said(node: Any, parts: list[Doc], printer: Printer) -> Doc:
+        return printer.behind(parts[0], printer.duration(role, node.seconds))
+
+    return said
+
+
+def _wait(node: ast.Wait, _parts: list[Doc], printer: Printer) -> Doc:
+    return _leaf(printer.duration("wait", node.seconds).text)
+
+
+def _test(role: str) -> Callable[[Any, list[Doc], Printer], Doc]:
+    def said(_node: Any, parts: list[Doc], printer: Printer) -> Doc:
+        return Doc((printer.word(role), printer.condition(parts[0]).pieces), FORM)
+
+    return said
+
+
+def _single(role: str) -> Callable[[Any, list[Doc], Printer], Doc]:
+    def said(_node: Any, _parts: list[Doc], printer: Printer) -> Doc:
+        return _leaf(printer.word(role).text)
+
+    return said
+
+
+PRINTERS: dict[type[ast.Ast], Callable[[Any, list[Doc], Printer], Doc]] = {
+    ast.Phrase: _phrase,
+    ast.Name: _name,
+    ast.Compared: naming.compared,
+    ast.Assign: naming.assign,
+    ast.Remember: naming.remember,
+    ast.ForEach: naming.for_each,
+    ast.Chain: _chain,
+    ast.Not: _not,
+    ast.If: _branching("if", "unless"),
+    ast.While: _branching("while", "until"),
+    ast.Whenever: _whenever,
+    ast.Provided: _provided,
+    ast.Repeat: _repeat,
+    ast.Retry: _retry,
+    ast.Try: _try,
+    ast.Within: _timed("within"),
+    ast.For: _timed("for"),
+    ast.Every: _timed("every"),
+    ast.Delay: _timed("delay"),
+    ast.Wait: _wait,
+    ast.WaitUntil: _test("wait_until"),
+    ast.Check: _test("check"),
+    ast.Nothing: _single("nothing"),
+    ast.Fail: _single("fail"),
+    ast.Exact: exact,
+    ast.Definition: naming.definition,
+    ast.Fact: naming.fact,
+    ast.Include: naming.include,
+}
+"""How each class of node is said, given what is said of its parts."""

@@ -1,0 +1,67 @@
+"""What a ROS 2 robot says and shows."""
+
+from __future__ import annotations
+
+from rclpy.node import Node
+from std_msgs.msg import Bool, String
+
+from btlang.robots.robot import RobotError
+from btlang.ros.awake import AWAKE
+from btlang.ros.subscription_cache import SubscriptionCache
+
+SPEECH, SPEAKING, PRINT = "speech", "speaking", "print"
+_BEGINS = 0.5  # seconds of real time that it gets to begin
+_LATEST = 5.0  # how many times as long as expected it may speak
+
+
+class RosSpeech:
+    """Times are those of the mission. Where nothing tells of its speaking, it takes as long as the text is long."""
+
+    def __init__(self, node: Node, subscriptions: SubscriptionCache) -> None:
+        self._subscriptions = subscriptions
+        self._speech = node.create_publisher(String, SPEECH, 10)
+        self._print = node.create_publisher(String, PRINT, 10)
+        self._expected = 0.0
+        self._age = self._since = 0.0
+        self._asked = self._heard = self._told = False
+        subscriptions.listen(SPEAKING, Bool, "word of its speaking", qos="state")
+
+    def say(self, text: str) -> None:
+        """Starts to speak. Raises RobotError where nobody listens."""
+        if not self._speech.get_subscription_count():
+            raise RobotError(f"nobody listens on {self._speech.topic_name}")
+        self._asked, self._heard, self._age, self._since = True, False, 0.0, AWAKE.now()
+        self._expected = 0.35 + 0.06 * len(text)
+        self._speech.publish(String(data=text))
+
+    def silence(self) -> None:
+        """Ends speech at once; from any thread."""
+        if self._asked:
+            self._asked = False
+            self._speech.publish(String(data=""))
+
+    def print(self, text: str) -> None:
+        """Shows text. Raises RobotError where nobody listens."""
+        if not self._print.get_subscription_count():
+            raise RobotError(f"nobody listens on {self._print.topic_name}")
+        self._print.publish(String(data=text))
+
+    def step(self, dt: float) -> None:
+        """`dt` seconds have passed."""
+        self._age += dt
+        for message in self._subscriptions.events(SPEAKING):
+            if self._heard and self._told and not message.data:
+                self._asked = False
+            self._told = bool(message.data)
+            self._heard = self._heard or self._told
+        if self._asked and AWAKE.now() - self._since > _BEGINS:
+            self._asked = self._told if self._subscriptions.has(SPEAKING) else self._age < self._expected
+
+    @property
+    def speaking(self) -> bool:
+        """True until it has spoken. Raises RobotError where that takes far longer than the text is long."""
+        if self._asked and self._age > 2.0 + _LATEST * self._expected:
+            raise RobotError(
+                f"it has been speaking for {self._age:.0f} s: {self._subscriptions.shown(SPEAKING)} does not change"
+            )
+        return self._asked

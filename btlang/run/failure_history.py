@@ -1,0 +1,157 @@
+"""What had been tried before a mission failed, gathered from its stream of events."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from btlang.engine.status import FAILURE, IDLE, RUNNING, SUCCESS
+from btlang.record import Record
+from btlang.run.bus import INLINE
+from btlang.run.events import StatusesChanged
+from btlang.tree.catalogue import CATALOGUE, ON_FAILURE, SUBTREE, NodeKind
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.engine.engine import Engine
+    from btlang.run.events import Event
+
+MOST = 10
+"""So many different failures are kept for a node, the latest ones."""
+
+
+class Attempt(Record):
+    """What a node tried in vain: its index, why it failed, when first, when the last two times, and how many times.
+
+    `stopped` are the leaves that its latest failure halted, with the seconds that they had run. A recovery that was
+    done and did not help has no reason.
+    """
+
+    index: int
+    reason: str
+    first: float
+    before: float
+    last: float
+    times: int = 1
+    stopped: tuple[tuple[int, float], ...] = ()
+
+
+class Attempts(Record):
+    """Attempts by the time of their latest failure; equal ones are one. `dropped` older ones are not kept."""
+
+    kept: tuple[Attempt, ...] = ()
+    dropped: int = 0
+
+
+_NONE = Attempts()
+
+
+def together(parts: Iterable[Attempts]) -> Attempts:
+    """All attempts, as far as they are kept."""
+    parts = [part for part in parts if part.kept]
+    if len(parts) == 1:
+        return parts[0]
+    found: dict[tuple[int, str], Attempt] = {}
+    dropped = 0
+    for part in parts:
+        dropped += part.dropped
+        for new in part.kept:
+            old = found.pop((new.index, new.reason), None)
+            found[new.index, new.reason] = new if old is None else _one(old, new)
+    kept = sorted(found.values(), key=lambda attempt: attempt.last)
+    dropped += sum(attempt.times for attempt in kept[:-MOST])
+    return Attempts(tuple(kept[-MOST:]), dropped)
+
+
+def _one(old: Attempt, new: Attempt) -> Attempt:
+    """Both as one; their times may lie between each other where nodes run side by side."""
+    latest: Attempt = max(new, old, key=lambda attempt: attempt.last)
+    other = old if latest is new else new
+    before = other.last if latest.times == 1 else max(latest.before, other.last)
+    times = {"first": min(old.first, new.first), "before": before, "times": old.times + new.times}
+    return latest.replace(**times)  # type: ignore[no-any-return]
+
+
+class FailureHistory:
+    """A sink that keeps, for the nodes of an engine, what failed below them in their present run.
+
+    What is kept does not grow with the length of a mission: it is forgotten when a node succeeds, and handed to the
+    node above when it fails or is halted.
+    """
+
+    policy = INLINE
+
+    def __init__(self, engine: Engine) -> None:
+        self.engine = engine
+        self.ended = 0.0
+        """When the mission failed."""
+        self._tried: dict[int, Attempts] = {}  # below a node in its present run
+        self._failed: dict[int, dict[int, Attempts]] = {}  # by node: the children whose status is FAILURE, latest last
+        self._since: dict[int, float] = {}  # when a running leaf began
+        self._stopped: list[tuple[int, float]] = []  # leaves that were halted at one time, maybe by a failure to come
+        self._stopped_at = 0.0
+
+    @property
+    def tried(self) -> Attempts:
+        """What led to the failure of the mission, the failure itself included; nothing where it has not failed."""
+        return self._failed.get(-1, {}).get(0, _NONE)
+
+    def __call__(self, event: Event) -> None:
+        if isinstance(event, StatusesChanged):
+            for index, status, _, reason in event.without_paths():
+                self._changed(index, status, event.t, reason)
+
+    def _changed(self, index: int, status: int, t: float, reason: str) -> None:
+        above = self.engine.parent(index)
+        self._failed.get(above, {}).pop(index, None)
+        if status == RUNNING:
+            node = self.engine.node(index)
+            if not node.children and node.id != SUBTREE:
+                self._since[index] = t
+            return
+        began, tried = self._since.pop(index, None), self._tried.pop(index, _NONE)
+        if status == FAILURE:
+            self._fail(index, t, reason, tried)
+        elif status == IDLE:
+            if began is not None:
+                if t != self._stopped_at:
+                    self._stopped, self._stopped_at = [], t
+                self._stopped.append((index, t - began))
+            self._add(above, tried)
+        elif status == SUCCESS and index != above + 1 and self._recovers(above):
+            self._add(above, Attempts((Attempt(index, "", t, t, t),)))
+
+    def _fail(self, index: int, t: float, reason: str, tried: Attempts) -> None:
+        above = self.engine.parent(index)
+        failed = self._failed.get(index)
+        kind = self._kind(index)
+        if not failed:
+            told = together((tried, Attempts((Attempt(index, reason, t, t, t),))))
+        elif kind is not None and kind.again == ON_FAILURE:
+            told = tried
+        else:
+            needs_all = kind is not None and (kind.goes_on == ON_FAILURE or kind.at_once)
+            told = together(failed.values()) if needs_all else next(reversed(failed.values()))
+        now = self._stopped if t == self._stopped_at else []
+        halted = tuple(leaf for leaf in now if leaf[0] > index)  # what is below comes later
+        if halted and told.kept:
+            *others, latest = told.kept
+            told = told.replace(kept=(*others, latest.replace(stopped=latest.stopped + halted)))
+        self._stopped.clear()
+        self._failed.setdefault(above, {})[index] = told
+        parent = self._kind(above)
+        if index != above + 1 or parent is None or not parent.asks_first:
+            self._add(above, told)
+        if above < 0:
+            self.ended = t
+
+    def _add(self, index: int, tried: Attempts) -> None:
+        if tried.kept and index >= 0:
+            self._tried[index] = together((self._tried.get(index, _NONE), tried))
+
+    def _recovers(self, index: int) -> bool:
+        """Whether what a node does beside its first child is to help that one."""
+        kind = self._kind(index)
+        return kind is not None and kind.again == ON_FAILURE and kind.most > 1
+
+    def _kind(self, index: int) -> NodeKind | None:
+        return CATALOGUE.get(self.engine.node(index).id) if index >= 0 else None

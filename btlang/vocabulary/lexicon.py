@@ -1,0 +1,335 @@
+"""All words that a mission may use, from the keyword files that were loaded."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterable, Iterator, Mapping, Sequence
+
+from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
+from btlang.text.source import Source, Span
+from btlang.text.words import split
+from btlang.vocabulary.cache import recent
+from btlang.vocabulary.entry import COMPARISONS, About, Entry, Meaning, SlotSpec
+from btlang.vocabulary.language_tables import EXPLAINED
+from btlang.vocabulary.pattern import Form, PatternError, Slot, forms
+from btlang.vocabulary.reading_context import Known, ReadingContext
+from btlang.vocabulary.trie import TrieNode, add, collisions
+from btlang.vocabulary.values import Values, ValueType
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+    from btlang.vocabulary.keyword_file import KeywordFile
+
+DEFINING = ("define_strong", "define")
+"""Roles whose words define a name where they are found first in a line; elsewhere they are words like any other."""
+
+NO_PHRASES = frozenset((
+    *DEFINING, "fact", "facing", "set_to", "by", "remember_as", "each_in",
+    "called", "with", "newline", "character", "main_name",
+))  # fmt: skip
+"""Roles whose words are looked for where definitions, facts and nodes are, and nowhere else."""
+
+NODE_ROLES = ("do", "test")
+"""Roles whose words begin a node that is said by its id, a command or a condition."""
+
+
+class Lexicon:
+    """Phrases, types and connectives of a language and its packs.
+
+    `about` says what each role means to people; it holds every role.
+    Raises MissionError (BT060 to BT062) where the files do not fit together.
+    """
+
+    def __init__(self, files: Iterable[KeywordFile], entries: Iterable[Entry] = ()) -> None:
+        self._problems: list[Diagnostic] = []
+        self.trie: TrieNode = {}
+        self.entries: dict[str, list[Entry]] = {}
+        files = list(files)
+        language = _merged(files)
+        self.articles = frozenset(language["articles"])
+        self._with_names: dict[tuple[tuple[str, tuple[str, ...]], ...], Lexicon] = {}
+        self.values = Values(self._types_of(files), language)
+        self.context = ReadingContext(self.values)
+        """What is known without a mission; whoever reads one has a context of its own."""
+        for file in files:
+            for kind, words, name in file.names:
+                if self.types[kind].kind == "names":
+                    self.values.add_name(kind, self._bare(words), name)
+        self.roles: dict[str, list[str]] = {**language["roles"], "politeness": language["politeness"]}
+        self.language: str = language["language"]
+        self.quantifiers, self.halting = frozenset(language["quantifiers"]), frozenset(language["halting"])
+        """Negations and words for how many, and words like `stop`: corrections are careful about them."""
+        self.counts: dict[str, int] = language["counts"]
+        self.nodes: dict[str, str] = language["nodes"]
+        """The words of nodes that have some, by their ids."""
+        self.meanings: dict[str, str] = language["meanings"]
+        """Connectives that have another role between commands: `and` may mean `then`."""
+        self.about = _about(files)
+        self.quantities: TrieNode = {}
+        """The phrases of quantities alone: before `is` they compare and define nothing."""
+        self.comparisons: dict[str, list[str]] = language["comparisons"]
+        self._negations: dict[str, list[str]] = language["negations"]
+        self._add_roles()
+        for entry in (*(e for f in files for e in f.entries), *entries):
+            self._add_entry(entry)
+        self._find_collisions()
+        if self._problems:
+            raise MissionError(self._problems)
+
+    @property
+    def types(self) -> Mapping[str, ValueType]:
+        """Slot types by name."""
+        return self.values.types
+
+    def entry(self, node_id: str) -> Entry | None:
+        """The (first) entry of a node id."""
+        found = self.entries.get(node_id)
+        return found[0] if found else None
+
+    def with_names(self, names: Mapping[str, Sequence[str]]) -> Lexicon:
+        """The same words, whose slots take further names by their types: the places, people and objects of a world.
+
+        The same object for the same names.
+        """
+
+        def made() -> Lexicon:
+            pairs = {kind: [(self._bare(name), name) for name in listed] for kind, listed in names.items()}
+            values = self.values.with_names(pairs)
+            return self._with(values=values, context=ReadingContext(values))
+
+        return recent(self._with_names, tuple((kind, tuple(listed)) for kind, listed in names.items()), made)
+
+    def _bare(self, words: str) -> str:
+        """Articles do not matter in names either."""
+        return " ".join(word for word in words.split() if word.lower() not in self.articles)
+
+    def with_places(self, names: tuple[str, ...]) -> Lexicon:
+        """The same words with further places, as a mission names them."""
+        return self.with_names({"place": names})
+
+    def with_references(self) -> Lexicon:
+        """The same words, where any name in braces is read as a value."""
+        return self._with(context=self.context.with_references())
+
+    def with_known(self, known: Mapping[str, Known]) -> Lexicon:
+        """The same words, where these values are known by their keys."""
+        return self._with(context=ReadingContext(self.values, known))
+
+    def _with(self, **changed: object) -> Lexicon:
+        made = Lexicon.__new__(Lexicon)  # what `copy` does, which takes long to import
+        made.__dict__.update(self.__dict__, _with_names={}, **changed)
+        return made
+
+    def value(self, kind: str, written: str) -> str | None:
+        """The port text of a text that as a whole is a value of the type (`half an hour`), None where it is none."""
+        text = split(Source(written), self.articles)
+        found = self.context.read(kind, text, 0)
+        return found[0] if found and found[1] >= len(text.words) - 2 else None
+
+    def first(self, role: str) -> str:
+        """The pattern of a role that messages and canonical English use: the first in its list that means it."""
+        return next((phrase for phrase in self.roles[role] if phrase not in self.meanings), self.roles[role][0])
+
+    def word(self, role: str) -> str:
+        """The words of that pattern."""
+        words = forms(self.first(role))[-1]
+        return " ".join(word for word in words if isinstance(word, str))
+
+    def _types_of(self, files: Iterable[KeywordFile]) -> dict[str, ValueType]:
+        """The types by name; a file may declare one anew, but not of another kind."""
+        types: dict[str, ValueType] = {}
+        for file in files:
+            for kind in file.types:
+                if types.get(kind.name, kind).kind == kind.kind:
+                    types[kind.name] = kind
+                    continue
+                reason = f"the type {kind.name} is there already and of another kind"
+                self._problems.append(diagnostic("BT060", Span(file.source, 0, 0), reason=reason))
+        return types
+
+    def _add_roles(self) -> None:
+        for role, phrases in self.roles.items():
+            for phrase in phrases if role not in NO_PHRASES else ():
+                self._add_words(phrase, Meaning(role, between=self.meanings.get(phrase, "")))
+        for words, rounds in self.counts.items():
+            self._add_words(words, Meaning("count", value=rounds))
+        for node_id, words in self.nodes.items():
+            for role in NODE_ROLES:
+                for head in self.roles[role]:
+                    self._add_words(f"{head} {words}", Meaning(role, node=node_id))
+
+    def _add_words(self, phrase: str, meaning: Meaning) -> None:
+        try:
+            self._add_phrase(phrase, meaning, {})
+        except PatternError as error:  # all of its words are articles of another file
+            self._problems.append(diagnostic("BT060", Span(Source(phrase, "words"), 0, len(phrase)), reason=str(error)))
+
+    def _add_entry(self, entry: Entry) -> None:
+        if entry.replaces and not entry.id:
+            entry = entry.replace(id=self._replaced_id(entry))
+        if entry.measures:
+            entry = self._with_comparisons(entry)
+        types = {slot.name: slot.type for slot in entry.slots}
+        unknown = [slot for slot in entry.slots if slot.type not in self.types]
+        for slot in unknown:
+            known = ", ".join(sorted(self.types))
+            self._wrong(entry, f"the slot {{{slot.name}}} has no type '{slot.type}'; known are {known}")
+        if unknown:
+            return
+        entry = entry.replace(slots=tuple(self._with_port_default(entry, slot) for slot in entry.slots))
+        same = self.entries.setdefault(entry.id, [])
+        if same and same[0].sort != entry.sort:
+            self._wrong(entry, f"the id {entry.id} is already that of the {same[0].sort} in {same[0].file}")
+        self._check_call(entry, same)
+        same.append(entry)
+        for phrase in entry.phrases:
+            try:
+                self._add_phrase(phrase, Meaning("command" if entry.sort == "action" else "condition", entry), types)
+                if entry.sort == "condition":
+                    self._add_negations(phrase, Meaning("negated", entry), types)
+            except PatternError as error:
+                self._wrong(entry, str(error))
+
+    def _replaced_id(self, entry: Entry) -> str:
+        """That of the word whose phrase it has."""
+        own = self._forms_of(entry)
+        for node_id, known in self.entries.items():
+            if any(not own.isdisjoint(self._forms_of(other)) for other in known):
+                return node_id
+        self._wrong(entry, "no known word has this phrase, so there is nothing to replace; give the id of the word")
+        return ""
+
+    def _forms_of(self, entry: Entry) -> set[Form]:
+        phrases = (*entry.phrases, *entry.quantity) if not entry.measures else entry.quantity
+        return {form for phrase in phrases for form in forms(phrase, self.articles)}
+
+    def _check_call(self, entry: Entry, same: Sequence[Entry]) -> None:
+        """BT064 where an id has two functions and nothing says which one is meant."""
+        other = next((one for one in same if one.call and entry.call and one.call != entry.call), None)
+        if other is None or entry.replaces:
+            return
+        span = entry.span or Span(Source(entry.id, "Python"), 0, len(entry.id))
+        fix = f'replaces = ["{entry.id}"]' if entry.span else "replace=True"
+        self._problems.append(diagnostic("BT064", span, id=entry.id, file=other.file, fixed=fix))
+
+    def _with_comparisons(self, entry: Entry) -> Entry:
+        """`battery` becomes `battery is below {below}` and so on, for each way to compare."""
+        for pattern in entry.quantity:
+            try:
+                for form in forms(pattern, self.articles):
+                    add(self.quantities, form, {s.name: s.type for s in entry.slots}, Meaning("quantity", entry))
+            except PatternError:
+                return entry  # the keyword file has told
+        ways = [way for name, patterns in self.comparisons.items() for way in _compared(name, patterns)]
+        phrases = tuple(f"{quantity} {way}" for way in ways for quantity in entry.quantity)
+        compared = tuple(SlotSpec(name, entry.measures) for name in COMPARISONS)
+        made: Entry = entry.replace(phrases=phrases, slots=(*entry.slots, *compared))
+        return made
+
+    def _with_port_default(self, entry: Entry, slot: SlotSpec) -> SlotSpec:
+        """Defaults are written with units; ports hold them in the base unit."""
+        kind = self.types[slot.type]
+        if slot.default is None or kind.kind in ("text", "names"):
+            return slot
+        value = self.value(slot.type, slot.default)
+        if value is None:
+            reason = f"the default '{slot.default}' of {{{slot.name}}} is no {slot.type}, such as {kind.example}"
+            self._wrong(entry, reason)
+            return slot
+        return SlotSpec(slot.name, slot.type, value)
+
+    def _add_phrase(self, phrase: str, meaning: Meaning, types: dict[str, str]) -> None:
+        for form in forms(phrase, self.articles):
+            self._add_form(form, meaning, types)
+
+    def _add_form(self, form: Form, meaning: Meaning, types: dict[str, str]) -> None:
+        own = {part.name: types.get(part.name, part.name) for part in form if isinstance(part, Slot)}
+        before = add(self.trie, form, own, meaning)
+        if before is not None:
+            self._collide(before, meaning)
+
+    def _add_negations(self, phrase: str, meaning: Meaning, types: dict[str, str]) -> None:
+        for form in forms(phrase, self.articles):
+            for negated in self.negated(form):
+                self._add_form(negated, meaning, types)
+
+    def negated(self, form: Form) -> Iterator[Form]:
+        """`battery is low` is also said `battery is not low`."""
+        for at, part in enumerate(form):
+            for words in self._negations.get(part, ()) if isinstance(part, str) else ():
+                yield (*form[:at], *words.split(), *form[at + 1 :])
+
+    def comparing_forms(self, kind: str) -> Iterator[Form]:
+        """Ways to go on behind a quantity or name in order to compare it; names and texts can only be equal."""
+        ordered = self.types[kind].kind in ("quantity", "number")
+        for name, patterns in self.comparisons.items():
+            if ordered or name == "equal":
+                yield from (form for way in _compared(name, patterns) for form in forms(way, self.articles))
+
+    def _find_collisions(self) -> None:
+        for one, other in collisions(self.trie, self.values):
+            self._collide(one, other)
+
+    def _collide(self, one: Meaning, other: Meaning) -> None:
+        """Told at the entry that was loaded later; connectives come first."""
+        ids = [(meaning.entry.id if meaning.entry else "", meaning.role) for meaning in (one, other)]
+        if ids[0] == ids[1]:
+            return
+        order = list(self.entries)
+        one, other = sorted((one, other), key=lambda m: order.index(m.entry.id) if m.entry else -1)
+        first, second = self._described(other), self._described(one)
+        span = other.entry.span if other.entry and other.entry.span else Span(Source(second[0], second[2]), 0, 0)
+        self._problems.append(
+            diagnostic(
+                "BT062", span,
+                first=first[0], first_id=first[1], first_file=first[2],
+                second=second[0], second_id=second[1], second_file=second[2],
+            )
+        )  # fmt: skip
+
+    def _described(self, meaning: Meaning) -> tuple[str, str, str]:
+        if meaning.entry is None:
+            return self.roles.get(meaning.role, [meaning.role])[0], f"role {meaning.role}", "connective file"
+        return meaning.entry.phrases[0], meaning.entry.id, meaning.entry.file
+
+    def _wrong(self, entry: Entry, reason: str) -> None:
+        span = entry.span or Span(Source(entry.phrases[0], "Python"), 0, len(entry.phrases[0]))
+        self._problems.append(diagnostic("BT061", span, reason=reason))
+
+
+def _compared(name: str, patterns: Iterable[str]) -> list[str]:
+    """The words of a comparison with the names of ports in their slots."""
+    ports = {"value": name, "low": "at_least", "high": "at_most"}
+    return [re.sub(r"\{(\w+)\}", lambda slot: f"{{{ports[slot[1]]}}}", pattern) for pattern in patterns]
+
+
+_LANGUAGE: dict[str, Any] = {
+    "language": "", "articles": [], "politeness": [], "unit_joiner": [], "quantifiers": [], "halting": [],
+    "roles": {}, "about": {}, "comparisons": {}, "counts": {}, "negations": {},
+    "pronouns": {}, "nodes": {}, "meanings": {}, "numbers": {}, "multipliers": {}, "fractions": {},
+}  # fmt: skip
+
+
+def _merged(files: Iterable[KeywordFile]) -> dict[str, Any]:
+    """The language tables of all files; a later file replaces single roles and words of an earlier one."""
+    merged = {key: type(value)(value) for key, value in _LANGUAGE.items()}
+    for file in files:
+        for key, value in file.language.items():
+            if isinstance(value, dict):
+                merged[key] |= value
+            else:
+                merged[key] = value
+    return merged
+
+
+def _about(files: Iterable[KeywordFile]) -> dict[str, About]:
+    """What the files tell of the roles, the latest of each; a role with new words loses its example in old ones."""
+    about: dict[str, About] = {}
+    for file in files:
+        told = file.language.get("about", {})
+        replaced = [role for role in file.language.get("roles", {}) if role in about and role not in told]
+        about |= {role: about[role].replace(example="") for role in replaced}
+        about |= {role: About(**table) for role, table in told.items()}
+    return about | {role: About() for role in EXPLAINED if role not in about}
