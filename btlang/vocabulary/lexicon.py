@@ -36,7 +36,7 @@ NODE_ROLES = ("do", "test")
 
 
 class Lexicon:
-    """Phrases, types and connectives of a language and its packs.
+    """Phrases, types and connectives of a language and its packs; frozen once it is made.
 
     `about` says what each role means to people; it holds every role.
     Raises MissionError (BT060 to BT062) where the files do not fit together.
@@ -77,6 +77,12 @@ class Lexicon:
         self._find_collisions()
         if self._problems:
             raise MissionError(self._problems)
+        self._is_made = True
+
+    def __setattr__(self, name: str, value: object) -> None:
+        if "_is_made" in self.__dict__:
+            raise AttributeError(f"a Lexicon is frozen: cannot set {name}")
+        super().__setattr__(name, value)
 
     @property
     def types(self) -> Mapping[str, ValueType]:
