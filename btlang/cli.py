@@ -223,7 +223,9 @@ def _node(options: argparse.Namespace) -> int:
 
 def _repl(options: argparse.Namespace) -> int:
     from btlang.repl.loop import run_repl
+    from btlang.ros.command import platform_of
 
+    platform_of(options)
     return run_repl(
         keywords=options.keywords,
         world=options.world,
@@ -231,6 +233,7 @@ def _repl(options: argparse.Namespace) -> int:
         include_root=options.include_root,
         speed=options.speed,
         robot=options.robot,
+        over=options.over,
     )
 
 

@@ -29,7 +29,7 @@ def parsed(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser = _Parser("btc", description="Compiles and runs robot missions in plain English.")
     parser.add_argument("--version", action="version", version=f"btc {btlang.__version__}")
     verbs = parser.add_subparsers(dest="verb", metavar="VERB", prog="btc", parser_class=_Parser)
-    parser.set_defaults(**_DEFAULTS, verb="repl")  # behind the verbs, which have none as default
+    parser.set_defaults(**_DEFAULTS, verb="repl", refuse=parser.error)  # behind the verbs, which have none as default
     for verb, (about, add) in _OPTIONS.items():
         add(verbs.add_parser(verb, help=about))
     return parser.parse_args(words)
@@ -82,7 +82,8 @@ def _repl_options(parser: argparse.ArgumentParser) -> None:
 
     _reading_options(parser)
     _speed_option(parser)
-    add_body_options(parser, ("simulated",))
+    add_body_options(parser)
+    parser.set_defaults(refuse=parser.error)
 
 
 def _run_options(parser: argparse.ArgumentParser) -> None:

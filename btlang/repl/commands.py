@@ -12,6 +12,7 @@ from btlang.frontends.mission.symbols.phrases import Phrases
 from btlang.record import Record
 from btlang.repl.draft import Entry, MissionDraft
 from btlang.repl.store import Store
+from btlang.robots.robot import Robot, RobotError
 from btlang.robots.world import said
 from btlang.text.output import listing_width
 from btlang.text.source import Source
@@ -240,8 +241,10 @@ class Commands:
             try:
                 draft.entries_of(draft.text, draft.file or "<session>") if draft.entries else None
             except MissionError:
+                draft.close()
                 draft.world, draft.vocabulary, draft.session = before
                 raise
+            before[2].close()
         names = draft.session.world.names
         kinds = (("places", names.places), ("people", names.people), ("objects", names.objects))
         known = ((kind, ", ".join(those)) for kind, those in kinds if those)
@@ -255,6 +258,9 @@ class Commands:
     def _speed(self, rest: str) -> None:
         from btlang.run.limits import SLOWEST
 
+        if not self._draft.is_simulated:
+            self._write("This robot runs in real time.")
+            return
         if rest in ("real", "max"):
             self.speed = rest
         elif rest:
@@ -274,7 +280,13 @@ class Commands:
 
 def robot_line(draft: MissionDraft) -> str:
     """Where the robot is and how it is."""
-    robot = draft.session.robot
+    try:
+        return _robot_line(draft.session.robot)
+    except RobotError as problem:  # a robot over ROS 2 that is silent
+        return f"where the robot is isn't known: {problem}"
+
+
+def _robot_line(robot: Robot) -> str:
     held = [said(name) for hand in ("left", "right") if (name := robot.holding(hand))]
     parts = [
         f"robot at ({robot.pose.x:.1f}, {robot.pose.y:.1f}) facing {robot.pose.heading:.0f}\N{DEGREE SIGN}",

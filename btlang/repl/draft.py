@@ -14,6 +14,7 @@ from btlang.frontends.mission.tokens.lexer import Lexer
 from btlang.passes import compile_mission, errors_of, run_passes
 from btlang.passes.compilation import Compilation
 from btlang.record import Record
+from btlang.robots.registry import runs_on
 from btlang.session import Session
 from btlang.text.source import Source
 from btlang.tree.ast import Ast, Chain, Definition, Fact, Include, Program, all_facts, parts
@@ -47,7 +48,7 @@ class Compiled(Record):
 
 
 class MissionDraft:
-    """Entries, with undo and redo; the words; the simulated world and the values, which go on from entry to entry."""
+    """Entries, with undo and redo; the words; the robot and the values, which go on from entry to entry."""
 
     def __init__(
         self,
@@ -56,9 +57,11 @@ class MissionDraft:
         parser: str = DEFAULT_PARSER,
         include_root: str | None = None,
         robot: str = "simulated",
+        over: str | None = None,
     ) -> None:
         """Raises MissionError where a keyword file, the world or the robot cannot be used."""
-        self._robot = robot
+        self._robot, self._over = robot, over
+        self.is_simulated = runs_on(robot, over)[1] == "simulated"
         self._keywords = keywords
         self._include_root = include_root
         self._parser = parser
@@ -74,14 +77,19 @@ class MissionDraft:
     def use_world(self, world: str | None) -> None:
         """Puts the robot into a world of its own file, None for the one that ships. Raises MissionError."""
         vocabulary = world_vocabulary(self._keywords, world)
-        self.session = Session(self._robot, world=world, over="simulated")
+        self.session = Session(self._robot, world=world, over=self._over)
         self.vocabulary = vocabulary
         self.world = world
 
     def reset(self) -> None:
-        """The same world, as it was at the start."""
-        self.session = Session(self._robot, world=self.world, over="simulated")
+        """No values, and the simulated world as it was at the start; another robot stays where it is."""
+        if self.is_simulated:
+            self.session = Session(self._robot, world=self.world, over=self._over)
         self._blackboard = Blackboard()
+
+    def close(self) -> None:
+        """Lets go of the robot."""
+        self.session.close()
 
     def _source(self, text: str, name: str = ENTRY) -> Source:
         folder = os.path.dirname(self.file or "")

@@ -5,7 +5,7 @@ from __future__ import annotations
 import signal
 import sys
 from collections.abc import Iterable, Iterator, Sequence
-from contextlib import contextmanager, nullcontext
+from contextlib import closing, contextmanager, nullcontext
 
 from btlang.api import Mission
 from btlang.diagnostics.diagnostic import MissionError
@@ -33,9 +33,14 @@ def run_repl(
     include_root: str | None = None,
     speed: float | str = "real",
     robot: str = "simulated",
+    over: str | None = None,
 ) -> int:
     """Runs until the user leaves or the input ends; returns the exit code. Raises MissionError for wrong files."""
-    draft = MissionDraft(keywords, world, parser, include_root, robot)
+    with closing(MissionDraft(keywords, world, parser, include_root, robot, over)) as draft:
+        return _talk_or_read(draft, speed)
+
+
+def _talk_or_read(draft: MissionDraft, speed: float | str) -> int:
     if not can_draw(sys.stdout) or sys.stdin is None or not sys.stdin.isatty():
         return Repl(draft, Store(None), speed).read(sys.stdin or ())
     store = Store(state_folder())
