@@ -28,6 +28,7 @@ if TYPE_CHECKING:
 
     from btlang.robots.registry import Connect
     from btlang.run.runner import Outcome
+    from btlang.tree.dump import Outline
 
 
 def parse_tree(
@@ -136,13 +137,16 @@ class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax")):
     facts: tuple[Fact, ...] = ()
 
     def __str__(self) -> str:
-        from btlang.tree.dump import outline
+        return str(self.__rich__())
 
-        return outline(self.tree, self._described)
+    def __rich__(self) -> Outline:
+        from btlang.tree.dump import Outline
+
+        return Outline((("", self.tree.root), *self.tree.subtrees), self._described)
 
     def print(self) -> None:
         """Prints the tree with its branches drawn."""
-        show(str(self))
+        show(self)
 
     def run(self, *, robot: str | Connect = "simulated", **options: Any) -> Outcome:
         """Runs the mission to its end, or Ctrl-C, in a session of its own, and so in a fresh world.

@@ -11,11 +11,11 @@ from functools import partial
 from importlib import import_module
 
 from btlang.api import Mission, format_mission, parse_tree, world_vocabulary
-from btlang.cli_options import WIDEST, parsed
+from btlang.cli_options import parsed
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.reading import read_source, reason_of
 from btlang.diagnostics.report import Report
-from btlang.text.output import pass_on, show
+from btlang.text.output import listing_width, pass_on, show
 from btlang.text.source import Source
 
 SUCCESS, FAILED, UNFORMATTED, BAD_INPUT, CRASHED, INTERRUPTED = 0, 1, 1, 2, 70, 130
@@ -102,7 +102,7 @@ def _show_tree(options: argparse.Namespace) -> int:
     if options.picture is not None:
         _draw_tree(mission, options.picture, options.apart)
         return SUCCESS
-    show(plain(mission.tree) if options.plain else str(mission))
+    show(plain(mission.tree) if options.plain else mission)
     return SUCCESS
 
 
@@ -139,7 +139,8 @@ def _compile(options: argparse.Namespace) -> int:
 def _words(options: argparse.Namespace) -> int:
     from btlang.vocabulary.listing import listing
 
-    lines = listing(world_vocabulary(options.keywords, options.world, options.language), " ".join(options.search))
+    vocabulary = world_vocabulary(options.keywords, options.world, options.language)
+    lines = listing(vocabulary, " ".join(options.search), listing_width())
     show("\n".join(lines))
     return SUCCESS
 
@@ -154,7 +155,7 @@ def _examples(options: argparse.Namespace) -> int:
     elif options.name:
         show("\n\n".join(example.text.rstrip("\n") for example in chosen))
     else:
-        show("\n".join(examples.listing()))
+        show("\n".join(examples.listing(listing_width())))
     return SUCCESS
 
 
@@ -164,7 +165,11 @@ def _explain(options: argparse.Namespace) -> int:
     subject = options.file
     if options.text is not None or (subject is not None and not is_code(subject) and _is_file(subject)):
         return _explain_mission(options)
-    show(all_codes() if subject is None else explain_code(subject))
+    if subject is not None:
+        show(explain_code(subject))
+        return SUCCESS
+    show(all_codes())
+    show("\nTo read one: btc explain CODE")
     return SUCCESS
 
 
@@ -174,10 +179,7 @@ def _is_file(subject: str) -> bool:
 
 
 def _explain_mission(options: argparse.Namespace) -> int:
-    from shutil import get_terminal_size
-
-    width = get_terminal_size((100, 24)).columns
-    show(_mission(options).explain(min(width, WIDEST)))
+    show(_mission(options).explain(listing_width(100)))
     return SUCCESS
 
 
@@ -224,7 +226,9 @@ def _node(options: argparse.Namespace) -> int:
 
 def _repl(options: argparse.Namespace) -> int:
     from btlang.repl.loop import run_repl
+    from btlang.ros.command import platform_of
 
+    platform_of(options)
     return run_repl(
         keywords=options.keywords,
         world=options.world,
@@ -233,6 +237,7 @@ def _repl(options: argparse.Namespace) -> int:
         speed=options.speed,
         robot=options.robot,
         language=options.language,
+        over=options.over,
     )
 
 

@@ -11,14 +11,12 @@ from btlang.arguments import between, duration, picture, speed
 from btlang.diagnostics.report import FORMATS
 from btlang.frontends.mission.reader import DEFAULT_PARSER, PARSERS
 from btlang.run.limits import RATES
-from btlang.text.output import show
+from btlang.text.output import WIDEST, columns, show
 from btlang.vocabulary.shipped import ENGLISH
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
-
-WIDEST = 120  # columns; longer lines are hard to read
 
 
 def parsed(arguments: Sequence[str] | None) -> argparse.Namespace:
@@ -32,7 +30,7 @@ def parsed(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser = _Parser("btc", description="Compiles and runs robot missions in plain English.")
     parser.add_argument("--version", action="version", version=f"btc {btlang.__version__}")
     verbs = parser.add_subparsers(dest="verb", metavar="VERB", prog="btc", parser_class=_Parser)
-    parser.set_defaults(**_DEFAULTS, verb="repl")  # behind the verbs, which have none as default
+    parser.set_defaults(**_DEFAULTS, verb="repl", refuse=parser.error)  # behind the verbs, which have none as default
     for verb, (about, add) in _OPTIONS.items():
         add(verbs.add_parser(verb, help=about))
     return parser.parse_args(words)
@@ -88,7 +86,8 @@ def _repl_options(parser: argparse.ArgumentParser) -> None:
 
     _reading_options(parser)
     _speed_option(parser)
-    add_body_options(parser, ("simulated",))
+    add_body_options(parser)
+    parser.set_defaults(refuse=parser.error)
 
 
 def _run_options(parser: argparse.ArgumentParser) -> None:
@@ -201,9 +200,7 @@ class _Help(argparse.HelpFormatter):
         super().__init__(prog, width=WIDEST)
 
     def format_help(self) -> str:
-        from shutil import get_terminal_size
-
-        self._width = get_terminal_size().columns - 2
+        self._width = columns(80) - 2
         return super().format_help()
 
 

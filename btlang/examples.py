@@ -16,7 +16,6 @@ from btlang.vocabulary.shipped import shipped
 _COMMAND = re.compile(r"^#   btc .*$", re.MULTILINE)
 _WORLD = re.compile(r"--world (\S+)")
 _INCLUDE = re.compile(r'^include "(.+)"$', re.MULTILINE)
-_WIDTH = 80
 
 
 class Example(Record):
@@ -49,14 +48,14 @@ def found(names: Iterable[str]) -> list[Example]:
     return [known[name] for name in dict.fromkeys(wanted)]
 
 
-def listing() -> list[str]:
+def listing(width: int = 80) -> list[str]:
     """Each mission with what it does and its world, as lines to read."""
     lines = []
     for example in examples():
         told = [example.about.removesuffix(":"), *([f"World: {example.world}"] if example.world else [])]
         lines.append(example.name)
         for text in told:
-            lines += textwrap.wrap(text, _WIDTH, initial_indent="    ", subsequent_indent="    ")
+            lines += textwrap.wrap(text, width, initial_indent="    ", subsequent_indent="    ")
     return [*lines, "", "To read one:    btc examples NAME", "To copy them:   btc examples --copy FOLDER [NAME ...]"]
 
 

@@ -272,7 +272,8 @@ def test_without_a_verb_it_is_the_prompt(monkeypatch: pytest.MonkeyPatch) -> Non
     monkeypatch.setitem(cli._VERBS, "repl", lambda options: asked.append(options) or 0)
     assert main([]) == 0
     assert main(["repl"]) == 0
-    assert [vars(options) | {"report": None} for options in asked] == [vars(asked[0]) | {"report": None}] * 2
+    own = {"report": None, "refuse": None}  # methods of the parser of each verb
+    assert [vars(options) | own for options in asked] == [vars(asked[0]) | own] * 2
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="there is no /dev/full")

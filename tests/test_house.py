@@ -34,6 +34,8 @@ PAGES = [*ROOT.glob("*.md"), *(ROOT / "docs").rglob("*.md")]
 MODULES = [path for path in FILES if path.suffix == ".py"]
 BORROWED = {ROOT / path for path in PROJECT["tool"]["ruff"]["extend-exclude"]}
 MOST_LINES = 400
+LONG: dict[str, str] = {}
+"""Files with more lines, each with the reason why it is one thing: no concept is cut for the sake of its length."""
 
 
 def name(path: Path) -> str:
@@ -44,9 +46,9 @@ def text(path: Path) -> str:
     return path.read_text(encoding="utf-8")
 
 
-def test_no_file_is_long() -> None:
-    long = {name(path): lines for path in FILES if (lines := len(text(path).splitlines())) > MOST_LINES}
-    assert not long
+def test_long_files_have_a_reason() -> None:
+    long = {name(path) for path in FILES if len(text(path).splitlines()) > MOST_LINES}
+    assert long == set(LONG)
 
 
 def test_no_work_is_left_as_a_note() -> None:
@@ -131,8 +133,11 @@ def test_contracts_name_every_part() -> None:
 
 
 LIGHT = [
-    (["check", "-c", "move forward 1 m then say done"], "lark rich asyncio numpy rclpy interegular"),
-    (["run", "-c", "move forward 1 m then wave", "--speed", "max", "--quiet"], "lark rich numpy rclpy"),
+    (["check", "-c", "move forward 1 m then say done"], "lark rich prompt_toolkit asyncio numpy rclpy interegular"),
+    (["run", "-c", "move forward 1 m then wave", "--speed", "max", "--quiet"], "lark rich prompt_toolkit numpy rclpy"),
+    (["tree", "-c", "wave then nod"], "rich prompt_toolkit"),
+    (["words"], "rich prompt_toolkit"),
+    (["explain"], "rich prompt_toolkit"),
 ]
 """Commands, and what they must not import: it would take longer than all that they do."""
 

@@ -12,6 +12,7 @@ import re
 from btlang.diagnostics.codes import CODES, NAMES
 from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
 from btlang.text.source import Source, Span
+from btlang.text.table import Table
 
 PAGES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "pages")
 _CODE = re.compile(r"bt(\d+)", re.IGNORECASE | re.ASCII)
@@ -35,10 +36,10 @@ def explain_code(code: str) -> str:
     return _page(known)
 
 
-def all_codes() -> str:
-    """A line for each code with the title of its page, then how to read one."""
-    titles = [_page(code).partition("\n")[0].removeprefix("# ") for code in sorted(CODES)]
-    return "\n".join([*(title.replace(":", " ", 1) for title in titles), "", "To read one: btc explain CODE"])
+def all_codes() -> Table:
+    """Each code with the title of its page."""
+    titles = (_page(code).partition("\n")[0].removeprefix("# ") for code in sorted(CODES))
+    return Table(tuple(tuple(title.split(": ", 1)) for title in titles))
 
 
 def _plain(name: str) -> str:

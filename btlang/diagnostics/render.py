@@ -2,17 +2,13 @@
 
 from __future__ import annotations
 
-import os
 import re
 
 from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.text.output import CYAN, PLAIN, RED, YELLOW, one_line
 from btlang.text.source import Span
 
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    from typing import TextIO
-
+# Not by rich: `btc check` would start later by its import, more than all that it does takes.
 _COLOURS = {"error": RED, "warning": YELLOW}
 _WIDEST = 120
 
@@ -78,20 +74,6 @@ def underlined(span: Span, colour: str = "") -> list[str]:
         first, last = first - cut + len(before), min(last - cut + len(before), len(line))
     marks = "^" * max(1, last - first)
     return [f"  {_blanked(line)}".rstrip(), "  " + " " * first + _painted(marks, colour)]
-
-
-def has_colour(stream: TextIO | None) -> bool:
-    """Whether a stream shows colours: a terminal does. NO_COLOR forbids them, FORCE_COLOR and CLICOLOR_FORCE ask for
-    them anywhere, CLICOLOR=0 turns them off on a terminal. The first of these that is set decides.
-    """
-    if os.environ.get("NO_COLOR"):
-        return False
-    if any(os.environ.get(name, "0") not in ("", "0") for name in ("FORCE_COLOR", "CLICOLOR_FORCE")):
-        return True
-    if os.environ.get("CLICOLOR") == "0" or os.environ.get("TERM") == "dumb" or stream is None:
-        return False
-    understands = os.name != "nt" or bool(os.environ.get("WT_SESSION") or os.environ.get("TERM"))
-    return understands and stream.isatty()
 
 
 def _painted(text: str, colour: str) -> str:

@@ -10,7 +10,7 @@ import sys
 from collections.abc import Iterable
 
 from btlang.diagnostics.diagnostic import Diagnostic, in_order
-from btlang.text.output import show
+from btlang.text.output import has_colour, show
 from btlang.text.source import Span
 
 TYPE_CHECKING = False
@@ -36,7 +36,7 @@ class Report:
         if self.is_json:
             self._held += problems
         else:
-            from btlang.diagnostics.render import has_colour, render  # most missions have nothing to tell of
+            from btlang.diagnostics.render import render  # most missions have nothing to tell of
 
             colour = has_colour(sys.stderr)
             show("\n\n".join(render(problem, colour) for problem in problems), stream=sys.stderr)

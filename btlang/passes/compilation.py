@@ -45,6 +45,8 @@ class Compilation:
         self._mission = mission
         self._tree = tree
         self._used_first: list[tuple[str, Node]] = []
+        self._nodes: list[tuple[str, list[Node]]] = []
+        self._ids: frozenset[str] = frozenset()
 
     @property
     def is_text(self) -> bool:
@@ -66,7 +68,7 @@ class Compilation:
     @tree.setter
     def tree(self, tree: Tree) -> None:
         self._tree = tree
-        self._used_first = []
+        self._used_first, self._nodes, self._ids = [], [], frozenset()
 
     @property
     def roots(self) -> list[tuple[str, Node]]:
@@ -75,18 +77,33 @@ class Compilation:
             self._used_first = used_first(self.tree)
         return self._used_first
 
+    @property
+    def nodes(self) -> list[tuple[str, list[Node]]]:
+        """As `roots`, with all nodes of each tree, children before their parents, from left to right."""
+        if not self._nodes:
+            self._nodes = [(name, children_first(root)) for name, root in self.roots]
+        return self._nodes
+
+    @property
+    def ids(self) -> frozenset[str]:
+        """The ids of all nodes."""
+        if not self._ids:
+            self._ids = frozenset([node.id for _, nodes in self.nodes for node in nodes])
+        return self._ids
+
     def fold(self, combine: Callable[[Node, Sequence[Result], dict[str, Result]], Result]) -> None:
         """Combines each node with the results of its children; the third argument are those of the names so far."""
         named: dict[str, Result] = {}
-        for name, root in self.roots:
+        for name, nodes in self.nodes:
             results: list[Result] = []
-            for node in children_first(root):
+            for node in nodes:
                 count = len(node.children)
-                done: Sequence[Result] = ()
                 if count:
                     done = results[-count:]
                     del results[-count:]
-                results.append(combine(node, done, named))
+                    results.append(combine(node, done, named))
+                else:
+                    results.append(combine(node, (), named))
             named[name] = results[0]
 
 

@@ -53,8 +53,7 @@ def lower_names(compilation: Compilation) -> Iterator[Diagnostic]:
 
 def lower(root: ast.Ast, scope: Scope) -> Lowered:
     """The tree of a command or condition."""
-
-    return fold(root, ast.parts, lambda item, done: lower_one(item, done, scope))
+    return fold(root, ast.parts, lambda item, done: _LOWER[type(item)](item, done, scope))
 
 
 def lower_one(item: ast.Ast, done: list[Lowered], scope: Scope) -> Lowered:

@@ -9,7 +9,6 @@ from btlang.passes.compilation import Compilation
 from btlang.text.source import NOWHERE
 from btlang.tree.catalogue import CATALOGUE, SUBTREE
 from btlang.tree.node import Node
-from btlang.tree.visit import children_first
 
 Holders = Mapping[str, Node]
 """Resource -> a leaf (or name) that holds it."""
@@ -20,26 +19,20 @@ _NONE: Holders = {}  # one for all
 def check_resources(compilation: Compilation) -> list[Diagnostic]:
     """BT041 once for each parallel and resource that two of its children need."""
     vocabulary = compilation.vocabulary
+    needs = {id: vocabulary.entries[id][0].resources for id in compilation.ids if id in vocabulary.entries}
+    at_once = {id for id in compilation.ids if id in CATALOGUE and CATALOGUE[id].at_once}
     problems: list[Diagnostic] = []
-    held_by_name: dict[str, Holders] = {}
-    for name, root in compilation.roots:
-        results: list[Holders] = []
-        for node in children_first(root):
-            count = len(node.children)
-            if count:
-                inner = results[-count:]
-                del results[-count:]
-                kind = CATALOGUE.get(node.id)
-                if kind is not None and kind.at_once:
-                    problems += _conflicts(inner)
-                results.append(_joined(inner))
-            elif node.id in vocabulary.entries:
-                results.append(dict.fromkeys(vocabulary.entries[node.id][0].resources, node))
-            elif node.id == SUBTREE:
-                results.append(dict.fromkeys(held_by_name.get(node.port("ID"), ()), node))
-            else:
-                results.append(_NONE)
-        held_by_name[name] = results[0]
+
+    def combine(node: Node, children: Sequence[Holders], named: dict[str, Holders]) -> Holders:
+        if children:
+            if node.id in at_once:
+                problems.extend(_conflicts(children))
+            return _joined(children)
+        resources = named.get(node.port("ID"), ()) if node.id == SUBTREE else needs.get(node.id)
+        return dict.fromkeys(resources, node) if resources else _NONE
+
+    if at_once:
+        compilation.fold(combine)
     return problems
 
 

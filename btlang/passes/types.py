@@ -9,14 +9,13 @@ from btlang.passes.compilation import Compilation
 from btlang.text.source import Span
 from btlang.tree.catalogue import CATALOGUE, Port
 from btlang.tree.node import Node
-from btlang.tree.visit import children_first
 
 
 def check_types(compilation: Compilation) -> Iterator[Diagnostic]:
     """BT014 for whole numbers, such as times and numbers of rounds, that a tree cannot hold."""
-    for _, root in compilation.roots:
-        wrong = {id(node): wanted for node in children_first(root) if node.ports and (wanted := _out_of_range(node))}
-        for node, span in _with_spans(root) if wrong else ():
+    for _, nodes in compilation.nodes:
+        wrong = {id(node): wanted for node in nodes if node.ports and (wanted := _out_of_range(node))}
+        for node, span in _with_spans(nodes[-1]) if wrong else ():
             if span is not None and id(node) in wrong:
                 yield diagnostic("BT014", span, words=span.text, wanted=wrong[id(node)])
 

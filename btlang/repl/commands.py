@@ -12,13 +12,30 @@ from btlang.frontends.mission.symbols.phrases import Phrases
 from btlang.record import Record
 from btlang.repl.draft import Entry, MissionDraft
 from btlang.repl.store import Store
+from btlang.robots.robot import Robot, RobotError
 from btlang.robots.world import said
+from btlang.text.output import listing_width
 from btlang.text.source import Source
+from btlang.text.table import Table
 from btlang.text.words import split
 from btlang.vocabulary.listing import help_on, listing
 from btlang.vocabulary.trie import longest
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
 _MARK = ":"  # before a word of the REPL that a mission knows too
+
+_FIRST = """\
+A line of the mission runs as soon as it is entered, and is kept: move forward 1 m
+A definition is only kept: patrol is go to the lobby then go to the lab
+A line that ends in ':' opens a block, which an empty line closes.
+"""
+_KEYS = f"""
+  Tab  takes what is offered      Ctrl-F  mends what is underlined      Up  earlier lines
+  Ctrl-C  stops the robot, or clears the line      Ctrl-D twice  leaves
+  A word of these that your mission knows too is the REPL's with a colon: {_MARK}show"""
 
 
 class Leave(Exception):
@@ -81,10 +98,10 @@ def is_begun(text: str) -> bool:
 
 
 class Commands:
-    """Does what the words of the REPL say; `write` gets lines for the user, `run` runs the whole mission."""
+    """Does what the words of the REPL say; `write` gets what `show` takes, `run` runs the whole mission."""
 
     def __init__(
-        self, draft: MissionDraft, write: Callable[[str], object], run: Callable[[], object], store: Store | None = None
+        self, draft: MissionDraft, write: Callable[[Any], object], run: Callable[[], object], store: Store | None = None
     ) -> None:
         self._draft = draft
         self._write = write
@@ -113,21 +130,24 @@ class Commands:
 
     def _help(self, rest: str) -> None:
         if not rest:
-            self._write("\n".join(overview()))
+            self._write(_FIRST)
+            rows = tuple((f"{command.name} {command.arguments}", command.help) for command in COMMANDS)
+            self._write(Table(rows, indent=2))
+            self._write(_KEYS)
         elif rest in _NAMES:
             self._write(_described(_NAMES[rest]))
         else:
-            self._write("\n".join(help_on(self._draft.vocabulary, rest)))
+            self._write("\n".join(help_on(self._draft.vocabulary, rest, listing_width())))
 
     def _words(self, rest: str) -> None:
-        self._write("\n".join(listing(self._draft.vocabulary, rest)))
+        self._write("\n".join(listing(self._draft.vocabulary, rest, listing_width())))
 
     def _show(self, rest: str) -> None:
         draft = self._draft
         if not draft.entries:
             self._write("There is nothing yet: type a command, such as: move forward 1 m")
         elif rest == "tree":
-            self._write(str(draft.compile_all()))
+            self._write(draft.compile_all())
         elif rest:
             name = " ".join(rest.lower().split())
             if name not in draft.definitions:
@@ -135,8 +155,8 @@ class Commands:
                 self._write(f"There is no name '{rest}'; defined are: {known}.")
                 return
             definition = draft.definitions[name]
-            tree = str(draft.compile(definition).mission).splitlines()[2:]
-            self._write("\n".join([definition, *tree]))
+            self._write(definition)
+            self._write(draft.compile(definition).outline())
         else:
             self._write(draft.text.rstrip("\n"))
 
@@ -221,9 +241,15 @@ class Commands:
             try:
                 draft.entries_of(draft.text, draft.file or "<session>") if draft.entries else None
             except MissionError:
+                draft.close()
                 draft.world, draft.vocabulary, draft.session = before
                 raise
-        self._write("\n".join(world_lines(draft)))
+            before[2].close()
+        names = draft.session.world.names
+        kinds = (("places", names.places), ("people", names.people), ("objects", names.objects))
+        known = ((kind, ", ".join(those)) for kind, those in kinds if those)
+        self._write(Table((("world", draft.world or "the one that ships"), *known), widths=(7,), gap=1))
+        self._write(robot_line(draft))
 
     def _reset(self, rest: str) -> None:
         self._draft.reset()
@@ -232,6 +258,9 @@ class Commands:
     def _speed(self, rest: str) -> None:
         from btlang.run.limits import SLOWEST
 
+        if not self._draft.is_simulated:
+            self._write("This robot runs in real time.")
+            return
         if rest in ("real", "max"):
             self.speed = rest
         elif rest:
@@ -249,26 +278,15 @@ class Commands:
         raise Leave
 
 
-def overview() -> list[str]:
-    """What the REPL is, its words and its keys."""
-    width = max(len(f"{command.name} {command.arguments}") for command in COMMANDS)
-    listed = [f"  {f'{command.name} {command.arguments}':<{width}}  {command.help}" for command in COMMANDS]
-    return [
-        "A line of the mission runs as soon as it is entered, and is kept: move forward 1 m",
-        "A definition is only kept: patrol is go to the lobby then go to the lab",
-        "A line that ends in ':' opens a block, which an empty line closes.",
-        "",
-        *listed,
-        "",
-        "  Tab  takes what is offered      Ctrl-F  mends what is underlined      Up  earlier lines",
-        "  Ctrl-C  stops the robot, or clears the line      Ctrl-D twice  leaves",
-        f"  A word of these that your mission knows too is the REPL's with a colon: {_MARK}show",
-    ]
-
-
 def robot_line(draft: MissionDraft) -> str:
     """Where the robot is and how it is."""
-    robot = draft.session.robot
+    try:
+        return _robot_line(draft.session.robot)
+    except RobotError as problem:  # a robot over ROS 2 that is silent
+        return f"where the robot is isn't known: {problem}"
+
+
+def _robot_line(robot: Robot) -> str:
     held = [said(name) for hand in ("left", "right") if (name := robot.holding(hand))]
     parts = [
         f"robot at ({robot.pose.x:.1f}, {robot.pose.y:.1f}) facing {robot.pose.heading:.0f}\N{DEGREE SIGN}",
@@ -277,17 +295,6 @@ def robot_line(draft: MissionDraft) -> str:
         *([f"holds {' and '.join(held)}"] if held else []),
     ]
     return ", ".join(parts)
-
-
-def world_lines(draft: MissionDraft) -> list[str]:
-    """The names of the world, and the robot in it."""
-    names = draft.session.world.names
-    kinds = (("places", names.places), ("people", names.people), ("objects", names.objects))
-    return [
-        f"world   {draft.world or 'the one that ships'}",
-        *(f"{kind:<7} {', '.join(known)}" for kind, known in kinds if known),
-        robot_line(draft),
-    ]
 
 
 def _described(command: Command) -> str:

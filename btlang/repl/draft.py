@@ -14,9 +14,11 @@ from btlang.frontends.mission.tokens.lexer import Lexer
 from btlang.passes import compile_mission, errors_of, run_passes
 from btlang.passes.compilation import Compilation
 from btlang.record import Record
+from btlang.robots.registry import runs_on
 from btlang.session import Session
 from btlang.text.source import Source
 from btlang.tree.ast import Ast, Chain, Definition, Fact, Include, Program, all_facts, parts
+from btlang.tree.dump import Outline
 from btlang.tree.node import Tree
 from btlang.tree.visit import used_subtrees
 from btlang.vocabulary.reading_context import Known
@@ -40,9 +42,14 @@ class Compiled(Record):
     entry: Entry
     mission: Mission
 
+    def outline(self) -> Outline:
+        """The tree as `btc tree` shows it; of definitions alone only their subtrees."""
+        whole = self.mission.__rich__()
+        return whole if self.entry.has_command else whole.replace(trees=whole.trees[1:])
+
 
 class MissionDraft:
-    """Entries, with undo and redo; the words; the simulated world and the values, which go on from entry to entry."""
+    """Entries, with undo and redo; the words; the robot and the values, which go on from entry to entry."""
 
     def __init__(
         self,
@@ -51,10 +58,12 @@ class MissionDraft:
         parser: str = DEFAULT_PARSER,
         include_root: str | None = None,
         robot: str = "simulated",
+        over: str | None = None,
         language: str = ENGLISH,
     ) -> None:
         """Raises MissionError where a keyword file, the world or the robot cannot be used."""
-        self._robot = robot
+        self._robot, self._over = robot, over
+        self.is_simulated = runs_on(robot, over)[1] == "simulated"
         self._keywords = keywords
         self._language = language
         self._include_root = include_root
@@ -71,14 +80,19 @@ class MissionDraft:
     def use_world(self, world: str | None) -> None:
         """Puts the robot into a world of its own file, None for the one that ships. Raises MissionError."""
         vocabulary = world_vocabulary(self._keywords, world, self._language)
-        self.session = Session(self._robot, world=world, over="simulated")
+        self.session = Session(self._robot, world=world, over=self._over)
         self.vocabulary = vocabulary
         self.world = world
 
     def reset(self) -> None:
-        """The same world, as it was at the start."""
-        self.session = Session(self._robot, world=self.world, over="simulated")
+        """No values, and the simulated world as it was at the start; another robot stays where it is."""
+        if self.is_simulated:
+            self.session = Session(self._robot, world=self.world, over=self._over)
         self._blackboard = Blackboard()
+
+    def close(self) -> None:
+        """Lets go of the robot."""
+        self.session.close()
 
     def _source(self, text: str, name: str = ENTRY) -> Source:
         folder = os.path.dirname(self.file or "")

@@ -5,18 +5,18 @@ from __future__ import annotations
 import signal
 import sys
 from collections.abc import Iterable, Iterator, Sequence
-from contextlib import contextmanager, nullcontext
+from contextlib import closing, contextmanager, nullcontext
 
 from btlang.api import Mission
 from btlang.diagnostics.diagnostic import MissionError
-from btlang.diagnostics.render import has_colour, render
+from btlang.diagnostics.render import render
 from btlang.frontends.mission.reader import DEFAULT_PARSER
 from btlang.repl.commands import Commands, Leave, command_of
 from btlang.repl.draft import MissionDraft
 from btlang.repl.entering import entries
 from btlang.repl.store import Kept, Store, state_folder
-from btlang.run.command import ENDING_SIGNALS, can_draw, run_mission
-from btlang.text.output import show
+from btlang.run.command import ENDING_SIGNALS, run_mission
+from btlang.text.output import can_draw, has_colour, show
 from btlang.vocabulary.shipped import ENGLISH
 
 TYPE_CHECKING = False
@@ -34,10 +34,15 @@ def run_repl(
     include_root: str | None = None,
     speed: float | str = "real",
     robot: str = "simulated",
+    over: str | None = None,
     language: str = ENGLISH,
 ) -> int:
     """Runs until the user leaves or the input ends; returns the exit code. Raises MissionError for wrong files."""
-    draft = MissionDraft(keywords, world, parser, include_root, robot, language)
+    with closing(MissionDraft(keywords, world, parser, include_root, robot, over, language)) as draft:
+        return _talk_or_read(draft, speed)
+
+
+def _talk_or_read(draft: MissionDraft, speed: float | str) -> int:
     if not can_draw(sys.stdout) or sys.stdin is None or not sys.stdin.isatty():
         return Repl(draft, Store(None), speed).read(sys.stdin or ())
     store = Store(state_folder())

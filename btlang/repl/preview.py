@@ -7,8 +7,9 @@ from btlang.frontends.mission.completion.completer import Completion, completion
 from btlang.frontends.mission.token import Token
 from btlang.frontends.mission.tokens.lexer import Lexer
 from btlang.record import Record
-from btlang.repl.draft import Compiled, MissionDraft
+from btlang.repl.draft import MissionDraft
 from btlang.text.source import Source
+from btlang.tree.dump import Outline
 from btlang.vocabulary.language_tables import CONNECTIVES
 from btlang.vocabulary.lexicon import Lexicon
 
@@ -28,14 +29,14 @@ class Preview(Record):
     """A text as the user may see it.
 
     `unfinished` tells that what is wrong may only be that more is to come, `midword` that this is the rest of a word.
-    `tree` holds lines, those of the part that can be read where not all can, () where there is none;
+    `tree` is that of the part that can be read where not all can, None where there is none;
     `marks` are characters of the text with "connective", "name" or "error".
     """
 
     problems: tuple[Diagnostic, ...] = ()
     unfinished: bool = False
     midword: bool = False
-    tree: tuple[str, ...] = ()
+    tree: Outline | None = None
     marks: tuple[tuple[int, int, str], ...] = ()
 
     @property
@@ -60,7 +61,7 @@ def preview(draft: MissionDraft, text: str) -> Preview:
         spans = () if unfinished else tuple((p.span.start, p.span.end, "error") for p in own if p.is_error)
         midword = unfinished and text[-1:].isalnum() and own[0].code in _UNKNOWN
         return Preview(own, unfinished, midword, _tree_so_far(draft, text, tokens), (*marks, *spans))
-    return Preview(compiled.mission.warnings, False, False, _tree_lines(compiled), marks)
+    return Preview(compiled.mission.warnings, False, False, compiled.outline(), marks)
 
 
 def continuations(draft: MissionDraft, text: str) -> list[Completion]:
@@ -97,7 +98,7 @@ def _goes_on(draft: MissionDraft, text: str) -> bool:
     return any(not option.spelling for option in continuations(draft, text))
 
 
-def _tree_so_far(draft: MissionDraft, text: str, tokens: list[Token]) -> tuple[str, ...]:
+def _tree_so_far(draft: MissionDraft, text: str, tokens: list[Token]) -> Outline | None:
     """The tree of the text without its last words, as few as possible."""
     tokens = [token for token in tokens if token.end > token.start]
     for _ in range(_MOST_TRIES):
@@ -108,16 +109,10 @@ def _tree_so_far(draft: MissionDraft, text: str, tokens: list[Token]) -> tuple[s
         if not tokens:
             break
         try:
-            return _tree_lines(draft.compile(text[: tokens[-1].end], suggest=False))
+            return draft.compile(text[: tokens[-1].end], suggest=False).outline()
         except MissionError:
             continue
-    return ()
-
-
-def _tree_lines(compiled: Compiled) -> tuple[str, ...]:
-    """The tree as `btc tree` prints it; of definitions alone only their subtrees."""
-    lines = str(compiled.mission).splitlines()
-    return tuple(lines if compiled.entry.has_command else lines[2:])
+    return None
 
 
 def _marks(tokens: list[Token]) -> tuple[tuple[int, int, str], ...]:

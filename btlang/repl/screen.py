@@ -1,14 +1,19 @@
-"""The REPL on a terminal: the line being typed, what is wrong with it, what may follow, and its tree, drawn live."""
+"""The REPL on a terminal: the line being typed, what is wrong with it, what may follow, and its tree, drawn live.
+
+prompt_toolkit reads the line, which it colours, and offers what may follow; what else is seen is drawn by rich.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Callable
+import sys
+from collections.abc import Callable, Iterator
+from itertools import islice
 
 from prompt_toolkit.application import Application
 from prompt_toolkit.buffer import Buffer
 from prompt_toolkit.document import Document
 from prompt_toolkit.filters import Condition, has_completions
-from prompt_toolkit.formatted_text import StyleAndTextTuples
+from prompt_toolkit.formatted_text import ANSI, StyleAndTextTuples
 from prompt_toolkit.history import FileHistory, History, InMemoryHistory
 from prompt_toolkit.input import Input
 from prompt_toolkit.layout import HSplit, Layout, Window
@@ -19,6 +24,10 @@ from prompt_toolkit.layout.menus import CompletionsMenuControl
 from prompt_toolkit.lexers import Lexer
 from prompt_toolkit.output import Output
 from prompt_toolkit.styles import Style
+from rich.console import Group, RenderableType
+from rich.padding import Padding
+from rich.styled import Styled
+from rich.text import Text
 
 from btlang.repl.commands import command_of, is_begun, robot_line
 from btlang.repl.draft import MissionDraft
@@ -26,21 +35,20 @@ from btlang.repl.keys import key_bindings
 from btlang.repl.offers import Offers
 from btlang.repl.preview import Preview, continuations, preview
 from btlang.repl.store import Store
+from btlang.text.drawing import lines
+from btlang.text.output import has_colour
 
 PROMPT, CONTINUED = "> ", "  "
 _MENU_ROWS = 8
 _MOST_PROBLEMS = 3  # the first ones: the others often follow from them
+
+_UNFINISHED = "bright_black"
 
 _STYLE = Style.from_dict({
     "prompt": "bold",
     "connective": "ansicyan",
     "name": "ansigreen",
     "error": "ansired underline",
-    "problem": "ansired",
-    "warning": "ansiyellow",
-    "unfinished": "ansibrightblack",
-    "tree": "",
-    "bottom": "ansibrightblack",
     "completion-menu": "noinherit",
     "completion-menu.completion.current": "reverse",
     "completion-menu.meta": "noinherit ansibrightblack",
@@ -129,58 +137,66 @@ class Screen:
             dont_extend_width=True,
             style="class:completion-menu",
         )
-        problems = FormattedTextControl(self._problem_lines)
-        tree = FormattedTextControl(self._tree_lines)
-        bottom = FormattedTextControl(self._bottom_line)
+        problems = FormattedTextControl(lambda: self._ansi(self._problems()))
+        tree = FormattedTextControl(lambda: ANSI("\n".join(self._tree_lines())))
+        bottom = FormattedTextControl(lambda: self._ansi(self._bottom_line(), fold=False))
         rows = [
             line,
             ConditionalContainer(
-                Window(problems, dont_extend_height=True, wrap_lines=True),
-                filter=Condition(lambda: bool(self._problem_lines())),
+                Window(problems, dont_extend_height=True),
+                filter=Condition(lambda: bool(self._problems().renderables)),
             ),
             ConditionalContainer(menu, filter=has_completions),
             ConditionalContainer(
                 Window(tree, dont_extend_height=True, height=Dimension(min=1)),
                 filter=Condition(lambda: bool(self.preview().tree)),
             ),
-            Window(bottom, height=1, style="class:bottom"),
+            Window(bottom, height=1),
             Window(),  # takes the rows that are no longer needed: what is drawn never gets fewer
         ]
         return Layout(HSplit(rows), focused_element=line)
 
-    def _problem_lines(self) -> StyleAndTextTuples:
+    def _problems(self) -> Group:
         """Carets under the words, where each line of the entry stands on a line of its own, and what is wrong."""
         seen, unfinished = self.preview(), self._is_unfinished()
-        lines: StyleAndTextTuples = []
+        parts: list[RenderableType] = []
         for problem in seen.problems[:_MOST_PROBLEMS] if not (unfinished and seen.midword) else ():
             if unfinished:
-                lines.append(("class:unfinished", f"{CONTINUED}{problem.message}\n"))
+                parts.append(_indented(problem.message, _UNFINISHED))
                 break
-            style = "class:problem" if problem.is_error else "class:warning"
+            style = "red" if problem.is_error else "yellow"
             start, end = problem.span.start, min(problem.span.end, len(self.buffer.text))
             if "\n" not in self.buffer.text and len(PROMPT) + len(self.buffer.text) < self._columns():
-                lines.append((style, " " * (len(PROMPT) + start) + "^" * max(1, end - start) + "\n"))
-            lines += [(style, f"{CONTINUED}{line}\n") for line in (problem.message, *problem.hint.splitlines())]
-        return _without_last_end(lines)
+                parts.append(Text(" " * (len(PROMPT) + start) + "^" * max(1, end - start), style))
+            parts += [_indented(line, style) for line in (problem.message, *problem.hint.splitlines())]
+        return Group(*parts)
 
-    def _tree_lines(self) -> StyleAndTextTuples:
+    def _tree_lines(self) -> Iterator[str]:
         seen = self.preview()
-        style = "class:unfinished" if seen.errors else "class:tree"
+        if seen.tree is None:
+            return
         menu = _MENU_ROWS if self.buffer.complete_state else 0
         room = max(3, self._rows() - self.buffer.text.count("\n") - 4 - menu)
-        lines = list(seen.tree)
-        if len(lines) > room:
-            lines = [*lines[: room - 1], f"... {len(lines) - room + 1} more lines"]
-        return _without_last_end([(style, f"{CONTINUED}{line}\n") for line in lines])
+        more = seen.tree.height - room
+        tree = Styled(seen.tree, _UNFINISHED if seen.errors else "")
+        drawn = lines(tree, self._columns() - len(CONTINUED), has_colour(sys.stdout), fold=False)
+        for line in islice(drawn, room - (more > 0)):
+            yield CONTINUED + line
+        if more > 0:
+            yield f"{CONTINUED}... {more + 1} more lines"
 
-    def _bottom_line(self) -> StyleAndTextTuples:
-        if self.note:
-            return [("class:bottom", CONTINUED + self.note)]
-        fix = self.fix()
-        keys = "Tab takes what is offered" if self.buffer.complete_state else "'help' tells more"
-        if fix is not None:
-            keys = f"Ctrl-F writes: {fix[2]}"
-        return [("class:bottom", f"{CONTINUED}{keys} \N{MIDDLE DOT} {robot_line(self.draft)}")]
+    def _bottom_line(self) -> Text:
+        text = self.note
+        if not text:
+            fix = self.fix()
+            keys = "Tab takes what is offered" if self.buffer.complete_state else "'help' tells more"
+            if fix is not None:
+                keys = f"Ctrl-F writes: {fix[2]}"
+            text = f"{keys} \N{MIDDLE DOT} {robot_line(self.draft)}"
+        return Text(CONTINUED + text, _UNFINISHED)
+
+    def _ansi(self, drawing: RenderableType, fold: bool = True) -> ANSI:
+        return ANSI("\n".join(lines(drawing, self._columns(), has_colour(sys.stdout), fold)))
 
     def fix(self) -> tuple[int, int, str] | None:
         """The first correction that is proposed: characters from and to, and what to write there."""
@@ -227,8 +243,5 @@ class _Marks(Lexer):
         return line_of
 
 
-def _without_last_end(lines: StyleAndTextTuples) -> StyleAndTextTuples:
-    if lines:
-        style, text = lines[-1][0], lines[-1][1]
-        lines[-1] = (style, text.rstrip("\n"))
-    return lines
+def _indented(text: str, style: str) -> Padding:
+    return Padding(Text(text, style), (0, 0, 0, len(CONTINUED)))

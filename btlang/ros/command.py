@@ -11,6 +11,7 @@ from btlang.robots.registry import connector, runs_on
 from btlang.ros.available import require_interfaces, require_ros
 from btlang.ros.serving.names import FOLDER
 from btlang.text.output import show
+from btlang.text.table import Table
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -110,11 +111,13 @@ def print_preflight(tree: Tree, vocabulary: Lexicon, world: World, robot: Any) -
         found = connection.survey(tree, vocabulary)
         lacks = connection.lacking_parts(tree, vocabulary)
         warnings = connection.warnings(found)
-    for interface, (_, reason) in found.items():
-        state = f"missing: {reason}" if reason else "found"
-        show(f"{interface.sort:<7} {interface.name:<20} {interface.type:<36} {state}")
-    for part in lacks:
-        show(f"{'part':<7} {part:<57} missing: it is not in the robot file")
+    rows = [
+        (needed.sort, needed.name, needed.type, f"missing: {reason}" if reason else "found")
+        for needed, (_, reason) in found.items()
+    ]
+    rows += [("part", part, "", "missing: it is not in the robot file") for part in lacks]
+    if rows:
+        show(Table(tuple(rows), widths=(7, 20, 36), gap=1))
     for warning in warnings:
         show(f"warning: {warning}")
     missing = sum(bool(reason) for _, reason in found.values()) + len(lacks)

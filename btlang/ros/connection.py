@@ -37,7 +37,6 @@ if TYPE_CHECKING:
     from btlang.vocabulary.lexicon import Lexicon
 
 _DISCOVERY = 7.0  # seconds of a node's life in which it has found all: DDS announces every 3 s, and two may get lost
-_ANNOUNCED = 3.0  # seconds of a node's life in which it has found nearly all
 _UNNAMED = "_NODE_NAME_UNKNOWN_"  # of a node whose topics are found and whose name is not yet
 _AGAIN = 2.0  # seconds that an older node gets
 _LAST_ANSWERS = 2.0  # seconds that goals which were halted get to end
@@ -119,7 +118,7 @@ class RosConnection:
         return lacking(self.robot.body, tree, vocabulary, but=self._bound(tree, vocabulary)[0])
 
     def warnings(self, needs: Iterable[Interface]) -> list[str]:
-        """What is there and may yet do harm: others who tell the robot how to move. Gives DDS a moment to find them."""
+        """What is there and may do harm: others who command the robot to move. Waits until DDS has found everybody."""
         if VELOCITY not in (need.name.rpartition("/")[2] for need in needs):
             return []
         name = full_name(self.node, "listener", VELOCITY)
@@ -132,7 +131,7 @@ class RosConnection:
         def are_named() -> bool:
             return bool(others()) and not any(node == _UNNAMED for _, node in others())
 
-        wait_until(are_named, self._discovers_until - _DISCOVERY + _ANNOUNCED - time.monotonic())
+        wait_until(are_named, self._discovers_until - time.monotonic())
         shown = ["another node" if node == _UNNAMED else f"{place}/{node}" for place, node in sorted(others())]
         return [f"{node} publishes {name} too, so the robot follows both" for node in shown]
 

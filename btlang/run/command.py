@@ -10,7 +10,7 @@ from contextlib import AbstractContextManager, contextmanager, nullcontext, supp
 
 from btlang.diagnostics.diagnostic import MissionError
 from btlang.diagnostics.reading import unwritable
-from btlang.diagnostics.render import has_colour, render
+from btlang.diagnostics.render import render
 from btlang.engine.status import FAILURE, SKIPPED
 from btlang.run.controls import Controls
 from btlang.run.emergency import emergency_signal
@@ -18,7 +18,7 @@ from btlang.run.json_log import JsonLog
 from btlang.run.lines import Lines, brief
 from btlang.run.runner import Outcome
 from btlang.run.standstill import Standstill
-from btlang.text.output import show
+from btlang.text.output import can_draw, has_colour, show
 from btlang.tree.node import Node, Tree
 
 TYPE_CHECKING = False
@@ -155,11 +155,6 @@ def _interrupted_by_signals() -> Iterator[list[int]]:
     finally:
         for number in taken:
             signal.signal(number, signal.SIG_DFL)
-
-
-def can_draw(output: TextIO | None) -> bool:
-    """Whether an output is a terminal in which a cursor can be moved."""
-    return output is not None and output.isatty() and os.environ.get("TERM", "dumb") not in ("", "dumb", "unknown")
 
 
 def _live_view(mission: Mission, controls: Controls, keys: bool, tree_stays: bool) -> LiveView | None:

@@ -9,7 +9,7 @@ text also `it is {level} percent` (see btlang/vocabulary/references.py).
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterable, Iterator
 
 from btlang.record import Record
 from btlang.text.source import Span
@@ -18,7 +18,7 @@ from btlang.vocabulary.references import keys_in
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import ClassVar
+    from typing import Any, ClassVar
 
 
 class Ast(Record):
@@ -331,22 +331,25 @@ def exact_nodes(mission: Program) -> list[Exact]:
     return found
 
 
-def keys_of(node: Ast) -> Iterator[str]:
+def keys_of(node: Ast) -> list[str]:
     """The keys of values of the mission that a node itself uses, not those in its parts."""
-    if isinstance(node, Phrase | Name | Compared | Remember):
-        if not isinstance(node, Phrase | Name):
-            yield node.key
-        for _, text in node.arguments:
-            yield from keys_in(text)
-    elif isinstance(node, Assign):
-        yield node.key
-        yield from keys_in(node.text)
-    elif isinstance(node, ForEach):
-        for text in node.values:
-            yield from keys_in(text)
-    elif isinstance(node, Repeat):
-        yield from keys_in(node.rounds)
-    elif isinstance(node, Retry):
-        yield from keys_in(node.attempts)
-    elif isinstance(node, _Timed | Wait):
-        yield from keys_in(node.seconds)
+    texts_of = _TEXTS.get(type(node))
+    if texts_of is None:
+        return []
+    keys = [key for text in texts_of(node) if "{" in text for key in keys_in(text)]
+    return [node.key, *keys] if isinstance(node, (Compared, Remember, Assign)) else keys
+
+
+def _of_arguments(node: Phrase | Name | Compared | Remember) -> list[str]:
+    return [text for _, text in node.arguments]
+
+
+_TEXTS: dict[type[Ast], Callable[[Any], Iterable[str]]] = {
+    **dict.fromkeys((Phrase, Name, Compared, Remember), _of_arguments),
+    **dict.fromkeys((Within, For, Every, Delay, Wait), lambda node: (node.seconds,)),
+    Assign: lambda node: (node.text,),
+    ForEach: lambda node: node.values,
+    Repeat: lambda node: (node.rounds,),
+    Retry: lambda node: (node.attempts,),
+}
+"""The port texts of a node, where it has some."""

@@ -1,12 +1,20 @@
-"""Trees as text: `plain` for programs and diffs, `outline` for people."""
+"""Trees as text: `plain` for programs and diffs, `Outline` for people."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 
+from btlang.record import Record
 from btlang.tree.node import Node, Tree
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from rich.console import Console, ConsoleOptions, RenderableType
+    from rich.text import Text
+    from rich.tree import Tree as RichTree
+
 _DEEPEST = 100  # levels; below it the level is a number, since the text would grow with the square of the depth
+_LABEL_WIDTH = 20  # columns that a label has at least beside the branches that rich draws
 _ESCAPES = str.maketrans({"\\": "\\\\", '"': '\\"', "\n": "\\n", "\r": "\\r", "\t": "\\t"})
 
 
@@ -29,15 +37,67 @@ def described(node: Node) -> str:
     return node.id + name + "".join(f" {key}={_value(text)}" for key, text in sorted(node.ports))
 
 
-def outline(tree: Tree, label: Callable[[Node], str] = described) -> str:
-    """The main tree with branches drawn, then each named subtree under its name.
+class Outline(Record):
+    """Trees with their branches drawn, each under its name, which is "" for the main tree.
 
-    Drawn by us: a terminal library fits lines to a width, and a text has none.
+    `str` draws them itself, since rich fits lines to a width and a text has none; on a terminal rich does.
     """
-    lines = list(_branches(tree.root, label))
-    for name, root in tree.subtrees:
-        lines += ["", f"{name}:", *_branches(root, label)]
-    return "\n".join(lines)
+
+    trees: tuple[tuple[str, Node], ...]
+    label: Callable[[Node], str]
+
+    def __str__(self) -> str:
+        return "\n\n".join(
+            "\n".join([*([f"{name}:"] if name else []), *_branches(root, self.label)]) for name, root in self.trees
+        )
+
+    @property
+    def height(self) -> int:
+        """How many lines it has, where none is folded."""
+        names = sum(1 for name, _ in self.trees if name)
+        return sum(1 for _, root in self.trees for _ in _nodes(root)) + names + len(self.trees) - 1
+
+    def __rich_console__(self, console: Console, options: ConsoleOptions) -> Iterator[RenderableType]:
+        from rich.text import Text
+
+        deepest = min(_DEEPEST, (options.max_width - _LABEL_WIDTH) // 4)
+        if any(depth > deepest for _, root in self.trees for depth, _ in _nodes(root)):
+            yield Text(str(self), no_wrap=True, overflow="ignore")
+            return
+        for at, (name, root) in enumerate(self.trees):
+            if name:
+                yield Text("\n" * bool(at) + f"{name}:")
+            yield _rich_tree(root, self.label)
+
+
+def outline(tree: Tree, label: Callable[[Node], str] = described) -> str:
+    """The main tree with branches drawn, then each named subtree under its name."""
+    return str(Outline((("", tree.root), *tree.subtrees), label))
+
+
+def _rich_tree(root: Node, label: Callable[[Node], str]) -> RichTree:
+    from rich.tree import Tree as RichTree
+
+    trunk = RichTree(_Label(root, label), guide_style="dim")
+    stack = [(root, trunk)]
+    while stack:
+        node, branch = stack.pop()
+        stack += [(child, branch.add(_Label(child, label))) for child in node.children]
+    return trunk
+
+
+class _Label(Record):
+    """Worded when it is drawn: the prompt draws only as many as there is room for."""
+
+    node: Node
+    label: Callable[[Node], str]
+
+    def __rich__(self) -> Text:
+        from rich.text import Text
+
+        text = Text(self.label(self.node), overflow="fold")
+        text.highlight_regex(r"^\w+", "bold")
+        return text
 
 
 def _nodes(root: Node) -> Iterator[tuple[int, Node]]:

@@ -37,7 +37,7 @@ NODE_ROLES = ("do", "test")
 
 
 class Lexicon:
-    """Phrases, types and connectives of a language and its packs.
+    """Phrases, types and connectives of a language and its packs; frozen once it is made.
 
     `about` says what each role means to people; it holds every role. `folder` is that of the language. Another language
     than English takes all but the words from the `english` lexicon: what its entries do, and what their slots take.
@@ -95,6 +95,12 @@ class Lexicon:
         if self._problems:
             raise MissionError(self._problems)
         self.orthography = self.orthography.with_words((*self.words(), *self.values.pronouns))
+        self._is_made = True
+
+    def __setattr__(self, name: str, value: object) -> None:
+        if "_is_made" in self.__dict__:
+            raise AttributeError(f"a Lexicon is frozen: cannot set {name}")
+        super().__setattr__(name, value)
 
     @property
     def types(self) -> Mapping[str, ValueType]:

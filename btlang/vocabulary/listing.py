@@ -13,17 +13,16 @@ from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.pattern import Form, forms
 from btlang.vocabulary.trie import longest
 
-_WIDTH = 80
+_WIDTH = 80  # columns, of a text that is for no terminal
 _FEW = 3  # of so few found, all is told
 _KEY = (
-    "[...] may be left out, {...} takes a value (see the end), a/b is a choice,",
+    "[...] may be left out, {{...}} takes a value (see the end), a/b is a choice,",
     "time(s) is time or times. A condition is no command: it needs a word such as",
     "'{if}' or '{until}'. btc words TOPIC shows a topic, btc words WORD what has a word.",
-    "",
 )
 
 
-def listing(vocabulary: Lexicon, search: str = "") -> list[str]:
+def listing(vocabulary: Lexicon, search: str = "", width: int = _WIDTH) -> list[str]:
     """Everything that can be said, by topic, each with what it does and an example.
 
     With `search` only the topic or sort of that name ("conditions"), else what is said with all of its words, else
@@ -32,13 +31,14 @@ def listing(vocabulary: Lexicon, search: str = "") -> list[str]:
     known = items(vocabulary)
     if not search.strip():
         examples = {role: vocabulary.word(role) for role in ("if", "until")}
-        return [*_KEY[:2], _KEY[2].format(**examples), *_KEY[3:], *_by_topic(known)]
+        key = [part for line in _KEY for part in _wrapped(line.format(**examples), "", "  ", width)]
+        return [*key, "", *_by_topic(known, width)]
     found = _found(known, search)
     whole = len(found) <= _FEW and not any(_is_called(item, search) for item in found)
-    return _by_topic(found, whole) or _unknown(known, search)
+    return _by_topic(found, width, whole) or _unknown(known, search)
 
 
-def help_on(vocabulary: Lexicon, text: str = "") -> list[str]:
+def help_on(vocabulary: Lexicon, text: str = "", width: int = _WIDTH) -> list[str]:
     """Help on a topic, a phrase (with or without values), a node id, a word of the language or a type of values.
 
     Of a phrase or word: all ways to say it, what it does, its slots, what it needs of the robot, and an example.
@@ -47,11 +47,11 @@ def help_on(vocabulary: Lexicon, text: str = "") -> list[str]:
     known = items(vocabulary)
     wanted = text.strip().strip("{}")
     if not wanted:
-        return _topics(known)
+        return _topics(known, width)
     if any(_is_called(item, wanted) for item in known):
-        return _by_topic(item for item in known if _is_called(item, wanted))
+        return _by_topic((item for item in known if _is_called(item, wanted)), width)
     found = _said_so(known, wanted, vocabulary) or _found(known, wanted) or _begun_so(known, wanted, vocabulary)
-    return [line for item in found for line in ("", *_whole(item))][1:] or _unknown(known, wanted)
+    return [line for item in found for line in ("", *_whole(item, width))][1:] or _unknown(known, wanted)
 
 
 def _is_called(item: Item, search: str) -> bool:
@@ -103,54 +103,57 @@ def _spoken(item: Item, articles: frozenset[str]) -> set[Form]:
     return {tuple(part for part in form if isinstance(part, str)) for form in ways}
 
 
-def _by_topic(chosen: Iterable[Item], whole: bool = False) -> list[str]:
+def _by_topic(chosen: Iterable[Item], width: int, whole: bool = False) -> list[str]:
     lines: list[str] = []
     topic = ""
     for item in chosen:
         if item.topic != topic:
             topic = item.topic
             lines += ["", f"{topic}:"] if lines else [f"{topic}:"]
-        lines += ["  " + line for line in _whole(item)] if whole and item.sort != "value" else _brief(item)
+        if whole and item.sort != "value":
+            lines += ["  " + line for line in _whole(item, width - 2)]
+        else:
+            lines += _brief(item, width)
     return lines
 
 
-def _brief(item: Item) -> list[str]:
+def _brief(item: Item, width: int) -> list[str]:
     if item.sort == "value":
-        return _wrapped(item.help, f"  {item.ways[0]:<12}", " " * 14)
+        return _wrapped(item.help, f"  {item.ways[0]:<12}", " " * 14, width)
     ways = item.ways if item.sort == "word" else item.ways[:1]
     mark = "  (condition)" if item.sort == "condition" else ""
-    lines = _wrapped(", ".join(ways), "  ", "    ")
+    lines = _wrapped(", ".join(ways), "  ", "    ", width)
     lines[-1] += mark
     block = _block(item.example, 8) if "\n" in item.example else []
     example = f"For example: {item.example}" if item.example not in ("", item.ways[0]) and not block else ""
     told = [text for text in (item.help, example) if text]
-    if len(" ".join(told)) <= _WIDTH - 6:
+    if len(" ".join(told)) <= width - 6:
         told = [" ".join(told)] if told else []
-    lines += [line for text in told for line in _wrapped(text, "      ", "      ")]
+    lines += [line for text in told for line in _wrapped(text, "      ", "      ", width)]
     return [*lines, *(["      For example:", *block] if block else [])]
 
 
-def _whole(item: Item) -> list[str]:
+def _whole(item: Item, width: int) -> list[str]:
     if item.sort == "value":
-        return _brief(item)
+        return _brief(item, width)
     mark = "  (condition)" if item.sort == "condition" else ""
-    lines = [item.ways[0] + mark, *_wrapped(item.help, "    ", "    ")]
+    lines = [item.ways[0] + mark, *_wrapped(item.help, "    ", "    ", width)]
     if item.sort == "word" and len(item.ways) > 1:
-        lines += _wrapped("also: " + ", ".join(item.ways[1:]), "    ", "          ")
+        lines += _wrapped("also: " + ", ".join(item.ways[1:]), "    ", "          ", width)
     elif len(item.ways) > 1:
         lines += ["    also: " + item.ways[1], *("          " + way for way in item.ways[2:])]
     for detail in item.details:
-        lines += _wrapped(detail, "    ", "        ")
+        lines += _wrapped(detail, "    ", "        ", width)
     if "\n" in item.example:
         return [*lines, "    for example:", *_block(item.example, 6)]
     return [*lines, *([f"    for example: {item.example}"] if item.example else [])]
 
 
-def _topics(known: Sequence[Item]) -> list[str]:
+def _topics(known: Sequence[Item], width: int) -> list[str]:
     lines = ["Ask for help on a topic, or on anything that can be said:"]
     for topic in dict.fromkeys(item.topic for item in known):
         ways = ", ".join(item.ways[0] for item in known if item.topic == topic)
-        lines.append(f"  {topic:<13} " + textwrap.shorten(ways, _WIDTH - 16, placeholder=" ..."))
+        lines.append(f"  {topic:<13} " + textwrap.shorten(ways, width - 16, placeholder=" ..."))
     return lines
 
 
@@ -166,8 +169,8 @@ def _unknown(known: Sequence[Item], search: str) -> list[str]:
     return [*lines, "Similar: " + ", ".join(dict.fromkeys(near))] if near else lines
 
 
-def _wrapped(text: str, first: str, then: str) -> list[str]:
-    return textwrap.wrap(text, _WIDTH, initial_indent=first, subsequent_indent=then, break_long_words=False)
+def _wrapped(text: str, first: str, then: str, width: int) -> list[str]:
+    return textwrap.wrap(text, width, initial_indent=first, subsequent_indent=then, break_long_words=False)
 
 
 def _block(example: str, indent: int) -> list[str]:

@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 
 from btlang.cli import main
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.diagnostics.render import has_colour, mended_line, render
+from btlang.diagnostics.render import mended_line, render
+from btlang.text.output import has_colour
 from btlang.text.source import Source, Span
 from tests.diagnostics.samples import sample_diagnostics, told
 

@@ -20,7 +20,7 @@ class Repl:
         self.session = MissionDraft()
         self.said: list[str] = []
         self.runs = 0
-        self.commands = Commands(self.session, self.said.append, self._run, store)
+        self.commands = Commands(self.session, lambda text: self.said.append(str(text)), self._run, store)
         for text in texts:
             self.session.add(self.session.compile(text).entry)
 

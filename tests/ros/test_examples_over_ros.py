@@ -14,10 +14,13 @@ from btlang.cli import main
 from btlang.vocabulary.shipped import DEFAULT_WORLD
 from tests.examples.cases import CASES
 from tests.examples.test_examples import mission, words_of
+from tests.profiles import amount
 from tests.ros.lock_step import in_lock_step
 from tests.ros.processes import LONG, Command
 
 ENDING = [name for name, case in CASES.items() if "--for" not in case.options]
+USUAL = ("museum_tour", "patrol", "oily_floor", "locked_lab", "find_someone", "obedience", "guard_the_door")
+"""Those of each run: together they use every part of the robot. `-m long` runs all."""
 LATER = 0.1
 """How much longer or shorter a mission may take over ROS 2."""
 TURN = 1.0
@@ -65,7 +68,8 @@ def ending(path: Path) -> dict[str, Any]:
     return end
 
 
-@pytest.mark.parametrize("name", ENDING)
+@pytest.mark.long
+@pytest.mark.parametrize("name", amount(0, 1) * ENDING or USUAL)
 def test_an_example_does_as_in_the_simulation(
     name: str,
     tmp_path: Path,

@@ -39,7 +39,8 @@ def busy_loops(compilation: Compilation) -> list[Diagnostic]:
         busy.append(node)
         return most
 
-    compilation.fold(combine)
+    if any(id in CATALOGUE and CATALOGUE[id].again for id in compilation.ids):
+        compilation.fold(combine)
     word = compilation.vocabulary.word
     advice = f"To wait for a condition say '{word('wait_until')} ...'; else put a '{word('wait')}' into the loop."
     if not compilation.is_text:

@@ -33,9 +33,10 @@ def cut_off(compilation: Compilation) -> list[Diagnostic]:
     """The first such action of each form; each action for its innermost form only."""
     entries = compilation.vocabulary.entries
     found: list[Diagnostic] = []
+    whole = {id for id in compilation.ids if any(entry.uninterruptible for entry in entries.get(id, ()))}
 
     def combine(node: Node, children: Sequence[Found], named: dict[str, Found]) -> Found:
-        if any(entry.uninterruptible for entry in entries.get(node.id, ())):
+        if node.id in whole:
             return Exposed(node, node)
         if not children:
             inner = named.get(node.port("ID")) if node.id == SUBTREE else None
@@ -47,7 +48,8 @@ def cut_off(compilation: Compilation) -> list[Diagnostic]:
         found.extend(_told(exposed, when, compilation))
         return None
 
-    compilation.fold(combine)
+    if whole:
+        compilation.fold(combine)
     return found
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property, partial
+from itertools import pairwise
 
 from btlang.passes.lint.gaps import Gaps, balanced
 from btlang.record import Record
@@ -39,17 +40,15 @@ class Attachment(Record):
     readings: Callable[[], Readings]
 
 
-def in_chain(chain: ast.Chain, is_part: bool, vocabulary: Lexicon) -> Iterator[Attachment]:
+def in_chain(chain: ast.Chain, items: Sequence[ast.Ast], is_part: bool, vocabulary: Lexicon) -> Iterator[Attachment]:
     """Those between the parts of a chain; `is_part`: it is itself a part of another one, without brackets.
+
+    The chain is no list of values; `items` are its parts in the order of the text.
 
     Only neighbours that could be read otherwise are looked at, so that a long chain of plain commands costs little.
     """
-    items = in_order(chain.items)
-    if is_list(chain):
-        return
     gaps: Gaps | None = None
-    for at in range(len(items) - 1):
-        left, right = items[at], items[at + 1]
+    for at, (left, right) in enumerate(pairwise(items)):
         if not left.parts and not right.parts:
             continue  # two plain commands, as nearly always
         wrapped = _after_its_body(right)
@@ -72,9 +71,9 @@ def in_chain(chain: ast.Chain, is_part: bool, vocabulary: Lexicon) -> Iterator[A
             yield Attachment(LIST, start, partial(place.list_right, right))
 
 
-def in_form(node: ast.Ast) -> Iterator[Attachment]:
+def in_form(node: ast.If | ast.Try) -> Iterator[Attachment]:
     """An `otherwise` that both this form and one at the end of its body could have."""
-    if not isinstance(node, (ast.If, ast.Try)) or node.otherwise is not None or node.body.span.start <= node.span.start:
+    if node.otherwise is not None or node.body.span.start <= node.span.start:
         return
     path: list[ast.Ast] = [node]
     part: Any = node.body

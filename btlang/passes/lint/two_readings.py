@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import re
 from bisect import bisect
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
@@ -52,22 +52,22 @@ def _attachments(root: ast.Ast, compilation: Compilation) -> Iterator[Attachment
     while stack:
         node, is_part = stack.pop()
         if isinstance(node, ast.Chain):
-            if is_list(node):
-                continue
-            yield from in_chain(node, is_part, compilation.vocabulary)
-            stack += reversed(list(_parts(node, compilation)))
+            if any(item.parts for item in node.items) and not is_list(node):
+                items = in_order(node.items)
+                yield from in_chain(node, items, is_part, compilation.vocabulary)
+                stack += reversed(_parts(items, compilation))
             continue
-        yield from in_form(node)
+        if isinstance(node, ast.If | ast.Try):
+            yield from in_form(node)
         stack += [(part, False) for part in reversed(ast.parts(node)) if part.parts]
 
 
-def _parts(chain: ast.Chain, compilation: Compilation) -> Iterator[tuple[ast.Ast, bool]]:
+def _parts(items: Sequence[ast.Ast], compilation: Compilation) -> list[tuple[ast.Ast, bool]]:
     """The parts of a chain that have parts, and whether each has something beside it in its statement."""
-    items = in_order(chain.items)
     gaps = Gaps(items, compilation.vocabulary)
-    for at, item in enumerate(items):
-        if item.parts:
-            yield item, isinstance(item, ast.Chain) and not gaps.is_alone(at)
+    return [
+        (item, isinstance(item, ast.Chain) and not gaps.is_alone(at)) for at, item in enumerate(items) if item.parts
+    ]
 
 
 def _sentence_ends(source: Source) -> list[int]:

@@ -37,26 +37,30 @@ def _values(mission: Program) -> Iterator[Diagnostic]:
     asked: set[str] = set()
     given: dict[str, Span] = {}
     for definition in all_definitions(mission):
-        own = set(_asked(definition.body, given))
+        own = _asked(definition.body, given)
         asked |= own
         for key, _ in definition.parameters:
             if key not in own and definition.span.source is mission.span.source:
                 yield diagnostic("BT051", definition.name_span, name=f"{{{key}}}")
     if mission.body is not None:
-        asked.update(_asked(mission.body, given))
+        asked |= _asked(mission.body, given)
     for key, span in given.items():
         if key not in asked and span.source is mission.span.source:
             yield diagnostic("BT051", span, name=key.replace("_", " ").strip())
 
 
-def _asked(root: Ast, given: dict[str, Span]) -> Iterator[str]:
-    """The keys of values that a tree asks for; those that it gives are noted with their first place."""
+def _asked(root: Ast, given: dict[str, Span]) -> set[str]:
+    """The keys of values that a tree asks for; adds those that it gives to `given`, with their first place."""
+    asked: set[str] = set()
     stack = [root]
     while stack:
         node = stack.pop()
-        stack.extend(reversed(parts(node)))
-        if isinstance(node, Assign | Remember):
+        if node.parts:
+            stack.extend(reversed(parts(node)))
+        keys = keys_of(node)
+        if isinstance(node, (Assign, Remember)):
             given.setdefault(node.key, node.span)
-            yield from (key for key in keys_of(node) if key != node.key)
-        else:
-            yield from keys_of(node)
+            keys = [key for key in keys if key != node.key]
+        if keys:
+            asked.update(keys)
+    return asked

@@ -38,6 +38,7 @@ class Ride:
         self.abandoned = False
         """Whether its client has died."""
         self.ended = Future()
+        self.feedback = Every(5)
 
     def abandon(self) -> None:
         """Its client has died."""
@@ -58,7 +59,6 @@ class Navigation:
         self._calls = calls
         self._wheels = wheels
         self._ride: Ride | None = None
-        self._feedback_due = Every(5)
         self._leases = Leases(node)
         ActionServer(
             node,
@@ -79,7 +79,7 @@ class Navigation:
         if ride.navigation.done and not self._brakes(ride, now.seconds):
             self._ride = None
             self._end(ride)
-        elif self._feedback_due.is_due(now.seconds):
+        elif ride.feedback.is_due(now.seconds):
             self._tell(ride, ride.navigation, now)
 
     async def _execute(self, goal: ServerGoalHandle) -> NavigateToPose.Result:

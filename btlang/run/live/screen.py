@@ -27,6 +27,8 @@ _CONTROL = re.compile("\x1b\\[[0-9;]*m")
 class Screen:
     """Draws frames at the end of what a terminal shows. Lines that did not change are not written again.
 
+    Not by rich.live, which erases every line before it writes the frame: measured at 120 x 50, two of five reads of the
+    terminal end in a frame with lines missing, and 20 frames a second cost 9% of a core (here: none, and 4%).
     Used by one thread at a time.
     """
 
