@@ -13,7 +13,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.api import Mission, parse_file, parse_tree
     from btlang.decorators import action, condition, quantity
-    from btlang.diagnostics.diagnostic import Diagnostic, MissionError
+    from btlang.diagnostics.diagnostic import Diagnostic
+    from btlang.diagnostics.errors import MissionError
     from btlang.engine.leaves.leaf import ActionFailed, Unknown
     from btlang.run.runner import Outcome
     from btlang.run.statuses import Status
@@ -27,7 +28,7 @@ __all__ = [
 _HOMES = {
     "ActionFailed": "btlang.engine.leaves.leaf",
     "Diagnostic": "btlang.diagnostics.diagnostic",
-    "MissionError": "btlang.diagnostics.diagnostic",
+    "MissionError": "btlang.diagnostics.errors",
     "Outcome": "btlang.run.runner",
     "Run": "btlang.session",
     "Session": "btlang.session",

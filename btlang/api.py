@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Callable, Sequence
 from functools import partial
 
-from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.diagnostics.errors import MissionError
 from btlang.frontends.mission.reader import DEFAULT_PARSER, read_mission
 from btlang.frontends.table import frontend_of, read_text
 from btlang.gc_pause import gc_paused

@@ -12,7 +12,7 @@ from importlib import import_module
 
 from btlang.api import Mission, format_mission, parse_tree, world_vocabulary
 from btlang.cli_options import parsed
-from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source, reason_of
 from btlang.diagnostics.report import Report
 from btlang.text.output import listing_width, pass_on, show

@@ -11,7 +11,8 @@ from functools import cache, partial
 from threading import Condition
 
 from btlang.backends.engine import bind_leaf
-from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.diagnostics.errors import MissionError
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine, EngineError
@@ -29,7 +30,7 @@ from btlang.run.report import failure_report
 from btlang.run.runner import Outcome, Runner, traced_engine
 from btlang.run.snapshot import Follower, Snapshot
 from btlang.run.statuses import Status
-from btlang.text.output import RED
+from btlang.text.escaping import RED
 from btlang.text.source import NOWHERE
 
 TYPE_CHECKING = False

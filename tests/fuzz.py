@@ -19,7 +19,7 @@ from collections.abc import Callable
 from functools import partial
 
 from btlang.api import Mission, world_vocabulary
-from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.errors import MissionError
 from btlang.examples import examples
 from btlang.frontends.mission.completion.completer import completions
 from btlang.frontends.mission.reader import read_mission

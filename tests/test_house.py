@@ -8,6 +8,7 @@ import re
 import subprocess
 import sys
 import tomllib
+from collections.abc import Container
 from importlib.metadata import PackageNotFoundError, version
 from pathlib import Path
 
@@ -60,6 +61,29 @@ def test_every_module_says_what_it_is_for() -> None:
     silent = [path for path in MODULES if ast.get_docstring(ast.parse(text(path))) is None]
     packages = {path for path in silent if path.name == "__init__.py" and "tests" in path.parts}
     assert [name(path) for path in silent if path not in packages | BORROWED] == []
+
+
+def test_no_modules_import_each_other() -> None:
+    """Imports inside functions and for types alone are counted, too: such a circle is one thing in several files."""
+    names = {".".join(path.relative_to(ROOT).with_suffix("").parts): path for path in MODULES if "btlang" in path.parts}
+    imports = {name: imported(ast.parse(text(path)), names) - {name} for name, path in names.items()}
+    left = dict(imports)
+    while free := [name for name, others in left.items() if not others & left.keys()]:
+        for name in free:
+            del left[name]
+    assert not left, "these, or what they import, import each other"
+
+
+def imported(tree: ast.Module, names: Container[str]) -> set[str]:
+    """The modules that one imports, wherever it does."""
+    found: set[str] = set()
+    for node in ast.walk(tree):
+        if isinstance(node, ast.ImportFrom) and node.module:
+            inner = {f"{node.module}.{alias.name}" for alias in node.names}
+            found |= {name for name in (node.module, *inner) if name in names}
+        elif isinstance(node, ast.Import):
+            found |= {alias.name for alias in node.names if alias.name in names}
+    return found
 
 
 def test_every_layer_has_its_paragraph_in_the_architecture() -> None:

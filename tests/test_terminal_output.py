@@ -12,10 +12,10 @@ from hypothesis import strategies as st
 
 import btlang
 from btlang.cli import main
-from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.render import render
 from btlang.text.drawing import lines
-from btlang.text.output import CYAN, PLAIN, RED, YELLOW, one_line, printable
+from btlang.text.escaping import CYAN, PLAIN, RED, YELLOW, one_line, printable
 from btlang.text.source import Source
 from btlang.text.table import Table
 from btlang.tree.dump import Outline, described

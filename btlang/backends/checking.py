@@ -7,7 +7,8 @@ from functools import cache, partial
 
 from btlang.backends.engine import bind_leaf, leaf_binding
 from btlang.backends.keywords import Draft, drafts
-from btlang.diagnostics.diagnostic import Diagnostic, diagnostic, in_order
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.diagnostics.errors import in_order
 from btlang.engine.faults import UnknownNode, UnknownSubTree, faults
 from btlang.engine.instance import EngineError
 from btlang.engine.leaves.leaf import LeafBinding

@@ -8,9 +8,10 @@ from bisect import bisect_right
 from collections.abc import Callable, Iterator
 
 from btlang.printer.blocks import lines_of
+from btlang.printer.mission import printer_of
 from btlang.printer.pieces import is_longer
 from btlang.printer.printer import Printer
-from btlang.printer.sentence import printer_of, statements
+from btlang.printer.sentence import statements
 from btlang.record import Record
 from btlang.text.source import Source
 from btlang.text.words import END_OF_STATEMENT, Words, split

@@ -6,7 +6,7 @@ import os
 import shutil
 from contextlib import nullcontext
 
-from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import unwritable
 
 

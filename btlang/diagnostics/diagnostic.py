@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from btlang.diagnostics.codes import CODES, Code
 from btlang.record import Record
-from btlang.text.output import one_line
+from btlang.text.escaping import one_line
 from btlang.text.source import Span
 
 _LONGEST = 160  # characters of an argument in a message
@@ -70,25 +70,3 @@ def _grows_together(span: Span, words: str) -> bool:
 def _shown(text: str) -> str:
     short = text if len(text) <= _LONGEST else text[: _LONGEST // 2] + " ... " + text[-_LONGEST // 2 :]
     return one_line(short)
-
-
-class MissionError(Exception):
-    """Everything that is wrong with an input. The one exception that compiling raises.
-
-    `diagnostics` are sorted by place; at least one of them is an error.
-    """
-
-    def __init__(self, diagnostics: list[Diagnostic]) -> None:
-        self.diagnostics = in_order(diagnostics)
-        super().__init__(self.diagnostics)
-
-    def __str__(self) -> str:
-        from btlang.diagnostics.render import render
-
-        return "\n\n".join(render(d) for d in self.diagnostics)
-
-
-def in_order(diagnostics: list[Diagnostic]) -> list[Diagnostic]:
-    """By file, place, code and text, each once."""
-    unique = {(d.span.source.name, d): d for d in diagnostics}  # spans of two files may be equal
-    return sorted(unique.values(), key=lambda d: (d.span.source.name, d.span.start, d.code, d.span.end, d.arguments))

@@ -10,7 +10,8 @@ import os
 import re
 
 from btlang.diagnostics.codes import CODES, NAMES
-from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.diagnostics.errors import MissionError
 from btlang.text.source import Source, Span
 from btlang.text.table import Table
 

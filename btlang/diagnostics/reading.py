@@ -9,7 +9,8 @@ import sys
 from codecs import BOM_UTF8
 from collections.abc import Callable
 
-from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.diagnostics.errors import MissionError
 from btlang.text.source import Source, Span
 
 MOST_BYTES = 10_000_000

@@ -5,7 +5,7 @@ from __future__ import annotations
 import re
 
 from btlang.diagnostics.diagnostic import Diagnostic
-from btlang.text.output import CYAN, PLAIN, RED, YELLOW, one_line
+from btlang.text.escaping import CYAN, PLAIN, RED, YELLOW, one_line
 from btlang.text.source import Span
 
 # Not by rich: `btc check` would start later by its import, more than all that it does takes.

@@ -9,7 +9,8 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterable
 
-from btlang.diagnostics.diagnostic import Diagnostic, in_order
+from btlang.diagnostics.diagnostic import Diagnostic
+from btlang.diagnostics.errors import in_order
 from btlang.text.output import has_colour, show
 from btlang.text.source import Span
 

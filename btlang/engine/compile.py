@@ -9,8 +9,9 @@ from btlang.engine.clock import Clock
 from btlang.engine.conditions import conditioned
 from btlang.engine.fused import fused
 from btlang.engine.instance import EngineError, EngineState, NodeInstance, halt_nothing
-from btlang.engine.leaves.binding import LeafSignature, bound_leaf
+from btlang.engine.leaves.binding import bound_leaf
 from btlang.engine.leaves.leaf import ActionFailed
+from btlang.engine.leaves.signature import LeafSignature
 from btlang.engine.nodes import (
     blackboard_nodes,
     branch,

@@ -27,16 +27,40 @@ from btlang.tree.node import Node
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any, TypeAlias
+    from typing import Any, Protocol, TypeAlias
 
-    from btlang.engine.leaves.background import Background
-    from btlang.engine.leaves.binding import LeafSignature
-    from btlang.engine.status_trace import NodeTrace
-    from btlang.engine.timing import Stopwatch
+    from btlang.engine.leaves.signature import LeafSignature
 
     Tick: TypeAlias = Callable[[], int]
     Halt: TypeAlias = Callable[[bool], None]
     Compiled: TypeAlias = tuple[Tick, Halt]
+
+    class LeafTrace(Protocol):
+        """What a leaf that takes time tells of itself; see NodeTrace in status_trace.py."""
+
+        index: int
+        reported_by_leaf: bool
+
+        def change(self, status: int) -> None: ...
+
+        def ended(self, status: int) -> int: ...
+
+        def flush(self) -> None: ...
+
+    class LeafTimer(Protocol):
+        """See Stopwatch in timing.py."""
+
+        def wrap(self, index: int, compiled: Compiled) -> Compiled: ...
+
+    class BackgroundWork(Protocol):
+        """See Background in leaves/background.py."""
+
+        @property
+        def is_working(self) -> bool: ...
+
+        def take_faults(self) -> list[Fault]: ...
+
+        def close(self, patience: float) -> list[int]: ...
 
 
 class EngineError(Exception):
@@ -90,7 +114,7 @@ class EngineState:
         clock: Clock,
         services: Mapping[str, Any],
         enums: Mapping[str, float],
-        stopwatch: Stopwatch | None,
+        stopwatch: LeafTimer | None,
         proxies: Mapping[str, Callable[..., Any]] = {},
     ) -> None:
         self.bind = bind
@@ -101,7 +125,7 @@ class EngineState:
         self.service_names = frozenset(("blackboard", *self.services))
         self.signatures: dict[str, LeafSignature] = {}  # of the leaves that were bound so far, by id
         self.enums = {name: float(value) for name, value in enums.items()}  # names that scripts and Switch nodes know
-        self.background: Background | None = None  # where a leaf works beside the tick
+        self.background: BackgroundWork | None = None  # where a leaf works beside the tick
         self.fault: Fault | NodeInstance | None = None  # the latest failure
         self.unknown: Fault | NodeInstance | None = None  # the latest condition that could not know
         self.unknowns = 0  # how many there have been
@@ -112,7 +136,7 @@ class EngineState:
         self.emergency = False  # whether the halt in progress is an emergency stop, which starts nothing
         # what reactive nodes that are at another child want stopped before an action starts there
         self.interrupts: list[Callable[[], None]] = []
-        self.node_trace: NodeTrace | None = None  # of the node that is being compiled
+        self.node_trace: LeafTrace | None = None  # of the node that is being compiled
 
 
 class NodeInstance:

@@ -121,6 +121,10 @@ class NodeTrace:
             if before == RUNNING and not self.below:  # a leaf that took time
                 self.trace.flush()
 
+    def flush(self) -> None:
+        """Hands the pending changes of the whole engine to the listener."""
+        self.trace.flush()
+
     def ended(self, status: int) -> int:
         """Called by a leaf that reports its own completions; returns the status."""
         if self.reported_by_leaf:

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from btlang.diagnostics.diagnostic import Diagnostic, MissionError, in_order
+from btlang.diagnostics.diagnostic import Diagnostic
+from btlang.diagnostics.errors import MissionError, in_order
 from btlang.passes.compilation import Compilation, Pass
 from btlang.passes.lint.allow import silence
 from btlang.passes.lint.busy import busy_loops

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping
 
 from btlang.printer.phrase import holds_definer, leaf_words, value_of
 from btlang.printer.pieces import CLOSE, LEAF, OPEN, WORD, Piece, Pieces, flat, last_of, mark, reads_on, text_of
@@ -13,6 +13,12 @@ from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.pattern import Form, Slot, forms, name_form
 from btlang.vocabulary.trie import TrieNode, add
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any, TypeAlias
+
+    SayNode: TypeAlias = Callable[[Any, list["Doc"], "Printer"], "Doc"]
 
 THEN, OR, AND, FORM, WHOLE = range(5)
 """How tightly what is said holds together, loosest first; WHOLE is a leaf or stands in brackets."""
@@ -46,7 +52,7 @@ class Doc(Record):
 
 
 class Printer:
-    """Says nodes in the words of a vocabulary, where `names` are defined.
+    """Says nodes in the words of a vocabulary, where `names` are defined; `printers` say each kind of node.
 
     With `brackets` "all" each chain and form inside another one is bracketed, with "needed" only those whose reading
     needs it (see the table in docs/language/joining.md): what binds less tightly than what is around it,
@@ -55,8 +61,13 @@ class Printer:
     """
 
     def __init__(
-        self, vocabulary: Lexicon, names: Iterable[str | ast.Definition] = (), brackets: str = "needed"
+        self,
+        printers: Mapping[type[ast.Ast], SayNode],
+        vocabulary: Lexicon,
+        names: Iterable[str | ast.Definition] = (),
+        brackets: str = "needed",
     ) -> None:
+        self._printers = printers
         if brackets not in ("needed", "clear", "all"):
             raise ValueError(f'brackets are "needed", "clear" or "all": {brackets!r}')
         self.vocabulary = vocabulary.with_references()
@@ -79,13 +90,11 @@ class Printer:
 
     def say(self, node: ast.Ast) -> Doc:
         """What is said of a node (any but a Mission)."""
-        from btlang.printer.sentence import PRINTERS  # its functions need the printer
-
         if id(node) in self._said:
             return self._said[id(node)][1]
 
         def combine(item: ast.Ast, parts: list[Doc]) -> Doc:
-            said: Doc = PRINTERS[type(item)](item, parts, self)
+            said: Doc = self._printers[type(item)](item, parts, self)
             if any(part.in_lines for part in parts) or any(isinstance(part, ast.Whenever) for part in ast.parts(item)):
                 said = said.replace(in_lines=True)
             if parts or isinstance(item, ast.Name):

@@ -8,16 +8,14 @@ with a value behind it; brackets do the rest.
 
 from __future__ import annotations
 
-import math
-from collections.abc import Callable, Iterable, Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 
 from btlang.printer import naming
-from btlang.printer.exact import exact, quoted
+from btlang.printer.exact import exact
 from btlang.printer.pieces import COMMA, LEAF, Piece, Pieces, mark
 from btlang.printer.printer import AND, FORM, OR, THEN, WHOLE, Doc, Printer, bracketed
 from btlang.tree import ast
 from btlang.vocabulary.language_tables import CONNECTIVES
-from btlang.vocabulary.lexicon import Lexicon
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -28,40 +26,6 @@ _CHAINS = {
     **{operator: (_LEVELS.get(operator, THEN), role) for role, operator in reversed(CONNECTIVES.items())},
     "any": (OR, "or"), "all": (AND, "and"),
 }  # fmt: skip
-
-
-def english(node: ast.Ast, vocabulary: Lexicon, *, brackets: str = "needed", names: Iterable[str] = ()) -> str:
-    """Canonical English of any AST; a Mission is its facts, its definitions and then its commands.
-
-    Each is on a line, or in a block where a line cannot say it.
-    `brackets` is "needed", "clear" or "all" (see Printer); `names` are those that are defined where a part of a
-    mission stands.
-    """
-    from btlang.printer.blocks import lines_of
-
-    if not isinstance(node, ast.Program):
-        return "\n".join(lines_of(node, Printer(vocabulary, names, brackets)))
-    printer = printer_of(node, vocabulary, brackets)
-    return "\n".join(mission_lines(node, printer))
-
-
-def mission_lines(mission: ast.Program, printer: Printer, width: float = math.inf) -> Iterator[str]:
-    """The lines of a mission; see `lines_of`."""
-    from btlang.printer.blocks import lines_of
-
-    if mission.name:
-        yield f"{printer.word('main_name').text} {quoted(mission.name, printer.vocabulary)}"
-    named = (*mission.includes, *mission.facts, *mission.definitions)
-    for part, joined in [*((part, "") for part in named), *statements(mission.body)]:
-        yield from lines_of(part, printer, width, joined)
-
-
-def printer_of(mission: ast.Program, vocabulary: Lexicon, brackets: str = "needed") -> Printer:
-    """Says the parts of a mission, where its names and places are known."""
-    facts = ast.all_facts(mission)
-    if facts:
-        vocabulary = vocabulary.with_places(tuple(fact.name for fact in facts))
-    return Printer(vocabulary, ast.all_definitions(mission), brackets)
 
 
 def statements(body: ast.Ast | None) -> Iterator[tuple[ast.Ast, str]]:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 from collections.abc import Callable
 
-from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source, unwritable
 from btlang.frontends.mission.symbols.definitions import find_definitions
 from btlang.frontends.mission.symbols.phrases import Phrases

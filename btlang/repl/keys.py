@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from prompt_toolkit.buffer import Buffer
 from prompt_toolkit.filters import Condition, completion_is_selected
 from prompt_toolkit.key_binding import KeyBindings, KeyPressEvent
 
@@ -11,12 +12,29 @@ from btlang.repl.preview import preview
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.repl.screen import Screen
+    from typing import Protocol
+
+    from btlang.repl.draft import MissionDraft
+
+    class Editor(Protocol):
+        """What the keys act on; see screen.py."""
+
+        buffer: Buffer
+        draft: MissionDraft
+        note: str
+        leaving: bool
+
+        def fix(self) -> tuple[int, int, str] | None: ...
+
+        def offers(self) -> bool: ...
+
+        def refuse(self) -> None: ...
+
 
 _INDENT = "  "
 
 
-def key_bindings(screen: Screen) -> KeyBindings:
+def key_bindings(screen: Editor) -> KeyBindings:
     """Enter, Tab, Ctrl-F, Ctrl-C, Ctrl-D and Backspace."""
     keys = KeyBindings()
     buffer = screen.buffer

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from btlang.diagnostics.diagnostic import Diagnostic, MissionError
+from btlang.diagnostics.diagnostic import Diagnostic
+from btlang.diagnostics.errors import MissionError
 from btlang.frontends.mission.completion.completer import Completion, completions
 from btlang.frontends.mission.token import Token
 from btlang.frontends.mission.tokens.lexer import Lexer

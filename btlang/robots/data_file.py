@@ -14,7 +14,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import TypeVar
 
-    from btlang.diagnostics.diagnostic import MissionError
+    from btlang.diagnostics.errors import MissionError
 
     T = TypeVar("T")
 
@@ -52,7 +52,8 @@ def load_data(path: str, what: str, make: Callable[[Table], T], error: type[Data
 
 def as_mission_error(error: DataFileError) -> MissionError:
     """The error's code at its line."""
-    from btlang.diagnostics.diagnostic import MissionError, diagnostic
+    from btlang.diagnostics.diagnostic import diagnostic
+    from btlang.diagnostics.errors import MissionError
     from btlang.diagnostics.reading import read_source
     from btlang.text.source import Source, Span
 

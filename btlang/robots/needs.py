@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Collection, Sequence
 
-from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.diagnostics.errors import MissionError
 from btlang.robots.body import Body
 from btlang.text.source import NOWHERE
 from btlang.vocabulary.capabilities import POSTURE, part_of

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from importlib import import_module
 
-from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.diagnostics.diagnostic import diagnostic
+from btlang.diagnostics.errors import MissionError
 from btlang.text.source import Source, Span
 
 _INSTALL = "Install it: pip install 'btlang[ros]', or source your ROS 2 Jazzy: . /opt/ros/jazzy/setup.bash"

@@ -8,7 +8,8 @@ from typing import Any
 
 from rosgraph_msgs.msg import Clock as ClockMessage
 
-from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.diagnostics.diagnostic import diagnostic
+from btlang.diagnostics.errors import MissionError
 from btlang.robots.body import Body
 from btlang.robots.needs import check_body, lacking
 from btlang.robots.world import World

@@ -6,7 +6,8 @@ import math
 from collections.abc import Callable, Iterable, Mapping
 from importlib import import_module
 
-from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.diagnostics.diagnostic import diagnostic
+from btlang.diagnostics.errors import MissionError
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.text.source import Source, Span
 from btlang.text.spelling import nearest

@@ -17,7 +17,7 @@ from btlang.run.events import (
     StatusesChanged,
     Stuck,
 )
-from btlang.text.output import one_line
+from btlang.text.escaping import one_line
 from btlang.tree.catalogue import CATALOGUE
 from btlang.tree.node import Node
 

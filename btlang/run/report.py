@@ -8,7 +8,7 @@ from collections.abc import Callable, Iterator
 from btlang.diagnostics.render import underlined
 from btlang.engine.engine import Failure
 from btlang.run.failure_history import Attempt, Attempts, FailureHistory
-from btlang.text.output import printable
+from btlang.text.escaping import printable
 from btlang.tree.catalogue import CATALOGUE, SUBTREE
 from btlang.tree.node import Node
 

@@ -8,7 +8,7 @@ from rich.color import ColorSystem
 from rich.console import Console, RenderableType
 from rich.segment import Segment
 
-from btlang.text.output import one_line
+from btlang.text.escaping import one_line
 
 
 def lines(drawing: RenderableType, width: int, colour: bool, fold: bool = True) -> Iterator[str]:

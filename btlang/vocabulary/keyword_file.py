@@ -6,7 +6,8 @@ import re
 import tomllib
 from math import inf, isfinite
 
-from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.diagnostics.errors import MissionError
 from btlang.record import Record
 from btlang.text.source import Source, Span
 from btlang.text.toml import parse_toml

@@ -11,8 +11,6 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from btlang.vocabulary.keyword_file import KeywordFile
-
 CONNECTIVES = {"then": "sequence", "and": "parallel", "or": "fallback", "after": "sequence"}
 """The roles that join commands, each with the operator of the chain that it makes."""
 
@@ -135,11 +133,11 @@ _LANGUAGE: dict[str, Any] = {
 }  # fmt: skip
 
 
-def merged(files: Iterable[KeywordFile]) -> dict[str, Any]:
+def merged(tables: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
     """The language tables of all files; a later file replaces single roles and words of an earlier one."""
     found = {key: type(value)(value) for key, value in _LANGUAGE.items()}
-    for file in files:
-        for key, value in file.language.items():
+    for table in tables:
+        for key, value in table.items():
             if isinstance(value, dict):
                 found[key] |= value
             else:
@@ -147,12 +145,12 @@ def merged(files: Iterable[KeywordFile]) -> dict[str, Any]:
     return found
 
 
-def about_roles(files: Iterable[KeywordFile], known: Mapping[str, About]) -> dict[str, About]:
-    """What the files tell of the roles, the latest of each; a role with new words loses its example in old ones."""
+def about_roles(tables: Iterable[Mapping[str, Any]], known: Mapping[str, About]) -> dict[str, About]:
+    """What the tables say of the roles, the latest of each; a role with new words loses its example in old ones."""
     about: dict[str, About] = {role: told.replace(example="") for role, told in known.items()}
-    for file in files:
-        told = file.language.get("about", {})
-        replaced = [role for role in file.language.get("roles", {}) if role in about and role not in told]
+    for table in tables:
+        told = table.get("about", {})
+        replaced = [role for role in table.get("roles", {}) if role in about and role not in told]
         about |= {role: about[role].replace(example="") for role in replaced}
-        about |= {role: About(**table) for role, table in told.items()}
+        about |= {role: About(**keys) for role, keys in told.items()}
     return about | {role: About() for role in EXPLAINED if role not in about}

@@ -7,7 +7,8 @@ import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import chain
 
-from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.diagnostics.errors import MissionError
 from btlang.text.source import Source, Span
 from btlang.text.spelling import nearest
 from btlang.text.words import Orthography, split
@@ -56,7 +57,8 @@ class Lexicon:
         self.entries: dict[str, list[Entry]] = {}
         """By id. Entries of an id that has no words in this language have no phrases."""
         files = list(files)
-        language = merged(files)
+        tables = [file.language for file in files]
+        language = merged(tables)
         if english is not None:
             language["roles"] = {**english.roles, **language["roles"]}  # a role without words keeps the English ones
             language["comparisons"] = {**english.comparisons, **language["comparisons"]}
@@ -83,7 +85,7 @@ class Lexicon:
         """The words of nodes that have some, by their ids."""
         self.meanings: dict[str, str] = language["meanings"]
         """Connectives that have another role between commands: `and` may mean `then`."""
-        self.about: dict[str, About] = about_roles(files, english.about if english is not None else {})
+        self.about: dict[str, About] = about_roles(tables, english.about if english is not None else {})
         self.quantities: TrieNode = {}
         """The phrases of quantities alone: before `is` they compare and define nothing."""
         self.comparisons: dict[str, list[str]] = language["comparisons"]

@@ -9,7 +9,7 @@ from hypothesis import given, note
 
 from btlang.api import parse_tree, world_vocabulary
 from btlang.backends.english import to_english
-from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source
 from btlang.frontends.mission.reader import read_mission
 from btlang.passes import lower_mission

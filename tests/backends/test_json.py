@@ -13,7 +13,7 @@ from hypothesis import strategies as st
 
 from btlang.api import parse_tree, world_vocabulary
 from btlang.backends.json_tree import SCHEMA, to_json
-from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.errors import MissionError
 from btlang.frontends.json.reader import read_json
 from btlang.record import Record
 from btlang.tree.model import NodeModel, PortModel

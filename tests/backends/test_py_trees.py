@@ -13,7 +13,7 @@ from btlang.backends.py_trees.build import to_py_trees
 from btlang.backends.py_trees.in_order import SkippableSequence
 from btlang.backends.py_trees.module import to_module
 from btlang.backends.py_trees.plan import DEEPEST
-from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.errors import MissionError
 from btlang.tree.node import Node, Tree
 
 from ..engine.scripted import n

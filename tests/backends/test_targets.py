@@ -18,7 +18,7 @@ import btlang
 from btlang.api import Mission, format_mission, world_vocabulary
 from btlang.backends.targets import TARGETS, compiled, target_of
 from btlang.cli import main
-from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.errors import MissionError
 from btlang.frontends.json.reader import read_json
 from btlang.text.source import Source
 from btlang.tree.model import NodeModel, PortModel

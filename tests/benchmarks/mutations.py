@@ -22,7 +22,8 @@ from pathlib import Path
 from typing import NamedTuple
 
 from btlang.api import world_vocabulary
-from btlang.diagnostics.diagnostic import Diagnostic, MissionError
+from btlang.diagnostics.diagnostic import Diagnostic
+from btlang.diagnostics.errors import MissionError
 from btlang.examples import examples
 from btlang.frontends.mission.reader import read_mission
 from btlang.passes import compile_mission, errors_of

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.render import render
 from btlang.frontends.btcpp.reader import read_xml
 from btlang.text.source import Source

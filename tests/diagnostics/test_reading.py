@@ -12,7 +12,7 @@ import pytest
 
 import btlang
 from btlang.cli import main
-from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import MOST_BYTES, read_source
 from btlang.diagnostics.render import render
 from btlang.text.source import Source

@@ -11,7 +11,7 @@ from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from btlang.api import world_vocabulary
-from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.errors import MissionError
 from btlang.frontends.mission.completion.completer import Completion, completions
 from btlang.vocabulary.lexicon import Lexicon
 from tests.language.letters import letters, read

@@ -11,10 +11,10 @@ import pytest
 import btlang
 from btlang.api import format_mission, world_vocabulary
 from btlang.cli import main
-from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.errors import MissionError
 from btlang.frontends.mission.completion.completer import completions
 from btlang.frontends.mission.reader import PARSERS
-from btlang.printer.sentence import english
+from btlang.printer.mission import english
 from btlang.repl.draft import MissionDraft
 from btlang.ros.mission.setup import Setup
 from btlang.text.source import Source

@@ -10,12 +10,13 @@ from typing import NamedTuple
 from hypothesis import example, given, reject
 from hypothesis import strategies as st
 
-from btlang.diagnostics.diagnostic import Diagnostic, MissionError
+from btlang.diagnostics.diagnostic import Diagnostic
+from btlang.diagnostics.errors import MissionError
 from btlang.frontends.mission.reader import read_mission
 from btlang.passes import compile_mission
 from btlang.passes.compilation import Compilation
 from btlang.passes.lint.two_readings import two_readings
-from btlang.printer.sentence import english
+from btlang.printer.mission import english
 from btlang.text.source import Source
 from btlang.tree.node import Node, Tree
 from tests.language.letters import letters

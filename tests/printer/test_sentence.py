@@ -11,12 +11,13 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from btlang.api import world_vocabulary
-from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.errors import MissionError
 from btlang.frontends.mission.reader import read_mission
 from btlang.passes import compile_mission
 from btlang.printer import blocks
+from btlang.printer.mission import english
 from btlang.printer.printer import Printer
-from btlang.printer.sentence import PRINTERS, english, statements
+from btlang.printer.sentence import PRINTERS, statements
 from btlang.text.source import Source
 from btlang.tree import ast
 from btlang.tree.dump import plain
@@ -81,7 +82,7 @@ def test_syntax_trees_keep_their_tree(mission: ast.Program) -> None:
 @given(trees.missions(), st.sampled_from([1, 20, 50]), st.sampled_from(BRACKETS))
 def test_blocks_keep_the_tree(mission: ast.Program, width: int, brackets: str) -> None:
     tree = compile_mission(mission, letters())
-    speaker = Printer(letters(), mission.definitions, brackets)
+    speaker = Printer(PRINTERS, letters(), mission.definitions, brackets)
     lines = [line for one in mission.definitions for line in blocks.lines_of(one, speaker, width, least=0)]
     for item, joined in statements(mission.body):
         lines += blocks.lines_of(item, speaker, width, joined, least=0)
@@ -213,7 +214,7 @@ def test_depth_does_not_matter() -> None:
     mission = ast.Program(node, (), trees.SPAN)
     text = english(mission, letters())
     assert compiled(text, letters(), "shunting-yard")[1] == compile_mission(mission, letters())
-    assert len(blocks.lines_of(node, Printer(letters()), 100)) == 3
+    assert len(blocks.lines_of(node, Printer(PRINTERS, letters()), 100)) == 3
 
 
 def test_wrong_brackets_are_refused() -> None:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.errors import MissionError
 from btlang.repl.commands import COMMANDS, Commands, Leave, command_of
 from btlang.repl.draft import MissionDraft
 from btlang.repl.entering import entries, needs_more

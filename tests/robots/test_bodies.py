@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 import btlang
-from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source
 from btlang.examples import Example, examples
 from btlang.robots.body import Body

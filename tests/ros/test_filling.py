@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from btlang.api import world_vocabulary
-from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.errors import MissionError
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.vocabulary.entry import Entry, SlotSpec
 from btlang.vocabulary.ros_binding import RosBinding

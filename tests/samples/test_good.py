@@ -16,7 +16,7 @@ import pytest
 from btlang.api import parse_tree, world_vocabulary
 from btlang.diagnostics.reading import read_source
 from btlang.frontends.mission.reader import read_mission
-from btlang.printer.sentence import english
+from btlang.printer.mission import english
 from btlang.tree import ast
 from btlang.tree.dump import plain
 from btlang.vocabulary.entry import COMPARISONS

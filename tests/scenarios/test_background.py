@@ -15,7 +15,7 @@ from typing import Any
 import pytest
 
 import btlang
-from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.errors import MissionError
 from btlang.engine.status import FAILURE, SUCCESS
 from btlang.run import runner
 from btlang.run.events import Troubled
@@ -121,7 +121,8 @@ def test_one_that_does_not_end_is_told_and_does_not_hold_up_the_process(tmp_path
     done = btc(tmp_path, f"say go then {command}", "--for", "1.5", "--log", str(log))
     assert time.monotonic() - began < PATIENCE
     assert (done.returncode, done.stderr) == (0, "")
-    assert lines(done.stdout)[-2:] == [f"halted {command}", f"error  {command} did not end after it was halted"]
+    told = [line for line in lines(done.stdout) if line.startswith(("halted", "error"))]  # a busy machine adds warnings
+    assert told == [f"halted {command}", f"error  {command} did not end after it was halted"]
     [error] = [line for line in map(json.loads, log.read_text().splitlines()) if line.get("event") == "error"]
     assert (error["path"], error["place"]) == ("/1", "<command line>:1:13")
 

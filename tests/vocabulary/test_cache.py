@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 
 from btlang.api import world_vocabulary
-from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.errors import MissionError
 from btlang.text.source import Source
 from btlang.text.words import split
 from btlang.vocabulary import cache

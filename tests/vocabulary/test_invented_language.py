@@ -17,7 +17,7 @@ from btlang.api import world_vocabulary
 from btlang.diagnostics.reading import read_source
 from btlang.frontends.mission.reader import read_mission
 from btlang.passes import compile_mission
-from btlang.printer.sentence import english
+from btlang.printer.mission import english
 from btlang.robots.world_file import world_names
 from btlang.text.source import Source
 from btlang.tree.node import Node, Tree

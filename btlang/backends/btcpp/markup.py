@@ -7,7 +7,8 @@ from __future__ import annotations
 
 import re
 
-from btlang.diagnostics.diagnostic import Diagnostic, MissionError, diagnostic
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.diagnostics.errors import MissionError
 from btlang.frontends.btcpp.models import why_no_port
 from btlang.frontends.btcpp.origin import Element, Markup
 from btlang.frontends.btcpp.spelling import is_xml_name

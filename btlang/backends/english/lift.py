@@ -16,6 +16,7 @@ from btlang.passes.lower import Lowered
 from btlang.passes.scope import Scope
 from btlang.printer.phrase import leaf_words
 from btlang.printer.printer import Printer
+from btlang.printer.sentence import PRINTERS
 from btlang.record import Record
 from btlang.text.source import NOWHERE
 from btlang.tree import ast
@@ -47,7 +48,7 @@ class Lifter:
         self.refused: set[str] = set()
         heads = [ast.Definition(name, known.parameters(name), ast.Nothing(NOWHERE), NOWHERE, NOWHERE)
                  for name in sorted(known.names)]  # fmt: skip
-        self.printer = Printer(vocabulary, heads, "clear")
+        self.printer = Printer(PRINTERS, vocabulary, heads, "clear")
         self._node_kinds = {model.id: model.kind for model in tree.models}
         self._comments = comments
         self._conditions: set[str] = set()  # the names that stand for conditions

@@ -7,13 +7,14 @@ from collections.abc import Iterator, Sequence
 from btlang.backends.english.comments import Comments, comments_of
 from btlang.backends.english.lift import Lifter
 from btlang.backends.english.names import Names, Refused
-from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.diagnostics.diagnostic import diagnostic
+from btlang.diagnostics.errors import MissionError
 from btlang.frontends.mission.reader import read_mission
 from btlang.passes import lower_mission
 from btlang.passes.order import used_first
 from btlang.printer.exact import is_one_piece
+from btlang.printer.mission import mission_lines
 from btlang.printer.printer import Printer
-from btlang.printer.sentence import mission_lines
 from btlang.text.source import NOWHERE, Source
 from btlang.tree.ast import Fact, Program, exact_nodes
 from btlang.tree.dump import plain

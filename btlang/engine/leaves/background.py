@@ -8,12 +8,13 @@ starts nothing. Threads are daemons: one that does not end does not keep the pro
 from __future__ import annotations
 
 import time
-from collections import deque
 from collections.abc import Callable, Mapping
-from threading import Event, Thread
+from threading import Thread
+from typing import cast
 
 from btlang.engine.instance import EngineState, Fault, NodeInstance
 from btlang.engine.leaves.leaf import ActionFailed, described
+from btlang.engine.leaves.work import Work
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -24,81 +25,6 @@ if TYPE_CHECKING:
 HALTED = "halted"
 """The parameter by which the function of a thread gets the event that is set when it is halted."""
 _CLOSING = 0.5  # seconds that an event loop gets to end when nothing works on it
-
-
-class Request:
-    """A call that the thread of a work hands over to the one that ticks."""
-
-    __slots__ = ("call", "done", "problem", "result")
-
-    def __init__(self, call: Callable[[], object]) -> None:
-        self.call = call
-        self.done = Event()
-        self.result: object = None
-        self.problem: BaseException | None = None
-
-
-class Work:
-    """One run of a background leaf. `ended` is set when it is over; its `result` or its `problem` is there by then.
-
-    `proxies` are what it got in place of services that are not safe beside the tick.
-    """
-
-    __slots__ = ("_requests", "_wake", "cancel", "ended", "halted", "problem", "proxies", "result")
-
-    def __init__(self, wake: Callable[[], object]) -> None:
-        self._wake = wake
-        self._requests: deque[Request] = deque()
-        self.proxies: dict[str, Any] = {}
-        self.halted = Event()
-        self.ended = Event()
-        self.result: object = None
-        self.problem: BaseException | None = None
-        self.cancel: Callable[[], object] = self.halted.set
-        """Asks it to end, from the thread that ticks."""
-
-    def in_tick(self, call: Callable[[], Any]) -> Any:
-        """What `call` gives or raises in the thread that ticks, which the next tick of the leaf calls at once.
-
-        For the threads of the work. Raises ActionFailed once the work was halted or is over.
-        """
-        request = Request(call)
-        self._requests.append(request)
-        self._wake()
-        if self.halted.is_set() or self.ended.is_set():
-            self.refuse()
-        request.done.wait()
-        if request.problem is not None:
-            raise request.problem
-        return request.result
-
-    def serve(self) -> None:
-        """Does what was handed over before now."""
-        for _ in range(len(self._requests)):
-            request = self._requests.popleft()
-            try:
-                request.result = request.call()
-            except KeyboardInterrupt:
-                self._requests.appendleft(request)
-                raise
-            except BaseException as problem:
-                request.problem = problem
-            request.done.set()
-
-    def refuse(self) -> None:
-        """Does nothing of what was handed over, from any thread."""
-        while True:
-            try:
-                request = self._requests.popleft()
-            except IndexError:
-                return
-            request.problem = ActionFailed("it was halted")
-            request.done.set()
-
-    def let_go(self) -> None:
-        """Ends what it has set about with its services."""
-        for proxy in self.proxies.values():
-            proxy.let_go()
 
 
 class Background:
@@ -224,7 +150,7 @@ def background_leaf(
 ) -> BackgroundLeaf:
     """`call` takes the values of the ports that are read at each start, the event `halted` where it asks for it, and
     proxies of the services."""
-    background = instance.state.background
+    background = cast("Background | None", instance.state.background)
     if background is None:
         background = instance.state.background = Background(instance.state)
 

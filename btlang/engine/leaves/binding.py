@@ -9,6 +9,7 @@ from weakref import WeakKeyDictionary
 from btlang.engine.instance import NodeInstance, blackboard_key
 from btlang.engine.leaves.callables import class_leaf, function_leaf, generator_leaf
 from btlang.engine.leaves.leaf import LeafBinding, described
+from btlang.engine.leaves.signature import LeafSignature
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -23,65 +24,45 @@ if TYPE_CHECKING:
 _signatures: WeakKeyDictionary[Callable[..., Any], tuple[Parameter, ...]] = WeakKeyDictionary()
 
 
-class LeafSignature:
-    """What the leaves of one engine with the same id share, found once.
-
-    `kind` is "class", "async", "generator", "thread" or "function"; `given` keeps the names of the services that the
-    call gets, by the names of the ports that a node has; for a class `made_with` keeps those of its constructor.
-    """
-
-    __slots__ = ("binding", "given", "kind", "made_with")
-
-    def __init__(self, binding: LeafBinding) -> None:
-        from inspect import isclass, iscoroutinefunction, isgeneratorfunction
-
-        call = binding.call
-        self.binding = binding
-        self.given: dict[tuple[str, ...], list[str]] = {}
-        self.made_with: list[str] | None = None
-        if isclass(call):
-            self.kind = "class"
-        elif iscoroutinefunction(call) or iscoroutinefunction(type(call).__call__):
-            self.kind = "async"
-        elif isgeneratorfunction(call) or isgeneratorfunction(type(call).__call__):
-            self.kind = "generator"
-        else:
-            self.kind = "thread" if binding.thread else "function"
-
-
-def bound_leaf(instance: NodeInstance, plan: LeafSignature) -> Compiled:
+def bound_leaf(instance: NodeInstance, signature: LeafSignature) -> Compiled:
     """A leaf that is a Python object; raises EngineError where its parameters do not fit its ports."""
-    binding = plan.binding
+    binding = signature.binding
     call: Any = binding.call
     ports = {**binding.defaults, **{port: text for port, text in instance.node.ports if port[:1] != "_"}}
-    if binding.thread and plan.kind != "thread":
+    if binding.thread and signature.kind != "thread":
         raise instance.error(f"{instance.node.id} is to run in a thread, and only a plain function can")
     names = tuple(ports)
-    if plan.kind == "class":
-        leaf = _make(instance, plan)
-        if names not in plan.given:
-            plan.given[names] = _fill(instance, leaf.start, names, ())
+    if signature.kind == "class":
+        leaf = _make(instance, signature)
+        if names not in signature.given:
+            signature.given[names] = _fill(instance, leaf.start, names, ())
         constants, stored = _arguments(instance, ports, binding)
         start = partial(leaf.start, **constants) if constants else leaf.start
         return class_leaf(instance, leaf, start, stored)
-    given = plan.given.get(names)
+    given = signature.given.get(names)
     if given is None:
         services = instance.state.service_names
-        given = plan.given[names] = _fill(instance, call, names, services | {"halted"} if binding.thread else services)
+        given = signature.given[names] = _fill(
+            instance, call, names, services | {"halted"} if binding.thread else services
+        )
     constants, stored = _arguments(instance, ports, binding) if ports else ({}, None)
-    beside = instance.state.proxies if plan.kind in ("async", "thread") else ()
+    beside = instance.state.proxies if signature.kind in ("async", "thread") else ()
     for name in given:
         if name not in beside and (name != "halted" or not binding.thread):
             constants[name] = instance.service(name)
     if constants:
         call = partial(call, **constants)
-    if plan.kind in ("async", "thread"):
+    if signature.kind in ("async", "thread"):
         from btlang.engine.leaves.background import background_leaf
 
         proxied = {name: instance.service(name) for name in given if name in beside}
         background = background_leaf(instance, call, binding.thread, "halted" in given, proxied)
         return class_leaf(instance, background, background.start, stored)
-    return generator_leaf(instance, call, stored) if plan.kind == "generator" else function_leaf(instance, call, stored)
+    return (
+        generator_leaf(instance, call, stored)
+        if signature.kind == "generator"
+        else function_leaf(instance, call, stored)
+    )
 
 
 def _arguments(instance: NodeInstance, ports: dict[str, str], binding: LeafBinding) -> tuple[dict[str, Any], Stored]:
@@ -100,15 +81,15 @@ def _arguments(instance: NodeInstance, ports: dict[str, str], binding: LeafBindi
     return constants, stored
 
 
-def _make(instance: NodeInstance, plan: LeafSignature) -> Any:
-    cls: Any = plan.binding.call
-    if plan.made_with is None:
+def _make(instance: NodeInstance, signature: LeafSignature) -> Any:
+    cls: Any = signature.binding.call
+    if signature.made_with is None:
         missing = [method for method in ("start", "tick", "halt") if not callable(getattr(cls, method, None))]
         if missing:
             raise instance.error(f"{cls.__name__} has no {' and no '.join(missing)}, so it is no leaf")
-        plan.made_with = _fill(instance, cls, (), instance.state.service_names)
+        signature.made_with = _fill(instance, cls, (), instance.state.service_names)
     try:
-        return cls(**{name: instance.service(name) for name in plan.made_with})
+        return cls(**{name: instance.service(name) for name in signature.made_with})
     except KeyboardInterrupt:
         raise
     except BaseException as problem:
@@ -136,13 +117,14 @@ def _fill(
 
 
 def _parameters(call: Callable[..., Any]) -> tuple[Parameter, ...]:
-    from inspect import isfunction, signature
+    from inspect import isfunction
+    from inspect import signature as signature_of
 
     if not isfunction(call):
-        return tuple(signature(call).parameters.values())
+        return tuple(signature_of(call).parameters.values())
     found = _signatures.get(call)
     if found is None:
-        found = _signatures[call] = tuple(signature(call).parameters.values())
+        found = _signatures[call] = tuple(signature_of(call).parameters.values())
     return found
 
 

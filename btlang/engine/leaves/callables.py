@@ -17,8 +17,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, TypeAlias
 
-    from btlang.engine.instance import Compiled
-    from btlang.engine.status_trace import NodeTrace
+    from btlang.engine.instance import Compiled, LeafTrace
 
     Stored: TypeAlias = Callable[[], Mapping[str, Any]] | None  # reads ports from the blackboard
 
@@ -145,7 +144,7 @@ def class_leaf(instance: NodeInstance, leaf: Any, start: Callable[..., Any], sto
     return tick, halt
 
 
-def _trace_of(instance: NodeInstance) -> NodeTrace | None:
+def _trace_of(instance: NodeInstance) -> LeafTrace | None:
     """Its trace, to which the leaf itself tells how it ended unless conditions around it may change that."""
     trace = instance.state.node_trace
     if trace is not None and trace.index and not any(port[:1] == "_" for port, _ in instance.node.ports):
@@ -153,13 +152,13 @@ def _trace_of(instance: NodeInstance) -> NodeTrace | None:
     return trace
 
 
-def _begin(interrupts: list[Callable[[], None]], trace: NodeTrace | None) -> None:
+def _begin(interrupts: list[Callable[[], None]], trace: LeafTrace | None) -> None:
     """To be called before a generator or class leaf starts: running actions that it replaces are halted first."""
     while interrupts:
         interrupts.pop()()
     if trace is not None:
         trace.change(RUNNING)
-        trace.trace.flush()  # so that a monitor shows a leaf that hangs
+        trace.flush()  # so that a monitor shows a leaf that hangs
 
 
 def _stop(instance: NodeInstance, halt: Callable[[], object]) -> None:

@@ -15,7 +15,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from btlang.engine.leaves.background import Work
+    from btlang.engine.leaves.work import Work
 
 
 class EventLoop:

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import re
 
-from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.diagnostics.diagnostic import diagnostic
+from btlang.diagnostics.errors import MissionError
 from btlang.text.source import Source, Span
 from btlang.tree.model import NodeModel, PortModel
 from btlang.tree.node import Node, Tree

@@ -75,7 +75,7 @@ def _sentence_ends(source: Source) -> list[int]:
 
 
 def _printer(compilation: Compilation) -> Printer:
-    from btlang.printer.sentence import printer_of  # most missions have nothing to tell
+    from btlang.printer.mission import printer_of  # most missions have nothing to tell
 
     return printer_of(compilation.mission, compilation.vocabulary, "all")
 

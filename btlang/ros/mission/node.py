@@ -8,7 +8,7 @@ from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackRet
 from std_srvs.srv import Trigger
 
 from btlang.api import Mission
-from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_included, read_source
 from btlang.ros.mission.progress import News, Progress
 from btlang.ros.mission.server import MissionServer

@@ -6,7 +6,8 @@ import os
 from collections.abc import Sequence
 
 from btlang.api import Mission, parse_tree
-from btlang.diagnostics.diagnostic import MissionError, diagnostic
+from btlang.diagnostics.diagnostic import diagnostic
+from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import is_below
 from btlang.record import Record
 from btlang.robots.registry import connector

@@ -5,7 +5,7 @@ from __future__ import annotations
 import time
 
 from btlang.backends.engine import bind_leaf
-from btlang.diagnostics.diagnostic import MissionError
+from btlang.diagnostics.errors import MissionError
 from btlang.engine.engine import Engine, EngineError
 from btlang.engine.status import RUNNING, SUCCESS
 from btlang.printer.phrase import phrase_of

@@ -12,7 +12,7 @@ from btlang.run.lines import Lines
 from btlang.run.live import frame
 from btlang.run.shape import Shape
 from btlang.run.snapshot import State
-from btlang.text.output import one_line
+from btlang.text.escaping import one_line
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -12,7 +12,7 @@ from btlang.record import Record
 from btlang.run.live.selection import LEAST_HEIGHT, Row, choose_rows
 from btlang.run.robot_state import RobotState
 from btlang.run.snapshot import HALTED, SUSPENDED, State
-from btlang.text.output import one_line
+from btlang.text.escaping import one_line
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False

@@ -1,0 +1,31 @@
+"""What the leaves of one id share: what kind of Python object does their work, and what it is given."""
+
+from __future__ import annotations
+
+from btlang.engine.leaves.leaf import LeafBinding
+
+
+class LeafSignature:
+    """What the leaves of one engine with the same id share, found once.
+
+    `kind` is "class", "async", "generator", "thread" or "function"; `given` keeps the names of the services that the
+    call gets, by the names of the ports that a node has; for a class `made_with` keeps those of its constructor.
+    """
+
+    __slots__ = ("binding", "given", "kind", "made_with")
+
+    def __init__(self, binding: LeafBinding) -> None:
+        from inspect import isclass, iscoroutinefunction, isgeneratorfunction
+
+        call = binding.call
+        self.binding = binding
+        self.given: dict[tuple[str, ...], list[str]] = {}
+        self.made_with: list[str] | None = None
+        if isclass(call):
+            self.kind = "class"
+        elif iscoroutinefunction(call) or iscoroutinefunction(type(call).__call__):
+            self.kind = "async"
+        elif isgeneratorfunction(call) or isgeneratorfunction(type(call).__call__):
+            self.kind = "generator"
+        else:
+            self.kind = "thread" if binding.thread else "function"
