@@ -45,7 +45,8 @@ ROWS = {
     # joining.md
     "After a command": "postfix", "At the same time": "connectives", "One if the other fails": "connectives",
     "One after the other": "connectives", "Tighter and looser": "connectives",
-    "How far a form before a command reaches": "reach", "Where repeat ends": "reach", "Which form an otherwise belongs to": "otherwise",
+    "How far a form before a command reaches": "reach", "Where repeat ends": "reach",
+    "Which form an otherwise belongs to": "otherwise",
     "Merging": "merging", "Words with another meaning in a pack": "meanings",
     # commas.md
     "A bare comma": "commas", 'A comma before "and" or "or"': "commas", "A comma before a form at the end": "reach",
