@@ -89,7 +89,7 @@ def format_mission(
 
     source = Source(text) if isinstance(text, str) else text
     if frontend_of(source) != "english":
-        raise MissionError([diagnostic("BT001", Span(source, 0, 1), file=source.name, reason="this is no English")])
+        raise MissionError([diagnostic("BT001", Span(source, 0, 1), file=source.name, reason="it isn't English")])
     with gc_paused:
         vocabulary = world_vocabulary(keywords, world)
         mission = read_mission(source, vocabulary, parser, errors_of=errors_of).mission

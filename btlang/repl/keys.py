@@ -86,7 +86,7 @@ def key_bindings(screen: Screen) -> KeyBindings:
             event.app.exit(exception=EOFError)
         else:
             screen.leaving = True
-            screen.note = "Ctrl-D again leaves."
+            screen.note = "Press Ctrl-D again to leave."
 
     return keys
 

@@ -46,7 +46,7 @@ class RosJoints:
         wire = _on_wire(name)
         position = positions(states).get(wire)
         if position is None:
-            raise SensorSilent(f'{self._subscriptions.shown(STATES)} tells nothing of the joint "{wire}"')
+            raise SensorSilent(f'{self._subscriptions.shown(STATES)} doesn't report the joint "{wire}"')
         return degrees(position)
 
     def move(self, targets: Mapping[str, float]) -> None:
@@ -81,7 +81,7 @@ class RosJoints:
         if left < nearest - _PROGRESS:
             self._nearest[name] = left, now
         elif now - since > _STALLED:
-            raise RobotError(f"the {name} does not move: it is {left:.0f} degrees from where it should be")
+            raise RobotError(f"the {name} doesn't move: it is {left:.0f} degrees from where it should be")
         return False
 
     def _tell(self, targets: Mapping[str, float], seconds: float) -> None:

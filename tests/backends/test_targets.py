@@ -89,7 +89,7 @@ def test_examples_can_be_compiled_to_all(path: Path) -> None:
         elif name in ("python", "py_trees"):
             compile(made, "made.py", "exec")
         elif name == "keywords":
-            assert made == "# Every leaf of this tree has its keyword entry.\n"
+            assert made == "# Every leaf of this tree has a keyword entry.\n"
 
 
 def assert_graph(text: str, tree: Tree) -> None:
@@ -286,5 +286,5 @@ def test_a_run_tells_of_all_nodes_that_a_mission_says_by_unknown_ids() -> None:
 
 @pytest.mark.parametrize("text", ["<root/>", '{"format": 1}'])
 def test_what_is_no_english_has_no_layout(text: str) -> None:
-    with pytest.raises(MissionError, match="BT001: I can't read <text>: this is no English"):
+    with pytest.raises(MissionError, match="BT001: I can't read <text>: it isn't English"):
         format_mission(text)

@@ -149,7 +149,7 @@ def test_stop_freezes_everything_and_outlasts_the_tick_in_flight():
     stopper.join()
     robot.drive(1.0, 0.0)  # the tick in flight does not know yet
     robot.move_joints({"right arm lift": 0.0})
-    assert robot.navigate_to("ball").failure == "the robot was told to stop"
+    assert robot.navigate_to("ball").failure == "the robot was stopped"
     robot.step(0.3)
     assert not robot.moving
     assert not robot.speaking

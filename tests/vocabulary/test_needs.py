@@ -53,7 +53,7 @@ def test_needs_is_a_list_of_names(tmp_path: Path) -> None:
     with pytest.raises(btlang.MissionError) as caught:
         together(tmp_path, "needs = 3")
     first, second = (diagnostic.span for diagnostic in caught.value.diagnostics)
-    assert "needs of 'measure' is a list of names" in str(caught.value)
+    assert "needs of 'measure' must be a list of names" in str(caught.value)
     assert first.start < second.start
 
 

@@ -13,7 +13,7 @@ from btlang.robots.registry import connector
 from btlang.session import Session
 from btlang.text.source import Source, Span
 
-_NOT_ALLOWED = "other programs may not use it; the node allows it with --allow-keywords and its name or folder"
+_NOT_ALLOWED = "other programs can't use it; to allow it, start the node with --allow-keywords and its name or folder"
 
 
 class Setup(Record):
