@@ -114,9 +114,9 @@ class Session:
             raise RuntimeError("another run is active; a session has one run at a time")
         factor = {"real": 1.0, "max": math.inf}.get(speed) if isinstance(speed, str) else speed
         if factor is None or not factor >= SLOWEST:
-            raise ValueError(f'speed must be "real", "max" or a number from {SLOWEST} on: {speed!r}')
+            raise ValueError(f'speed must be "real", "max" or a number from {SLOWEST} on, not {speed!r}')
         if not RATES[0] <= rate <= RATES[1]:
-            raise ValueError(f"rate must be from {RATES[0]:g} to {RATES[1]:g} ticks a second: {rate!r}")
+            raise ValueError(f"rate must be from {RATES[0]:g} to {RATES[1]:g} ticks a second, not {rate!r}")
         self.current = Run(mission, self.connection, factor, rate, time_limit, sinks, values, controls)
         return self.current
 

@@ -42,7 +42,7 @@ def runs_on(robot: str, over: str | None = None) -> tuple[Body, str]:
     Raises as `body_of`, and ValueError for another `over`.
     """
     if over is not None and over not in ROBOTS:
-        raise ValueError(f"over must be {' or '.join(map(repr, ROBOTS))}: {over!r}")
+        raise ValueError(f"over must be {' or '.join(map(repr, ROBOTS))}, not {over!r}")
     body = body_of(robot)
     return body, over or (robot if robot in ROBOTS else body.over)
 

@@ -46,7 +46,7 @@ class RosJoints:
         wire = _on_wire(name)
         position = positions(states).get(wire)
         if position is None:
-            raise SensorSilent(f'{self._subscriptions.shown(STATES)} doesn't report the joint "{wire}"')
+            raise SensorSilent(f'{self._subscriptions.shown(STATES)} doesn\'t report the joint "{wire}"')
         return degrees(position)
 
     def move(self, targets: Mapping[str, float]) -> None:

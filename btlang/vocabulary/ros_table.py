@@ -89,7 +89,7 @@ def read_ros(table: object, sort: str) -> tuple[RosBinding | None, list[tuple[st
     if len(kinds) != 1:
         near = [kind for key in table for kind in nearest(str(key), KINDS, 1)]
         said = f"both {kinds[0]} and {kinds[1]} are given" if kinds else "none is given"
-        said += f"; did you mean '{near[0]}'?" if near and not kinds else ""
+        said += f"; similar: {near[0]}" if near and not kinds else ""
         return None, [(f"it needs one of the keys {', '.join(KINDS)}, and {said}", "ros")]
     [kind] = kinds
     keys = KINDS[kind].get(sort)

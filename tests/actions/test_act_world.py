@@ -162,7 +162,7 @@ def test_pointing_and_looking_go_the_right_way(bench, table):
 
 def test_the_head_does_not_turn_to_the_back(bench, table):
     b = bench(table, start=Pose(0.0, 0.0, 180.0))
-    with pytest.raises(ActionFailed, match=r"^the ball is behind the robot, the head can't turn that far$"):
+    with pytest.raises(ActionFailed, match=r"^the ball is behind the robot; the head can't turn that far$"):
         b.run(gestures.look_at_object, object="ball")
 
 

@@ -221,7 +221,7 @@ def test_compile_says_what_it_can_write(capsys: pytest.CaptureFixture[str]) -> N
         with pytest.raises(SystemExit) as refused:
             main(["compile", *words])
         assert refused.value.code == 2
-        assert "--to says" in capsys.readouterr().err or "--dialect" in words
+        assert "choose a target" in capsys.readouterr().err or "--dialect" in words
 
 
 def test_all_that_is_wrong_is_told_at_once() -> None:

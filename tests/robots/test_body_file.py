@@ -59,7 +59,7 @@ def test_parts_are_what_words_need(tmp_path: Path) -> None:
         (HEAD + JOINT.replace('"head"', '"docking"'), 5, '"docking" has another meaning'),
         (HEAD + JOINT + JOINT, 10, '"neck" is given twice in joints'),
         (HEAD + JOINT + "[postures]\nup = { nek = 1 }", 10, 'the robot has no joint "nek"; its joints are neck'),
-        (HEAD + JOINT + "[postures]\nup = [\n{ neck = 1 },\n{ neck = 99 },\n]", 12, '"neck" is from -10 to 10'),
+        (HEAD + JOINT + "[postures]\nup = [\n{ neck = 1 },\n{ neck = 99 },\n]", 12, '"neck" must be from -10 to 10'),
         (HEAD + JOINT + '[postures]\nup = { neck = "left" }', 10, '"neck" must be one of "bearing"'),
         (HEAD + '[[hands]]\nname = "middle"', 4, '"name" must be one of "left", "right"'),
         (HEAD + '[[sensors]]\nkind = "scanner"\nframe = "laser"', 3, 'sensors needs a number "range"'),

@@ -133,7 +133,7 @@ def test_people_nearby():
 def test_carried_things_and_places_cannot_be_moved():
     robot = SimulatedRobot(TABLE)
     robot.grasp("right", "cup")
-    with pytest.raises(RobotError, match="the cup cannot be moved"):
+    with pytest.raises(RobotError, match="the cup can't be moved"):
         robot.move_thing("cup", 1, 1)
 
 

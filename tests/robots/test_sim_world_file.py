@@ -83,7 +83,7 @@ START = "start = { x = 1, y = 1 }\n"
         (START + "[[places]]\nname = 3\nx = 1\ny = 1", 3, '"name" must be text in quotes; write name = "kitchen"'),
         (START + '[[places]]\nname = " "\nx = 1\ny = 1', 3, '"name" must be text in quotes'),
         (START + '[[places]]\nname = "a"\nx = "1"\ny = 1', 4, '"x" must be a number; write x = 1.5'),
-        (START + '[[places]]\nname = "a"\nx = nan\ny = 1', 4, '"x" is a number'),
+        (START + '[[places]]\nname = "a"\nx = nan\ny = 1', 4, '"x" must be a number'),
         (START + '[[places]]\nname = "a"\ny = 1', 2, 'places needs a number "x"'),
         (
             START + '[[places]]\nname = "a"\nx = 1\ny = 1\nface = 3',
@@ -111,7 +111,11 @@ START = "start = { x = 1, y = 1 }\n"
             3,
             '"kind" must be one of "blocked", "slip", "silent scanner", "weak hand"',
         ),
-        (START + '[[faults]]\nkind = "blocked"\nplace = "moon"', 4, '"place" is one of nothing: there is none'),
+        (
+            START + '[[faults]]\nkind = "blocked"\nplace = "moon"',
+            4,
+            '"place" must be one of nothing, because there is none',
+        ),
         (START + '[[faults]]\nkind = "slip"\ngrip = 2', 4, '"grip" must be from 0 to 1, not 2'),
         (START + '[[faults]]\nkind = "silent scanner"\nhand = "left"', 4, 'unknown key "hand" in faults'),
         (START + '[[faults]]\nkind = "weak hand"\nhand = "both"', 4, '"hand" must be one of "left", "right"'),
@@ -134,5 +138,5 @@ def test_unreadable_files(tmp_path):
         load_world(tmp_path)
     binary = tmp_path / "binary.toml"
     binary.write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(WorldError, match="a world file is UTF-8 text"):
+    with pytest.raises(WorldError, match="a world file must be UTF-8 text"):
         load_world(binary)

@@ -138,7 +138,7 @@ def test_a_command_that_arrives_late_makes_nobody_stuck(lab: Lab) -> None:
 
 def test_joints_without_positions(lab: Lab) -> None:
     lab.misbehave("joint=nan")
-    reason = '/joint_states doesn't report the joint "head_turn"'
+    reason = '/joint_states doesn\'t report the joint "head_turn"'
     assert lab.run("look left") == reason
     lab.misbehave()
     lab.joints.wait(lambda state: all(map(isfinite, state.position)))  # one that was sent before may be the latest

@@ -250,7 +250,7 @@ def test_values_as_in_a_mission(phrase: str, values: dict[str, str], port: str):
         ("GoTo", "", ["plac"], ["lab"], "GoTo has no parameter 'plac': its parameters are place"),
         ("Nod", "", ["speed"], ["1"], "Nod has no parameter 'speed': it has no parameters"),
         ("GoTo", "", ["place", "place"], ["lab", "lab"], "place is given twice"),
-        ("GoTo", "", ["place"], ["the labb"], "place is 'the labb', which isn't a place; did you mean 'lab'?"),
+        ("GoTo", "", ["place"], ["the labb"], "place is 'the labb', which isn't a place; similar: lab"),
         ("GoTo", "", ["place"], ["xyz"], "place is 'xyz', which isn't a place; there are "),
         ("MoveForward", "", ["distance"], ["two cats"], "distance is 'two cats', which isn't a length, such as 5 m"),
         ("MoveForward", "", ["distance"], ["inf"], "distance is 'inf', which isn't a length, such as 5 m"),
@@ -299,5 +299,5 @@ def test_some_of_them():
         "MoveForward",
         "TurnLeft",
     ]
-    with pytest.raises(ValueError, match="there is no action 'move_forwad'; did you mean move_forward?"):
+    with pytest.raises(ValueError, match=r"there is no action 'move_forwad'; similar: move_forward"):
         chosen(["move_forwad"], ids, vocabulary)

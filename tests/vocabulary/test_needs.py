@@ -67,7 +67,7 @@ def test_conditions_take_nothing_for_themselves(tmp_path: Path) -> None:
 def test_a_message_points_at_its_own_entry(tmp_path: Path) -> None:
     path = tmp_path / "words.toml"
     path.write_text('[[action]]\nphrase = "bow"\nid = "Bow"\n\n[[action]]\nphrase = "bow"\nid = "If"\nlegs = 2\n')
-    with pytest.raises(btlang.MissionError, match=r"words.toml:6:11: error BT060.* 'legs' is not known"):
+    with pytest.raises(btlang.MissionError, match=r"words.toml:6:11: error BT060.* 'legs' is not a key"):
         btlang.parse_tree("bow", keywords=[str(path)])
 
 

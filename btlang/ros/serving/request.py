@@ -72,7 +72,7 @@ def _instead(written: str, kind: ValueType, vocabulary: Lexicon) -> str:
     known = vocabulary.values.names(kind.name)
     near = nearest(written.lower(), known, 1)
     if near:
-        return f"; did you mean '{near[0]}'?"
+        return f"; similar: {near[0]}"
     return f"; there are {', '.join(known[:_FEW])}{', ...' * (len(known) > _FEW)}" if known else ""
 
 

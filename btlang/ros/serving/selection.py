@@ -31,7 +31,7 @@ def chosen(only: Sequence[str], ids: Sequence[str], vocabulary: Lexicon) -> list
     for name in only:
         if name.lower() not in named:
             near = nearest(name.lower(), named, 1)
-            raise ValueError(f"--only: there is no action '{name}'" + (f"; did you mean {near[0]}?" if near else ""))
+            raise ValueError(f"--only: there is no action '{name}'" + (f"; similar: {near[0]}" if near else ""))
     found = list(dict.fromkeys(node_id for name in only for node_id in named[name.lower()])) if only else list(ids)
     served: dict[str, str] = {}
     for node_id in found:
