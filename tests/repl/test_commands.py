@@ -155,7 +155,7 @@ def test_show_and_names() -> None:
     assert repl.do("show tree").startswith("SubTree ID=bow")
     assert repl.do("names") == "bow is nod then wave"
     assert "There's no definition 'fest'" in repl.do(":show fest")
-    assert "stands alone" in repl.do("undo now")
+    assert "takes no words after it" in repl.do("undo now")
     assert "There's no 'flarp'" in repl.do(":flarp")
 
 
