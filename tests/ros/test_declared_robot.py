@@ -39,7 +39,7 @@ def test_halting_a_drive_stops_the_robot(robot: Robot) -> None:
 
 def test_a_robot_that_does_not_move(robot: Robot) -> None:
     peer = robot.peer("robot", "stuck")
-    assert robot.run("move forward 1 m", DRIVE) == "the robot does not get on: 0.00 of 1.00 m done"
+    assert robot.run("move forward 1 m", DRIVE) == "the robot makes no progress: 0.00 of 1.00 m done"
     peer.expect("zero")
 
 

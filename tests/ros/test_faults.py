@@ -104,7 +104,7 @@ TABLE = words("drive").replace("patience = 1.0", "patience = 2.5")  # longer tha
     ("fault", "reason"),
     [
         ("nan", "/odom sends numbers that are not finite"),
-        ("frozen", "the robot does not get on: 0.00 of 0.60 m done"),
+        ("frozen", "the robot makes no progress: 0.00 of 0.60 m done"),
         ("jump", "the robot went too far: 5"),
     ],
 )

@@ -254,7 +254,7 @@ def test_values_as_in_a_mission(phrase: str, values: dict[str, str], port: str):
         ("GoTo", "", ["place"], ["xyz"], "place is 'xyz', which isn't a place; there are "),
         ("MoveForward", "", ["distance"], ["two cats"], "distance is 'two cats', which isn't a length, such as 5 m"),
         ("MoveForward", "", ["distance"], ["inf"], "distance is 'inf', which isn't a length, such as 5 m"),
-        ("Say", "", ["text"], ["{key}"], "text is '{key}', which names a value of a mission"),
+        ("Say", "", ["text"], ["{key}"], "text is '{key}', a value of a mission, but"),
     ],
 )
 def test_what_makes_no_sense(node_id: str, phrase: str, names: list[str], values: list[str], reason: str):

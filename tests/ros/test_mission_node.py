@@ -86,7 +86,7 @@ def test_one_mission_at_a_time(start_node, client: Client, run_mission: Any):
     first.feedback.wait()
     second = mission(client, run_mission, "say hello")
     assert not second.accepted
-    wait_until(lambda: "mission rejected: another one runs" in node.err, "the reason on the log")
+    wait_until(lambda: "mission rejected: another mission is running" in node.err, "the reason on the log")
     assert first.cancel()
     assert first.result().status == GoalStatus.STATUS_CANCELED
     assert mission(client, run_mission, "wait 0.1 seconds").result().result.success

@@ -124,7 +124,7 @@ def test_turning(robot: Callable[..., Script], btc: Callable[..., Command]) -> N
         (["base", "navigation=reject"], "go to the kitchen", "GoTo: the navigation server rejected the goal the kit"),
         (["base", "navigation=abort"], "go to the kitchen", "GoTo: the door is shut"),
         (["base", "navigation=mute"], "go to the kitchen", "GoTo: the navigation server on /navigate_to_pose does not"),
-        (["base", "navigation=hang"], "go to the kitchen", "GoTo: no word from the navigation server on /navigate_to_"),
+        (["base", "navigation=hang"], "go to the kitchen", "GoTo: no feedback from the navigation server on /navigate_to_"),
         (["hand=full"], "close the hand", "CloseHand: the right hand already holds the cup"),
         (["hand=mute"], "close the hand", "CloseHand: no answer from /right_hand/close for 3 s"),
     ],
