@@ -124,7 +124,7 @@ def print_preflight(tree: Tree, vocabulary: Lexicon, world: World, robot: Any) -
         show(f"warning: {warning}")
     missing = sum(bool(reason) for _, reason in found.values()) + len(lacks)
     show(
-        f"{missing} of {len(found) + len(lacks)} are missing."
+        f"Missing: {missing} of {len(found) + len(lacks)}."
         if missing
         else "The robot has everything that the mission needs."
     )

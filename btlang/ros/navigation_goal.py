@@ -154,7 +154,7 @@ class RosNavigationGoal:
     def _answered(self, answer: Any) -> None:
         handle = answer.result()
         if not handle.accepted:
-            self.end(f"the navigation server rejected the goal {said(self.name)}", withdraw=False)
+            self.end(f"the navigation server refused to navigate to {said(self.name)}", withdraw=False)
             self._over()
             return
         self._since, self._stood = AWAKE.now(), (self._stood[0], self._now())
