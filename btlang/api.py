@@ -43,10 +43,10 @@ def parse_tree(
 ) -> Mission:
     """Compiles a mission in English, or a tree: a text that begins with `<` is XML of BehaviorTree.CPP, with `{` JSON.
 
-    `parser` is "shunting-yard" or "lark" (both read the same); `keywords` are paths of keyword files, names of
-    installed packs, or functions made words by `action` or `condition`; `world` is the path of a world file, by
-    default the world that ships; `main` is the ID of the tree to run, where XML or JSON has several; `language` is that
-    of the mission: "en", "es" or the folder of another one. Raises MissionError, which holds every diagnostic.
+    `parser` is "shunting-yard" or "lark" (both give the same tree). `keywords` are paths of keyword files, names of
+    installed packs, or functions decorated with `action` or `condition`. `world` is the path of a world file, by
+    default the world that ships. `main` is the ID of the tree to run, if XML or JSON has several. `language`
+    is that of the mission: "en", "es" or the folder of another one. Raises MissionError with all diagnostics.
     """
     source = Source(text) if isinstance(text, str) else text
     with gc_paused:
@@ -70,7 +70,7 @@ def parse_file(
     include_root: str | None = None,
     language: str = ENGLISH,
 ) -> Mission:
-    """As `parse_tree`, of the text in a file; it may include files in its folder, and below `include_root`."""
+    """Like `parse_tree`, for the text in a file. It may include files in its folder and below `include_root`."""
     from btlang.diagnostics.reading import read_source
 
     source = read_source(path, include_root)
@@ -85,15 +85,15 @@ def format_mission(
     world: str | None = None,
     language: str = ENGLISH,
 ) -> str:
-    """The text in the canonical layout: its words, comments and lines stay, and so does its tree.
+    """The text in the canonical layout: with the same words, comments, lines and tree.
 
-    A text that only defines names has a layout too. Raises MissionError where something is wrong with the mission.
+    The text may contain only definitions. Raises MissionError if the mission has mistakes.
     """
     from btlang.printer.layout import laid_out
 
     source = Source(text) if isinstance(text, str) else text
     if frontend_of(source) != "english":
-        raise MissionError([diagnostic("BT001", Span(source, 0, 1), file=source.name, reason="this is no English")])
+        raise MissionError([diagnostic("BT001", Span(source, 0, 1), file=source.name, reason="it isn't English")])
     with gc_paused:
         vocabulary = world_vocabulary(keywords, world, language)
         mission = read_mission(source, vocabulary, parser, errors_of=errors_of).mission
@@ -123,11 +123,11 @@ def _names_by_type(world: str | None) -> dict[str, tuple[str, ...]]:
 
 
 class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax")):
-    """A compiled mission, with the words and the world that it was compiled with. Immutable: a Session runs it.
+    """A compiled mission, with its words and its world. Immutable: a Session runs it.
 
-    `tree` is the tree itself; `world` the path of its world file, None for the one that ships; `warnings` are
-    diagnostics that do not keep it from running; `syntax` is the syntax tree that it was compiled from, where there is
-    one; `facts` are places of this mission, beside those of the world.
+    `tree` is the tree itself. `world` is the path of its world file, None for the one that ships. `warnings` are
+    diagnostics that don't keep it from running. `syntax` is the syntax tree that it was compiled from, if there is one.
+    `facts` are places of this mission, in addition to those of the world.
     """
 
     tree: Tree
@@ -150,9 +150,9 @@ class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax")):
         show(self)
 
     def run(self, *, robot: str | Connect = "simulated", **options: Any) -> Outcome:
-        """Runs the mission to its end, or Ctrl-C, in a session of its own, and so in a fresh world.
+        """Runs the mission to its end, or Ctrl-C, in a new session, so in a fresh world.
 
-        `robot` is as for btlang.Session, the other options are those of `Session.prepare`: `speed`, `rate`,
+        `robot` is the same as for btlang.Session. The other options are those of `Session.prepare`: `speed`, `rate`,
         `time_limit`, `sinks`. Raises MissionError and ValueError as these do.
         """
         from btlang.session import Session
@@ -161,10 +161,10 @@ class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax")):
             return session.prepare(self, **options).execute()
 
     def explain(self, width: int = 100) -> str:
-        """Each statement as written, in English whose brackets show how it was read, and as a tree.
+        """Each statement as written, in English with brackets that show its structure, and as a tree.
 
-        Of a tree that was no mission, its statements are those of its English. Lines are at most `width` columns long.
-        Raises MissionError (BT142) where English cannot say it.
+        For a tree that wasn't a mission, the statements are those of its English. Lines have at most `width` columns.
+        Raises MissionError (BT142) if English can't express it.
         """
         from btlang.backends.explain import explain_mission
 
@@ -175,9 +175,9 @@ class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax")):
         return explain_mission(program, tree, self.vocabulary, self._described, width)
 
     def check(self) -> None:
-        """Raises MissionError with all that would keep it from running, as far as that is known without the robot.
+        """Raises MissionError with everything that would keep it from running, as far as known without the robot.
 
-        A tree that was compiled from a mission has nothing of the kind, unless it says nodes by their ids.
+        A tree that was compiled from a mission has no such problems, unless it names nodes by their ids.
         """
         if not self.says_ids:
             return
@@ -191,7 +191,7 @@ class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax")):
     def to(self, target: str, **options: Any) -> str | bytes:
         """The tree as "xml", "english", "json" or another target of btlang.backends.targets.
 
-        Raises ValueError for a target or an option that is not known, MissionError where the target cannot express it.
+        Raises ValueError for an unknown target or option, MissionError if the target can't express it.
         """
         from btlang.backends.targets import compiled
 
@@ -210,7 +210,7 @@ class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax")):
 
     @property
     def says_ids(self) -> bool:
-        """Whether it may name nodes that there are not: it was a tree, or says nodes by their ids."""
+        """Whether it may name unknown nodes: it wasn't a mission, or it names nodes by their ids."""
         return self.syntax is None or bool(exact_nodes(self.syntax))
 
     def _described(self, node: Node) -> str:

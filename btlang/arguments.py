@@ -32,7 +32,7 @@ def robot_on(platforms: Sequence[str]) -> Callable[[str], str]:
         names = (*platforms, *shipped_bodies())
         if text in names or text.endswith(".toml") or (os.path.exists(text) and text not in ROBOTS):
             return text
-        raise argparse.ArgumentTypeError(f"{', '.join(names)} or a robot file is needed, not '{text}'")
+        raise argparse.ArgumentTypeError(f"expected {', '.join(names)} or a robot file, not '{text}'")
 
     return robot
 
@@ -40,14 +40,14 @@ def robot_on(platforms: Sequence[str]) -> Callable[[str], str]:
 def namespace(text: str) -> str:
     """Of ROS 2: "" or names with slashes between, and perhaps before them."""
     if text and not all(part.isidentifier() and part.isascii() for part in text.removeprefix("/").split("/")):
-        raise argparse.ArgumentTypeError(f"names of letters, digits and _ with / between are needed, not '{text}'")
+        raise argparse.ArgumentTypeError(f"expected names of letters, digits and _ separated by /, not '{text}'")
     return text
 
 
 def node_name(text: str) -> str:
     """Of a node of ROS 2."""
     if not (text.isidentifier() and text.isascii()):
-        raise argparse.ArgumentTypeError(f"a name of letters, digits and _ is needed, not '{text}'")
+        raise argparse.ArgumentTypeError(f"expected a name of letters, digits and _, not '{text}'")
     return text
 
 
@@ -60,7 +60,7 @@ def between(least: float, most: float) -> Callable[[str], float]:
         except ValueError:
             value = math.nan
         if not least <= value <= most:
-            raise argparse.ArgumentTypeError(f"a number from {least:g} to {most:g} is needed, not '{text}'")
+            raise argparse.ArgumentTypeError(f"expected a number from {least:g} to {most:g}, not '{text}'")
         return value
 
     return number
@@ -90,5 +90,5 @@ def duration(text: str) -> float:
 
         value = float(load_vocabulary().value("duration", text) or math.nan)
     if not 0 < value < math.inf:
-        raise argparse.ArgumentTypeError(f"a duration such as 60s or 2min is needed, not '{text}'")
+        raise argparse.ArgumentTypeError(f"expected a duration such as 60s or 2min, not '{text}'")
     return value

@@ -112,7 +112,7 @@ def _draw_tree(mission: Mission, path: str, apart: bool) -> None:
 
     check_picture(path, of_run=False)
     draw_tree(mission.tree, mission.label, mission.is_action, path, apart=apart)
-    show(f"The tree is drawn in {path}.")
+    show(f"Wrote {path}.")
 
 
 def _compile(options: argparse.Namespace) -> int:
@@ -121,9 +121,9 @@ def _compile(options: argparse.Namespace) -> int:
 
     name = options.to or (target_of(options.out) if options.out is not None else "")
     if not name:
-        options.usage_error(f"--to says target: {', '.join(TARGETS)}")
+        options.usage_error(f"choose a target with --to: {', '.join(TARGETS)}")
     if options.out is None and TARGETS[name].binary and sys.stdout.isatty():
-        options.usage_error(f"{name} is no text for a terminal: -o FILE writes it to a file")
+        options.usage_error(f"{name} isn't text; write it to a file with -o FILE")
     if options.dialect is not None and "dialect" not in TARGETS[name].options:
         options.usage_error(f"--dialect is for xml, not for {name}")
     made = _mission(options).to(name, dialect=options.dialect)
@@ -151,7 +151,7 @@ def _examples(options: argparse.Namespace) -> int:
     chosen = examples.found(options.name) if options.name else examples.examples()
     if options.copy is not None:
         written = examples.copied(options.copy, chosen)
-        show("\n".join((*written, f"The command at the top of each mission runs it in the folder {options.copy}.")))
+        show("\n".join((*written, f"To run a mission, use the command at its top, in the folder {options.copy}.")))
     elif options.name:
         show("\n\n".join(example.text.rstrip("\n") for example in chosen))
     else:

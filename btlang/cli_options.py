@@ -44,7 +44,11 @@ _DEFAULTS: dict[str, Any] = {
 
 def _words_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
-        "--keywords", action="append", default=[], metavar="FILE", help="further keyword file, or name of a pack"
+        "--keywords",
+        action="append",
+        default=[],
+        metavar="FILE",
+        help="another keyword file, or the name of a pack; may be repeated",
     )
     parser.add_argument(
         "--language", default=ENGLISH, metavar="LANG", help="of the mission: en, es, or a folder (default: en)"
@@ -58,8 +62,13 @@ def _world_option(parser: argparse.ArgumentParser) -> None:
 
 def _reading_options(parser: argparse.ArgumentParser) -> None:
     _words_options(parser)
-    parser.add_argument("--parser", choices=list(PARSERS), default=DEFAULT_PARSER, help="(default: %(default)s)")
-    parser.add_argument("--include-root", metavar="DIR", help="let missions include files below DIR, too")
+    parser.add_argument(
+        "--parser",
+        choices=list(PARSERS),
+        default=DEFAULT_PARSER,
+        help="how to parse; both give the same tree (default: %(default)s)",
+    )
+    parser.add_argument("--include-root", metavar="DIR", help="missions may also include files below DIR")
 
 
 def _main_option(parser: argparse.ArgumentParser) -> None:
@@ -69,7 +78,10 @@ def _main_option(parser: argparse.ArgumentParser) -> None:
 def _mission_options(parser: argparse.ArgumentParser) -> None:
     _reading_options(parser)
     parser.add_argument(
-        "--format", choices=FORMATS, default="text", help="of messages: text, or json for programs (default: text)"
+        "--format",
+        choices=FORMATS,
+        default="text",
+        help="format of messages: text, or json for programs (default: text)",
     )
     _main_option(parser)
     text = parser.add_mutually_exclusive_group(required=True)
@@ -95,8 +107,12 @@ def _run_options(parser: argparse.ArgumentParser) -> None:
 
     _mission_options(parser)
     _speed_option(parser)
-    parser.add_argument("--rate", type=between(*RATES), default=20.0, metavar="HZ", help="ticks a second (default: 20)")
-    parser.add_argument("--for", type=duration, dest="time_limit", metavar="DURATION", help="stop after e.g. 60s, 2min")
+    parser.add_argument(
+        "--rate", type=between(*RATES), default=20.0, metavar="HZ", help="ticks per second (default: 20)"
+    )
+    parser.add_argument(
+        "--for", type=duration, dest="time_limit", metavar="DURATION", help="stop after this time, such as 60s or 2min"
+    )
     parser.add_argument("--log", metavar="FILE", help="write every event as a line of JSON")
     parser.add_argument(
         "--picture", type=picture(".svg", ".png", ".gif"), metavar="FILE", help="draw the run: .svg, .png or .gif"
@@ -107,14 +123,14 @@ def _run_options(parser: argparse.ArgumentParser) -> None:
         metavar="FILE",
         help="draw the tree with the final status of every node",
     )
-    parser.add_argument("--lines", action="store_true", help="plain lines also where the output is a terminal")
-    parser.add_argument("--quiet", action="store_true", help="print nothing but errors")
+    parser.add_argument("--lines", action="store_true", help="print plain lines, even on a terminal")
+    parser.add_argument("--quiet", action="store_true", help="print only errors")
     add_robot_options(parser)
 
 
 def _tree_options(parser: argparse.ArgumentParser) -> None:
     _mission_options(parser)
-    parser.add_argument("--plain", action="store_true", help="one line a node: Id port=value")
+    parser.add_argument("--plain", action="store_true", help="one line per node: Id port=value")
     parser.add_argument("--picture", type=picture(".svg", ".png"), metavar="FILE", help="draw the tree: .svg or .png")
     parser.add_argument("--apart", action="store_true", help="draw each named subtree once, below the tree")
 
@@ -124,32 +140,34 @@ def _compile_options(parser: argparse.ArgumentParser) -> None:
 
     _mission_options(parser)
     parser.add_argument("--to", choices=list(TARGETS), metavar="TARGET", help="target: " + ", ".join(TARGETS))
-    parser.add_argument("-o", dest="out", metavar="OUT", help="file to write; its ending may select the target")
-    parser.add_argument("--dialect", type=int, choices=(3, 4), help="version of BehaviorTree.CPP, of XML (default: 4)")
+    parser.add_argument("-o", dest="out", metavar="OUT", help="file to write; its ending can select the target")
+    parser.add_argument("--dialect", type=int, choices=(3, 4), help="BehaviorTree.CPP version of the XML (default: 4)")
     parser.set_defaults(usage_error=parser.error)
 
 
 def _listing_options(parser: argparse.ArgumentParser) -> None:
     _words_options(parser)
-    parser.add_argument("search", nargs="*", metavar="SEARCH", help="only this topic, or what has these words")
+    parser.add_argument("search", nargs="*", metavar="SEARCH", help="a topic, or words to search for")
 
 
 def _examples_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--copy", metavar="FOLDER", help="copy them to a folder, with the worlds that they need")
-    parser.add_argument("name", nargs="*", metavar="NAME", help="only these")
+    parser.add_argument("--copy", metavar="FOLDER", help="copy them to a folder, with their worlds")
+    parser.add_argument("name", nargs="*", metavar="NAME", help="only these examples")
 
 
 def _explain_options(parser: argparse.ArgumentParser) -> None:
     _reading_options(parser)
     _main_option(parser)
     subject = parser.add_mutually_exclusive_group()
-    subject.add_argument("file", nargs="?", metavar="FILE|CODE", help="mission, - for standard input, or e.g. BT013")
+    subject.add_argument(
+        "file", nargs="?", metavar="FILE|CODE", help="mission, - for standard input, or a code such as BT013"
+    )
     subject.add_argument("-c", dest="text", metavar="TEXT", help="mission as text")
 
 
 def _format_options(parser: argparse.ArgumentParser) -> None:
     _reading_options(parser)
-    parser.add_argument("--check", action="store_true", help="change nothing; exit with 1 where a file would change")
+    parser.add_argument("--check", action="store_true", help="change nothing; exit with 1 if a file would change")
     several = parser.add_mutually_exclusive_group(required=True)
     several.add_argument("file", nargs="*", default=[], metavar="FILE", help="mission, or - for standard input")
     several.add_argument("-c", dest="text", metavar="TEXT", help="mission as text")
@@ -178,18 +196,18 @@ def _serving_options(parser: argparse.ArgumentParser) -> None:
 
 
 _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
-    "repl": ("type a mission line by line; what `btc` alone does", _repl_options),
+    "repl": ("type a mission line by line, as with `btc` alone", _repl_options),
     "run": ("run a mission on the simulated robot, or a ROS 2 robot", _run_options),
-    "check": ("say what is wrong with a mission", _mission_options),
+    "check": ("report the mistakes in a mission", _mission_options),
     "tree": ("print the behavior tree of a mission", _tree_options),
     "compile": ("write the tree of a mission as XML, English, JSON, a picture ...", _compile_options),
-    "words": ("list what can be said", _listing_options),
-    "examples": ("list the missions that ship, print them or copy them", _examples_options),
+    "words": ("list what missions can say", _listing_options),
+    "examples": ("list, print or copy the example missions", _examples_options),
     "explain": ("show how a mission is understood, or explain a message code", _explain_options),
-    "format": ("lay out missions: indentation, spaces, empty lines", _format_options),
-    "sim-ros": ("offer the simulated robot over ROS 2", _sim_ros_options),
-    "ros-node": ("run missions as a ROS 2 node, for other programs", _ros_node_options),
-    "serve-actions": ("serve what the robot can do as ROS 2 actions", _serving_options),
+    "format": ("format missions: indentation, spaces, empty lines", _format_options),
+    "sim-ros": ("run the simulated robot as a ROS 2 node", _sim_ros_options),
+    "ros-node": ("run missions for other programs, as a ROS 2 node", _ros_node_options),
+    "serve-actions": ("serve btlang's actions as ROS 2 actions", _serving_options),
 }
 
 

@@ -34,15 +34,15 @@ def action(
     ros: Mapping[str, Any] | None = None,
     replace: bool = False,
 ) -> Callable[[Call], Call]:
-    """Makes a function, generator function, `async def` function or class a command: `parse_tree(keywords=[...])`.
+    """Turns a function, generator function, `async def` function or class into a command: `parse_tree(keywords=[...])`.
 
-    The options are the keys of an entry in a keyword file (docs/keywords.md). `phrase` is one pattern or several;
-    `slots` gives a type, or a type and a default, to slots whose name is not a type; `id` is the node's name, by
-    default that of the function in CamelCase; `help` is by default the docstring. See btlang/engine/leaves/leaf.py
-    for what a leaf may be. Raises ValueError for a `ros` table with mistakes.
+    The options are the keys of an entry in a keyword file (docs/keywords.md). `phrase` is one pattern or several.
+    `slots` gives a type, or a type and a default, to slots with a name that isn't a type. `id` is the node's name, by
+    default the name of the function in CamelCase. `help` is the docstring by default. btlang/engine/leaves/leaf.py
+    describes what a leaf can be. Raises ValueError for a `ros` table with mistakes.
 
-    With `replace` it is what runs in place of the known word that has this id, or this phrase where no id is given: a
-    fake for tests. Without it a second function for one id is an error (BT064).
+    With `replace` it replaces the known word with this id, or with this phrase if there is no id: a fake for tests.
+    Without it a second function for the same id is an error (BT064).
     """
     return _word("action", phrase, id, slots or {}, ros, replace, needs, resources, topic=topic, help=help,
                  example=example, instant=instant, uninterruptible=uninterruptible, thread=thread)  # fmt: skip
@@ -60,7 +60,7 @@ def condition(
     ros: Mapping[str, Any] | None = None,
     replace: bool = False,
 ) -> Callable[[Call], Call]:
-    """Makes a function that returns a bool a condition; as `action`."""
+    """Turns a function that returns a bool into a condition. See `action`."""
     return _word("condition", phrase, id, slots or {}, ros, replace, needs, topic=topic, help=help, example=example)
 
 
@@ -77,9 +77,9 @@ def quantity(
     ros: Mapping[str, Any] | None = None,
     replace: bool = False,
 ) -> Callable[[Call], Call]:
-    """Makes a function that returns a number of this type, such as "length", a quantity that the language compares.
+    """Turns a function that returns a number of this type, such as "length", into a quantity that missions compare.
 
-    The number is in the unit whose factor is 1. As `action`.
+    The number is in the unit with factor 1. See `action`.
     """
     return _word("quantity", phrase, id, slots or {}, ros, replace, needs, topic=topic, help=help, example=example,
                  measures=type)  # fmt: skip

@@ -47,7 +47,7 @@ if TYPE_CHECKING:
     from btlang.vocabulary.lexicon import Lexicon
 
     class Runnable(Protocol):
-        """What a session asks of a mission; see btlang.api.Mission."""
+        """What a session needs from a mission; see btlang.api.Mission."""
 
         @property
         def tree(self) -> Tree: ...
@@ -69,12 +69,12 @@ MOST_EVENTS = 10_000
 
 
 class Session:
-    """A robot, for many runs one after the other. Its world goes on from run to run; what a mission names ends with it.
+    """A robot for many runs, one after the other. Its world continues from run to run; a mission's own names don't.
 
-    `robot` is "simulated", "ros", "actions", the path of a robot file or the name of one that ships, or a function of a
-    World that gives a btlang.run.connection.Connection; `over` is what the robot of a file runs on, by default what the
-    file says; `world` is the path of a world file, by default the world that ships. Raises MissionError where the world
-    or the robot cannot be read (BT070, BT071) or the robot cannot be reached (BT100), ValueError for another name.
+    `robot` is "simulated", "ros", "actions", the path of a robot file or the name of one that ships, or a function that
+    takes a World and returns a btlang.run.connection.Connection. `over` is what the robot in a file runs on, by default
+    what the file says. `world` is the path of a world file, by default the world that ships. Raises MissionError if the
+    world or the robot can't be read (BT070, BT071) or ROS 2 can't be used (BT100), ValueError for other names.
     """
 
     def __init__(
@@ -88,7 +88,7 @@ class Session:
 
     @property
     def robot(self) -> Any:
-        """See btlang.robots.robot.Robot; only for the thread of the run while one is under way."""
+        """See btlang.robots.robot.Robot. During a run, only for the thread of the run."""
         return self.connection.robot
 
     def prepare(
@@ -102,22 +102,22 @@ class Session:
         values: Blackboard | None = None,
         controls: Controls | None = None,
     ) -> Run:
-        """A run that is not under way yet: for `Run.execute` and `Run.tick`.
+        """A run that hasn't started yet: for `Run.execute` and `Run.tick`.
 
-        `speed` is "real", "max" or a factor of real time; `rate` is in ticks a second of the mission, which ends after
-        `time_limit` seconds; `sinks` get every event (see btlang.run.events) by their policy (see btlang.run.bus);
-        `values` are those of the blackboard, by default none; `controls` may be made before the run.
+        `speed` is "real", "max" or a factor of real time. `rate` is in ticks per second of mission time, and the
+        mission ends after `time_limit` seconds. `sinks` get events (see btlang.run.events) according to their policy
+        (see btlang.run.bus). `values` are initial blackboard entries. `controls` may be created before the run.
 
-        Raises MissionError where a command cannot run (BT080) or the robot lacks what it needs (BT101), ValueError for
-        another speed or rate, RuntimeError while a run is under way.
+        Raises MissionError if a command can't run (BT080) or the robot lacks something it needs (BT101), ValueError for
+        another speed or rate, RuntimeError during another run.
         """
         if self.current is not None and self.current.is_under_way:
-            raise RuntimeError("a run is under way; a session has one at a time")
+            raise RuntimeError("another run is active; a session has one run at a time")
         factor = {"real": 1.0, "max": math.inf}.get(speed) if isinstance(speed, str) else speed
         if factor is None or not factor >= SLOWEST:
-            raise ValueError(f'speed is "real", "max" or a number from {SLOWEST} on: {speed!r}')
+            raise ValueError(f'speed must be "real", "max" or a number from {SLOWEST} on, not {speed!r}')
         if not RATES[0] <= rate <= RATES[1]:
-            raise ValueError(f"rate is from {RATES[0]:g} to {RATES[1]:g} ticks a second: {rate!r}")
+            raise ValueError(f"rate must be from {RATES[0]:g} to {RATES[1]:g} ticks a second, not {rate!r}")
         self.current = Run(mission, self.connection, factor, rate, time_limit, sinks, values, controls)
         return self.current
 
@@ -128,20 +128,20 @@ class Session:
         return run
 
     def start(self, mission: Runnable, **options: Any) -> Run:
-        """As `run`, in a thread of its own; returns at once."""
+        """Like `run`, but in a separate thread; returns at once."""
         run = self.prepare(mission, **options)
         run.start()
         return run
 
     def emergency_stop(self) -> None:
-        """Stops the robot at once, from any thread, and ends the run under way, or prepared, before its next tick."""
+        """Stops the robot at once, from any thread, and ends the current or prepared run before its next tick."""
         if self.current is not None:
             self.current.emergency_stop()
         else:
             disable(self.connection.robot)
 
     def close(self) -> None:
-        """Ends the run under way and lets go of the robot, at rest. May be called twice."""
+        """Ends the current run, brings the robot to rest and disconnects. May be called twice."""
         if self.current is not None and self.current.is_under_way:
             self.current.stop()
             self.current.wait()
@@ -157,9 +157,9 @@ class Session:
 
 
 class Run:
-    """One execution of a mission, made by a Session. All but `execute`, `tick` and `halt` may be called in any thread.
+    """One execution of a mission, made by a Session. All methods except `execute`, `tick` and `halt` are thread-safe.
 
-    It ends once; after that only what it came to can be asked for.
+    It ends once. After that, only its results are available.
     """
 
     def __init__(
@@ -197,7 +197,7 @@ class Run:
 
     @property
     def is_under_way(self) -> bool:
-        """Whether it has begun and has not ended."""
+        """Whether it has started and hasn't ended."""
         return self._under_way
 
     def execute(self) -> Outcome:
@@ -213,13 +213,13 @@ class Run:
             self._recent.close()
 
     def start(self) -> None:
-        """As `execute`, in a thread of its own; returns at once."""
+        """Like `execute`, but in a separate thread; returns at once."""
         self._under_way = True
         self._thread = threading.Thread(target=self._work, name="btlang run", daemon=True)
         self._thread.start()
 
     def wait(self, seconds: float | None = None) -> Outcome | None:
-        """The outcome, once the run is over; None after so many seconds. Raises what ended the run otherwise."""
+        """Waits for the outcome, or returns None after that many seconds. Raises the exception that ended the run."""
         if self._thread is not None:
             self._thread.join(seconds)
         if self._error is not None:
@@ -227,19 +227,19 @@ class Run:
         return self.outcome
 
     def tick(self) -> int:
-        """Ticks once and moves the world on by one period; returns the status (see btlang.engine.status)."""
+        """Ticks once and advances the world by one period; returns the status (see btlang.engine.status)."""
         return self._runner.tick()
 
     def halt(self) -> None:
-        """Halts every running leaf and stops the robot; the next tick starts anew."""
+        """Halts every running leaf and stops the robot; the next tick starts over."""
         self._runner.halt()
 
     def pause(self) -> None:
-        """The robot comes to rest, and the time of the mission stands still."""
+        """The robot comes to rest, and mission time stands still."""
         self.controls.pause()
 
     def resume(self) -> None:
-        """Goes on; the commands that the pause interrupted start anew."""
+        """Continues; the commands that the pause interrupted start over."""
         self.controls.resume()
 
     def step(self) -> None:
@@ -247,21 +247,21 @@ class Run:
         self.controls.step()
 
     def stop(self) -> None:
-        """Ends it, where it has not begun before its first tick."""
+        """Ends the run; if it hasn't started, before its first tick."""
         self.controls.stop()
 
     def emergency_stop(self) -> None:
-        """Stops the robot at once without waiting for the tick under way, then ends the run.
+        """Stops the robot at once without waiting for the current tick, then ends the run.
 
-        A leaf that hangs does not delay it, and what a leaf still commands in that tick is ignored. A `tick` halts the
-        tree and returns IDLE.
+        A hanging leaf doesn't delay it, and further commands in that tick are ignored. A `tick` halts the tree and
+        returns IDLE.
         """
         self.controls.emergency_stop()
 
     def why(self, *, colour: bool = False) -> str:
-        """Why it failed, as `btc run` says it; "" where it did not fail.
+        """Why it failed, as in `btc run`; "" if it didn't fail.
 
-        Names the sentence, with `colour` underlined in red, the leaf and its reason, and what had been tried before.
+        Shows the sentence (with `colour` underlined in red), the leaf and its reason, and the earlier failures.
         """
         failure = self._engine.failure
         if failure is None:
@@ -269,23 +269,23 @@ class Run:
         return failure_report(failure, self._story, self.mission.label, RED if colour else "")
 
     def events(self) -> Iterator[Event]:
-        """The latest events (MOST_EVENTS of them), then those that come, until the run is over."""
+        """The latest events (up to MOST_EVENTS), then new ones until the run is over."""
         return self._recent.events()
 
     def snapshot(self) -> Snapshot:
-        """The statuses of all nodes and what the robot does, after the event whose number it has."""
+        """The statuses of all nodes and the state of the robot, after the event with the number in it."""
         return self._follower.snapshot(self.mission.label)
 
     def statuses(self) -> dict[str, Status]:
-        """The status that each node has now, or had at the end, by its words; nodes with equal words share the latest.
+        """The current or last status of each node, by its words; nodes with equal words share the latest.
 
-        IDLE nodes were not reached, or were reset when something above them ended.
+        IDLE nodes were not reached, or were reset when a node above them ended.
         """
         return self._follower.statuses(self.mission.label)
 
     @property
     def sink_errors(self) -> list[Exception]:
-        """What sinks raised; such a sink gets no more events, and the mission goes on."""
+        """Exceptions from sinks. Such a sink gets no more events, and the mission continues."""
         return self.bus.errors
 
     def _work(self) -> None:
@@ -313,7 +313,7 @@ class Run:
             raise MissionError(self._refused(error, connection)) from None
 
     def _refused(self, error: EngineError, connection: Connection) -> list[Diagnostic]:
-        """What to say of a tree that no engine runs: all that is wrong with it where it says nodes by their ids."""
+        """The error for a tree that no engine runs: all its problems, if it names nodes by their ids."""
         mission = self.mission
         span = error.node.span or NOWHERE
         refused = diagnostic("BT080", span, id=error.node.id, reason=error.message)
@@ -330,7 +330,7 @@ def _bind(vocabulary: Lexicon, connection: Connection, node_id: str) -> Any:
 
 
 class _Recent:
-    """Keeps the latest events for who asks later."""
+    """Keeps the latest events for late readers."""
 
     policy = INLINE
 

@@ -90,12 +90,12 @@ def look_at_person(robot: Robot, person: str) -> Steps:
 
 
 def look_at_object(robot: Robot, object: str) -> Steps:
-    """Turns the head to an object. Fails where it is behind the robot."""
+    """Turns the head to an object. Fails if it is behind the robot."""
     yield from _towards(robot, "look at", object)
 
 
 def look_at_place(robot: Robot, place: str) -> Steps:
-    """Turns the head to a place. Fails where it is behind the robot."""
+    """Turns the head to a place. Fails if it is behind the robot."""
     yield from _towards(robot, "look at", place)
 
 
@@ -105,5 +105,5 @@ def _towards(robot: Robot, posture: str, name: str) -> Steps:
     joint = robot.body.bearing_joint(posture)
     if joint is not None and not joint.low <= bearing <= joint.high:
         where = "behind the robot" if abs(bearing) > 90.0 else "too far to the side"
-        raise ActionFailed(f"{said(name)} is {where}, where its {joint.part} does not turn")
+        raise ActionFailed(f"{said(name)} is {where}; the {joint.part} can't turn that far")
     yield from take(robot, posture, bearing=bearing)

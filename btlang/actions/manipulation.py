@@ -65,7 +65,7 @@ def _hand_with(robot: Robot, object: str | None) -> Hand:
         held = robot.holding(hand)
         if held is not None and object in (None, held):
             return hand
-    raise ActionFailed(f"the robot does not hold {said(object)}" if object else "the robot holds nothing")
+    raise ActionFailed(f"the robot isn't holding {said(object)}" if object else "the robot isn't holding anything")
 
 
 def raise_right_arm(robot: Robot) -> Steps:

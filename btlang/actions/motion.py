@@ -53,7 +53,9 @@ def stop(robot: Robot) -> Steps:
     until = robot.time + PATIENCE
     while (velocity := robot.velocity) != (0.0, 0.0):
         if robot.time > until:
-            raise ActionFailed("the robot does not stop: it moves at {:.2f} m/s and {:.0f} degrees/s".format(*velocity))
+            raise ActionFailed(
+                "the robot doesn't stop: it is moving at {:.2f} m/s and {:.0f} degrees/s".format(*velocity)
+            )
         yield
 
 

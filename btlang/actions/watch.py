@@ -17,7 +17,7 @@ class Watch:
     def check_stop(self) -> None:
         """Raises ActionFailed when somebody has stopped the robot."""
         if self._robot.stops != self._stops:
-            raise ActionFailed("the robot was told to stop")
+            raise ActionFailed("the robot was stopped")
 
     def check_base(self, so_far: str) -> None:
         """Raises ActionFailed when the base cannot go on; `so_far` says how far it got: "0.31 m"."""
@@ -27,4 +27,4 @@ class Watch:
         if self._robot.battery_empty:
             raise ActionFailed(f"the battery is empty after {so_far}")
         if self._robot.stuck:
-            raise ActionFailed(f"stuck after {so_far}: the wheels turn but the robot does not move")
+            raise ActionFailed(f"stuck after {so_far}: the wheels turn but the robot doesn't move")

@@ -53,7 +53,7 @@ def misnamed(tree: Tree, vocabulary: Lexicon) -> Iterator[Diagnostic]:
             if kind is None or kind.kind != "names" or "{" in text or vocabulary.value(kind.name, text) is not None:
                 continue
             near = nearest(text.lower(), vocabulary.values.names(kind.name))
-            reason = f"there is no {kind.name} '{text}'" + (f"; the nearest: {', '.join(near)}" if near else "")
+            reason = f"there is no {kind.name} '{text}'" + (f"; similar: {', '.join(near)}" if near else "")
             yield diagnostic("BT132", node.span or NOWHERE, id=node.id, reason=reason)
 
 
@@ -88,7 +88,7 @@ def _place(error: EngineError) -> tuple[str, int]:
 
 def _defining(name: str, span: Span) -> str:
     if span.text[:1] == "<":
-        return 'Where it stands in another file: <include path="..."/>'
+        return 'If it is in another file: <include path="..."/>'
     return f'Define it, at the left margin: "{name}" means: ...'
 
 
@@ -101,7 +101,7 @@ def _entry(node: Node, entries: dict[str, Draft | None]) -> str:
         return ""
     draft = entries[node.id]
     if draft is None:
-        return "No keyword entry can have such an id: it is one word of letters and digits."
+        return "A keyword entry can't have this id: an id is one word of letters and digits."
     return f"This entry of a keyword file would define it:\n{draft.text}"
 
 

@@ -56,7 +56,7 @@ def leaf_binding(
     converters = {slot.name: _converter(slot, vocabulary) for slot in slots}
     defaults = {slot.name: slot.default for slot in slots if slot.default is not None}
     if entry.sort == "condition" and iscoroutinefunction(call):
-        raise EngineError("it is asynchronous, and a condition is asked at once", Node(entry.id, span=entry.span))
+        raise EngineError("it is asynchronous, but a condition must answer at once", Node(entry.id, span=entry.span))
     if not entry.measures:
         binding = LeafBinding(call, converters, defaults, thread=entry.thread)
         return binding if entry.sort == "action" else binding.replace(refusal="it is not true")
@@ -106,7 +106,7 @@ def _module(entry: Entry, name: str) -> ModuleType:
         return import_module(f"{package}.{name}")
     except ModuleNotFoundError as error:
         if error.name is not None and os.path.isfile(os.path.join(folder, f"{error.name}.py")):
-            error.msg += f"; it is beside the keyword file: write 'from . import {error.name}'"
+            error.msg += f"; it is in the folder of the keyword file: write 'from . import {error.name}'"
         raise
 
 
@@ -126,5 +126,5 @@ def _imported(entry: Entry) -> Callable[..., Any]:
     except BaseException as error:  # whatever a user's module raises while it is imported
         raise EngineError(f"{entry.call} cannot be loaded ({described(error)})", node) from error
     if not callable(found):
-        raise EngineError(f"{entry.call} is no function or class", node)
+        raise EngineError(f"{entry.call} isn't a function or class", node)
     return found  # type: ignore[no-any-return]

@@ -39,7 +39,7 @@ def to_json(tree: Tree, vocabulary: Lexicon) -> str:
     def line(value: object) -> str:
         written = json.dumps(value, ensure_ascii=False)
         if _UNFIT_WRITTEN.search(written):
-            reason = "one of its texts has a NUL or a lone surrogate, which no text can hold"
+            reason = "one of its texts contains a NUL or a lone surrogate"
             problem = diagnostic("BT134", tree.root.span or NOWHERE, id=tree.root.id, target="JSON", reason=reason)
             raise MissionError([problem])
         return written

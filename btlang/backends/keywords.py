@@ -43,7 +43,7 @@ class Draft(Record):
         if entry.slots:
             lines.append("slots = { " + ", ".join(f"{slot.name} = {_slot(slot)}" for slot in entry.slots) + " }")
         if self.left_out:
-            lines.append(f"# Ports that the phrase does not say: {', '.join(self.left_out)}")
+            lines.append(f"# Ports that aren't in the phrase: {', '.join(self.left_out)}")
         return "\n".join(lines)
 
 
@@ -77,7 +77,7 @@ def to_keywords(tree: Tree, vocabulary: Lexicon) -> str:
         "# function (docs/keywords.md).",
     ]
     if not found:
-        lines = ["# Every leaf of this tree has its keyword entry."]
+        lines = ["# Every leaf of this tree has a keyword entry."]
     for id, draft in found.items():
         if draft is None:
             lines += ["", f"# No entry can have the id {json.dumps(id)}: an id is one word of letters and digits."]

@@ -49,7 +49,7 @@ TARGETS = {
     "dot": Target("btlang.backends.dot:to_dot", "a graph for Graphviz", (".dot", ".gv")),
     "svg": Target("btlang.pictures.target:to_svg", "a picture of the tree", (".svg",)),
     "png": Target("btlang.pictures.target:to_png", "a picture of the tree", (".png",), binary=True),
-    "tree": Target("btlang.backends.targets:to_plain", "one line a node: Id port=value"),
+    "tree": Target("btlang.backends.targets:to_plain", "one line per node: Id port=value"),
     "keywords": Target(
         "btlang.backends.keywords:to_keywords", "keyword entries for the commands that btlang does not know", (".toml",)
     ),
@@ -69,7 +69,7 @@ def compiled(tree: Tree, vocabulary: Lexicon, name: str, given: Mapping[str, Any
     """
     target = TARGETS.get(name)
     if target is None:
-        raise ValueError(f"the targets are {', '.join(TARGETS)}; there is no {name!r}")
+        raise ValueError(f"there is no target {name!r}; the targets are {', '.join(TARGETS)}")
     chosen = {option: value for option, value in options.items() if value is not None}
     unknown = [option for option in chosen if option not in target.options]
     if unknown:

@@ -225,7 +225,7 @@ def reactive(instance: NodeInstance, children: Sequence[Compiled], passes: int) 
         if status is fails or status == RUNNING:
             if asked < running:
                 if status is FAILURE:
-                    instance.pass_on("its guard broke on the way")
+                    instance.pass_on("its guard failed on the way")
                 halts[running](False)
             running = -1 if status is fails else asked
             return status

@@ -1,13 +1,13 @@
-"""What a node is compiled to, and what its compiler may use.
+"""What a node compiles to, and what its compiler may use.
 
 A compiled node is a pair of closures:
 - `tick()` returns a status. A node that returns SUCCESS or FAILURE has reset itself. One that returns SKIPPED may keep
-  a count (Repeat and RetryUntilSuccessful do, as in BehaviorTree.CPP), so a parent that goes past it halts it.
-  One that returns FAILURE has called `instance.fail`, or a node below it has, and that failure is the latest recorded.
-  So a node whose other children are ticked after the one that counts records the failure of that one again, and a
-  branch puts back what an answer of its condition has recorded when it is SKIPPED.
+  a count (Repeat and RetryUntilSuccessful do, as in BehaviorTree.CPP), so its parent halts it before it moves on. If a
+  node returns FAILURE, it or a node below it has called `instance.fail`, and that failure is the latest one recorded.
+  So if a node ticks other children after the one that decides, it records that child's failure again, and a branch
+  that is SKIPPED restores the failure from before its condition.
 - `halt(keep)` stops every leaf that runs below and resets. With `keep` it suspends: positions, counts and timers stay,
-  and the next tick goes on with them. It may be called at any time, also when an exception cut a tick short, and twice.
+  and the next tick continues with them. It may be called at any time, even after an exception in a tick, and twice.
 """
 
 from __future__ import annotations
@@ -64,7 +64,7 @@ if TYPE_CHECKING:
 
 
 class EngineError(Exception):
-    """The tree cannot be compiled; `node` is the node at fault."""
+    """The tree can't be compiled; `node` is the node at fault."""
 
     def __init__(self, message: str, node: Node) -> None:
         super().__init__(message)
@@ -75,7 +75,7 @@ class EngineError(Exception):
 class Fault(Record):
     """A failure as it is recorded during a tick: index of the node, reason for people (see REFUSED).
 
-    `cause` is the failure below it, where that is why it failed and it has something to add.
+    `cause` is the failure below it that made it fail, if it has something to add.
     """
 
     index: int
@@ -140,11 +140,11 @@ class EngineState:
 
 
 class NodeInstance:
-    """A node where it is used, after expansion of subtrees: what its compiler may ask, and what names it later.
+    """One use of a node, after expansion of subtrees: what its compiler may use, and what identifies it later.
 
     `above` is the instance of its parent, None for the root, and `position` its place among the children there;
-    `index` is its number in preorder; `scope` is its blackboard. It stands for a failure of its node that has no
-    reason of its own.
+    `index` is its number in preorder; `scope` is its blackboard. It also represents a failure of its node
+    without a separate reason.
     """
 
     __slots__ = ("_usual", "above", "index", "node", "position", "scope", "state")
@@ -166,7 +166,7 @@ class NodeInstance:
 
     @property
     def parent_keeps_completed(self) -> bool:
-        """Whether the node above doesn't reset a child that has completed."""
+        """Whether the node above keeps completed children without resetting them."""
         kind = None if self.above is None else CATALOGUE.get(self.above.node.id)
         return kind is not None and kind.keeps_completed
 
@@ -176,7 +176,7 @@ class NodeInstance:
         return FAILURE
 
     def fail(self, reason: Reason, exception: BaseException | None = None) -> int:
-        """Records this node as what failed; returns FAILURE. Costs least with the same text as the time before."""
+        """Records that this node failed; returns FAILURE. Cheapest with the same text as the last time."""
         fault = self._usual
         if fault is None or fault.reason is not reason or exception is not None:
             fault = Fault(self.index, reason, exception)
@@ -186,7 +186,7 @@ class NodeInstance:
         return FAILURE
 
     def cannot_know(self, reason: Reason) -> int:
-        """Records that this condition failed because it does not know; returns FAILURE."""
+        """Records that this condition failed because it is unknown; returns FAILURE."""
         self.fail(reason)
         state = self.state
         state.unknown = state.fault
@@ -198,7 +198,7 @@ class NodeInstance:
         return FAILURE
 
     def not_known(self, before: int) -> bool:
-        """Whether a condition below could not know, since `unknowns` was `before`; then that is the latest failure."""
+        """Whether a condition below was unknown since `unknowns` was `before`; then that is the latest failure."""
         state = self.state
         if state.unknowns == before:
             return False
@@ -206,14 +206,14 @@ class NodeInstance:
         return True
 
     def pass_on(self, reason: Reason) -> int:
-        """Adds why this node fails as well to the failure below it, which stays the cause; returns FAILURE."""
+        """Adds this node's reason to the failure below it, which stays the cause; returns FAILURE."""
         cause = self.state.fault
         below = cause is not None and cause.index > self.index
         self.state.fault = Fault(self.index, reason, None, cause if below else None)
         return FAILURE
 
     def service(self, name: str) -> Any:
-        """What a leaf asks for by name; a blackboard is that of its scope unless one was given to the engine."""
+        """A service for a leaf by name; the blackboard is that of its scope unless the engine got one."""
         return self.state.services.get(name, self.scope)
 
     def error(self, message: str) -> EngineError:
@@ -223,8 +223,8 @@ class NodeInstance:
     def number(self, port: str, least: int = 0, most: int = 0) -> Callable[[], int]:
         """A function that gives the whole number in a port; for a `{key}` it may raise ActionFailed.
 
-        `least` and `most` count where the catalogue has none. Raises EngineError where the port is missing and has no
-        default, or its number is not from `least` to `most`.
+        `least` and `most` are the limits if the catalogue has none. Raises EngineError if the port is missing without a
+        default, or if its number isn't from `least` to `most`.
         """
         known = CATALOGUE[self.node.id].ports[port]
         default = known.default
@@ -245,10 +245,10 @@ class NodeInstance:
     def arguments(
         self, ports: Mapping[str, str], converters: Mapping[str, Callable[[str], Any]]
     ) -> tuple[dict[str, Any], Callable[[], dict[str, Any]] | None]:
-        """Values of leaf ports by name: constants, and a function that reads the others where there are any.
+        """Values of leaf ports by name: constants, and a function that reads the others if there are any.
 
-        That function raises ActionFailed where a `{key}` has no value. Constants are converted here, once; raises
-        EngineError where that fails.
+        That function raises ActionFailed if a `{key}` has no value. Constants are converted here, once; raises
+        EngineError if that fails.
         """
         constants: dict[str, Any] = {}
         stored: list[tuple[str, str, Callable[[str], Any]]] = []
@@ -279,7 +279,7 @@ def blackboard_key(port: str, text: str) -> str | None:
 
 
 def value_of(scope: Blackboard, key: str) -> Any:
-    """The value that a `{key}` stands for; raises ActionFailed where there is none."""
+    """The value of a `{key}`; raises ActionFailed if there is none."""
     try:
         return scope.get(key)
     except KeyError:
@@ -311,7 +311,7 @@ def _convert(scope: Blackboard, port: str, key: str, convert: Callable[[str], An
 
 
 def _whole(value: Any, port: str, least: int, most: int) -> int:
-    """Raises ActionFailed for anything but a whole number within the limits; the text `1.0` is none, as in C++."""
+    """Raises ActionFailed for anything but a whole number within the limits. The text `1.0` isn't one, as in C++."""
     try:
         number = int(value)
     except (TypeError, ValueError, OverflowError):

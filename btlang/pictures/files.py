@@ -19,7 +19,7 @@ def ending(path: str, allowed: tuple[str, ...]) -> str:
     found = os.path.splitext(path)[1].lower()
     if found not in allowed:
         endings = ", ".join(allowed[:-1]) + " or " + allowed[-1]
-        raise ValueError(f"a picture is a file that ends in {endings}, not '{path}'")
+        raise ValueError(f"expected a file that ends in {endings}, not '{path}'")
     return found
 
 

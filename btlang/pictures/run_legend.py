@@ -47,7 +47,7 @@ class Legend:
         canvas.text(x, y + 25, self._summary(), size=SMALL, colour=SOFT)
         y += 46
         if not self._rows:
-            canvas.text(x, y + 4, "No command was given to the robot.", colour=SOFT)
+            canvas.text(x, y + 4, "The robot got no commands.", colour=SOFT)
         else:
             canvas.text(x + _LEFT, y, "command", size=SMALL, colour=SOFT)
             canvas.text(x + WIDTH, y, "began", size=SMALL, colour=SOFT, align="right")

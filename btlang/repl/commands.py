@@ -28,14 +28,14 @@ if TYPE_CHECKING:
 _MARK = ":"  # before a word of the REPL that a mission knows too
 
 _FIRST = """\
-A line of the mission runs as soon as it is entered, and is kept: move forward 1 m
+A line of the mission runs at once, and is kept: move forward 1 m
 A definition is only kept: patrol is go to the lobby then go to the lab
-A line that ends in ':' opens a block, which an empty line closes.
+A line that ends in ':' opens a block, and an empty line closes it.
 """
 _KEYS = f"""
-  Tab  takes what is offered      Ctrl-F  mends what is underlined      Up  earlier lines
+  Tab  takes the suggestion      Ctrl-F  corrects the mistake      Up  earlier lines
   Ctrl-C  stops the robot, or clears the line      Ctrl-D twice  leaves
-  A word of these that your mission knows too is the REPL's with a colon: {_MARK}show"""
+  If your mission uses one of these words too, add a colon for this one: {_MARK}show"""
 
 
 class Leave(Exception):
@@ -52,20 +52,20 @@ class Command(Record):
 
 COMMANDS = (
     Command("help", "[PHRASE]", "explains a phrase or word, or the prompt itself"),
-    Command("words", "[SEARCH]", "lists what can be said"),
+    Command("words", "[SEARCH]", "lists what you can say"),
     Command("show", "[NAME|tree]", "shows the mission, one definition, or the tree of all"),
     Command("names", "", "lists what is defined"),
-    Command("run", "", "runs the whole mission, from where the robot stands; `reset` first for a new world"),
+    Command("run", "", "runs the whole mission from where the robot is; `reset` first for a new world"),
     Command("undo", "", "takes back the last line"),
     Command("redo", "", "takes back an undo"),
     Command("save", "[over] FILE", "writes the mission to a file; `over` replaces another file"),
-    Command("load", "FILE", "goes on with the mission of a file; `undo` brings the present one back"),
-    Command("new", "", "begins an empty mission; `undo` brings the present one back"),
-    Command("restore", "", "brings back the session that was left last"),
-    Command("world", "[FILE]", "shows the world and the robot in it, or goes to another world"),
-    Command("reset", "", "puts the world back to its start"),
+    Command("load", "FILE", "continues with the mission in a file; `undo` brings the current one back"),
+    Command("new", "", "starts an empty mission; `undo` brings the current one back"),
+    Command("restore", "", "brings back the last session"),
+    Command("world", "[FILE]", "shows the world and the robot in it, or changes the world"),
+    Command("reset", "", "resets the world"),
     Command("speed", "[real|max|FACTOR]", "how fast time passes when the robot moves"),
-    Command("quit", "", "leaves, as Ctrl-D twice does"),
+    Command("quit", "", "leaves, like Ctrl-D twice"),
 )
 _NAMES = {command.name: command for command in COMMANDS}
 
@@ -122,9 +122,9 @@ class Commands:
         """Raises MissionError where a file or text is wrong, Leave where the user wants to leave."""
         command = getattr(self, f"_{name}", None) if name in _NAMES else None
         if command is None:
-            self._write(f"There is no '{name}'; 'help' lists what there is.")
+            self._write(f"There's no '{name}' here; 'help' lists what there is.")
         elif rest and not _NAMES[name].arguments:
-            self._write(f"'{name}' stands alone.")
+            self._write(f"'{name}' takes no words after it.")
         else:
             command(rest)
 
@@ -152,7 +152,7 @@ class Commands:
             name = " ".join(rest.lower().split())
             if name not in draft.definitions:
                 known = ", ".join(draft.definitions) or "none yet"
-                self._write(f"There is no name '{rest}'; defined are: {known}.")
+                self._write(f"There's no definition '{rest}'; there are: {known}.")
                 return
             definition = draft.definitions[name]
             self._write(definition)
@@ -161,7 +161,10 @@ class Commands:
             self._write(draft.text.rstrip("\n"))
 
     def _names(self, rest: str) -> None:
-        self._write("\n".join(self._draft.definitions.values()) or "No name is defined: patrol is go to the lobby")
+        self._write(
+            "\n".join(self._draft.definitions.values())
+            or "Nothing is defined yet. For example: patrol is go to the lobby"
+        )
 
     def _run(self, rest: str) -> None:
         self._run_all()
@@ -169,14 +172,14 @@ class Commands:
     def _undo(self, rest: str) -> None:
         before = self._draft.entries
         if not self._draft.undo():
-            self._write("There is nothing to take back.")
+            self._write("There's nothing to undo.")
             return
         self._write_change(before, "The robot stays where it is.")
 
     def _redo(self, rest: str) -> None:
         before = self._draft.entries
         if not self._draft.redo():
-            self._write("There is no undo to take back.")
+            self._write("There's nothing to redo.")
             return
         self._write_change(before, "")
 
@@ -223,7 +226,7 @@ class Commands:
     def _restore(self, rest: str) -> None:
         left = self._store.left() if self._store is not None else None
         if left is None or self._store is None:
-            self._write("No session was left.")
+            self._write("There's no earlier session.")
             return
         if left.world is not None and left.world != self._draft.world:
             self._world(left.world)

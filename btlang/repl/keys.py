@@ -104,7 +104,7 @@ def key_bindings(screen: Editor) -> KeyBindings:
             event.app.exit(exception=EOFError)
         else:
             screen.leaving = True
-            screen.note = "Ctrl-D again leaves."
+            screen.note = "Press Ctrl-D again to leave."
 
     return keys
 

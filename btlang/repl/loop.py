@@ -71,10 +71,10 @@ class Repl:
         screen = Screen(self._draft, self._store)
         show("btlang: type what the robot should do. 'help' explains; Ctrl-D twice leaves.")
         if self._store.problem:
-            show(f"What you type is not kept: {self._store.problem}")
+            show(f"What you type isn't saved: {self._store.problem}")
         left = self._store.left()
         if left is not None:
-            show(f"The last session was left with {_count(left)}: 'restore' brings it back.")
+            show(f"The last session had {_count(left)}: 'restore' brings it back.")
         while True:
             try:
                 text = screen.ask(self._commands.draft)
@@ -89,7 +89,7 @@ class Repl:
         if self._commands.is_saved:
             self._store.forget()
         else:
-            show("This session is kept: after the next start, 'restore' brings it back.")
+            show("This session is saved: after the next start, 'restore' brings it back.")
 
     def read(self, lines: Iterable[str]) -> int:
         """From lines; returns 0, or 1 where a command failed, or 2 where an entry was wrong."""

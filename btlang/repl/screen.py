@@ -189,7 +189,7 @@ class Screen:
         text = self.note
         if not text:
             fix = self.fix()
-            keys = "Tab takes what is offered" if self.buffer.complete_state else "'help' tells more"
+            keys = "Tab takes the suggestion" if self.buffer.complete_state else "'help' explains more"
             if fix is not None:
                 keys = f"Ctrl-F writes: {fix[2]}"
             text = f"{keys} \N{MIDDLE DOT} {robot_line(self.draft)}"

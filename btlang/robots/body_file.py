@@ -108,7 +108,7 @@ def _limits(table: Table) -> Limits:
 def _joint(table: Table) -> Joint:
     name, part = table.text("name"), table.text("part")
     if part in CAPABILITIES:
-        raise table.problem("part", f'"{part}" has another meaning; call the part "{name}", or the like')
+        raise table.problem("part", f'"{part}" has another meaning; call the part "{name}", or similar')
     low = table.number("low")
     high = table.number("high", low=low)
     speed = table.number("speed", low=_LEAST)

@@ -1,7 +1,7 @@
-"""What robots can do, as small protocols: an action asks for those that it needs.
+"""What robots can do, as small protocols: an action uses the ones it needs.
 
-Metres, degrees (counter-clockwise positive), seconds, percent. What a word needs is in its keyword entry, by the names
-of btlang.vocabulary.capabilities.
+Metres, degrees (counter-clockwise positive), seconds, percent. The keyword entry of a word lists its needs, by the
+names in btlang.vocabulary.capabilities.
 """
 
 from __future__ import annotations
@@ -23,7 +23,7 @@ OnEvent = Callable[[str, Mapping[str, Any]], None]
 
 
 class Operation(Protocol):
-    """What the robot has set about and may take time: a journey, a hand that closes, docking."""
+    """Something that the robot has started and that may take time: navigation, closing a hand, docking."""
 
     @property
     def done(self) -> bool:
@@ -31,14 +31,14 @@ class Operation(Protocol):
 
     @property
     def failure(self) -> str | None:
-        """Why it was not accomplished; None while under way and where it was."""
+        """Why it failed; None while it is active and after a success."""
 
     def cancel(self) -> None:
-        """Gives up: a journey brakes, and nobody waits for a hand any more. Does nothing when done."""
+        """Gives up: navigation brakes, and nobody waits for a hand any more. Does nothing when done."""
 
 
 class CompletedOperation:
-    """A operation that took no time."""
+    """An operation that took no time."""
 
     done = True
     failure = None
@@ -50,8 +50,8 @@ class CompletedOperation:
 class Machine(Protocol):
     """What every robot is. Only `stop` and `disable` may be called from other threads.
 
-    `on_event(kind, data)` is told what happens. Kinds: say, print, navigate, arrive, bump, stuck, stop, grasp, release,
-    drop, joint, dock, undock, battery, fault.
+    `on_event(kind, data)` is called for each event. Kinds: say, print, navigate, arrive, bump, stuck, stop, grasp,
+    release, drop, joint, dock, undock, battery, fault.
     """
 
     on_event: OnEvent | None
@@ -62,27 +62,27 @@ class Machine(Protocol):
 
     @property
     def moves_by_itself(self) -> bool:
-        """True for a real robot; False where the world stands still between two steps."""
+        """True for a real robot; False if the world stands still between two steps."""
 
     @property
     def time(self) -> float:
-        """Seconds that it was stepped."""
+        """Total seconds of all steps."""
 
     def step(self, dt: float) -> None:
         """Lets `dt` seconds pass. On a real robot time passes by itself and this only reads the sensors."""
 
     def stop(self) -> None:
-        """Brakes hard, cancels the journey, freezes joints, ends speech; from any thread.
+        """Brakes hard, cancels navigation, freezes joints, ends speech; from any thread.
 
-        Commands given before the next `step` are ignored, so that a tick in flight cannot undo it; `stops` counts it,
-        so that an action under way knows afterwards.
+        Commands before the next `step` are ignored, so that the current tick can't undo it. `stops` counts it, so that
+        a running action knows afterwards.
         """
 
     def disable(self) -> None:
         """Emergency stop, from any thread: `stop`, and ignores all commands until `enable`."""
 
     def enable(self) -> None:
-        """Takes commands again. For a run that begins or goes on: nothing else may undo an emergency stop."""
+        """Accepts commands again. For a run that starts or continues: nothing else may undo an emergency stop."""
 
     @property
     def stops(self) -> int:
@@ -94,7 +94,7 @@ class Machine(Protocol):
 
     @property
     def standstill(self) -> Standstill:
-        """What is known of whether it stands still, and will."""
+        """What is known about whether it stands still, and will keep still."""
 
 
 class Base(Machine, Protocol):
@@ -106,7 +106,7 @@ class Base(Machine, Protocol):
 
     @property
     def normal_speed(self) -> float:
-        """Metres a second where a mission asks for no other speed."""
+        """Metres per second if a mission doesn't give a speed."""
 
     @property
     def max_speed(self) -> float:
@@ -114,7 +114,7 @@ class Base(Machine, Protocol):
 
     @property
     def normal_turn(self) -> float:
-        """Degrees a second for turning on the spot."""
+        """Degrees per second for turning on the spot."""
 
     @property
     def pose(self) -> Pose:
@@ -122,29 +122,29 @@ class Base(Machine, Protocol):
 
     @property
     def velocity(self) -> tuple[float, float]:
-        """Metres and degrees a second that the base really moves."""
+        """Measured metres and degrees per second of the base."""
 
     def drive(self, linear: float, angular: float) -> None:
-        """Sets the wanted metres and degrees a second until told otherwise; ends a journey under way."""
+        """Sets the target metres and degrees per second until the next call; ends active navigation."""
 
     @property
     def stuck(self) -> bool:
-        """True when it has been told to move for a second and does not."""
+        """True when it should have been moving for a second but isn't."""
 
     def locate(self, name: str) -> Point:
         """Where a place, object or person is. Raises RobotError for an unknown name."""
 
     def nearby_people(self, within: float) -> list[str]:
-        """Names of the people within so many metres, nearest first."""
+        """Names of the people within that many metres, nearest first."""
 
 
 class Navigation(Base, Protocol):
-    """Ways to what has a name."""
+    """Navigation to named places, objects and people."""
 
     def navigate_to(self, name: str) -> Operation:
-        """Sets out for a place, for an object (within arm's reach) or a person (within talking distance), and faces it.
+        """Starts to a place, an object (within arm's reach) or a person (within talking distance), and faces it.
 
-        Raises RobotError for an unknown name; all else that goes wrong is the operation's `failure`.
+        Raises RobotError for an unknown name. Any other problem is the operation's `failure`.
         """
 
 
@@ -152,7 +152,7 @@ class Sensors(Machine, Protocol):
     """The scanner and the bumper."""
 
     def scan(self) -> npt.NDArray[np.float64]:
-        """360 distances from the centre, index = degrees left of the heading, inf where nothing is in range.
+        """360 distances from the centre, index = degrees left of the heading, inf if nothing is in range.
 
         Raises SensorSilent when the scanner is silent.
         """
@@ -163,7 +163,7 @@ class Sensors(Machine, Protocol):
 
     @property
     def bumped(self) -> bool:
-        """True from running into something until it has moved away."""
+        """True after running into something until it has moved away."""
 
 
 class Joints(Machine, Protocol):
@@ -173,36 +173,36 @@ class Joints(Machine, Protocol):
         """The joint's angle. Raises RobotError for an unknown name."""
 
     def move_joints(self, targets: Mapping[str, float]) -> None:
-        """Sets off joints towards angles, which are clipped to what the joint can do."""
+        """Starts moving joints to angles, clipped to the limits of the joint."""
 
     def joints_at_target(self, *names: str) -> bool:
-        """True when these joints rest where they were told to go."""
+        """True when these joints rest at their targets."""
 
     def freeze_joints(self, *names: str) -> None:
         """These joints stay where they are now."""
 
 
 class Hands(Machine, Protocol):
-    """What takes objects and puts them down."""
+    """The hands, which take objects and put them down."""
 
     def grasp(self, hand: Hand, name: str | None = None) -> Operation:
-        """Closes a hand on the named object, else on the nearest within reach.
+        """Closes a hand on the named object, by default on the nearest one within reach.
 
         Raises RobotError, or fails, when nothing (or not that object) is within reach or the hand is full.
         """
 
     def release(self, hand: Hand) -> Operation:
-        """Opens a hand and puts down what it held."""
+        """Opens a hand and puts down the object in it."""
 
     def holding(self, hand: Hand) -> str | None:
-        """The name of what the hand holds."""
+        """The name of the object in the hand."""
 
 
 class Voice(Machine, Protocol):
     """Speech, and the screen."""
 
     def say(self, text: str) -> None:
-        """Starts to speak; `speaking` tells when it has finished."""
+        """Starts to speak; `speaking` is False when it has finished."""
 
     @property
     def speaking(self) -> bool:
@@ -224,7 +224,7 @@ class Power(Machine, Protocol):
 
     @property
     def battery_empty(self) -> bool:
-        """True when the wheels get no power any more; False too where the robot does not tell."""
+        """True when the wheels get no power any more; False also if the robot doesn't report it."""
 
     @property
     def charging(self) -> bool:
@@ -239,11 +239,11 @@ class Docking(Machine, Protocol):
         """True while connected to the dock."""
 
     def dock(self) -> Operation:
-        """Connects to the charger. Raises RobotError, or fails, where the robot does not stand at the dock."""
+        """Connects to the charger. Raises RobotError, or fails, if the robot isn't at the dock."""
 
     def undock(self) -> Operation:
-        """Disconnects; moves nothing."""
+        """Disconnects without moving."""
 
 
 class Robot(Navigation, Sensors, Joints, Hands, Voice, Power, Docking, Protocol):
-    """A robot that can do all of this. One whose body lacks a part raises RobotError where it is asked for it."""
+    """A robot that can do all of this. If its body lacks a part, using the part raises RobotError."""

@@ -38,11 +38,11 @@ def load_data(path: str, what: str, make: Callable[[Table], T], error: type[Data
     except OSError as problem:
         raise error(f"cannot read {what.replace('a ', 'the ')} file: {problem.strerror or problem}", path) from None
     except UnicodeDecodeError:
-        raise error(f"{what} file is UTF-8 text; save it as such", path) from None
+        raise error(f"{what} file must be UTF-8 text; save it that way", path) from None
     try:
         return make(Table(what, parse_toml(text)))
     except tomllib.TOMLDecodeError as problem:
-        raise error(f"this is no TOML: {problem}", path, line_of(problem)) from None
+        raise error(f"this isn't TOML: {problem}", path, line_of(problem)) from None
     except Problem as problem:
         from btlang.text.toml_positions import nearest, positions
 

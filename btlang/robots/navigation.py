@@ -45,7 +45,7 @@ class NavigationGoal:
 
     def cancel(self) -> None:
         """Gives up and brakes. Does nothing when done."""
-        self.end("the way was given up")
+        self.end("navigation was cancelled")
 
     @property
     def left(self) -> float:
@@ -111,7 +111,7 @@ class Navigator:
         if self._base.bumps > goal.bumps:
             goal.end(f"bumped into {self._base.bumped_into} on the way to {said(name)}")
         elif self._base.stuck:
-            goal.end(f"stuck on the way to {said(name)}: the wheels turn but the robot does not move")
+            goal.end(f"stuck on the way to {said(name)}: the wheels turn but the robot doesn't move")
         elif self._faults.blocked(name):
             goal.end(f"there is no free way to {said(name)}")
         elif goal.version != self._obstacles.version:
@@ -183,6 +183,6 @@ def turn_rate(error: float, turning: Limits) -> float:
 def stand_off(body: Body, thing: Thing, is_person: bool) -> float:
     """Metres from an object or a person at which a robot that goes there stops. Raises RobotError."""
     if body.navigation is None:
-        raise RobotError("the robot finds no ways")
+        raise RobotError("the robot can't navigate")
     near = body.navigation.people if is_person else body.navigation.objects
     return max(near, thing.radius + body.radius + ROOM)

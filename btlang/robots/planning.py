@@ -38,7 +38,7 @@ class Planner:
         self._origin = low_x, low_y
         if (high_x - low_x) * (high_y - low_y) > _MOST_AREA:
             size = f"{high_x - low_x:.0f} m by {high_y - low_y:.0f} m"
-            most = f"{_MOST_AREA:,} square metres are the most"
+            most = f"at most {_MOST_AREA:,} square metres are possible"
             raise RobotError(f"the world is too large to plan a way: {size}, and {most}")
         self._columns, self._rows = ceil((high_x - low_x) / CELL), ceil((high_y - low_y) / CELL)
         self._xs, self._ys = np.meshgrid(

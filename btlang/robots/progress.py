@@ -35,7 +35,7 @@ class Progress:
         if abs(left) < self._nearest - _STEP * self._close:
             self._nearest, self._waited = abs(left), 0.0
         elif self._waited > self._patience:
-            raise ActionFailed(f"the robot does not {'turn' if self._turns else 'get'} on: {self._of(gone)} done")
+            raise ActionFailed(f"the robot makes no progress: {self._of(gone)} done")
 
     def _of(self, gone: float) -> str:
         digits, unit = (0, "degrees") if self._turns else (2, "m")

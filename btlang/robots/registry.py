@@ -32,7 +32,7 @@ def body_of(robot: str) -> Body:
         return read_body(os.path.join(BODIES, f"{robot}.toml"))
     if not (robot.endswith(".toml") or os.path.exists(robot)):
         names = " or ".join(map(repr, ROBOTS))
-        raise ValueError(f"robot is {names}, a robot file, or a function that connects to one: {robot!r}")
+        raise ValueError(f"robot must be {names}, a robot file, or a function that connects to one, not {robot!r}")
     return read_body(robot)
 
 
@@ -42,7 +42,7 @@ def runs_on(robot: str, over: str | None = None) -> tuple[Body, str]:
     Raises as `body_of`, and ValueError for another `over`.
     """
     if over is not None and over not in ROBOTS:
-        raise ValueError(f"over is {' or '.join(map(repr, ROBOTS))}: {over!r}")
+        raise ValueError(f"over must be {' or '.join(map(repr, ROBOTS))}, not {over!r}")
     body = body_of(robot)
     return body, over or (robot if robot in ROBOTS else body.over)
 

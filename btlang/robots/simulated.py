@@ -102,7 +102,7 @@ class SimulatedRobot:
         self._latch.open()
 
     def _rest(self) -> None:
-        self._navigator.cancel("the robot was told to stop")
+        self._navigator.cancel("the robot was stopped")
         self._base.brake()
         self._joints.freeze()
         self._speech_left = 0.0
@@ -132,7 +132,7 @@ class SimulatedRobot:
         """Sets the wanted metres and degrees a second; ends a journey under way."""
         if self._latch.refuses or self._power.empty:
             return
-        self._navigator.cancel("the robot was told to drive elsewhere")
+        self._navigator.cancel("another command took over the drive")
         self._base.drive(linear, angular)
 
     @property
@@ -171,7 +171,7 @@ class SimulatedRobot:
         self._need("navigation")
         goal = self._navigator.start(name, pose)
         if self._latch.refuses:
-            goal.end("the robot was told to stop")
+            goal.end("the robot was stopped")
         if self._power.empty:
             goal.end("the battery is empty")
         self._emit("navigate", name=name)
@@ -217,7 +217,7 @@ class SimulatedRobot:
         """Puts an object or a person somewhere else, as somebody in the world would. Raises RobotError."""
         known = self._known(name)
         if known not in self._obstacles.things or self._obstacles.is_carried(known):
-            raise RobotError(f"{said(known)} cannot be moved")
+            raise RobotError(f"{said(known)} can't be moved")
         self._obstacles.move(known, x, y)
 
     def _known(self, name: str) -> str:
@@ -284,7 +284,7 @@ class SimulatedRobot:
     def grasp(self, hand: Hand, name: str | None = None) -> CompletedOperation:
         """Closes a hand at once on the named or the nearest object. Raises RobotError."""
         if self._latch.refuses:
-            raise RobotError("the robot was told to stop")
+            raise RobotError("the robot was stopped")
         found = self._hands.grasp(hand, None if name is None else self._known(name), self.pose, self.time)
         self._emit("grasp", hand=hand, name=found)
         return CompletedOperation()

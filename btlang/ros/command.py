@@ -50,9 +50,9 @@ def add_robot_options(parser: ArgumentParser) -> None:
     """The options of `btc run` that choose a robot."""
     add_body_options(parser)
     parser.add_argument(
-        "--sim-time", action="store_true", help="with --robot ros or actions: time is that of the topic /clock"
+        "--sim-time", action="store_true", help="with --robot ros or actions: use the time of the topic /clock"
     )
-    add_namespace(parser, "with --robot ros or actions: that of the robot (default: none)")
+    add_namespace(parser, "with --robot ros or actions: namespace of the robot (default: none)")
     parser.add_argument(
         "--servers",
         metavar="NS",
@@ -73,7 +73,9 @@ def add_body_options(parser: ArgumentParser, platforms: Sequence[str] = tuple(RO
         metavar="ROBOT",
         help=f"{', '.join(platforms)}, a robot file or the name of one that ships (default: %(default)s)",
     )
-    parser.add_argument("--over", choices=platforms, help="what the robot of a file runs on (default: as it says)")
+    parser.add_argument(
+        "--over", choices=platforms, help="what the robot in a file runs on (default: as the file says)"
+    )
 
 
 def add_namespace(parser: ArgumentParser, what: str) -> None:
@@ -122,8 +124,8 @@ def print_preflight(tree: Tree, vocabulary: Lexicon, world: World, robot: Any) -
         show(f"warning: {warning}")
     missing = sum(bool(reason) for _, reason in found.values()) + len(lacks)
     show(
-        f"The robot lacks {missing} of {len(found) + len(lacks)}."
+        f"Missing: {missing} of {len(found) + len(lacks)}."
         if missing
-        else "The robot has all that the mission needs."
+        else "The robot has everything that the mission needs."
     )
     return not missing

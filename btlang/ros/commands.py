@@ -37,6 +37,6 @@ def trajectory(positions: Mapping[str, float], seconds: float) -> JointTrajector
     """Joints by their names on the wire, to radians or metres. Raises RobotError for what is no position."""
     for name, position in positions.items():
         if not abs(position) <= _ABSURD:
-            raise RobotError(f"{position:g} is no position for the joint {name}")
+            raise RobotError(f"{position:g} isn't a valid position for the joint {name}")
     point = JointTrajectoryPoint(positions=list(map(float, positions.values())), time_from_start=duration(seconds))
     return JointTrajectory(joint_names=list(positions), points=[point])

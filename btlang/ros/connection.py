@@ -182,7 +182,7 @@ class RosConnection:
     def pace(self, speed: float, controls: Controls) -> Pace:
         """Raises ValueError for another speed than 1: the robot's time passes by itself."""
         if speed != 1.0:
-            raise ValueError('a ROS 2 robot runs in real time: speed is "real"')
+            raise ValueError('a ROS 2 robot runs in real time: speed must be "real"')
         return RosPace(controls, self._now)
 
     def close(self) -> None:

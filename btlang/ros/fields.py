@@ -92,9 +92,7 @@ def reader(word: Word, cls: Any) -> Callable[[Any], Any]:
         raise word.misfit(cls, path, f"{path} is {kind}: name one of its fields")
     reduce = word.ros.get("reduce")
     if (array is None) != (reduce is None):
-        reason = f"{path} is {kind}, so " + (
-            "reduce has nothing to do" if array is None else 'reduce = "min" is needed'
-        )
+        reason = f"{path} is {kind}, so " + ("reduce doesn't apply" if array is None else 'reduce = "min" is needed')
         raise word.misfit(cls, path, reason)
     return follow if array is None else _reduced(word, cls, path, follow, _REDUCERS[reduce])
 

@@ -82,7 +82,7 @@ def _maker(word: Word, owner: Any, name: str, kind: str, value: Value, now: Now)
     if array is not None:
         element, length = array
         if not isinstance(value, tuple):
-            raise misfit(f"{name} is an array, so it is given as a list")
+            raise misfit(f"{name} is an array, so give a list")
         if length is not None and len(value) != length:
             raise misfit(f"{name} has {length} values, not {len(value)}")
         makers = [_maker(word, owner, name, element, item, now) for item in value]

@@ -71,11 +71,11 @@ def pose_fault(pose: Any) -> str:
     if max(abs(at.x), abs(at.y)) > _FURTHEST:
         return f"says that the robot is {hypot(at.x, at.y):.3g} m away"
     if abs(sqrt(q.x**2 + q.y**2 + q.z**2 + q.w**2) - 1.0) > _UNIT:
-        return "sends a quaternion that is no direction"
+        return "sends an invalid quaternion"
     return ""
 
 
 def _scan(scan: Any) -> str:
     if not abs(scan.angle_min) <= _TURNS or not 0.0 < abs(scan.angle_increment) <= _TURNS:
-        return "does not say where its beams point"
+        return "doesn't say where its beams point"
     return "has no valid beam" if np.isnan(echoes(scan)).all() else ""

@@ -39,7 +39,7 @@ class RosHands:
         self._holding: dict[Hand, str] = {}
         self._opening: dict[Hand, Call] = {}
         for hand in self._hands:
-            subscriptions.listen(_held(hand), String, f"word of the {hand} hand", qos="state")
+            subscriptions.listen(_held(hand), String, f"message from the {hand} hand", qos="state")
             services.add(_close(hand), SetBool)
 
     def grasp(self, hand: Hand, name: str | None) -> Call:

@@ -48,7 +48,7 @@ class RosJoints:
         wire = _on_wire(name)
         position = positions(states).get(wire)
         if position is None:
-            raise SensorSilent(f'{self._subscriptions.shown(STATES)} tells nothing of the joint "{wire}"')
+            raise SensorSilent(f'{self._subscriptions.shown(STATES)} doesn\'t report the joint "{wire}"')
         return position / joint.si
 
     def move(self, targets: Mapping[str, float]) -> None:
@@ -85,7 +85,7 @@ class RosJoints:
             self._nearest[name] = left, now
         elif now - since > _STALLED:
             far = f"{left:.2f} m" if joint.slides else f"{left:.0f} degrees"
-            raise RobotError(f"the {name} does not move: it is {far} from where it should be")
+            raise RobotError(f"the {name} doesn't move: it is {far} from where it should be")
         return False
 
     def _tell(self, targets: Mapping[str, float], seconds: float) -> None:

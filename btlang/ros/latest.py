@@ -102,11 +102,11 @@ class Latest:
         silence = self.silence()
         if age is not None and silence > age:
             reason = self.refused or self._absence()
-            raise Unknown(reason or f"nothing has come on {self.named} for {silence:.1f} s")
+            raise Unknown(reason or f"nothing has arrived on {self.named} for {silence:.1f} s")
         return last[0]
 
     def why_not(self) -> str:
         """Why nothing has come, "" where something has."""
         if self.has_come:
             return ""
-        return self.refused or self._absence() or f"nothing has come on {self.named} yet"
+        return self.refused or self._absence() or f"nothing has arrived on {self.named} yet"

@@ -30,7 +30,7 @@ _SERVER = 2.0  # seconds that a server gets to be there
 _ANSWER = 5.0  # seconds that it gets to accept or reject, and between two of its feedbacks
 _MUTE, _STANDS = 15.0, 60.0  # seconds without any feedback, and with it, in which the robot does not move
 _MOVED, _TURNED = 0.05, 5.0  # metres and degrees that it has to move
-_ENDINGS = {GoalStatus.STATUS_CANCELED: "somebody cancelled the way to {name}"}
+_ENDINGS = {GoalStatus.STATUS_CANCELED: "somebody cancelled the navigation to {name}"}
 
 
 class RosNavigationGoal:
@@ -74,7 +74,7 @@ class RosNavigationGoal:
 
     def cancel(self) -> None:
         """Gives up: the goal is withdrawn, as soon as it is accepted where it is not yet."""
-        self.end(f"the way to {said(self.name)} was given up")
+        self.end(f"the navigation to {said(self.name)} was cancelled")
 
     def end(self, failure: str | None, *, withdraw: bool = True) -> None:
         """Arrived, or the reason why not. Does nothing when done."""
@@ -103,9 +103,9 @@ class RosNavigationGoal:
         elif not self._client.server_is_ready():
             self.end(f"the {self._server} is gone", withdraw=False)
         elif self.heard and self._waited(_ANSWER):
-            self.end(f"no word from the {self._server} for {_ANSWER:g} s")
+            self.end(f"no feedback from the {self._server} for {_ANSWER:g} s")
         elif self._stands(_STANDS if self.heard else _MUTE):
-            told = "" if self.heard else f", and the {self._server} gives no word of it"
+            told = "" if self.heard else f", and the {self._server} sends no feedback"
             seconds = _STANDS if self.heard else _MUTE
             self.end(f"the robot has not moved for {seconds:g} s on the way to {said(self.name)}{told}")
 
@@ -154,7 +154,7 @@ class RosNavigationGoal:
     def _answered(self, answer: Any) -> None:
         handle = answer.result()
         if not handle.accepted:
-            self.end(f"the navigation server rejected the way to {said(self.name)}", withdraw=False)
+            self.end(f"the navigation server refused to navigate to {said(self.name)}", withdraw=False)
             self._over()
             return
         self._since, self._stood = AWAKE.now(), (self._stood[0], self._now())
@@ -175,7 +175,7 @@ class RosNavigationGoal:
         if self._result.done() or code == CancelGoal.Response.ERROR_UNKNOWN_GOAL_ID:
             self._over()
         elif response.goals_canceling or code == CancelGoal.Response.ERROR_GOAL_TERMINATED:  # its result comes, or not
-            self.pending = "the navigation server did not end the goal that was cancelled"
+            self.pending = "the navigation server did not end the cancelled goal"
         else:
             self.pending = "the navigation server refused to cancel its goal"
             self.withdrawn.set()

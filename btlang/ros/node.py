@@ -102,7 +102,7 @@ class SpunNode:
         number = self.context.get_domain_id()
         if number > _LAST_DOMAIN:
             rclpy.shutdown(context=self.context)
-            raise RuntimeError(f"there is no domain {number}, they are 0 to {_LAST_DOMAIN} (ROS_DOMAIN_ID)")
+            raise RuntimeError(f"ROS_DOMAIN_ID must be from 0 to {_LAST_DOMAIN}, not {number}")
 
     def _watch(self) -> None:
         AWAKE.watch()

@@ -13,7 +13,7 @@ from btlang.ros.services import Call, Services
 from btlang.ros.subscription_cache import SubscriptionCache
 
 BATTERY, DOCKED, DOCK, UNDOCK = "battery_state", "docked", "dock", "undock"
-STATUS = "status of the battery"
+STATUS = "battery status"
 """The key of what the battery tells besides its percentage, which a robot may leave out."""
 _SILENT = 30.0  # seconds without word of the battery
 
@@ -28,7 +28,7 @@ class RosPower:
         self._docked: bool | None = None
         subscriptions.listen(BATTERY, BatteryState, "battery state", refuses=_no_percentage)
         subscriptions.listen(BATTERY, BatteryState, "battery state", key=STATUS)
-        subscriptions.listen(DOCKED, Bool, "word of the dock", qos="state")
+        subscriptions.listen(DOCKED, Bool, "message from the dock", qos="state")
         services.add(DOCK, Trigger)
         services.add(UNDOCK, Trigger)
 

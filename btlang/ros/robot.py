@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     from btlang.ros.navigation_goal import RosNavigation
 
 _STOP = "stop"
-_TOLD_TO_STOP = "the robot was told to stop"
+_TOLD_TO_STOP = "the robot was stopped"
 _STOPPING = 5.0  # seconds for which a robot that was stopped is told zero velocity
 _LAST_WORDS = 2.0  # seconds that servers get to answer at the end
 
@@ -198,7 +198,7 @@ class RosRobot:
         if self._latch.refuses:
             return
         if self._navigation is not None:
-            self._navigation.stop("the robot was told to drive elsewhere")
+            self._navigation.stop("another command took over the drive")
         self._base.drive(linear, angular)
 
     @property

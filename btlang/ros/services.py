@@ -33,7 +33,7 @@ class Call:
 
     def cancel(self) -> None:
         """Nobody waits for the answer any more."""
-        self.end(f"the answer of {self._name} was not waited for")
+        self.end(f"the call of {self._name} was cancelled")
 
     def end(self, failure: str | None) -> None:
         """Accomplished, or the reason why not. Does nothing when done."""
@@ -85,7 +85,7 @@ class Services:
         """
         shown = self._clients[name].service_name
         if not self._clients[name].service_is_ready():
-            raise RobotError(f"nothing serves {shown}")
+            raise RobotError(f"there is no service {shown}")
         call = Call(shown, accomplished)
         self._send(name, fields, call.answered)
         self._calls.append(call)

@@ -24,12 +24,12 @@ class RosSpeech:
         self._expected = 0.0
         self._age = self._since = 0.0
         self._asked = self._heard = self._told = False
-        subscriptions.listen(SPEAKING, Bool, "word of its speaking", qos="state")
+        subscriptions.listen(SPEAKING, Bool, "speech status", qos="state")
 
     def say(self, text: str) -> None:
         """Starts to speak. Raises RobotError where nobody listens."""
         if not self._speech.get_subscription_count():
-            raise RobotError(f"nobody listens on {self._speech.topic_name}")
+            raise RobotError(f"nobody listens to {self._speech.topic_name}")
         self._asked, self._heard, self._age, self._since = True, False, 0.0, AWAKE.now()
         self._expected = 0.35 + 0.06 * len(text)
         self._speech.publish(String(data=text))
@@ -43,7 +43,7 @@ class RosSpeech:
     def print(self, text: str) -> None:
         """Shows text. Raises RobotError where nobody listens."""
         if not self._print.get_subscription_count():
-            raise RobotError(f"nobody listens on {self._print.topic_name}")
+            raise RobotError(f"nobody listens to {self._print.topic_name}")
         self._print.publish(String(data=text))
 
     def step(self, dt: float) -> None:

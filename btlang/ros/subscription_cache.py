@@ -89,7 +89,7 @@ class SubscriptionCache:
         """The latest message. Raises SensorSilent where there is none, or none for `limit` seconds."""
         what, latest = self._what[topic], self._latest[topic]
         if topic not in self._read:
-            raise SensorSilent(f"no {what}: {latest.refused or f'nothing has come on {latest.named}'}")
+            raise SensorSilent(f"no {what}: {latest.refused or f'nothing has arrived on {latest.named}'}")
         # after a tick that took long, newer ones are there but not read yet
         if limit is not None:
             limit = min(limit, _NONSENSE) if latest.refused else limit

@@ -54,7 +54,7 @@ class Word:
         try:
             found = import_module(f"{package}.{module}")
         except ImportError:
-            advice = f"Install the package {package}, or source the workspace that holds it."
+            advice = f"Install the package {package}, or source the workspace that contains it."
             raise self.problem("BT104", name, type=name, advice=advice) from None
         if not hasattr(found, cls):
             known = [other for other in dir(found) if other[0].isupper()]
@@ -84,7 +84,7 @@ class Word:
         for other in kind.units:
             if unit in other.words:
                 return other.denominator / other.numerator
-        raise LookupError(f"'{unit}' is no unit of the type {kind.name}")
+        raise LookupError(f"'{unit}' isn't a unit of the type {kind.name}")
 
     @property
     def scale(self) -> float:

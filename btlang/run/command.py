@@ -113,7 +113,7 @@ def run_mission(
     if outcome.worst is not None and not quiet:
         show(_too_slow(outcome, *outcome.worst, mission.label))
     for slow in run.bus.slow:
-        show(f"A watcher of this run was too slow: the run waited {slow.seconds:.1f} s for it.", sys.stderr)
+        show(f"An event sink was too slow: the run waited {slow.seconds:.1f} s for it.", sys.stderr)
     if outcome.status == FAILURE:
         show(outcome.why(colour=has_colour(sys.stderr)), stream=sys.stderr)
     elif not quiet:

@@ -1,4 +1,4 @@
-"""Everything that happens while a mission runs: a class each, from which the JSON of logs and its schema are made."""
+"""Everything that happens while a mission runs: a class for each kind. The JSON log and its schema use them."""
 
 from __future__ import annotations
 
@@ -34,10 +34,10 @@ if TYPE_CHECKING:
         def reason(self, index: int, fault: Fault | NodeInstance | None) -> str: ...
 
     class Robot(Protocol):
-        """What a run asks of a robot; see btlang.robots.robot.Robot. `moving`, `standstill`, `disable` and `enable` may
-        be missing; so may `moves_by_itself`, which is then taken for true.
+        """What a run needs from a robot; see btlang.robots.robot.Robot. `moving`, `standstill`, `disable` and `enable`
+        may be missing, and so may `moves_by_itself`, which is then assumed to be true.
 
-        `moves_by_itself` is False for a simulated robot, whose world stands still between two steps.
+        `moves_by_itself` is False for a simulated robot: its world stands still between two steps.
         """
 
         def step(self, dt: float) -> object: ...
@@ -46,8 +46,8 @@ if TYPE_CHECKING:
 
 
 class Event(Record):
-    """What all events have: `t` in seconds of the mission, `run` the id of the run, `number` from 0 on without gaps in
-    a run, and `wall` in seconds since 1970.
+    """The fields of all events: `t` in seconds of mission time, `run` the id of the run, `number` from 0 on without
+    gaps in a run, and `wall` in seconds since 1970.
     """
 
     tag: ClassVar[str] = ""
@@ -59,7 +59,7 @@ class Event(Record):
 
     @classmethod
     def stamped(cls, t: float, run: str, number: int, /, *data: Any, **more: Any) -> Event:
-        """An event of this class that happens now. The one place that fills in what all events have."""
+        """An event of this class that happens now. The only place that fills in the common fields."""
         return cls(t, run, number, time(), *data, **more)
 
     @property
@@ -71,8 +71,8 @@ class Event(Record):
 class StatusChanged(Event):
     """A node has a new status. `index` is its number in preorder, `path` its place.
 
-    `before` is its last status in this round: IDLE where its parent has begun again. `reason` says why a node failed,
-    "" for any other status and where only a node below it can say that.
+    `before` is its last status in this round: IDLE if its parent has started again. `reason` says why a node failed. It
+    is "" for any other status, and if only a node below it has the reason.
     """
 
     path: str
@@ -84,10 +84,10 @@ class StatusChanged(Event):
 
 
 class StatusesChanged(Event):
-    """Nodes have new statuses; iterating gives each as a StatusChanged, oldest first, with a number of its own.
+    """Nodes have new statuses. Iterating yields each as a StatusChanged, oldest first, each with its number.
 
-    They come together because making an event of each would take ten times as long as the tick. `valued` has those
-    nodes whose ports name keys, with the values that these had (see Engine.valued).
+    They come together because creating an event for each would take ten times as long as the tick. `valued` has the
+    nodes with ports that name keys, and the values of these keys (see Engine.valued).
     """
 
     changes: Changes
@@ -137,27 +137,27 @@ class NavigationStarted(Event):
 
 
 class Arrived(Event):
-    """The robot is where it was to go."""
+    """The robot has arrived at its goal."""
 
     tag = "arrive"
     name: str
 
 
 class Bumped(Event):
-    """The robot touches something, "" where it cannot say what."""
+    """The robot touches something, "" if it doesn't know what."""
 
     tag = "bump"
     into: str
 
 
 class Stuck(Event):
-    """The robot drives and does not move."""
+    """The wheels turn, but the robot doesn't move."""
 
     tag = "stuck"
 
 
 class Stopped(Event):
-    """The robot was told to stop."""
+    """The robot was stopped."""
 
     tag = "stop"
 
@@ -171,7 +171,7 @@ class Grasped(Event):
 
 
 class Released(Event):
-    """A hand was opened; None where it held nothing."""
+    """A hand was opened; None if it held nothing."""
 
     tag = "release"
     hand: str
@@ -229,19 +229,19 @@ class Notice(Event):
 
 
 class Warned(Notice):
-    """Something to know of that does not end the mission."""
+    """A warning that doesn't end the mission."""
 
     tag = "warning"
 
 
 class Troubled(Notice):
-    """Something went wrong beside the mission, such as a command that did not halt."""
+    """Something went wrong outside the mission, such as a command that didn't halt."""
 
     tag = "error"
 
 
 class RobotEvent(Event):
-    """Something else that a robot of one's own reports."""
+    """Another event that a custom robot reports."""
 
     tag = "robot"
     kind: str
@@ -249,10 +249,10 @@ class RobotEvent(Event):
 
 
 class Ended(Event):
-    """The last event of a run, with what its Outcome says: `outcome` (a status), `stopped`, `seconds`.
+    """The last event of a run, with the data of its Outcome: `outcome` (a status), `stopped`, `seconds`.
 
-    `still` (None where that is not known, and unless it is True `motion` in words) is as in its standstill, and where
-    the mission failed `path`, `id` and `reason` are those of the failure, and `place` that of its sentence.
+    `still` says whether the robot stands still (None if unknown); unless it is True, `motion` says so in words. If the
+    mission failed, `path`, `id` and `reason` are those of the failure, and `place` that of its sentence.
     """
 
     tag = "end"
@@ -270,7 +270,7 @@ class Ended(Event):
 class Overrun(Event):
     """A tick took `seconds` of real time, longer than its `period`. Only in runs that keep step with real time.
 
-    `node` is its slowest leaf, at `path`, which took `leaf_seconds` of them; None where no leaf is to blame.
+    `node` is its slowest leaf, at `path`, which took `leaf_seconds`; None if no leaf was the cause.
     """
 
     tag = "overrun"
@@ -282,10 +282,10 @@ class Overrun(Event):
 
 
 class PeriodPassed(Event):
-    """The time between two ticks is over, or one of the periods in which the robot comes to rest. Not in logs.
+    """The period between two ticks is over, or one in which the robot comes to rest. Not in logs.
 
     The first one comes before the first tick. `ticks` and `overruns` count from the start of the run. `state` is what
-    the robot senses then. A sink that is called in the thread of the run may read the `robot` during the call.
+    the robot senses. A sink that is called in the thread of the run may read `robot` during the call.
     """
 
     ticks: int

@@ -68,7 +68,7 @@ class Lines:
     def _overrun(self, event: Overrun) -> None:
         if event.node is not None and event.path not in self._slow:
             self._slow.add(event.path)
-            took = f"took {brief(event.leaf_seconds)} s of a tick, which has {brief(event.period)} s"
+            took = f"took {brief(event.leaf_seconds)} s, but a tick has only {brief(event.period)} s"
             self._line(event.t, "slow", f"{self._label(event.node)}: {took}")
 
     def _line(self, t: float, word: str, rest: str) -> None:

@@ -73,7 +73,7 @@ class _Report:
         return last, Attempts(tuple(kept), tried.dropped)
 
     def _attempt(self, attempt: Attempt) -> str:
-        reason = attempt.reason or "done, but it did not help"
+        reason = attempt.reason or "done, but it didn't help"
         times = f" ({attempt.times} times, last at {attempt.last:.1f} s)" if attempt.times > 1 else ""
         return f"{attempt.first:7.1f} s  {self._sentence(self._named(attempt.index))}: {reason}{times}"
 

@@ -59,26 +59,26 @@ class Table:
             return default
         value = self._required(key, "a number")
         if type(value) not in (int, float) or value != value:
-            raise self.problem(key, f'"{key}" is a number; write {key} = 1.5')
+            raise self.problem(key, f'"{key}" must be a number; write {key} = 1.5')
         if not -_MOST <= value <= _MOST:
-            raise self.problem(key, f'"{key}" is a number from {-_MOST:,} to {_MOST:,}')
+            raise self.problem(key, f'"{key}" must be a number from {-_MOST:,} to {_MOST:,}')
         if (low is not None and value < low) or (high is not None and value > high):
             bounds = f"at least {low:g}" if high is None else f"from {low:g} to {high:g}"
-            raise self.problem(key, f'"{key}" is {bounds}, not {value:g}')
+            raise self.problem(key, f'"{key}" must be {bounds}, not {value:g}')
         return float(value)
 
     def text(self, key: str) -> str:
         """Text that is not blank. Raises Problem."""
         value = self._required(key, "a text")
         if not isinstance(value, str) or not value.strip():
-            raise self.problem(key, f'"{key}" is text in quotes; write {key} = "kitchen"')
+            raise self.problem(key, f'"{key}" must be text in quotes; write {key} = "kitchen"')
         return " ".join(value.split())
 
     def flag(self, key: str) -> bool:
         """True or false, false where it is missing. Raises Problem."""
         value = self._values[key] if self.has(key) else False
         if not isinstance(value, bool):
-            raise self.problem(key, f'"{key}" is true or false')
+            raise self.problem(key, f'"{key}" must be true or false')
         return value
 
     def choice(self, key: str, values: tuple[str, ...], default: str | None = None) -> str:
@@ -87,22 +87,22 @@ class Table:
             return default
         value = self._required(key, "a text")
         if value not in values:
-            listed = ", ".join(f'"{known}"' for known in values) or "nothing: there is none"
-            raise self.problem(key, f'"{key}" is one of {listed}')
+            listed = ", ".join(f'"{known}"' for known in values) or "nothing, because there is none"
+            raise self.problem(key, f'"{key}" must be one of {listed}')
         return str(value)
 
     def table(self, key: str) -> Table:
         """The table under the key. Raises Problem."""
         value = self._required(key, "a table")
         if not isinstance(value, dict):
-            raise self.problem(key, f'"{key}" is a table; write {key} = {{ x = 1, y = 1 }}')
+            raise self.problem(key, f'"{key}" must be a table; write {key} = {{ x = 1, y = 1 }}')
         return Table(key, value, (*self._path, key))
 
     def items(self, key: str) -> list[Any]:
         """The list under the key, empty where it is missing. Raises Problem."""
         value = self._values[key] if self.has(key) else []
         if not isinstance(value, list):
-            raise self.problem(key, f'"{key}" is a list; write {key} = [ ... ]')
+            raise self.problem(key, f'"{key}" must be a list; write {key} = [ ... ]')
         return value
 
     def tables(self, key: str) -> list[Table]:
@@ -110,7 +110,7 @@ class Table:
         items = self.items(key)
         for index, item in enumerate(items):
             if not isinstance(item, dict):
-                raise Problem(f'"{key}" holds tables; write [[{key}]] above each', *self._path, key, index)
+                raise Problem(f'"{key}" must be a list of tables; write [[{key}]] above each', *self._path, key, index)
         return [Table(key, item, (*self._path, key, index)) for index, item in enumerate(items)]
 
     def finish(self, result: T) -> T:

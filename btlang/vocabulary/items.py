@@ -85,7 +85,7 @@ def _slots(entry: Entry, vocabulary: Lexicon) -> Iterator[str]:
         if slot.default is not None:
             line += f"; {_default(slot.default, kind)} if left out"
         elif not all(slot.name in names for names in always):
-            line += "; may be left out"
+            line += "; optional"
         yield line
 
 

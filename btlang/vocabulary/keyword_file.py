@@ -85,26 +85,26 @@ class _Reader:
             return None
         keys = _ENTRY | _MORE[sort]
         for key in [key for key in table if key not in keys]:
-            self.wrong(f"'{key}' is not known in [[{sort}]]; known are {', '.join(sorted(keys))}", near)
+            self.wrong(f"'{key}' is not a key of [[{sort}]]; the keys are {', '.join(sorted(keys))}", near)
         if name in CATALOGUE:
             self.wrong(f"'{name}' is a node of the tree itself; the {sort} '{near}' needs another id", near)
         call, resources = table.get("call", ""), table.get("resources", [])
         if not isinstance(call, str) or (call and not re.fullmatch(r"[\w.]+:[\w.]+", call)):
-            self.wrong(f"call of '{near}' is written \"module:name\"", near)
+            self.wrong(f"call of '{near}' must be \"module:name\"", near)
         if not _strings(resources):
-            self.wrong(f"resources of '{near}' is a list of names", near)
+            self.wrong(f"resources of '{near}' must be a list of names", near)
             resources = []
         needs = table.get("needs", [])
         if not _strings(needs):
-            self.wrong(f"needs of '{near}' is a list of names such as [\"navigation\"]", near)
+            self.wrong(f"needs of '{near}' must be a list of names such as [\"navigation\"]", near)
             needs = []
         if sort == "action":
             resources = list(dict.fromkeys((*resources, *resources_of(needs))))
         for key in [key for key in _FLAGS if not isinstance(table.get(key, False), bool)]:
-            self.wrong(f"{key} of '{near}' is true or false", near)
+            self.wrong(f"{key} of '{near}' must be true or false", near)
         instant, uninterruptible, thread = (table.get(key) is True for key in _FLAGS)
         if instant and thread:
-            self.wrong(f"'{near}' cannot be instant: what works in a thread ends in a later tick", near)
+            self.wrong(f"'{near}' can't be instant: work in a thread ends in a later tick", near)
         topic, help, example = (str(table.get(key, "")) for key in ("topic", "help", "example"))
         slots = self.slots(phrases, table.get("slots", {}), near)
         made = Entry(
@@ -136,7 +136,7 @@ class _Reader:
             self.wrong('replaces is a list of ids, such as replaces = ["GoTo"]', "replaces")
             return entries
         for name in [name for name in ids if not any(entry.id == name and entry.call for entry in entries)]:
-            self.wrong(f"no entry of this file has the id '{name}' and a call to replace the known one with", name)
+            self.wrong(f"no entry of this file has the id '{name}' and a call to replace the known one", name)
         return [entry.replace(replaces=entry.id in ids) for entry in entries]
 
     def ros(self, table: object, sort: str, slots: tuple[SlotSpec, ...], near: str) -> RosBinding | None:
@@ -164,7 +164,7 @@ class _Reader:
 
     def slots(self, phrases: list[str], table: Any, near: str) -> tuple[SlotSpec, ...]:
         if not isinstance(table, dict):
-            self.wrong(f"slots of '{near}' is a table such as {{ distance = {{ type = \"length\" }} }}", near)
+            self.wrong(f"slots of '{near}' must be a table such as {{ distance = {{ type = \"length\" }} }}", near)
             return ()
         found: dict[str, SlotSpec] = {}
         for phrase in phrases:
@@ -194,10 +194,10 @@ class _Reader:
             self.wrong('[[type]] needs name = "...", one word', "[[type]]")
             return None
         for key in [key for key in table if key not in _TYPE]:
-            self.wrong(f"'{key}' is not known in [[type]]; known are {', '.join(sorted(_TYPE))}", name)
+            self.wrong(f"'{key}' is not a key of [[type]]; the keys are {', '.join(sorted(_TYPE))}", name)
         listed = {key: table.get(key, []) for key in ("units", "values")}
         if not all(isinstance(value, list) for value in listed.values()):
-            self.wrong(f"units and values of {name} are lists", name)
+            self.wrong(f"units and values of {name} must be lists", name)
             return None
         units = []
         for unit in listed["units"]:
@@ -213,19 +213,19 @@ class _Reader:
                 or not all(0 < abs(part) < inf for part in (made.numerator, made.denominator))
                 or made.numerator / made.denominator <= 0
             ):
-                self.wrong(f'a unit of {name} is {{ words = ["m", "meter"], factor = "1" }}', name)
+                self.wrong(f'a unit of {name} must be {{ words = ["m", "meter"], factor = "1" }}', name)
             else:
                 units.append(made)
         values = [{"name": v} if isinstance(v, str) else v for v in listed["values"]]
         if not all(
             isinstance(v, dict) and isinstance(v.get("name"), str) and _strings(v.get("words", [])) for v in values
         ):
-            self.wrong(f'the values of {name} are names, or {{ name = "left", words = ["left", "port"] }}', name)
+            self.wrong(f'the values of {name} must be names, or {{ name = "left", words = ["left", "port"] }}', name)
             values = []
         names = [(name, str(word), str(v["name"])) for v in values for word in v.get("words", [v["name"]])]
         least = table.get("least")
         if least is not None and (isinstance(least, bool) or not isinstance(least, int | float) or not isfinite(least)):
-            self.wrong(f"least of {name} is a number", name)
+            self.wrong(f"least of {name} must be a number", name)
             least = None
         whole = bool(table.get("whole", False))
         kind = _kind(name, bool(units), bool(values) or bool(table.get("open")))
@@ -258,7 +258,7 @@ def read_keyword_file(source: Source) -> KeywordFile:
         reason = "it is not TOML: " + str(error)[: place.start() if place else None]
         raise MissionError([diagnostic("BT060", Span(source, start, start + 1), reason=reason)]) from None
     for key in [key for key in document if key not in _TOP]:
-        reader.wrong(f"'{key}' is not known in a keyword file; known are {', '.join(sorted(_TOP))}", key)
+        reader.wrong(f"'{key}' is not a key of keyword files; the keys are {', '.join(sorted(_TOP))}", key)
     entries, types, names = [], [], []
     places = positions(source.text)
     for sort in ("action", "condition", "quantity"):
@@ -291,5 +291,5 @@ def _tables(document: dict[str, Any], key: str, reader: _Reader) -> list[dict[st
     value = document.get(key, [])
     if isinstance(value, list) and all(isinstance(item, dict) for item in value):
         return value
-    reader.wrong(f"{key} is written [[{key}]]", key)
+    reader.wrong(f"{key} must be written [[{key}]]", key)
     return []

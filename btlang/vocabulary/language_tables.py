@@ -72,7 +72,7 @@ TABLES: dict[str, tuple[Callable[[object], bool], str]] = {
     "meanings": (_between, "one of " + ", ".join(CONNECTIVES)),
     "nodes": (_is_text, "the words of a node"),
     "contractions": (_is_text, "a word"),
-    "counts": (_rounds, "a whole number from 1 on, or -1 for without end"),
+    "counts": (_rounds, "a whole number from 1 on, or -1 for endless"),
     "numbers": (_number, "a number"),
     "multipliers": (_number, "a number"),
     "fractions": (_number, "a number"),
@@ -92,15 +92,15 @@ def problems(table: str, value: Any) -> Iterator[tuple[str, str]]:
         return
     if table in WORD_LISTS:
         if not _words(value):
-            yield f"{table} is a list of words", table
+            yield f"{table} must be a list of words", table
         return
     fits, wanted = TABLES[table]
     if not isinstance(value, dict):
-        yield f"{table} is a table: [{table}]", table
+        yield f"{table} must be a table: [{table}]", table
         return
     for key, item in value.items():
         if not fits(item):
-            yield f"{key} in [{table}] is {wanted}", key
+            yield f"{key} in [{table}] must be {wanted}", key
         elif table == "roles":
             yield from _phrase_problems("role", key, item, ROLES)
         elif table == "comparisons":
@@ -121,8 +121,10 @@ def _phrase_problems(kind: str, name: str, phrases: list[str], known: Mapping[st
             yield str(error), phrase
             continue
         if any(found != wanted for found in slots):
-            need = f"holds {' and '.join(f'{{{slot}}}' for slot in sorted(wanted, reverse=True))}, not in brackets"
-            yield f"a phrase of the {kind} {name} {need if wanted else 'holds no slot'}: '{phrase}'", phrase
+            need = (
+                f"must contain {' and '.join(f'{{{slot}}}' for slot in sorted(wanted, reverse=True))}, not in brackets"
+            )
+            yield f"a phrase of the {kind} {name} {need if wanted else 'must not contain a slot'}: '{phrase}'", phrase
 
 
 _LANGUAGE: dict[str, Any] = {

@@ -190,7 +190,7 @@ class Lexicon:
                 if known.kind == kind.kind:
                     types[kind.name] = kind.replace(least=known.least) if kind.least is None else kind
                     continue
-                reason = f"the type {kind.name} is there already and of another kind"
+                reason = f"the type {kind.name} already exists with another kind"
                 self._problems.append(diagnostic("BT060", Span(file.source, 0, 0), reason=reason))
         return types
 
@@ -309,7 +309,9 @@ class Lexicon:
             return slot
         value = self.value(slot.type, slot.default)
         if value is None:
-            reason = f"the default '{slot.default}' of {{{slot.name}}} is no {slot.type}, such as {kind.example}"
+            reason = (
+                f"the default '{slot.default}' of {{{slot.name}}} isn't a valid {slot.type}, such as {kind.example}"
+            )
             self._wrong(entry, reason)
             return slot
         return SlotSpec(slot.name, slot.type, value)

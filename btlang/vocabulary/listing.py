@@ -16,9 +16,9 @@ from btlang.vocabulary.trie import longest
 _WIDTH = 80  # columns, of a text that is for no terminal
 _FEW = 3  # of so few found, all is told
 _KEY = (
-    "[...] may be left out, {{...}} takes a value (see the end), a/b is a choice,",
-    "time(s) is time or times. A condition is no command: it needs a word such as",
-    "'{if}' or '{until}'. btc words TOPIC shows a topic, btc words WORD what has a word.",
+    "[...] is optional, {{...}} takes a value (see the end), a/b is a choice,",
+    "time(s) is time or times. A condition isn't a command: it needs a word such as",
+    "'{if}' or '{until}'. btc words TOPIC shows a topic, btc words WORD finds a word.",
 )
 
 
@@ -150,7 +150,7 @@ def _whole(item: Item, width: int) -> list[str]:
 
 
 def _topics(known: Sequence[Item], width: int) -> list[str]:
-    lines = ["Ask for help on a topic, or on anything that can be said:"]
+    lines = ["Ask for help on a topic, or on any word or phrase:"]
     for topic in dict.fromkeys(item.topic for item in known):
         ways = ", ".join(item.ways[0] for item in known if item.topic == topic)
         lines.append(f"  {topic:<13} " + textwrap.shorten(ways, width - 16, placeholder=" ..."))

@@ -83,7 +83,7 @@ def _made(paths: Sequence[str], entries: Iterable[Entry], folder: str, english: 
 def _entry(word: Entry | Callable[..., Any]) -> Entry:
     entry = word if isinstance(word, Entry) else getattr(word, "btlang_entry", None)
     if not isinstance(entry, Entry):
-        raise TypeError(f"{word!r} is no word: make it one with btlang.action or btlang.condition")
+        raise TypeError(f"{word!r} isn't a word: decorate it with btlang.action or btlang.condition")
     return entry
 
 

@@ -66,7 +66,7 @@ def forms(pattern: str, articles: frozenset[str] = frozenset()) -> tuple[Form, .
         key=lambda form: (-len(form), [part if isinstance(part, str) else f"{{{part.name}" for part in form]),
     )
     if not found or () in ways[0]:
-        raise PatternError(f"the phrase '{pattern}' has no word that must be said")
+        raise PatternError(f"the phrase '{pattern}' has no required word")
     return tuple(found)
 
 

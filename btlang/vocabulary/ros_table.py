@@ -73,7 +73,7 @@ _FORMS = {
 _TYPED = {
     "action": "action", "service": "srv", "publish": "msg", "topic": "msg", "drive": "msg", "joints": "msg"
 }  # fmt: skip
-_UNTYPED = {"parameter": "the name of a parameter", "phrase": "a phrase or the id of the action that is served"}
+_UNTYPED = {"parameter": "the name of a parameter", "phrase": "a phrase or the id of a served action"}
 _EXAMPLES = {
     "action": "nav2_msgs/action/NavigateToPose", "srv": "std_srvs/srv/Trigger", "msg": "std_msgs/msg/String"
 }  # fmt: skip
@@ -83,14 +83,14 @@ def read_ros(table: object, sort: str) -> tuple[RosBinding | None, list[tuple[st
     """The binding of an entry of a sort, None where it has none; and what is wrong, each with a text near it."""
     if not isinstance(table, dict):
         return None, [
-            ('it is a table such as { topic = "sensor_msgs/msg/BatteryState", name = "/battery_state" }', "ros")
+            ('it must be a table such as { topic = "sensor_msgs/msg/BatteryState", name = "/battery_state" }', "ros")
         ]
     kinds = [kind for kind in KINDS if kind in table]
     if len(kinds) != 1:
         near = [kind for key in table for kind in nearest(str(key), KINDS, 1)]
         said = f"both {kinds[0]} and {kinds[1]} are given" if kinds else "none is given"
-        said += f"; '{near[0]}' is the nearest" if near and not kinds else ""
-        return None, [(f"one of {', '.join(KINDS)} says what it uses, and {said}", "ros")]
+        said += f"; similar: {near[0]}" if near and not kinds else ""
+        return None, [(f"it needs one of the keys {', '.join(KINDS)}, and {said}", "ros")]
     [kind] = kinds
     keys = KINDS[kind].get(sort)
     if keys is None:
@@ -98,24 +98,24 @@ def read_ros(table: object, sort: str) -> tuple[RosBinding | None, list[tuple[st
             (f"{kind} is for {' and '.join(_plural(other) for other in KINDS[kind])}, not for {_plural(sort)}", kind)
         ]
     wrong = [
-        (f"'{key}' is not known with {kind}; known are {', '.join(sorted({kind, 'name', *keys}))}", key)
+        (f"'{key}' is not a key for {kind}; the keys are {', '.join(sorted({kind, 'name', *keys}))}", key)
         for key in table
         if key not in (kind, "name", *keys)
     ]
     interface, name = table[kind], table.get("name")
     middle = _TYPED.get(kind)
     if middle and not (isinstance(interface, str) and re.fullmatch(rf"\w+/{middle}/\w+", interface)):
-        wrong.append((f'{kind} is a type, written such as "{_EXAMPLES[middle]}"', str(interface)))
+        wrong.append((f'{kind} must be a type such as "{_EXAMPLES[middle]}"', str(interface)))
     elif not isinstance(interface, str) or not interface:
-        wrong.append((f"{kind} is {_UNTYPED[kind]}", kind))
+        wrong.append((f"{kind} must be {_UNTYPED[kind]}", kind))
     if not isinstance(name, str) or not re.fullmatch(r"[/~]?\w+(/\w+)*", name):
-        wrong.append((f'name = "..." is the name of {_named(kind)}, such as "/robot/arm"', str(name or kind)))
+        wrong.append((f'name = "..." must be the name of {_named(kind)}, such as "/robot/arm"', str(name or kind)))
     options = []
     for key, form in keys.items():
         if key in table:
             value = _frozen(table[key])
             if value is None or not _has_form(value, form):
-                wrong.append((f"{key} is {_FORMS[form]}", key))
+                wrong.append((f"{key} must be {_FORMS[form]}", key))
             else:
                 options.append((key, value))
     if not wrong:
@@ -130,17 +130,17 @@ def _missing(kind: str, sort: str, options: dict[str, Value]) -> Iterator[str]:
     if kind == "joints" and not options.get("positions"):
         yield "joints needs positions = { elbow = 1.2 }, in radians or metres"
     if kind == "parameter" and sort == "action" and "set" not in options:
-        yield "parameter needs set = ..., the value that it gets"
+        yield "parameter needs set = ..., its new value"
     if kind == "parameter" and sort == "condition" and not options.keys() & set(LIMITS):
         yield f"parameter needs one of {', '.join(LIMITS)}"
     if kind == "topic" and sort == "quantity" and "field" not in options:
-        yield 'topic needs field = "...", the field that is measured'
+        yield 'topic needs field = "...", the field to measure'
     if kind == "topic" and "field" not in options and options.keys() & {*LIMITS, "reduce", "scale"}:
-        yield 'topic needs field = "...", the field that is compared'
+        yield 'topic needs field = "...", the field to compare'
     if "indexes" in options and "degrees" in options:
-        yield "either indexes or degrees say which part of an array counts"
+        yield "indexes and degrees both select a part of an array: give only one"
     if kind == "publish" and "finally" in options and "for" not in options:
-        yield 'finally is what is sent after the time of for = "{duration}"'
+        yield 'finally needs for = "{duration}": it is sent after that time'
 
 
 def _frozen(value: object, path: str = "") -> Value | None:

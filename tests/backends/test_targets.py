@@ -89,7 +89,7 @@ def test_examples_can_be_compiled_to_all(path: Path) -> None:
         elif name in ("python", "py_trees"):
             compile(made, "made.py", "exec")
         elif name == "keywords":
-            assert made == "# Every leaf of this tree has its keyword entry.\n"
+            assert made == "# Every leaf of this tree has a keyword entry.\n"
 
 
 def assert_graph(text: str, tree: Tree) -> None:
@@ -221,7 +221,7 @@ def test_compile_says_what_it_can_write(capsys: pytest.CaptureFixture[str]) -> N
         with pytest.raises(SystemExit) as refused:
             main(["compile", *words])
         assert refused.value.code == 2
-        assert "--to says" in capsys.readouterr().err or "--dialect" in words
+        assert "choose a target" in capsys.readouterr().err or "--dialect" in words
 
 
 def test_all_that_is_wrong_is_told_at_once() -> None:
@@ -286,5 +286,5 @@ def test_a_run_tells_of_all_nodes_that_a_mission_says_by_unknown_ids() -> None:
 
 @pytest.mark.parametrize("text", ["<root/>", '{"format": 1}'])
 def test_what_is_no_english_has_no_layout(text: str) -> None:
-    with pytest.raises(MissionError, match="BT001: I can't read <text>: this is no English"):
+    with pytest.raises(MissionError, match="BT001: I can't read <text>: it isn't English"):
         format_mission(text)

@@ -391,7 +391,7 @@ def test_only_a_plain_function_can_be_a_thread(world: World) -> None:
         start = tick = halt = lambda self: None
 
     for call in (asynchronous, generator, Leaf):
-        with pytest.raises(EngineError, match="A is to run in a thread, and only a plain function can"):
+        with pytest.raises(EngineError, match="A can't run in a thread: only a plain function can"):
             world.engine(world.bind("A", call, thread=True))
 
 

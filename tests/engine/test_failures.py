@@ -15,8 +15,8 @@ from .scripted import World, n, said
 
 A, B, C = Node("A"), Node("B"), Node("C")
 LATE = n("Timeout", A, msec=1000)
-NO_BRANCH = "its condition did not hold, and it has no other branch"
-BROKEN = "its guard broke on the way"
+NO_BRANCH = "its condition was false, and it has no other branch"
+BROKEN = "its guard failed on the way"
 
 
 def bind(world: World, id: str, script: str) -> None:
@@ -100,7 +100,7 @@ def run(root: Node, scripts: str) -> Engine:
         (n("Timeout", A, msec="{gone}"), "f", "/", "{gone} has no value", []),
         (n("Delay", A, delay_msec=1000), "f", "/0", "A1", []),
         (n("Sequence", n("Precondition", A, **{"if": "1 > 2"})), "s", "/0", "this is not true: 1 > 2", []),
-        (n("WasEntryUpdated", entry="{x}"), "", "/", "nothing has been written to {x} since it last asked", []),
+        (n("WasEntryUpdated", entry="{x}"), "", "/", "nothing has been written to {x} since the last check", []),
         (n("LoopInt", A, queue="", if_empty="FAILURE"), "s", "/", "its queue is empty", []),
         (n("LoopInt", A, queue="1;2"), "sf", "/0", "A1", []),
         (n("RateController", A, hz=1), "f", "/0", "A1", []),

@@ -273,7 +273,7 @@ class NoHalt:
         (n("A"), lambda x: None, "A needs a value for x"),
         (n("A", x="1"), lambda x, /: None, "A takes no port x"),
         (n("A", x="one"), lambda x: None, "x cannot be 'one': invalid literal"),
-        (n("A"), NoHalt, "NoHalt has no halt, so it is no leaf"),
+        (n("A"), NoHalt, "NoHalt has no halt, so it isn't a leaf"),
         (n("A", n("AlwaysSuccess")), lambda: None, "A is a leaf, which takes no children"),
         (n("Sequence"), None, "Sequence has 0 children instead of 1 or more"),
         (n("Inverter"), None, "Inverter has 0 children instead of 1"),

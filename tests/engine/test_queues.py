@@ -58,7 +58,7 @@ def test_queues_on_the_blackboard_are_taken_apart_there(held: Any, left: Any) ->
 @pytest.mark.parametrize(
     ("held", "reason"),
     [
-        (7, "{q} holds 7, which is no queue"),
+        (7, "{q} holds 7, which isn't a queue"),
         ("1;two", "the queue must hold whole numbers, not 'two'"),
     ],
 )
@@ -126,7 +126,7 @@ def test_a_text_that_is_no_number_does_not_replace_one() -> None:
     engine.blackboard.set("text", "many")
     assert engine.tick() == FAILURE
     assert engine.failure is not None
-    assert engine.failure.reason == "{x} holds a number: the text 'many' is no number"
+    assert engine.failure.reason == "{x} holds a number: the text 'many' isn't a number"
 
 
 def test_was_entry_updated() -> None:

@@ -76,7 +76,7 @@ def test_scripts_may_be_skipped() -> None:
         ({}, "needs a port code"),
         ({"code": ""}, "needs a port code"),
         ({"code": "a :="}, "its code 'a :=' cannot be read: a value is missing at the end, at character 5"),
-        ({"code": "{a}{b}"}, "its code '{a}{b}' cannot be read: '{' means nothing in a script, at character 1"),
+        ({"code": "{a}{b}"}, "its code '{a}{b}' cannot be read: '{' isn't valid in a script, at character 1"),
         ({"code": "1", "codes": "2"}, "takes no port codes"),
     ],
 )

@@ -265,7 +265,7 @@ def test_a_folder_of_a_user(tmp_path: Path, capsys: pytest.CaptureFixture[str]) 
         ("[phrases]\nWave = []", "Wave in .phrases. is a phrase, or a list of them"),
         ("phrases = 3", "phrases is a table"),
         ("decimal_comma = 1", "decimal_comma is true or false"),
-        ("[contractions]\nal = 3", "al in .contractions. is a word"),
+        ("[contractions]\nal = 3", "al in .contractions. must be a word"),
         ('[phrases]\nNod = "wave"', "can match the same words"),
     ],
 )

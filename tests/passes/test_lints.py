@@ -145,12 +145,12 @@ def test_unused_names(text: str, codes: list[str]) -> None:
 @pytest.mark.parametrize(
     ("text", "reason", "never"),
     [
-        ("wave forever then nod", "goes on until it fails", "nod"),
-        ("wave forever\nnod", "goes on until it fails", "nod"),
-        ("nod every 2 s then wave", "goes on until it fails", "wave"),
+        ("wave forever then nod", "continues until it fails", "nod"),
+        ("wave forever\nnod", "continues until it fails", "nod"),
+        ("nod every 2 s then wave", "continues until it fails", "wave"),
         ("(wave if possible) forever, then nod", "never ends", "nod"),
-        ("if bumped:\n  repeat wave\n  nod", "goes on until it fails", "nod"),
-        ("dance is nod forever; dance then wave", "goes on until it fails", "wave"),
+        ("if bumped:\n  repeat wave\n  nod", "continues until it fails", "nod"),
+        ("dance is nod forever; dance then wave", "continues until it fails", "wave"),
         ("fail then wave", "always fails", "wave"),
         ("give in is fail; give in, then wave", "always fails", "wave"),
         ("if bumped, fail, otherwise fail\nwave", "always fails", "wave"),
@@ -160,10 +160,10 @@ def test_unused_names(text: str, codes: list[str]) -> None:
         ("do nothing or nod", "always succeeds", "nod"),
         ("try (wave if possible) otherwise nod", "always succeeds", "nod"),
         ("wait 5 s otherwise nod", "always succeeds", "nod"),
-        ("wait until bumped otherwise nod", "goes on until it succeeds", "nod"),
+        ("wait until bumped otherwise nod", "continues until it succeeds", "nod"),
         ("(wait 5 s then do nothing) or nod", "always succeeds", "nod"),
         ("try in order:\n  wave\n  nod if possible\n  look up", "always succeeds", "look up"),
-        ("(wave forever and nod) then say hello", "goes on until it fails", "say hello"),
+        ("(wave forever and nod) then say hello", "continues until it fails", "say hello"),
     ],
 )
 def test_never_runs(text: str, reason: str, never: str) -> None:

@@ -109,7 +109,7 @@ def test_a_robot_that_does_not_move(mission: str, tmp_path: Path) -> None:
 def test_a_tree(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     mission = "greet is wave then nod; greet then greet if the battery is low"
     assert btc("tree", "-c", mission, "--picture", tmp_path / "a.svg") == 0
-    assert capsys.readouterr().out == f"The tree is drawn in {tmp_path / 'a.svg'}.\n"
+    assert capsys.readouterr().out == f"Wrote {tmp_path / 'a.svg'}.\n"
     assert btc("tree", "-c", mission, "--picture", tmp_path / "b.svg", "--apart") == 0
     assert size_of(tmp_path / "a.svg") != size_of(tmp_path / "b.svg")
     assert btc("tree", "-c", mission, "--picture", tmp_path / "a.png") == 0
@@ -154,7 +154,7 @@ def test_a_wrong_ending_is_told_at_once(arguments: list[str], capsys: pytest.Cap
     with pytest.raises(SystemExit) as caught:
         main(arguments)
     assert caught.value.code == 2
-    assert "a picture is a file that ends in .svg" in capsys.readouterr().err
+    assert "expected a file that ends in .svg" in capsys.readouterr().err
 
 
 def test_a_wrong_ending_in_the_library(tmp_path: Path) -> None:

@@ -82,8 +82,8 @@ def test_undo_and_redo_say_what_they_change() -> None:
     repl = Repl("wave", "bow is nod", "bow is wave")
     assert repl.do("undo").startswith("- bow is wave\n+ bow is nod")
     assert repl.do("redo") == "- bow is nod\n+ bow is wave"
-    assert "no undo" in repl.do("redo")
-    assert "nothing to take back" in Repl().do("undo")
+    assert "nothing to redo" in repl.do("redo")
+    assert "nothing to undo" in Repl().do("undo")
 
 
 def test_save_and_load() -> None:
@@ -154,9 +154,9 @@ def test_show_and_names() -> None:
     ]  # fmt: skip
     assert repl.do("show tree").startswith("SubTree ID=bow")
     assert repl.do("names") == "bow is nod then wave"
-    assert "There is no name 'fest'" in repl.do(":show fest")
-    assert "stands alone" in repl.do("undo now")
-    assert "There is no 'flarp'" in repl.do(":flarp")
+    assert "There's no definition 'fest'" in repl.do(":show fest")
+    assert "takes no words after it" in repl.do("undo now")
+    assert "There's no 'flarp'" in repl.do(":flarp")
 
 
 def test_help() -> None:
@@ -216,7 +216,7 @@ def test_restore_takes_one_session_after_the_other_with_its_world(tmp_path: Path
     assert repl.session.world == str(tmp_path / "room.toml")
     assert "3 lines" in repl.do("restore")
     assert repl.commands.draft == "bow the"
-    assert "No session was left" in repl.do("restore")
+    assert "There's no earlier session" in repl.do("restore")
 
 
 def test_a_store_that_cannot_write(tmp_path: Path) -> None:

@@ -42,7 +42,7 @@ def test_the_prompt_takes_a_robot(monkeypatch: pytest.MonkeyPatch, capsys: pytes
     [
         (
             ["run", "-c", "wave", "--robot", "smal"],
-            "ros, actions, small, standard or a robot file is needed",
+            "ros, actions, small, standard or a robot file",
         ),
         (["run", "-c", "wave", "--over", "tcp"], "argument --over: invalid choice: 'tcp'"),
         (["run", "-c", "wave", "--robot", "small", "--sim-time"], "--sim-time, --namespace and --preflight are for"),
@@ -51,9 +51,9 @@ def test_the_prompt_takes_a_robot(monkeypatch: pytest.MonkeyPatch, capsys: pytes
             "over ros runs in real time",
         ),
         (["repl", "--robot", "ros", "--speed", "max"], "--robot ros runs in real time, so it takes no --speed"),
-        (["sim-ros", "--robot", "ros"], "simulated, small, standard or a robot file is needed, not 'ros'"),
+        (["sim-ros", "--robot", "ros"], "simulated, small, standard or a robot file, not 'ros'"),
         (["sim-ros", "--over", "ros"], "argument --over: invalid choice: 'ros'"),
-        (["serve-actions", "--robot", "actions"], "simulated, ros, small, standard or a robot file is needed"),
+        (["serve-actions", "--robot", "actions"], "simulated, ros, small, standard or a robot file"),
         (["ros-node", "--robot", "FAR", "--over", "simulated", "--sim-time"], "--sim-time is for --robot ros"),
     ],
 )

@@ -133,7 +133,7 @@ def test_people_nearby():
 def test_carried_things_and_places_cannot_be_moved():
     robot = SimulatedRobot(TABLE)
     robot.grasp("right", "cup")
-    with pytest.raises(RobotError, match="the cup cannot be moved"):
+    with pytest.raises(RobotError, match="the cup can't be moved"):
         robot.move_thing("cup", 1, 1)
 
 
@@ -149,7 +149,7 @@ def test_stop_freezes_everything_and_outlasts_the_tick_in_flight():
     stopper.join()
     robot.drive(1.0, 0.0)  # the tick in flight does not know yet
     robot.move_joints({"right arm lift": 0.0})
-    assert robot.navigate_to("ball").failure == "the robot was told to stop"
+    assert robot.navigate_to("ball").failure == "the robot was stopped"
     robot.step(0.3)
     assert not robot.moving
     assert not robot.speaking

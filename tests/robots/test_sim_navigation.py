@@ -110,7 +110,7 @@ def test_a_way_that_is_blocked_while_driving():
 
 def test_no_grip_on_the_way():
     robot = SimulatedRobot(HOUSE.replace(faults=(Fault("slip", start=2.0, grip=0.0),)))
-    assert travel(robot, "lab").failure == "stuck on the way to the lab: the wheels turn but the robot does not move"
+    assert travel(robot, "lab").failure == "stuck on the way to the lab: the wheels turn but the robot doesn't move"
 
 
 def test_an_uneven_grip_does_not_matter():
@@ -133,7 +133,7 @@ def test_cancel_and_stop_brake():
             journey.cancel()
         elif end == "stop":
             robot.stop()
-            assert journey.failure == "the robot was told to stop"
+            assert journey.failure == "the robot was stopped"
         elif end == "drive":
             robot.drive(0.0, 0.0)
         else:

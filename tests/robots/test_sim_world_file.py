@@ -71,19 +71,19 @@ START = "start = { x = 1, y = 1 }\n"
     ("text", "line", "message"),
     [
         ("", None, 'a world needs a table "start"'),
-        ("start = 3", 1, '"start" is a table; write start = { x = 1, y = 1 }'),
+        ("start = 3", 1, '"start" must be a table; write start = { x = 1, y = 1 }'),
         ("start = { x = 1 }", 1, 'start needs a number "y"'),
-        ("x = = 3", 1, "this is no TOML: Invalid value (at line 1, column 5)"),
+        ("x = = 3", 1, "this isn't TOML: Invalid value (at line 1, column 5)"),
         (START + "wals = []", 2, 'unknown key "wals" in a world; the keys are start, walls,'),
-        (START + "walls = 3", 2, '"walls" is a list; write walls = [ ... ]'),
+        (START + "walls = 3", 2, '"walls" must be a list; write walls = [ ... ]'),
         (START + "walls = [\n[[0, 0], [4, 0]],\n[[0, 0]],\n]", 4, "a wall is a list of two or more points"),
         (START + "[[walls]]\nx = 1", 2, "a wall is a list of two or more points"),
         (START + "walls = [[[0, 0], [4, true]]]", 2, "a wall is a list of two or more points"),
-        (START + "places = [3]", 2, '"places" holds tables; write [[places]] above each'),
-        (START + "[[places]]\nname = 3\nx = 1\ny = 1", 3, '"name" is text in quotes; write name = "kitchen"'),
-        (START + '[[places]]\nname = " "\nx = 1\ny = 1', 3, '"name" is text in quotes'),
-        (START + '[[places]]\nname = "a"\nx = "1"\ny = 1', 4, '"x" is a number; write x = 1.5'),
-        (START + '[[places]]\nname = "a"\nx = nan\ny = 1', 4, '"x" is a number'),
+        (START + "places = [3]", 2, '"places" must be a list of tables; write [[places]] above each'),
+        (START + "[[places]]\nname = 3\nx = 1\ny = 1", 3, '"name" must be text in quotes; write name = "kitchen"'),
+        (START + '[[places]]\nname = " "\nx = 1\ny = 1', 3, '"name" must be text in quotes'),
+        (START + '[[places]]\nname = "a"\nx = "1"\ny = 1', 4, '"x" must be a number; write x = 1.5'),
+        (START + '[[places]]\nname = "a"\nx = nan\ny = 1', 4, '"x" must be a number'),
         (START + '[[places]]\nname = "a"\ny = 1', 2, 'places needs a number "x"'),
         (
             START + '[[places]]\nname = "a"\nx = 1\ny = 1\nface = 3',
@@ -95,8 +95,8 @@ START = "start = { x = 1, y = 1 }\n"
             3,
             'the name "A" is given',
         ),
-        (START + '[[objects]]\nname = "a"\nx = 3\ny = 3\nradius = 0', 6, '"radius" is at least 0.01, not 0'),
-        ("start = { x = 1, y = 1, battery = 120 }", 1, '"battery" is from 0 to 100, not 120'),
+        (START + '[[objects]]\nname = "a"\nx = 3\ny = 3\nradius = 0', 6, '"radius" must be at least 0.01, not 0'),
+        ("start = { x = 1, y = 1, battery = 120 }", 1, '"battery" must be from 0 to 100, not 120'),
         (START + "walls = [[[0, 1], [4, 1]]]", 1, "the start at (1, 1) is inside a wall or a box; leave 0.2 m"),
         (START + "boxes = [{ x = 1, y = 1, width = 5, height = 5 }]", 1, "the start at (1, 1) is inside"),
         (
@@ -106,11 +106,19 @@ START = "start = { x = 1, y = 1 }\n"
             'the place "b" at (3.1, 2) is inside',
         ),
         (START + "dock = { x = 3.1, y = 2 }\nwalls = [[[3, 0], [3, 4]]]", 2, 'the place "dock" at (3.1, 2) is inside'),
-        (START + '[[faults]]\nkind = "fire"', 3, '"kind" is one of "blocked", "slip", "silent scanner", "weak hand"'),
-        (START + '[[faults]]\nkind = "blocked"\nplace = "moon"', 4, '"place" is one of nothing: there is none'),
-        (START + '[[faults]]\nkind = "slip"\ngrip = 2', 4, '"grip" is from 0 to 1, not 2'),
+        (
+            START + '[[faults]]\nkind = "fire"',
+            3,
+            '"kind" must be one of "blocked", "slip", "silent scanner", "weak hand"',
+        ),
+        (
+            START + '[[faults]]\nkind = "blocked"\nplace = "moon"',
+            4,
+            '"place" must be one of nothing, because there is none',
+        ),
+        (START + '[[faults]]\nkind = "slip"\ngrip = 2', 4, '"grip" must be from 0 to 1, not 2'),
         (START + '[[faults]]\nkind = "silent scanner"\nhand = "left"', 4, 'unknown key "hand" in faults'),
-        (START + '[[faults]]\nkind = "weak hand"\nhand = "both"', 4, '"hand" is one of "left", "right"'),
+        (START + '[[faults]]\nkind = "weak hand"\nhand = "both"', 4, '"hand" must be one of "left", "right"'),
     ],
 )
 def test_what_may_be_wrong(tmp_path, text, line, message):
@@ -130,5 +138,5 @@ def test_unreadable_files(tmp_path):
         load_world(tmp_path)
     binary = tmp_path / "binary.toml"
     binary.write_bytes(b"\xff\xfe\x00")
-    with pytest.raises(WorldError, match="a world file is UTF-8 text"):
+    with pytest.raises(WorldError, match="a world file must be UTF-8 text"):
         load_world(binary)

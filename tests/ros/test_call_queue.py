@@ -32,8 +32,8 @@ def test_who_waits_is_told_when_nobody_works_any_more():
         waiting = pool.submit(subscriptions.ask, lambda: "done")
         wait_until(waiting.running, "the question")
         subscriptions.close()
-        assert waiting.result(LONG) == (False, "the simulated robot is being switched off")
-    assert subscriptions.ask(lambda: "done") == (False, "the simulated robot is being switched off")
+        assert waiting.result(LONG) == (False, "the simulated robot is shutting down")
+    assert subscriptions.ask(lambda: "done") == (False, "the simulated robot is shutting down")
 
 
 def test_a_wake_ends_the_wait_also_one_that_came_before():

@@ -89,7 +89,7 @@ def test_what_does_not_end_is_told(robot: Robot) -> None:
     engine = robot.load(MISSION, WORDS)
     robot.tick(lambda: navigator.has_told("goal"))
     engine.halt()
-    assert robot.clients.close(0.2) == ["/navigate_to_pose has not answered the goal that was halted"]
+    assert robot.clients.close(0.2) == ["/navigate_to_pose hasn't answered the halted goal"]
 
 
 def test_the_server_is_killed_in_the_middle(robot: Robot) -> None:

@@ -39,7 +39,7 @@ def test_halting_a_drive_stops_the_robot(robot: Robot) -> None:
 
 def test_a_robot_that_does_not_move(robot: Robot) -> None:
     peer = robot.peer("robot", "stuck")
-    assert robot.run("move forward 1 m", DRIVE) == "the robot does not get on: 0.00 of 1.00 m done"
+    assert robot.run("move forward 1 m", DRIVE) == "the robot makes no progress: 0.00 of 1.00 m done"
     peer.expect("zero")
 
 
@@ -51,7 +51,7 @@ def test_odometry_that_falls_silent(robot: Robot) -> None:
     peer.kill()
     robot.tick(lambda: False)
     assert engine.failure is not None
-    assert engine.failure.reason.startswith("nothing has come on /odom for 1.")
+    assert engine.failure.reason.startswith("nothing has arrived on /odom for 1.")
 
 
 def test_nobody_gives_odometry(robot: Robot) -> None:
@@ -79,7 +79,7 @@ def test_a_topic_that_falls_silent(robot: Robot) -> None:
     assert robot.tick(lambda: False) == FAILURE  # what is not known is not false, so "not" does not make it true
     assert robot.run("check battery is below 26%", SENSES) in (
         "nobody publishes /battery_state",
-        *(f"nothing has come on /battery_state for 1.{tenth} s" for tenth in range(10)),
+        *(f"nothing has arrived on /battery_state for 1.{tenth} s" for tenth in range(10)),
     )
 
 
@@ -167,7 +167,7 @@ def test_joints(robot: Robot) -> None:
 def test_a_joint_that_is_not_there(robot: Robot) -> None:
     robot.peer("robot", "arm")
     text = DEEDS.replace("left_arm_lift", "tail")
-    assert robot.run("raise left arm", text) == "/joint_states tells nothing of the joint tail"
+    assert robot.run("raise left arm", text) == "/joint_states doesn't report the joint tail"
 
 
 def test_parameters(robot: Robot) -> None:

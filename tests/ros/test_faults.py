@@ -74,7 +74,7 @@ NOT_FINITE = "no odometry for 2 s: /odom sends numbers that are not finite"
     ("mission", "fault", "reason"),
     [
         ("move forward 2 m", "nan", NOT_FINITE),
-        ("move forward 2 m", "zero", "no odometry for 2 s: /odom sends a quaternion that is no direction"),
+        ("move forward 2 m", "zero", "no odometry for 2 s: /odom sends an invalid quaternion"),
         ("move forward 2 m", "far", "no odometry for 2 s: /odom says that the robot is 1e+09 m away"),
         ("move forward 2 m", "frozen", "stuck after 0.00 m"),
         ("move forward 2 m", "silent", "no odometry for 2 s: /odom is silent"),
@@ -104,7 +104,7 @@ TABLE = words("drive").replace("patience = 1.0", "patience = 2.5")  # longer tha
     ("fault", "reason"),
     [
         ("nan", "/odom sends numbers that are not finite"),
-        ("frozen", "the robot does not get on: 0.00 of 0.60 m done"),
+        ("frozen", "the robot makes no progress: 0.00 of 0.60 m done"),
         ("jump", "the robot went too far: 5"),
     ],
 )
@@ -122,7 +122,7 @@ def test_no_table_tells_a_robot_to_drive_faster_than_any(lab: Lab) -> None:
 
 def test_stop_ends_where_the_odometry_says_that_it_goes_on(lab: Lab) -> None:
     lab.misbehave("odom=frozen")
-    assert lab.run("stop") == "the robot does not stop: it moves at 0.50 m/s and 0 degrees/s"
+    assert lab.run("stop") == "the robot doesn't stop: it is moving at 0.50 m/s and 0 degrees/s"
 
 
 def test_bad_odometry_is_missing_before_the_run(lab: Lab) -> None:
@@ -138,7 +138,7 @@ def test_a_command_that_arrives_late_makes_nobody_stuck(lab: Lab) -> None:
 
 def test_joints_without_positions(lab: Lab) -> None:
     lab.misbehave("joint=nan")
-    reason = '/joint_states tells nothing of the joint "head_turn"'
+    reason = '/joint_states doesn\'t report the joint "head_turn"'
     assert lab.run("look left") == reason
     lab.misbehave()
     lab.joints.wait(lambda state: all(map(isfinite, state.position)))  # one that was sent before may be the latest
@@ -147,7 +147,7 @@ def test_joints_without_positions(lab: Lab) -> None:
 
 @pytest.mark.parametrize(
     ("fault", "reason"),
-    [("nan", "/scan has no valid beam"), ("flat", "/scan does not say where its beams point")],
+    [("nan", "/scan has no valid beam"), ("flat", "/scan doesn't say where its beams point")],
 )
 def test_a_scan_that_says_nothing_is_no_free_way(lab: Lab, fault: str, reason: str) -> None:
     """The robot goes blind while it drives."""

@@ -245,16 +245,16 @@ def test_values_as_in_a_mission(phrase: str, values: dict[str, str], port: str):
 @pytest.mark.parametrize(
     ("node_id", "phrase", "names", "values", "reason"),
     [
-        ("Wave", "move forward", [], [], "'move forward' is not served here: this is Wave, whose phrase is 'wave"),
+        ("Wave", "move forward", [], [], "'move forward' isn't served here: this is Wave, with the phrase 'wave"),
         ("Wave", "", ["times"], [], "1 name and 0 values are given"),
         ("GoTo", "", ["plac"], ["lab"], "GoTo has no parameter 'plac': its parameters are place"),
         ("Nod", "", ["speed"], ["1"], "Nod has no parameter 'speed': it has no parameters"),
         ("GoTo", "", ["place", "place"], ["lab", "lab"], "place is given twice"),
-        ("GoTo", "", ["place"], ["the labb"], "place is 'the labb', which is no place; the nearest is 'lab'"),
-        ("GoTo", "", ["place"], ["xyz"], "place is 'xyz', which is no place; there are "),
-        ("MoveForward", "", ["distance"], ["two cats"], "distance is 'two cats', which is no length, such as 5 m"),
-        ("MoveForward", "", ["distance"], ["inf"], "distance is 'inf', which is no length, such as 5 m"),
-        ("Say", "", ["text"], ["{key}"], "text is '{key}', which names a value of a mission"),
+        ("GoTo", "", ["place"], ["the labb"], "place is 'the labb', which isn't a place; similar: lab"),
+        ("GoTo", "", ["place"], ["xyz"], "place is 'xyz', which isn't a place; there are "),
+        ("MoveForward", "", ["distance"], ["two cats"], "distance is 'two cats', which isn't a length, such as 5 m"),
+        ("MoveForward", "", ["distance"], ["inf"], "distance is 'inf', which isn't a length, such as 5 m"),
+        ("Say", "", ["text"], ["{key}"], "text is '{key}', a value of a mission, but"),
     ],
 )
 def test_what_makes_no_sense(node_id: str, phrase: str, names: list[str], values: list[str], reason: str):
@@ -299,5 +299,5 @@ def test_some_of_them():
         "MoveForward",
         "TurnLeft",
     ]
-    with pytest.raises(ValueError, match="there is no action 'move_forwad'; the nearest is move_forward"):
+    with pytest.raises(ValueError, match=r"there is no action 'move_forwad'; similar: move_forward"):
         chosen(["move_forwad"], ids, vocabulary)

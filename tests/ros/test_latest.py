@@ -24,13 +24,13 @@ class Node:
 def test_a_message_grows_old() -> None:
     node = Node()
     latest = Latest("/scan", NodeClock(node).now, lambda: "")
-    with pytest.raises(ActionFailed, match="nothing has come on /scan yet"):
+    with pytest.raises(ActionFailed, match="nothing has arrived on /scan yet"):
         latest.take(1.0)
     latest.store("message")
     node.said += 0.9
     assert latest.take(1.0) == "message"
     node.said += 0.3
-    with pytest.raises(ActionFailed, match=r"nothing has come on /scan for 1\.2 s"):
+    with pytest.raises(ActionFailed, match=r"nothing has arrived on /scan for 1\.2 s"):
         latest.take(1.0)
     assert latest.take(None) == "message"
 
@@ -48,7 +48,7 @@ def test_where_simulated_time_begins_anew_silence_still_counts(monkeypatch: pyte
     assert clock.now() == 104.0
     node.said = 1.2
     assert clock.now() == pytest.approx(105.2)
-    with pytest.raises(ActionFailed, match=r"nothing has come on /odom for 5\.2 s"):
+    with pytest.raises(ActionFailed, match=r"nothing has arrived on /odom for 5\.2 s"):
         latest.take(5.0)
 
 

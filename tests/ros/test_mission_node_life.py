@@ -45,7 +45,7 @@ def test_all_transitions(start_node, client: Client, run_mission: Any):
     set_mission(client, FAR)
     assert change(client, CONFIGURE)
     assert not mission(client, run_mission, "say hello").accepted
-    wait_until(lambda: "a mission is rejected: the node is not active" in node.err, "why it is rejected")
+    wait_until(lambda: "mission rejected: the node is not active" in node.err, "why it is rejected")
     for _ in range(2):  # each activation runs the mission from its start
         before = node.out.count("start  move forward")
         assert change(client, ACTIVATE)

@@ -81,7 +81,7 @@ def test_a_server_that_gives_no_word_while_the_robot_stands(trip: Callable[[str]
     way.pass_by(16.0)
     assert journey.failure == (
         "the robot has not moved for 15 s on the way to the kitchen, and the navigation server on /navigate_to_pose "
-        "gives no word of it"
+        "sends no feedback"
     )
     way.peer.expect("cancelled")
 

@@ -62,5 +62,5 @@ def test_a_node_with_actions_leaves_the_graph_when_it_is_closed(make: Callable[.
 
 
 def test_a_domain_that_cannot_be():
-    with pytest.raises(MissionError, match="BT100: ROS 2 can't be used: there is no domain 233, they are 0 to 232"):
+    with pytest.raises(MissionError, match="BT100: ROS 2 can't be used: ROS_DOMAIN_ID must be from 0 to 232, not 233"):
         SpunNode("node", domain_id=233)

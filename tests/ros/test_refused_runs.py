@@ -33,7 +33,7 @@ def test_a_robot_that_was_stopped_sends_no_goal(domain: int, monkeypatch: pytest
         monkeypatch.setattr(robot._navigation, "start", start)
         robot.navigate_to("kitchen")
         robot.disable()
-        with pytest.raises(RobotError, match="the robot was told to stop"):
+        with pytest.raises(RobotError, match="the robot was stopped"):
             robot.navigate_to("kitchen")
     assert sent == ["kitchen"]
 

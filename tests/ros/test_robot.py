@@ -121,10 +121,14 @@ def test_turning(robot: Callable[..., Script], btc: Callable[..., Command]) -> N
     [
         (["base=mute"], "move forward 1 m", "MoveForward: no odometry for 2 s: /odom is silent"),
         (["base=frozen"], "move forward 1 m", "MoveForward: stuck after 0.00 m"),
-        (["base", "navigation=reject"], "go to the kitchen", "GoTo: the navigation server rejected the way to the kit"),
+        (
+            ["base", "navigation=reject"],
+            "go to the kitchen",
+            "GoTo: the navigation server refused to navigate to the k",
+        ),
         (["base", "navigation=abort"], "go to the kitchen", "GoTo: the door is shut"),
         (["base", "navigation=mute"], "go to the kitchen", "GoTo: the navigation server on /navigate_to_pose does not"),
-        (["base", "navigation=hang"], "go to the kitchen", "GoTo: no word from the navigation server on /navigate_to_"),
+        (["base", "navigation=hang"], "go to the kitchen", "GoTo: no feedback from the navigation server on /navigate"),
         (["hand=full"], "close the hand", "CloseHand: the right hand already holds the cup"),
         (["hand=mute"], "close the hand", "CloseHand: no answer from /right_hand/close for 3 s"),
     ],
@@ -245,14 +249,14 @@ def test_preflight(robot: Callable[..., Script], btc: Callable[..., Command], cl
     lacking = btc("move forward until there is a wall in front", "--preflight")
     assert code_of(lacking) == 1
     assert re.search(r"^topic   /scan +sensor_msgs/msg/LaserScan +missing: nobody publishes /scan$", lacking.out, re.M)
-    assert lacking.out.splitlines()[-1] == "The robot lacks 1 of 3."
+    assert lacking.out.splitlines()[-1] == "Missing: 1 of 3."
     assert "warning" not in lacking.out
     client.publisher(Twist, "/cmd_vel")
     ready = btc("move forward then say done", "--preflight")
     assert code_of(ready) == 0, ready.err
     assert ready.out.splitlines()[-2:] == [
         "warning: /client publishes /cmd_vel too, so the robot follows both",
-        "The robot has all that the mission needs.",
+        "The robot has everything that the mission needs.",
     ]
     assert script.drives == []
 

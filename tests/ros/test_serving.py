@@ -107,9 +107,9 @@ def test_goals_of_a_program_that_knows_rclpy_alone(serve, client: Client, tmp_pa
     assert own.feedback.messages[-1].state.startswith("says")
     aborted = GoalStatus.STATUS_ABORTED
     wrong = phrase(client, "/actions/move_forward", distance="two cats")
-    assert end_of(wrong) == (aborted, False, "distance is 'two cats', which is no length, such as 5 m")
+    assert end_of(wrong) == (aborted, False, "distance is 'two cats', which isn't a length, such as 5 m")
     wrong = phrase(client, "/actions/go_to", "fly to {place}", place="lab")
-    reason = "'fly to {place}' is not served here: this is GoTo, whose phrase is 'go to {place}'"
+    reason = "'fly to {place}' isn't served here: this is GoTo, with the phrase 'go to {place}'"
     assert end_of(wrong) == (aborted, False, reason)
     failed = phrase(client, "/actions/move_forward", distance="50 m")
     status, _, reason = end_of(failed)
@@ -220,7 +220,7 @@ def test_a_server_that_freezes(serve, domain: int, monkeypatch: pytest.MonkeyPat
         outcome = btlang.parse_tree(LONG_WAY).run(robot="actions", sinks=[freeze])
     finally:
         mover.process.send_signal(signal.SIGCONT)
-    assert outcome.failure.reason == "/actions/move_forward gives no word of the goal"
+    assert outcome.failure.reason == "/actions/move_forward sends no feedback on the goal"
 
 
 def test_without_its_interfaces(monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]):

@@ -98,7 +98,7 @@ def test_cancelled_half_way_it_stands_still(nav2, start_sim, client: Client):
     assert sent.cancel() == 1
     cancelled = seconds(odometry.messages[-1].header.stamp)
     status, _, reason = ended(sent)
-    assert (status, reason) == (GoalStatus.STATUS_CANCELED, "the way was given up")
+    assert (status, reason) == (GoalStatus.STATUS_CANCELED, "navigation was cancelled")
     assert odometry.wait(stands).pose.pose.position.x < 4.0
     rolling = [message for message in odometry.messages if not stands(message)]
     assert seconds(rolling[-1].header.stamp) - cancelled < 1.0
@@ -155,7 +155,7 @@ def test_a_thing_is_approached_as_by_its_name(nav2, send, odometry: Heard):
 def test_a_stop_ends_it_and_says_so(nav2, send, odometry: Heard, client: Client):
     sent = under_way(send(goal(nav2, 5.0, 1.0)), odometry)
     assert client.call(Trigger, "/stop").success
-    assert ended(sent)[::2] == (GoalStatus.STATUS_ABORTED, "the robot was told to stop")
+    assert ended(sent)[::2] == (GoalStatus.STATUS_ABORTED, "the robot was stopped")
     odometry.wait(stands)
 
 
@@ -171,7 +171,7 @@ def test_a_command_to_move_ends_it_and_a_zero_does_not(nav2, send, odometry: Hea
     turn.angular.z = 1.0
     wheels.publish(turn)
     wait_until(result.done, "the end of the journey")
-    assert result.result().result.error_msg == "the robot was told to drive elsewhere"
+    assert result.result().result.error_msg == "another command took over the drive"
     odometry.wait(stands)
 
 

@@ -41,4 +41,4 @@ def test_what_it_lacks_is_said(start_sim, capfd: pytest.CaptureFixture[str]) -> 
     assert main(["run", "-c", "look left then nod", *SMALL, "--preflight"]) == 1
     out = capfd.readouterr().out
     assert 'part    posture "nod"' in out
-    assert "The robot lacks 1 of " in out
+    assert "Missing: 1 of " in out

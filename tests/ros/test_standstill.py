@@ -15,7 +15,7 @@ from tests.ros.processes import LONG, Command
 
 UNANSWERED = "the navigation server did not answer the cancel"
 REFUSED = "the navigation server refused to cancel its goal"
-UNENDED = "the navigation server did not end the goal that was cancelled"
+UNENDED = "the navigation server did not end the cancelled goal"
 
 
 @pytest.fixture

@@ -116,7 +116,7 @@ def test_a_session_runs_many_missions_and_late_joiners_see_the_state() -> None:
         assert first.outcome is not None
         assert first.outcome.succeeded
         second = session.start(btlang.parse_tree("say hello then wait 100 s then wave"), speed=1)
-        with pytest.raises(RuntimeError, match="under way"):
+        with pytest.raises(RuntimeError, match="another run is active"):
             session.run(btlang.parse_tree("wave"))
         while not (now := second.snapshot()).running or "wait" not in now.running[0]:
             time.sleep(0.01)

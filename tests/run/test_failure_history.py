@@ -157,7 +157,7 @@ def test_only_a_recovery_that_was_done_has_no_reason() -> None:
         "  RecoveryNode: 2 recoveries did not help",
         "What had been tried before:",
         "    0.0 s  A: 1 (2 times, last at 1.0 s)",
-        "    1.0 s  B: done, but it did not help (2 times, last at 2.0 s)",
+        "    1.0 s  B: done, but it didn't help (2 times, last at 2.0 s)",
     ]
 
 

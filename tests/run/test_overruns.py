@@ -153,8 +153,8 @@ def test_one_line_a_leaf() -> None:
     ):
         sink(event)
     assert lines == [
-        "   2.00  slow   look around: took 0.31 s of a tick, which has 0.05 s",
-        "   4.00  slow   look around: took 0.31 s of a tick, which has 0.0025 s",
+        "   2.00  slow   look around: took 0.31 s, but a tick has only 0.05 s",
+        "   4.00  slow   look around: took 0.31 s, but a tick has only 0.0025 s",
     ]
 
 

@@ -43,12 +43,13 @@ ROWS = {
     "check": "conditions", "Joined conditions": "conditions", "not": "conditions",
     "Where a condition ends": "conditions", "Names of conditions": "definitions",
     # joining.md
-    "Behind a command": "postfix", "At the same time": "connectives", "One if the other fails": "connectives",
+    "After a command": "postfix", "At the same time": "connectives", "One if the other fails": "connectives",
     "One after the other": "connectives", "Tighter and looser": "connectives",
-    "How far a form before a command reaches": "reach", "Where repeat ends": "reach", "Whose otherwise": "otherwise",
-    "Merging": "merging", "What another word means in a pack": "meanings",
+    "How far a form before a command reaches": "reach", "Where repeat ends": "reach",
+    "Which form an otherwise belongs to": "otherwise",
+    "Merging": "merging", "Words with another meaning in a pack": "meanings",
     # commas.md
-    "A bare comma": "commas", "A comma before and or or": "commas", "A comma before a form behind": "reach",
+    "A bare comma": "commas", 'A comma before "and" or "or"': "commas", "A comma before a form at the end": "reach",
     # forms.md
     "if and unless": "if", "while and until": "loops", "provided that": "postfix", "repeat": "loops",
     "try and retry": "tries", "Time": "timing", "Waiting": "timing", "do nothing and fail": "words",

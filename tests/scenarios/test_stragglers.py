@@ -141,8 +141,8 @@ def test_between_two_runs_nothing_moves() -> None:
     robot.drive(0.3, 0.0)
     robot.move_joints({"head turn": 90.0})
     robot.release("right")
-    assert robot.navigate_to("lab").failure == "the robot was told to stop"
-    with pytest.raises(RobotError, match="the robot was told to stop"):
+    assert robot.navigate_to("lab").failure == "the robot was stopped"
+    with pytest.raises(RobotError, match="the robot was stopped"):
         robot.grasp("left")
     robot.step(1.0)
     assert (robot.pose, robot.joint("head turn"), robot.holding("right")) == (place, 0.0, "cup")

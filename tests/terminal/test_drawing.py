@@ -55,4 +55,4 @@ def test_lists_fit_the_terminal(terminal: Open, verb: str, width: int) -> None:
 def test_the_last_column_of_a_table_is_folded(terminal: Open) -> None:
     seen = terminal(*BTC, "explain", width=40, height=50)
     assert seen.wait_for_end() == 0
-    assert "\nBT015  a word that joins commands stands\n       in a name\n" in seen.history()
+    assert "\nBT015  a name contains a word that joins\n       commands\n" in seen.history()

@@ -112,7 +112,7 @@ def test_a_killed_session_is_offered_again(repl: Callable[..., Terminal], tmp_pa
     again.type("show")
     again.wait_for("> show\nbow is nod")
     again.press("C-d", "C-d")
-    again.wait_for("This session is kept")
+    again.wait_for("This session is saved")
     assert again.wait_for_end() == 0
 
 
@@ -129,7 +129,7 @@ def test_ctrl_c_stops_the_robot_and_not_the_repl(repl: Callable[..., Terminal]) 
     user.type("say still here")
     user.wait_for("quotes")
     user.press("C-c", "C-d")
-    user.wait_for("Ctrl-D again leaves")
+    user.wait_for("Press Ctrl-D again to leave")
     user.type("nod", enter=False)  # anything else is no second Ctrl-D
     user.wait_for("Nod: nod")
     user.press("C-c", "C-d", "C-d")
@@ -223,7 +223,7 @@ def test_without_a_terminal_lines_are_read(tmp_path: Path) -> None:
 def test_a_folder_that_cannot_be_written_to(terminal: Open, tmp_path: Path) -> None:
     (tmp_path / "state").write_text("a file, and no folder")
     user = terminal(*BTC, folder=tmp_path, environment={"XDG_STATE_HOME": str(tmp_path / "state")})
-    user.wait_for("What you type is not kept")
+    user.wait_for("What you type isn't saved")
     user.type("nod")
     user.wait_for("succeeded")
 

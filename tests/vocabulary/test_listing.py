@@ -26,9 +26,9 @@ NEEDS = {
     "CloseHand": ("nothing is within reach of the right hand", "approach the cup"),
     "CloseLeftHand": ("nothing is within reach of the left hand", "approach the cup"),
     "Grasp": ("the cup is not within reach of the right hand", "approach the cup"),
-    "Release": ("the robot does not hold the cup", "pick up the cup"),
-    "PutDown": ("the robot does not hold the cup", "pick up the cup"),
-    "LookAtObject": ("the cup is behind the robot, where its head does not turn", "face the cup"),
+    "Release": ("the robot isn't holding the cup", "pick up the cup"),
+    "PutDown": ("the robot isn't holding the cup", "pick up the cup"),
+    "LookAtObject": ("the cup is behind the robot; the head can't turn that far", "face the cup"),
 }
 HOLDS_AT_THE_START = {
     "HandEmpty", "PathClear", "BatteryFull", "DistanceAhead", "DistanceToPlace", "DistanceToPerson", "DistanceToObject",
@@ -91,7 +91,7 @@ def test_lines_fit_a_terminal() -> None:
 
 def test_entries_of_the_list() -> None:
     assert (
-        "  go to {place}\n      Drives to a place. Fails when there is no free way.\n"
+        "  go to {place}\n      Drives to a place. Fails if there is no free way.\n"
         "      For example: go to the kitchen\n"
     ) in WHOLE
     assert "  battery is low  (condition)\n" in WHOLE
@@ -150,7 +150,7 @@ def test_the_nearest_words_are_offered(search: str, near: str) -> None:
 def test_help_on_a_phrase_tells_all() -> None:
     expected = """\
 charge [to {percent}]
-    Docks and waits until the battery is full or holds the percentage.
+    Docks and waits until the battery is full or reaches the percentage.
     also: charge/recharge [to {percent}]
           charge/recharge battery [to {percent}]
     {percent}: a number and one of %; 100% if left out

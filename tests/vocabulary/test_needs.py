@@ -53,7 +53,7 @@ def test_needs_is_a_list_of_names(tmp_path: Path) -> None:
     with pytest.raises(btlang.MissionError) as caught:
         together(tmp_path, "needs = 3")
     first, second = (diagnostic.span for diagnostic in caught.value.diagnostics)
-    assert "needs of 'measure' is a list of names" in str(caught.value)
+    assert "needs of 'measure' must be a list of names" in str(caught.value)
     assert first.start < second.start
 
 
@@ -67,7 +67,7 @@ def test_conditions_take_nothing_for_themselves(tmp_path: Path) -> None:
 def test_a_message_points_at_its_own_entry(tmp_path: Path) -> None:
     path = tmp_path / "words.toml"
     path.write_text('[[action]]\nphrase = "bow"\nid = "Bow"\n\n[[action]]\nphrase = "bow"\nid = "If"\nlegs = 2\n')
-    with pytest.raises(btlang.MissionError, match=r"words.toml:6:11: error BT060.* 'legs' is not known"):
+    with pytest.raises(btlang.MissionError, match=r"words.toml:6:11: error BT060.* 'legs' is not a key"):
         btlang.parse_tree("bow", keywords=[str(path)])
 
 

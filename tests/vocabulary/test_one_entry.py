@@ -42,7 +42,7 @@ def test_it_is_listed(pack: str, capsys: pytest.CaptureFixture[str]) -> None:
         "  juggle {count} ball(s) [for {person}]\n"
         "      Keeps balls in the air.\n"
         "      {count}: a whole number from 1 on\n"
-        "      {person}: Alice, Bob, Carol; may be left out\n"
+        "      {person}: Alice, Bob, Carol; optional\n"
         "      needs: left arm, right arm\n"
         "      node: Juggle\n"
         "      for example: juggle 3 balls for Alice\n"

@@ -37,8 +37,8 @@ def test_articles_are_left_out() -> None:
 @pytest.mark.parametrize(
     ("pattern", "reason"),
     [
-        ("", "no word"),
-        ("[wave]", "no word"),
+        ("", "no required word"),
+        ("[wave]", "no required word"),
         ("wave [at", "without"),
         ("wave at]", "without"),
         ("wave {at", "not closed"),

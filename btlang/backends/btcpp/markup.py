@@ -54,7 +54,7 @@ class Markers:
 
     def _value(self, text: str, span: Span | None) -> str:
         if _NO_XML.search(text) is not None:
-            self.wrong(text, "XML has no way to write one of its characters", span)
+            self.wrong(text, "XML can't hold one of its characters", span)
         value = self._texts[text] = text.translate(_IN_VALUES)
         return value
 

@@ -115,7 +115,7 @@ class Uses:
             yield PortModel(MEASURED, "output", kind)
 
     def _type(self, name: str) -> str:
-        """In C++; what is no number is a text."""
+        """In C++; what isn't a number is a text."""
         kind = self._vocabulary.types.get(name)
         if kind is None or kind.kind not in ("quantity", "number"):
             return "std::string"

@@ -27,7 +27,7 @@ def to_xml(tree: Tree, vocabulary: Lexicon, *, dialect: int = 4) -> str:
 
     A tree that was read from a file of the same dialect, and not changed since, is written with all that stood in the
     file: its tags, attributes, texts and comments. Any other is written in the one canonical way. `dialect` is 4 or 3.
-    Raises MissionError where a name or text cannot stand in XML (BT129), ValueError for another dialect.
+    Raises MissionError where a name or text isn't allowed in XML (BT129), ValueError for another dialect.
     """
     if dialect not in SPELL:
         raise ValueError(f"there is no dialect {dialect}")

@@ -39,8 +39,8 @@ def to_english(tree: Tree, vocabulary: Lexicon, *, facts: Sequence[Fact] = ()) -
     names = [name for name, _ in tree.subtrees] + [name for node in tree.walk() for name, _ in node.ports]
     odd = next((name for name in names if not is_one_piece(name)), None)
     if odd is not None:
-        raise _unsayable(tree, f"no quotes can hold the name {odd!r}")
-    wanted, reason = plain(tree), "it would be read as another one"
+        raise _unsayable(tree, f"quotes can't hold the name {odd!r}")
+    wanted, reason = plain(tree), "it would be read as another tree"
     words = vocabulary.with_places(tuple(fact.name for fact in facts)) if facts else vocabulary
     comments, refused = comments_of(tree), Refused()
     for level in _LEVELS:

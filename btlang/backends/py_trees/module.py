@@ -77,7 +77,7 @@ def to_module(tree: Tree, vocabulary: Lexicon) -> str:
     with_values = "engine_leaf" in plan.uses
     body = "\n".join([_INDENT + line for line in _body(plan, with_values)])
     rest = (_VALUES if with_values else "") + _definitions(plan.uses) + _LEAF + body + "\n" + _FOOT
-    needs = "btlang, for what works with the values of the mission, and py_trees" if with_values else "only py_trees"
+    needs = "py_trees, and btlang for the values of the mission" if with_values else "only py_trees"
     imports = []
     for module, names in _IMPORTS.items():
         used = [name for name in names if re.search(rf"\b{name}\b", rest)]

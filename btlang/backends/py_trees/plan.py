@@ -138,7 +138,7 @@ class _Planner:
         part = Part("Skipped", self._name(node))
         try:
             if self._depths[index] == DEEPEST + 1:  # once is enough
-                raise _Untold(f"it is more than {DEEPEST} levels deep, and py_trees calls itself at each")
+                raise _Untold(f"it is more than {DEEPEST} levels deep, and py_trees recurses at each level")
             if self._always_skipped(node):
                 self._skips[index] = True
             else:
@@ -247,7 +247,7 @@ def _ours(node: Node) -> tuple[str, tuple[tuple[str, Any], ...]]:
         return node.id, ()
     if node.id not in _NUMBERS:
         what = "with catch_on_halt " if node.id == "TryCatch" else ""
-        raise _Untold(f"py_trees has no such node {what}and btlang makes none for it")
+        raise _Untold(f"py_trees has no such node {what}and btlang has no replacement")
     make, names = _NUMBERS[node.id]
     arguments: list[tuple[str, Any]] = []
     for name, port in zip(names, CATALOGUE[node.id].ports.items(), strict=True):
@@ -259,7 +259,7 @@ def _argument(node: Node, name: str, port: str, kind: Port) -> list[tuple[str, A
     """A port of numbers as an argument of our class; times are in seconds there, and need a clock."""
     text = node.port(port) or kind.default or ""
     if "{" in text:
-        raise _Untold(f"its {port} is a value of the mission, and there it must be a number")
+        raise _Untold(f"its {port} is a value of the mission, and py_trees needs a number")
     if kind.unit == "ms":
         return [(name, float(text) * 0.001), ("now", Name("now"))]
     if kind.unit == "Hz":
@@ -283,7 +283,7 @@ _NUMBERS: dict[str, tuple[str, tuple[str, ...]]] = {
 def _truth(node: Node, port: str) -> bool:
     text = node.port(port) or CATALOGUE[node.id].ports[port].default or ""
     if "{" in text:
-        raise _Untold(f"its {port} is a value of the mission, and there it must be known before")
+        raise _Untold(f"its {port} is a value of the mission, and py_trees needs a constant")
     return text in ("true", "1")
 
 

@@ -30,7 +30,7 @@ def bound_leaf(instance: NodeInstance, signature: LeafSignature) -> Compiled:
     call: Any = binding.call
     ports = {**binding.defaults, **{port: text for port, text in instance.node.ports if port[:1] != "_"}}
     if binding.thread and signature.kind != "thread":
-        raise instance.error(f"{instance.node.id} is to run in a thread, and only a plain function can")
+        raise instance.error(f"{instance.node.id} can't run in a thread: only a plain function can")
     names = tuple(ports)
     if signature.kind == "class":
         leaf = _make(instance, signature)
@@ -86,7 +86,7 @@ def _make(instance: NodeInstance, signature: LeafSignature) -> Any:
     if signature.made_with is None:
         missing = [method for method in ("start", "tick", "halt") if not callable(getattr(cls, method, None))]
         if missing:
-            raise instance.error(f"{cls.__name__} has no {' and no '.join(missing)}, so it is no leaf")
+            raise instance.error(f"{cls.__name__} has no {' and no '.join(missing)}, so it isn't a leaf")
         signature.made_with = _fill(instance, cls, (), instance.state.service_names)
     try:
         return cls(**{name: instance.service(name) for name in signature.made_with})

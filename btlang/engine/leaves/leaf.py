@@ -1,32 +1,33 @@
-"""What a leaf may be, and how it is bound to the Python object that does its work.
+"""What a leaf can be, and how it is bound to the Python object that does its work.
 
 A leaf is one of
-- a function: called once a tick is due; returns True or None (SUCCESS), False (FAILURE) or a status integer;
-- a generator function: each `yield` is RUNNING, its return value counts as a function's; halting closes it, so
-  `try: ... finally: robot.stop()` is the way to stop what it moves;
-- a class with `start(**ports)`, `tick()` and `halt()`: made once for its node; `start` and `tick` return as functions
-  do, and None from `start` or `tick` means RUNNING. `halt` is called only while it runs;
-- a background leaf: an `async def` function, or a plain function whose binding says `thread`. It works beside the tick
-  and is RUNNING until it returns; its value counts as a function's, and the next tick comes at once. Halting cancels
-  the task of an async function, and sets the event `halted` for a thread, which should look at it. Neither is waited
-  for: one that goes on is not started again before it has ended, and is reported where it outlives the run.
+- a function: called at a tick; returns True or None (SUCCESS), False (FAILURE) or a status integer;
+- a generator function: each `yield` is RUNNING, its return value counts as a function's; halting closes it, so stop
+  what it moves with `try: ... finally: robot.stop()`;
+- a class with `start(**ports)`, `tick()` and `halt()`: created once for its node; `start` and `tick` return the same
+  as functions, but None means RUNNING. `halt` is only called while it runs;
+- a background leaf: an `async def` function, or a plain function with `thread` in its binding. It runs concurrently
+  with ticks and is RUNNING until it returns; its value counts as a function's, and the next tick comes at once. Halting
+  cancels the task of an async function, and sets the event `halted` for a thread, which should check it. The engine
+  doesn't wait for either: a leaf that keeps running isn't started again before it has ended, and is reported if it
+  outlives the run.
 
 Parameters are filled by name: ports first, then services (`robot`, `clock`, `blackboard`, `wake`, `wake_at`,
 `progress`); a class gets the services in its constructor and the ports in `start`. `wake()` asks for a tick at once,
-from any thread; `wake_at(time)`, called during a tick, for the next tick at that time of the clock if that is sooner
-than usual. A thread has `halted` too, a threading.Event. `progress(share, state)` tells from any thread how much is
-done, from 0 to 1, and in words what it does now; in most runs nobody listens.
+from any thread. `wake_at(time)`, called during a tick, asks for the next tick at that time of the clock if that is
+sooner than usual. A thread also gets `halted`, a threading.Event. `progress(share, state)` reports from any thread how
+much is done, from 0 to 1, and in words what the leaf is doing; in most runs nobody listens.
 
-What a background leaf uses of these it uses beside the tick. Safe are `wake`, `progress`, `halted`, reading
-`clock.now`, and reading and setting single blackboard entries. Other services may be proxies (see Engine): they hand
-over what is asked of them to the thread that ticks, and refuse it once the leaf was halted.
+Background leaves run concurrently with ticks. Safe for them are `wake`, `progress`, `halted`, reading `clock.now`, and
+reading and setting single blackboard entries. Other services may be proxies (see Engine): they run calls on the thread
+that ticks, and refuse them once the leaf was halted.
 
-A condition that cannot know its answer raises Unknown.
+A condition that can't know its answer raises Unknown.
 
-A leaf that fails says why: it raises ActionFailed, or returns `Failed(reason)`, which is cheaper and may work out the
+A leaf that fails says why: it raises ActionFailed, or returns `Failed(reason)`, which is cheaper and can compute the
 reason later. For False the reason is the `refusal` of its binding.
 
-For an output port, whose text is a `{key}`, the parameter gets a function: `store(value)` writes the value to that key.
+For an output port (its text is a `{key}`), the parameter gets a function: `store(value)` writes the value to that key.
 """
 
 from __future__ import annotations
@@ -47,7 +48,7 @@ REFUSED = "it returned False"
 
 
 def unheard(share: float, state: str = "") -> None:
-    """The service `progress` where nobody listens."""
+    """The service `progress` if nobody listens."""
 
 
 class ActionFailed(Exception):
@@ -55,14 +56,14 @@ class ActionFailed(Exception):
 
 
 class Unknown(ActionFailed):
-    """A condition raises it where it cannot know: `raise Unknown("the scanner is silent")`.
+    """A condition raises it if it can't know: `raise Unknown("the scanner is silent")`.
 
-    It FAILS, and so do an Inverter, an IfThenElse and a WhileDoElse that ask it: what is not known is not false.
+    The condition FAILS, and so do an Inverter, an IfThenElse and a WhileDoElse above it: unknown doesn't mean false.
     """
 
 
 class Failed(Record):
-    """What a leaf may return in place of False: FAILURE with a reason."""
+    """What a leaf can return instead of False: FAILURE with a reason."""
 
     reason: Reason
 
@@ -71,7 +72,7 @@ class Failed(Record):
 
 
 def reason_text(reason: Reason) -> str:
-    """The text of a reason. A function that cannot give it gives its exception instead."""
+    """The text of a reason. If a function can't compute it, it is the text of the exception."""
     if isinstance(reason, str):
         return reason
     try:
@@ -89,10 +90,10 @@ def described(problem: BaseException) -> str:
 
 
 class LeafBinding(Record):
-    """The Python side of a leaf id: what to call, how each port's text becomes a value, and values for absent ports.
+    """The Python side of a leaf id: what to call, how to convert the text of each port, and values for missing ports.
 
-    `outputs` are the ports that the leaf writes instead of reading them, `refusal` is the reason for a returned False.
-    With `thread` a plain function is called in a thread of its own.
+    `outputs` are the ports that the leaf writes, `refusal` is the reason for a returned False.
+    With `thread` a plain function is called in a separate thread.
     """
 
     call: Callable[..., Any]

@@ -15,7 +15,7 @@ if TYPE_CHECKING:
     from btlang.engine.instance import Compiled
 
 _NO_ANSWER = "its condition was skipped"
-_NO_BRANCH = "its condition did not hold, and it has no other branch"
+_NO_BRANCH = "its condition was false, and it has no other branch"
 
 
 def if_then_else(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:

@@ -128,7 +128,7 @@ def _stored(instance: NodeInstance, key: str) -> Any:
     if isinstance(found, str):
         found = _split(found)
     elif not isinstance(found, tuple):
-        raise ActionFailed(f"{{{key}}} holds {found!r}, which is no queue")
+        raise ActionFailed(f"{{{key}}} holds {found!r}, which isn't a queue")
     queue = deque(found)
     instance.scope.set(key, queue)
     return queue

@@ -59,7 +59,7 @@ def _reactive(instance: NodeInstance, children: Sequence[Compiled], passes: int)
         if status is not passes and status != SKIPPED:
             if asked < running:
                 if status is FAILURE:
-                    instance.pass_on("its guard broke on the way")
+                    instance.pass_on("its guard failed on the way")
                 halts[running](False)
             running = asked if status == RUNNING else -1
             return status

@@ -34,7 +34,7 @@ def wait_value_update(instance: NodeInstance, children: Sequence[Compiled]) -> C
 def was_entry_updated(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
     """SUCCESS where the entry is new, else FAILURE."""
     is_new = _news(instance)
-    refusal = f"nothing has been written to {{{key_port(instance, 'entry')}}} since it last asked"
+    refusal = f"nothing has been written to {{{key_port(instance, 'entry')}}} since the last check"
     return (lambda: SUCCESS if is_new() else instance.fail(refusal)), halt_nothing
 
 

@@ -129,4 +129,4 @@ def _of_kind(old: Any, value: Any, key: str, enums: Enums) -> Any:
 
 def _need(board: Blackboard, key: str, sign: str) -> None:
     if key not in board:
-        raise ScriptFailed(f"{{{key}}} has no value that {sign} could change; := makes one")
+        raise ScriptFailed(f"{{{key}}} has no value for {sign} to change; create it with :=")

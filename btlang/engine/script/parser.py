@@ -119,7 +119,7 @@ class _Statement:
         elif level == _ASSIGN:
             _, _, name = self.operands.pop()
             if not name:
-                raise ScriptError(f"only a name can stand before {sign}", position)
+                raise ScriptError(f"only a name can come before {sign}", position)
             self._wait(_Waiting(sign, level, position, name))
         else:
             self._wait(_Waiting(sign, 0 if sign == "?" else level, position))
@@ -131,7 +131,7 @@ class _Statement:
         opened = self.waiting.pop() if self.waiting else None
         begin = "(" if sign == ")" else "?"
         if opened is None:
-            raise ScriptError(f"{sign} stands without a {begin} before it", position)
+            raise ScriptError(f"{sign} has no {begin} before it", position)
         if opened.signs != [begin]:
             raise self._not_closed(opened)
         if sign == ":":

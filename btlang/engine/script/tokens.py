@@ -59,8 +59,8 @@ class Tokens:
             return ScriptError("this quote is not closed", self.position)
         number = _LIKE_A_NUMBER.match(self.source, self.position)
         if number is not None:
-            return ScriptError(f"{number[0]} is no number", self.position)
-        return ScriptError(f"{rest!r} means nothing in a script", self.position)
+            return ScriptError(f"{number[0]} isn't a number", self.position)
+        return ScriptError(f"{rest!r} isn't valid in a script", self.position)
 
     def described(self) -> str:
         """Where something before the present token is."""

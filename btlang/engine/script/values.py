@@ -192,7 +192,7 @@ def number(value: Any, enums: Enums) -> float:
     if value.__class__ is float:
         return value
     if value.__class__ is not str:
-        raise ScriptFailed(f"{described(value)} is no number")
+        raise ScriptFailed(f"{described(value)} isn't a number")
     if value in ("true", "false"):
         return float(value == "true")
     if value in enums:
@@ -200,7 +200,7 @@ def number(value: Any, enums: Enums) -> float:
     try:
         return float(value if "_" not in value else "")
     except ValueError:
-        raise ScriptFailed(f"the text {value!r} is no number") from None
+        raise ScriptFailed(f"the text {value!r} isn't a number") from None
 
 
 def truth(value: Any) -> bool:

@@ -90,7 +90,7 @@ class XmlFile:
                 self.includes.append((attributes, document.span(at)))
             else:
                 told = among(tag, _PARTS)
-                self._wrong("BT122", document.span(at), what=f"<{tag}>", problem="has no place in <root>", advice=told)
+                self._wrong("BT122", document.span(at), what=f"<{tag}>", problem="isn't allowed in <root>", advice=told)
         self.problems += models.problems
         self._find_texts()
 
@@ -102,7 +102,7 @@ class XmlFile:
         self.heads.append(TreeHead(name, written, index, end, span))
         count = self.document.depths[index:end].count(2)
         if count != 1:
-            problem = f"holds {count} nodes instead of one" if count else "holds no node"
+            problem = f"contains {count} nodes instead of one" if count else "contains no node"
             advice = "Put them into one, such as <Sequence>." if count else "Put one into it, such as <Sequence>."
             self._wrong("BT122", span, what=span.text, problem=problem, advice=advice)
 
@@ -114,7 +114,7 @@ class XmlFile:
             if not any(first < inside < end for first, end in ends):
                 span = self._text_span(note)
                 tag = elements[inside][0]
-                self._wrong("BT122", span, what="This text", problem=f"has no place in <{tag}>", advice=_TEXT_ADVICE)
+                self._wrong("BT122", span, what="This text", problem=f"isn't allowed in <{tag}>", advice=_TEXT_ADVICE)
 
     def _text_span(self, note: Note) -> Span:
         """Its first line, looked for behind the tag before it."""

@@ -45,7 +45,9 @@ class ModelReader:
             tag = document.elements[at][0]
             node_id = document.attributes(at).get("ID", "")
             if tag not in MODEL_KINDS:
-                self._wrong("BT122", at, what=f"<{tag}>", problem="has no place in <TreeNodesModel>", advice=among(tag))
+                self._wrong(
+                    "BT122", at, what=f"<{tag}>", problem="isn't allowed in <TreeNodesModel>", advice=among(tag)
+                )
             elif not node_id:
                 self._wrong("BT123", at, tag=tag, attribute="ID", advice="Name the node that it describes.")
             else:
@@ -94,13 +96,13 @@ class ModelReader:
 def among(tag: str, known: Iterable[str] = MODEL_KINDS) -> str:
     """What could be meant by a tag that is not known."""
     names = nearest(tag, known) or list(known)
-    return f"It may hold {', '.join(f'<{name}>' for name in names)}."
+    return f"It can contain {', '.join(f'<{name}>' for name in names)}."
 
 
 def why_no_port(name: str) -> str:
     """Why a port cannot have a name, "" where it can."""
     if name in ("ID", "name"):
-        return "this attribute tells of the node itself"
+        return "this attribute describes the node itself"
     return "" if is_xml_name(name) else "an attribute cannot have this name"
 
 

@@ -128,7 +128,7 @@ class _Reader:
                     self._problems.append(diagnostic("BT127", head.span, note, name=head.name))
         if not heads:
             span = self._files[0].root_span
-            told = {"problem": "holds no BehaviorTree", "advice": 'Add one: <BehaviorTree ID="MainTree">'}
+            told = {"problem": "contains no BehaviorTree", "advice": 'Add one: <BehaviorTree ID="MainTree">'}
             self._problems.append(diagnostic("BT122", span, (), None, what="<root>", **told))
         return heads
 
@@ -178,7 +178,7 @@ def _package_folder(package: str) -> str | None:
 
 
 def _no_package(package: str) -> str:
-    where = "in none of the folders of" if os.environ.get(_ROS_FOLDERS) else "as there is no"
+    where = "not in any folder of" if os.environ.get(_ROS_FOLDERS) else "because there is no"
     return f"the ROS package {package} is not found, {where} {_ROS_FOLDERS}"
 
 

@@ -22,22 +22,22 @@ if TYPE_CHECKING:
     """Tag; names and values of attributes in turn; where it starts; how many elements ended before."""
 
 _WORD = re.compile(r"[^\s=>]*")
-MOST_DEEP = 10_000  # nodes inside one another; <root> and <BehaviorTree> stand around them
+MOST_DEEP = 10_000  # levels of nodes; <root> and <BehaviorTree> stand around them
 _AROUND = 2
 _ERRORS = expat.errors.codes
 _REASONS = {
-    "XML_ERROR_TAG_MISMATCH": "this end does not fit the tag that is open",
-    "XML_ERROR_INVALID_TOKEN": "a character has no place here",
-    "XML_ERROR_SYNTAX": "a tag must stand here",
+    "XML_ERROR_TAG_MISMATCH": "this end tag doesn't match the open tag",
+    "XML_ERROR_INVALID_TOKEN": "unexpected character",
+    "XML_ERROR_SYNTAX": "expected a tag",
     "XML_ERROR_NO_ELEMENTS": "it ends too early",
     "XML_ERROR_UNCLOSED_TOKEN": "this tag or comment is not closed",
     "XML_ERROR_UNCLOSED_CDATA_SECTION": "this CDATA section is not closed",
-    "XML_ERROR_DUPLICATE_ATTRIBUTE": "this attribute stands twice in one tag",
+    "XML_ERROR_DUPLICATE_ATTRIBUTE": "this attribute is given twice in one tag",
     "XML_ERROR_JUNK_AFTER_DOC_ELEMENT": "something follows the end of the outermost tag",
-    "XML_ERROR_UNDEFINED_ENTITY": "this entity is not known",
-    "XML_ERROR_BAD_CHAR_REF": "no character has this number",
-    "XML_ERROR_XML_DECL": "the declaration of XML cannot be read",
-    "XML_ERROR_MISPLACED_XML_PI": "the declaration of XML must come first",
+    "XML_ERROR_UNDEFINED_ENTITY": "unknown entity",
+    "XML_ERROR_BAD_CHAR_REF": "there is no character with this number",
+    "XML_ERROR_XML_DECL": "the XML declaration can't be read",
+    "XML_ERROR_MISPLACED_XML_PI": "the XML declaration must come first",
 }
 _BY_NUMBER = {_ERRORS[getattr(expat.errors, name)]: reason for name, reason in _REASONS.items()}
 _MISMATCH = _ERRORS[expat.errors.XML_ERROR_TAG_MISMATCH]
@@ -164,7 +164,7 @@ class _Scanner:
             raise MissionError([self._broken(error.code)]) from None
         except UnicodeEncodeError as error:
             place = Span(document.source, error.start, error.start + 1)
-            raise MissionError([diagnostic("BT120", place, reason="a character has no place here")]) from None
+            raise MissionError([diagnostic("BT120", place, reason="unexpected character")]) from None
         except _Refused:
             what, advice = self._refused
             raise MissionError([diagnostic("BT121", self._here(), what=what, advice=advice)]) from None
@@ -184,8 +184,8 @@ class _Scanner:
         document = self._document
         _count_characters(document)
         place = document.span(document.depths.index(MOST_DEEP + _AROUND))
-        what = f"more than {MOST_DEEP:,} nodes inside one another"
-        return diagnostic("BT121", place, what=what, advice="Make named trees of the inner ones.")
+        what = f"more than {MOST_DEEP:,} levels of nodes"
+        return diagnostic("BT121", place, what=what, advice="Move the inner ones into named trees.")
 
     def _note(self, text: str, is_text: bool = False) -> None:
         self._document.notes.append(Note(text, len(self._document.elements), len(self._ends), is_text))
@@ -197,9 +197,9 @@ class _Scanner:
 
     def _doctype(self, name: str, system: str | None, public: str | None, has_inner: int) -> None:
         if system is not None or public is not None:
-            self._refuse("a DOCTYPE that names another file", "Take it away.")
+            self._refuse("a DOCTYPE that names another file", "Remove it.")
         if has_inner:  # billion laughs are declared there
-            self._refuse("a DOCTYPE that declares something", "Write texts themselves in place of entities.")
+            self._refuse("a DOCTYPE that declares something", "Write the texts themselves instead of entities.")
         self._document.doctype = f"<!DOCTYPE {name}>"
 
     def _refuse(self, what: str, advice: str) -> None:
@@ -248,9 +248,9 @@ def _why_invalid(text: str, start: int) -> str:
     """What is wrong with a character inside a tag, "" where that cannot be told."""
     before = text[max(start - 100, 0) : start].rstrip()
     if text[start : start + 1] < " ":
-        return f"the character U+{ord(text[start]):04X} cannot stand in XML" if text[start : start + 1] else ""
+        return f"the character U+{ord(text[start]):04X} isn't allowed in XML" if text[start : start + 1] else ""
     if before.endswith("="):
-        return "the value of an attribute stands in quotes"
+        return "the value of an attribute must be in quotes"
     if text[start] in "/>" and before[-1:].isalnum():
         return "an attribute needs a value"
     return ""

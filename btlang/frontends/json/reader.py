@@ -93,7 +93,7 @@ def _tree(document: Any, places: _Places) -> Tree:
         raise _Wrong(f'"format" is not {FORMAT}')
     trees = _of(document.get("trees"), list, '"trees"')
     if not trees:
-        raise _Wrong('"trees" holds no tree')
+        raise _Wrong('"trees" contains no tree')
     read = [_root(item, f"tree {at}", places) for at, item in enumerate(trees)]
     names: set[str] = set()
     for name, _ in read:
@@ -123,7 +123,7 @@ def _root(item: Any, where: str, places: _Places) -> tuple[str, Node]:
         below: list[Node] = []
         for child in children:
             if type(child) is not int or not at < child < len(nodes):
-                raise _Wrong(f"{place} has the child {child!r}, and children are nodes after it in the list")
+                raise _Wrong(f"{place} has the child {child!r}, but children must come after it in the list")
             if child not in made:
                 raise _Wrong(f"node {child} of {where} is the child of two nodes")
             below.append(made.pop(child))
@@ -152,13 +152,13 @@ def _read_model(item: Any, where: str) -> NodeModel:
 
 def _of(value: Any, kind: type, what: str) -> Any:
     if not isinstance(value, kind):
-        raise _Wrong(f"{what} is no {_KINDS[kind]}")
+        raise _Wrong(f"{what} isn't {_KINDS[kind]}")
     if isinstance(value, str) and (unfit := _UNFIT.search(value)) is not None:
-        raise _Wrong(f"{what} has a character that no text can hold: {unfit[0]!a}")
+        raise _Wrong(f"{what} has an invalid character: {unfit[0]!a}")
     return value
 
 
 _UNFIT = re.compile("[\0\ud800-\udfff]")  # NUL and lone surrogates, which XML and UTF-8 do not have either
 
 
-_KINDS: dict[type, str] = {dict: "object", list: "array", str: "text"}
+_KINDS: dict[type, str] = {dict: "an object", list: "an array", str: "a text"}

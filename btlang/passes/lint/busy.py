@@ -42,9 +42,9 @@ def busy_loops(compilation: Compilation) -> list[Diagnostic]:
     if any(id in CATALOGUE and CATALOGUE[id].again for id in compilation.ids):
         compilation.fold(combine)
     word = compilation.vocabulary.word
-    advice = f"To wait for a condition say '{word('wait_until')} ...'; else put a '{word('wait')}' into the loop."
+    advice = f"To wait for a condition, say '{word('wait_until')} ...'; otherwise add a '{word('wait')}' to the loop."
     if not compilation.is_text:
-        advice = "Put something into it that takes time, such as a node Sleep."
+        advice = "Add something that takes time, such as a Sleep node."
     return [diagnostic("BT053", node.span, advice=advice) for node in busy if node.span is not None]
 
 

@@ -65,16 +65,16 @@ def _when(node: Node) -> str:
     return _WHEN.get(kind.goes_on, "when the time is over")
 
 
-_WHEN = {ON_SUCCESS: "as soon as the condition does not hold", ON_FAILURE: "as soon as the condition holds"}
+_WHEN = {ON_SUCCESS: "as soon as the condition is false", ON_FAILURE: "as soon as the condition is true"}
 
 
 def _told(exposed: Exposed, when: str, compilation: Compilation) -> list[Diagnostic]:
     leaf, place = exposed.leaf.span, exposed.place.span
     if leaf is None or place is None:
         return []
-    notes = () if exposed.leaf is exposed.place else ((leaf, f"'{leaf.text}' stands here"),)
-    advice = "Leave it outside: put it before or after this node."
+    notes = () if exposed.leaf is exposed.place else ((leaf, f"'{leaf.text}' is here"),)
+    advice = "Move it out, before or after this node."
     if compilation.is_text:
         then = compilation.vocabulary.word("then")
-        advice = f"Leave it outside: put it before or after the form, with '{then}'."
+        advice = f"Move it out, before or after the form, with '{then}'."
     return [diagnostic("BT054", place, notes, words=leaf.text, when=when, advice=advice)]

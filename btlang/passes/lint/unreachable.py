@@ -36,7 +36,7 @@ def _told(parent: NodeKind, before: Node, ends: Ends, behind: Node) -> list[Diag
         return []
     if ends & NEVER:
         how = "fails" if parent.goes_on == ON_SUCCESS else "succeeds"
-        reason = "never ends" if ends == NEVER else f"goes on until it {how}"
+        reason = "never ends" if ends == NEVER else f"continues until it {how}"
     else:
         reason = "always fails" if parent.goes_on == ON_SUCCESS else "always succeeds"
     return [diagnostic("BT052", behind.span, ((before.span, f"this {reason}"),), reason=reason)]

@@ -50,7 +50,7 @@ class Goal:
         """Asks the server to end, as soon as it has accepted the goal; nothing where it has ended."""
         if self.answer is None and not self._cancelled:
             self._cancelled = True
-            self._waits_for = f"{self._name} has not answered the goal that was halted"
+            self._waits_for = f"{self._name} hasn't answered the halted goal"
             self._clients.endings.append(self)
             self._clients.post(self._cancel)
 
@@ -85,7 +85,7 @@ class Goal:
 
     def _cancel(self) -> None:
         if self._handle is not None and self.answer is None:
-            self._waits_for = f"{self._name} has not ended the goal that was cancelled"
+            self._waits_for = f"{self._name} hasn't ended the cancelled goal"
             self._handle.cancel_goal_async().add_done_callback(self._cancel_answered)
 
     def _cancel_answered(self, future: Any) -> None:
@@ -130,7 +130,9 @@ def goal_leaf(
             while goal.answer is None:
                 quiet = AWAKE.now() - goal.heard
                 if quiet > (silence if goal.accepted else ANSWER):
-                    raise ActionFailed(f"{name} {'gives no word of' if goal.accepted else 'does not answer'} the goal")
+                    raise ActionFailed(
+                        f"{name} {'sends no feedback on' if goal.accepted else 'does not answer'} the goal"
+                    )
                 yield
                 if goal.answer is None and presence.is_lost():
                     goal.answer = f"the server of {name} is gone"

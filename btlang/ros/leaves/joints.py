@@ -55,7 +55,7 @@ def joints_leaf(word: Word, clients: Clients) -> Callable[..., Any]:
                 arrived = all(abs(at[joint] - target) <= close for joint, target in wanted.items())
                 if not arrived and now() >= until:
                     joint = max(wanted, key=lambda joint: abs(at[joint] - wanted[joint]))
-                    raise ActionFailed(f"{joint} is at {at[joint]:.2f} and does not get to {wanted[joint]:.2f}")
+                    raise ActionFailed(f"{joint} is at {at[joint]:.2f} and doesn't reach {wanted[joint]:.2f}")
         finally:
             if not arrived:
                 send(at, 0.0)
@@ -90,5 +90,5 @@ def _positions(message: Any, joints: Mapping[str, float], topic: str) -> dict[st
     found = positions(message)
     missing = [joint for joint in joints if joint not in found]
     if missing:
-        raise ActionFailed(f"{topic} tells nothing of the joint {missing[0]}")
+        raise ActionFailed(f"{topic} doesn't report the joint {missing[0]}")
     return {joint: found[joint] for joint in joints}

@@ -35,7 +35,7 @@ def topic_leaf(word: Word, clients: Clients) -> Callable[..., Any]:
         try:
             return read(message) if read is not None else True
         except ValueError as problem:
-            raise Unknown(f"{problem} in what came on {word.ros.name}") from None
+            raise Unknown(f"{problem} in the message on {word.ros.name}") from None
 
     shown = word.ros.get("field", "") and f"{word.ros.get('field')} of {word.ros.name}"
     return measuring(word, value, shown) if word.measured is not None else comparing(word, cls, value, shown)
@@ -48,13 +48,13 @@ def _known(value: Any, shown: str) -> Any:
 
 
 def measuring(word: Word, value: Callable[[], Any], shown: str) -> Callable[..., Any]:
-    """A function that gives a value in the unit of the word's type. Raises ActionFailed where it is no number."""
+    """A function that gives a value in the unit of the word's type. Raises ActionFailed where it isn't a number."""
     scale = word.scale
 
     def measure(**values: Any) -> float:
         found = _known(value(), shown)
         if not isinstance(found, _NUMBERS):
-            raise ActionFailed(f"{shown} is {found!r}, which is no number")
+            raise ActionFailed(f"{shown} is {found!r}, which isn't a number")
         return float(found) * scale
 
     return measure
@@ -74,7 +74,7 @@ def comparing(word: Word, cls: Any, value: Callable[[], Any], shown: str) -> Cal
         try:
             good = all(holds(found, limit(values)) for holds, _, limit in limits) if limits else bool(found)
         except TypeError:
-            return Failed(f"{shown} is {found!r}, which cannot be compared so")
+            return Failed(f"{shown} is {found!r}, which can't be compared like this")
         return good or Failed(lambda: f"{shown} is {f'{found:.3g}' if isinstance(found, float) else found}")
 
     return hold

@@ -18,13 +18,13 @@ _ANSWERS = 1.0  # seconds that the last answers to clients get
 
 def add_node_options(parser: argparse.ArgumentParser) -> None:
     """The options of `btc ros-node` that are about the node."""
-    parser.add_argument("--mission", default="", metavar="FILE", help="run this one when the node is activated")
+    parser.add_argument("--mission", default="", metavar="FILE", help="mission to run when the node is activated")
     add_body_options(parser)
     parser.add_argument(
-        "--sim-time", action="store_true", help="with --robot ros or actions: time is that of the topic /clock"
+        "--sim-time", action="store_true", help="with --robot ros or actions: use the time of the topic /clock"
     )
-    add_namespace(parser, "of the node, and of the robot with --robot ros or actions (default: none)")
-    parser.add_argument("--name", default="btlang", type=node_name, help="of the node (default: %(default)s)")
+    add_namespace(parser, "namespace of the node, and with --robot ros or actions of the robot (default: none)")
+    parser.add_argument("--name", default="btlang", type=node_name, help="name of the node (default: %(default)s)")
     parser.add_argument(
         "--autostart",
         action=argparse.BooleanOptionalAction,
@@ -36,9 +36,9 @@ def add_node_options(parser: argparse.ArgumentParser) -> None:
         action="append",
         default=[],
         metavar="NAME|DIR",
-        help="other programs may use this pack, or the keyword files below DIR; they run Python (default: none)",
+        help="let other programs use this pack, or the keyword files below DIR; these run Python (default: none)",
     )
-    parser.add_argument("--ros-args", nargs=argparse.REMAINDER, help="the rest are arguments of ROS 2")
+    parser.add_argument("--ros-args", nargs=argparse.REMAINDER, help="all further arguments are for ROS 2")
     parser.set_defaults(refuse=parser.error)
 
 

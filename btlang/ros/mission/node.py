@@ -101,7 +101,7 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
             return True
         self._run.hangs = True  # who asks again need not wait again
         self._run.emergency_stop()
-        self._topics.complain("the mission does not end: a command hangs; the robot was stopped")
+        self._topics.complain("the mission doesn't end because a command hangs; the robot was stopped")
         return False
 
     def release(self) -> None:
@@ -134,7 +134,7 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
         """Why no mission can begin now; "" where one can."""
         if not self._active:
             return "the node is not active"
-        return "another one runs" if self._busy else ""
+        return "another mission is running" if self._busy else ""
 
     def _begin_goal(
         self, request: Any, changed: Callable[[News], object], ended: Callable[[Report], object]
@@ -185,7 +185,7 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
     def _health(self) -> tuple[bytes, str, dict[str, str]]:
         values = {"robot": self._setup.robot, "active": str(self._active), "running": self._running}
         if self._busy:
-            return OK, "a mission runs", values
+            return OK, "a mission is running", values
         if self._session is None:
             return WARN, "not configured", values
         if self._latest is None:

@@ -38,7 +38,7 @@ class MissionServer:
     def _accepts(self) -> bool:
         reason = self._hindrance()
         if reason:
-            self._rejected(f"a mission is rejected: {reason}")
+            self._rejected(f"mission rejected: {reason}")
         return not reason
 
     def _run(self, goal: HeldGoal) -> Callable[[str], object]:
@@ -55,7 +55,7 @@ class MissionServer:
 
         def cancel(reason: str) -> None:
             if reason == GONE:
-                self._rejected(f"the mission is halted: {reason}")
+                self._rejected(f"mission halted: {reason}")
             run.stop()
 
         return cancel

@@ -15,7 +15,7 @@ from btlang.session import Session
 from btlang.text.source import Source, Span
 from btlang.vocabulary.shipped import ENGLISH
 
-_NOT_ALLOWED = "other programs may not use it; the node allows it with --allow-keywords and its name or folder"
+_NOT_ALLOWED = "other programs can't use it; to allow it, start the node with --allow-keywords and its name or folder"
 
 
 class Setup(Record):

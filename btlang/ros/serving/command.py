@@ -35,15 +35,24 @@ _ANSWERS = 1.0  # seconds that the last answers to clients get
 def add_serving_options(parser: argparse.ArgumentParser) -> None:
     """The options of `btc serve-actions` that are not those of all words and worlds."""
     add_body_options(parser, ("simulated", "ros"))
-    parser.add_argument("--sim-time", action="store_true", help="with --robot ros: time is that of the topic /clock")
+    parser.add_argument("--sim-time", action="store_true", help="with --robot ros: use the time of the topic /clock")
     parser.add_argument("--speed", type=real_speed, default="real", help="real, or a factor of real time")
-    parser.add_argument("--rate", type=between(*RATES), default=20.0, metavar="HZ", help="ticks a second (default: 20)")
     parser.add_argument(
-        "--only", nargs="+", action="extend", default=[], metavar="ID", help="serve these actions or topics of words"
+        "--rate", type=between(*RATES), default=20.0, metavar="HZ", help="ticks per second (default: 20)"
     )
-    parser.add_argument("--name", default="btlang_actions", type=node_name, help="of the node (default: %(default)s)")
-    add_namespace(parser, "of the actions, and of the robot with --robot ros (default: none)")
-    parser.add_argument("--ros-args", nargs=argparse.REMAINDER, help="the rest are arguments of ROS 2")
+    parser.add_argument(
+        "--only",
+        nargs="+",
+        action="extend",
+        default=[],
+        metavar="ID",
+        help="serve only these actions, or topics of `btc words`",
+    )
+    parser.add_argument(
+        "--name", default="btlang_actions", type=node_name, help="name of the node (default: %(default)s)"
+    )
+    add_namespace(parser, "namespace of the actions, and with --robot ros of the robot (default: none)")
+    parser.add_argument("--ros-args", nargs=argparse.REMAINDER, help="all further arguments are for ROS 2")
     parser.set_defaults(refuse=parser.error)
 
 

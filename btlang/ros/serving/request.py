@@ -27,7 +27,7 @@ def requested_leaf(
     node_id = entries[0].id
     patterns = [pattern for entry in entries for pattern in entry.phrases]
     if phrase.strip().lower() not in ("", node_id.lower(), *(pattern.lower() for pattern in patterns)):
-        raise ActionFailed(f"'{phrase}' is not served here: this is {node_id}, whose phrase is '{patterns[0]}'")
+        raise ActionFailed(f"'{phrase}' isn't served here: this is {node_id}, with the phrase '{patterns[0]}'")
     if len(names) != len(values):
         raise ActionFailed(f"{_count(len(names), 'name')} and {_count(len(values), 'value')} are given")
     types = {slot.name: vocabulary.types[slot.type] for entry in entries for slot in entry.slots}
@@ -44,14 +44,14 @@ def requested_leaf(
 
 def _port_text(name: str, written: str, kind: ValueType, vocabulary: Lexicon) -> str:
     if blackboard_key(name, written) is not None:
-        raise ActionFailed(f"{name} is '{written}', which names a value of a mission, and there is no mission here")
+        raise ActionFailed(f"{name} is '{written}', a value of a mission, but there is no mission here")
     if kind.kind == "text":
         return written
     found = vocabulary.value(kind.name, written)
     if found is None and kind.kind != "names":
         found = _number(written, kind)
     if found is None:
-        raise ActionFailed(f"{name} is '{written}', which is no {kind.name}{_instead(written, kind, vocabulary)}")
+        raise ActionFailed(f"{name} is '{written}', which isn't a {kind.name}{_instead(written, kind, vocabulary)}")
     return found
 
 
@@ -72,7 +72,7 @@ def _instead(written: str, kind: ValueType, vocabulary: Lexicon) -> str:
     known = vocabulary.values.names(kind.name)
     near = nearest(written.lower(), known, 1)
     if near:
-        return f"; the nearest is '{near[0]}'"
+        return f"; similar: {near[0]}"
     return f"; there are {', '.join(known[:_FEW])}{', ...' * (len(known) > _FEW)}" if known else ""
 
 

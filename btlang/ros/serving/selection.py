@@ -31,13 +31,13 @@ def chosen(only: Sequence[str], ids: Sequence[str], vocabulary: Lexicon) -> list
     for name in only:
         if name.lower() not in named:
             near = nearest(name.lower(), named, 1)
-            raise ValueError(f"--only: there is no action '{name}'" + (f"; the nearest is {near[0]}" if near else ""))
+            raise ValueError(f"--only: there is no action '{name}'" + (f"; similar: {near[0]}" if near else ""))
     found = list(dict.fromkeys(node_id for name in only for node_id in named[name.lower()])) if only else list(ids)
     served: dict[str, str] = {}
     for node_id in found:
         name = action_name(node_id)
         if not name or name in served:
             known = f"{served[name]} has the same" if name else "it takes a-z, digits and single _"
-            raise ValueError(f"{node_id} has no name that ROS 2 can tell it by: {known}; use --only")
+            raise ValueError(f"{node_id} has no valid ROS 2 name: {known}; use --only")
         served[name] = node_id
     return found

@@ -74,4 +74,4 @@ class CallQueue:
             answer.cancel()
 
 
-_OFF = "the simulated robot is being switched off"
+_OFF = "the simulated robot is shutting down"

@@ -28,12 +28,12 @@ def add_simulator_options(parser: argparse.ArgumentParser) -> None:
     add_body_options(parser, ("simulated",))
     parser.add_argument("--speed", type=real_speed, default="real", help="real, or a factor of real time")
     parser.add_argument(
-        "--rate", type=between(*RATES), default=20.0, metavar="HZ", help="steps a simulated second (default: 20)"
+        "--rate", type=between(*RATES), default=20.0, metavar="HZ", help="steps per simulated second (default: 20)"
     )
     parser.add_argument(
-        "--clock", action=argparse.BooleanOptionalAction, default=True, help="give the simulated time on /clock"
+        "--clock", action=argparse.BooleanOptionalAction, default=True, help="publish simulated time on /clock"
     )
-    add_namespace(parser, "of all topics (default: none)")
+    add_namespace(parser, "namespace of all topics (default: none)")
 
 
 def serve(options: argparse.Namespace) -> int:

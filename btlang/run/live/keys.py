@@ -36,7 +36,7 @@ class Keys:
 
     def __init__(self, descriptor: int, pressed: Callable[[str], object]) -> None:
         if termios is None:
-            raise OSError("no single keys can be read here")
+            raise OSError("single keys can't be read here")
         try:
             self._modes: list[Any] = termios.tcgetattr(descriptor)
         except termios.error as error:

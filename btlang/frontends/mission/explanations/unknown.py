@@ -84,7 +84,7 @@ def unknown_value(span: Span, key: str, known: Iterable[str]) -> Diagnostic:
     """BT043: a name in braces that no value has."""
     name, names = (key.replace("_", " ").strip(), [other.replace("_", " ").strip() for other in known])
     near = nearest(name, names)
-    advice = _near_names(near, names) if names else "Nothing has a name in this mission yet."
+    advice = _near_names(near, names) if names else "This mission has no named values yet."
     braces = re.search(r"\{(\s*" + r"[\W_]+".join(map(re.escape, key.split("_"))) + r"\s*)\}", span.text, re.IGNORECASE)
     fix = None
     if near and braces:
@@ -299,7 +299,7 @@ def _nearest_phrases(
 def _near_names(near: list[str], known: list[str]) -> str:
     if near:
         return "Similar: " + ", ".join(near)
-    return "Known: " + ", ".join(known) if known else "None is known in this world."
+    return "Known: " + ", ".join(known) if known else "This world has none."
 
 
 def _value_example(kind: ValueType, vocabulary: Lexicon) -> str:

@@ -37,7 +37,7 @@ def comma(scan: Scan, token: Token) -> None:
         scan.next(following, True)
     elif following.kind in ("count", "for", "within", "if_possible", "provided"):
         fix = (scan.span(token), "") if is_alone(scan) else None
-        advice = "Take it away." if fix else both_readings(scan, following)
+        advice = "Remove it." if fix else both_readings(scan, following)
         scan.fail("BT032", scan.span(token), fix, place=f"before '{scan.words(following)}'", advice=advice)
     else:
         scan.stack[-1].connective(scan.emit("COMMA", token))

@@ -22,13 +22,11 @@ def no_operand(scan: Scan, token: Token) -> None:
     elif token.kind == "colon":
         scan.fail("BT026", scan.span(token))
     elif starts and token.kind == "comma":
-        scan.fail(
-            "BT032", scan.span(token), (with_blanks(scan, token), ""), place="at the start", advice="Take it away."
-        )
+        scan.fail("BT032", scan.span(token), (with_blanks(scan, token), ""), place="at the start", advice="Remove it.")
     elif starts or token.kind not in ENDS | {*CONNECTIVES, "otherwise", "comma"}:
         scan.fail("BT022", scan.span(token), word=scan.words(token), example="wave")
     elif before is not None and before.kind == "comma" and token.kind in ENDS:
-        advice = "Take it away, or say what follows."
+        advice = "Remove it, or add what follows."
         scan.fail("BT032", scan.span(before), (scan.span(before), ""), place="at the end", advice=advice)
     elif before is not None:
         scan.fail("BT020", scan.span(before), wanted=wanted, word=scan.words(before), found=found_words(scan, token))
@@ -75,7 +73,7 @@ def both_readings(scan: Scan, form: Token) -> str:
     text, start, command = scan.source.text, scan.raw[first].start, scan.raw[last].start
     before, form_words = text[start : scan.raw[scan.at].start], text[form.start : end].strip()
     one = f"{before[: command - start]}({before[command - start :]} {form_words})"
-    return f"Write which you mean: {one}, or: ({before}) {form_words}"
+    return f"Write what you mean: {one}, or: ({before}) {form_words}"
 
 
 def word_before(scan: Scan, token: Token, role: str) -> tuple[Span, str]:
@@ -91,4 +89,4 @@ def with_blanks(scan: Scan, token: Token) -> Span:
 def found_words(scan: Scan, token: Token) -> str:
     if token.kind in _FOUND:
         return _FOUND[token.kind]
-    return "the mission ends" if token.kind in ENDS else f"'{scan.words(token)}' stands there"
+    return "the mission ends" if token.kind in ENDS else f"'{scan.words(token)}' comes next"
