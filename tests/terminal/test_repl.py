@@ -40,6 +40,11 @@ def shown(screen: str) -> str:
 
 def golden(user: Terminal, text: str, name: str) -> None:
     """The screen once the text is on it, all of it is drawn, and nothing changes any more."""
+    matches_golden(shown(prompted(user, text)), GOLDEN / f"repl_{name}.txt")
+
+
+def prompted(user: Terminal, text: str) -> str:
+    """Waits until the text is on the screen and the prompt reads keys again: what is typed earlier is echoed there."""
     user.wait_for(text)
     before = [""]
 
@@ -47,7 +52,7 @@ def golden(user: Terminal, text: str, name: str) -> None:
         last, before[0] = before[0], screen
         return screen == last and "robot at " in screen.rstrip().splitlines()[-1]
 
-    matches_golden(shown(user.wait_until(is_still)), GOLDEN / f"repl_{name}.txt")
+    return user.wait_until(is_still)
 
 
 def process(folder: Path) -> int:
@@ -80,7 +85,7 @@ def test_a_session_from_the_first_mistake_to_the_history(repl: Callable[..., Ter
     user.type("undo")
     golden(user, "- patrol", "7_undone")
     user.type("save mission.txt")
-    user.wait_for("Saved 1 line to mission.txt.")
+    prompted(user, "Saved 1 line to mission.txt.")
     assert (tmp_path / "mission.txt").read_text() == "patrol is go to the lobby then go to the kitchen then wave\n"
     user.press("C-d", "C-d")
     assert user.wait_for_end() == 0
@@ -91,7 +96,7 @@ def test_a_session_from_the_first_mistake_to_the_history(repl: Callable[..., Ter
     golden(again, "> patrol", "8_history")
     again.press("C-c")
     again.type("load mission.txt")
-    again.wait_for("Loaded 1 line")
+    prompted(again, "Loaded 1 line")
     again.type("show")
     golden(again, "> show", "9_loaded")
 
@@ -190,12 +195,15 @@ def test_beginnings_that_are_nothing(repl: Callable[..., Terminal]) -> None:
     user = repl()
     user.type("# a comment", enter=False)
     user.press("C-c")
+    prompted(user, ">")
     user.type("bow is nod")
-    user.wait_for("Defined: bow")
+    prompted(user, "Defined: bow")
     for text in (" wave", "repeat 2 times: please", 'say"hello" there', "please"):
         user.type(text, enter=False)
         user.press("C-c")
+        prompted(user, ">")
     user.type("# a comment")
+    prompted(user, "> # a comment")
     user.type("  nod")
     user.wait_for("succeeded")
     assert "exception" not in user.history().lower()
