@@ -2,104 +2,110 @@
 
 from __future__ import annotations
 
+from typing import Protocol
+
 from btlang.actions.joints import take
 from btlang.actions.motion import Steps
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.robots.robot import Robot
+from btlang.robots.capabilities import Base, Joints
 from btlang.robots.world import said
 
 
-def wave(robot: Robot, person: str | None = None) -> Steps:
+class Aiming(Joints, Base, Protocol):
+    """It knows where it is, so it can point at what it knows."""
+
+
+def wave(robot: Aiming, person: str | None = None) -> Steps:
     """Waves the right arm, towards the person if one is named, and lets it hang again."""
     yield from _towards(robot, "wave", person) if person else take(robot, "wave")
 
 
-def point_at_person(robot: Robot, person: str) -> Steps:
+def point_at_person(robot: Aiming, person: str) -> Steps:
     """Stretches the right arm towards a person."""
     yield from _towards(robot, "right arm pointing", person)
 
 
-def point_at_object(robot: Robot, object: str) -> Steps:
+def point_at_object(robot: Aiming, object: str) -> Steps:
     """Stretches the right arm towards an object."""
     yield from _towards(robot, "right arm pointing", object)
 
 
-def point_at_place(robot: Robot, place: str) -> Steps:
+def point_at_place(robot: Aiming, place: str) -> Steps:
     """Stretches the right arm towards a place."""
     yield from _towards(robot, "right arm pointing", place)
 
 
-def point_left(robot: Robot) -> Steps:
+def point_left(robot: Joints) -> Steps:
     """Stretches the left arm to the left."""
     yield from take(robot, "left arm pointing", bearing=90.0)
 
 
-def point_right(robot: Robot) -> Steps:
+def point_right(robot: Joints) -> Steps:
     """Stretches the right arm to the right."""
     yield from take(robot, "right arm pointing", bearing=-90.0)
 
 
-def point_ahead(robot: Robot) -> Steps:
+def point_ahead(robot: Joints) -> Steps:
     """Stretches the right arm ahead."""
     yield from take(robot, "right arm pointing", bearing=0.0)
 
 
-def nod(robot: Robot) -> Steps:
+def nod(robot: Joints) -> Steps:
     """Nods the head twice."""
     yield from take(robot, "nod")
 
 
-def shake_head(robot: Robot) -> Steps:
+def shake_head(robot: Joints) -> Steps:
     """Turns the head from side to side."""
     yield from take(robot, "shake head")
 
 
-def look_around(robot: Robot) -> Steps:
+def look_around(robot: Joints) -> Steps:
     """Turns the head all the way to both sides and back ahead."""
     yield from take(robot, "look around")
 
 
-def look_left(robot: Robot) -> Steps:
+def look_left(robot: Joints) -> Steps:
     """Turns the head to the left."""
     yield from take(robot, "look left")
 
 
-def look_right(robot: Robot) -> Steps:
+def look_right(robot: Joints) -> Steps:
     """Turns the head to the right."""
     yield from take(robot, "look right")
 
 
-def look_ahead(robot: Robot) -> Steps:
+def look_ahead(robot: Joints) -> Steps:
     """Turns the head straight ahead."""
     yield from take(robot, "look ahead")
 
 
-def look_up(robot: Robot) -> Steps:
+def look_up(robot: Joints) -> Steps:
     """Raises the head."""
     yield from take(robot, "look up")
 
 
-def look_down(robot: Robot) -> Steps:
+def look_down(robot: Joints) -> Steps:
     """Lowers the head."""
     yield from take(robot, "look down")
 
 
-def look_at_person(robot: Robot, person: str) -> Steps:
+def look_at_person(robot: Aiming, person: str) -> Steps:
     """Turns the head to a person. Fails where they are behind the robot."""
     yield from _towards(robot, "look at", person)
 
 
-def look_at_object(robot: Robot, object: str) -> Steps:
+def look_at_object(robot: Aiming, object: str) -> Steps:
     """Turns the head to an object. Fails if it is behind the robot."""
     yield from _towards(robot, "look at", object)
 
 
-def look_at_place(robot: Robot, place: str) -> Steps:
+def look_at_place(robot: Aiming, place: str) -> Steps:
     """Turns the head to a place. Fails if it is behind the robot."""
     yield from _towards(robot, "look at", place)
 
 
-def _towards(robot: Robot, posture: str, name: str) -> Steps:
+def _towards(robot: Aiming, posture: str, name: str) -> Steps:
     """Raises ActionFailed where the joint that turns there does not turn so far."""
     bearing = robot.pose.bearing_to(robot.locate(name))
     joint = robot.body.bearing_joint(posture)

@@ -8,10 +8,10 @@ from btlang.actions.motion import Steps
 from btlang.actions.watch import Watch
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.body import BEARING
-from btlang.robots.robot import Robot
+from btlang.robots.capabilities import Joints
 
 
-def bring(robot: Robot, targets: Mapping[str, float]) -> Steps:
+def bring(robot: Joints, targets: Mapping[str, float]) -> Steps:
     """Moves joints to angles (degrees); halted, just these joints freeze. Raises ActionFailed on an emergency stop."""
     watch = Watch(robot)
     robot.move_joints(targets)
@@ -23,7 +23,7 @@ def bring(robot: Robot, targets: Mapping[str, float]) -> Steps:
         robot.freeze_joints(*targets)
 
 
-def take(robot: Robot, *postures: str, bearing: float = 0.0) -> Steps:
+def take(robot: Joints, *postures: str, bearing: float = 0.0) -> Steps:
     """Brings the body to postures of its file, all of them at once, where they have steps one after the other.
 
     `bearing` is the angle of a joint that points or looks somewhere. Raises ActionFailed as `bring` does.

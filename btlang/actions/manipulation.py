@@ -2,45 +2,56 @@
 
 from __future__ import annotations
 
+from typing import Protocol
+
 from btlang.actions.joints import take
 from btlang.actions.motion import Steps
 from btlang.actions.navigation import accomplish, travel
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.robots.robot import Hand, Robot
+from btlang.robots.capabilities import Hands, Joints, Navigation
+from btlang.robots.robot import Hand
 from btlang.robots.world import said
 
 
-def open_right_hand(robot: Robot) -> Steps:
+class Reaching(Joints, Hands, Protocol):
+    """Arms with hands."""
+
+
+class Fetching(Navigation, Reaching, Protocol):
+    """The same on a base that finds its way."""
+
+
+def open_right_hand(robot: Hands) -> Steps:
     """Opens the hand; what it held is put down."""
     yield from accomplish(robot.release("right"))
 
 
-def open_left_hand(robot: Robot) -> Steps:
+def open_left_hand(robot: Hands) -> Steps:
     """Opens the hand; what it held is put down."""
     yield from accomplish(robot.release("left"))
 
 
-def close_right_hand(robot: Robot) -> Steps:
+def close_right_hand(robot: Hands) -> Steps:
     """Closes the hand on the nearest object. Fails where nothing is within reach or the hand is full."""
     yield from accomplish(robot.grasp("right"))
 
 
-def close_left_hand(robot: Robot) -> Steps:
+def close_left_hand(robot: Hands) -> Steps:
     """Closes the hand on the nearest object. Fails where nothing is within reach or the hand is full."""
     yield from accomplish(robot.grasp("left"))
 
 
-def grasp(robot: Robot, object: str | None = None) -> Steps:
+def grasp(robot: Hands, object: str | None = None) -> Steps:
     """Closes the right hand on the object, or on the nearest one. Fails as `close_right_hand` does."""
     yield from accomplish(robot.grasp("right", object))
 
 
-def release(robot: Robot, object: str | None = None) -> Steps:
+def release(robot: Hands, object: str | None = None) -> Steps:
     """Opens the hand that holds the object, or any. Fails where none does."""
     yield from accomplish(robot.release(_hand_with(robot, object)))
 
 
-def pick_up(robot: Robot, object: str) -> Steps:
+def pick_up(robot: Fetching, object: str) -> Steps:
     """Drives up to the object, grasps it with the right hand and lifts it. Fails where one of these fails."""
     held = robot.holding("right")
     if held is not None:
@@ -51,7 +62,7 @@ def pick_up(robot: Robot, object: str) -> Steps:
     yield from take(robot, "right arm carrying")
 
 
-def put_down(robot: Robot, object: str | None = None) -> Steps:
+def put_down(robot: Reaching, object: str | None = None) -> Steps:
     """Lowers the arm that holds the object (or anything) and opens its hand. Fails where none does."""
     hand = _hand_with(robot, object)
     yield from take(robot, f"{hand} arm reaching")
@@ -59,7 +70,7 @@ def put_down(robot: Robot, object: str | None = None) -> Steps:
     yield from take(robot, f"{hand} arm hanging")
 
 
-def _hand_with(robot: Robot, object: str | None) -> Hand:
+def _hand_with(robot: Hands, object: str | None) -> Hand:
     hands: tuple[Hand, Hand] = ("right", "left")
     for hand in hands:
         held = robot.holding(hand)
@@ -68,51 +79,51 @@ def _hand_with(robot: Robot, object: str | None) -> Hand:
     raise ActionFailed(f"the robot isn't holding {said(object)}" if object else "the robot isn't holding anything")
 
 
-def raise_right_arm(robot: Robot) -> Steps:
+def raise_right_arm(robot: Joints) -> Steps:
     """Brings the arm up."""
     yield from take(robot, "right arm raised")
 
 
-def raise_left_arm(robot: Robot) -> Steps:
+def raise_left_arm(robot: Joints) -> Steps:
     """Brings the arm up."""
     yield from take(robot, "left arm raised")
 
 
-def raise_both_arms(robot: Robot) -> Steps:
+def raise_both_arms(robot: Joints) -> Steps:
     """Brings both arms up together."""
     yield from take(robot, "left arm raised", "right arm raised")
 
 
-def lower_right_arm(robot: Robot) -> Steps:
+def lower_right_arm(robot: Joints) -> Steps:
     """Lets the arm hang."""
     yield from take(robot, "right arm hanging")
 
 
-def lower_left_arm(robot: Robot) -> Steps:
+def lower_left_arm(robot: Joints) -> Steps:
     """Lets the arm hang."""
     yield from take(robot, "left arm hanging")
 
 
-def lower_both_arms(robot: Robot) -> Steps:
+def lower_both_arms(robot: Joints) -> Steps:
     """Lets both arms hang."""
     yield from take(robot, "left arm hanging", "right arm hanging")
 
 
-def stretch_right_arm(robot: Robot) -> Steps:
+def stretch_right_arm(robot: Joints) -> Steps:
     """Stretches the arm out ahead."""
     yield from take(robot, "right arm stretched")
 
 
-def stretch_left_arm(robot: Robot) -> Steps:
+def stretch_left_arm(robot: Joints) -> Steps:
     """Stretches the arm out ahead."""
     yield from take(robot, "left arm stretched")
 
 
-def retract_right_arm(robot: Robot) -> Steps:
+def retract_right_arm(robot: Joints) -> Steps:
     """Folds the arm to the body."""
     yield from take(robot, "right arm folded")
 
 
-def retract_left_arm(robot: Robot) -> Steps:
+def retract_left_arm(robot: Joints) -> Steps:
     """Folds the arm to the body."""
     yield from take(robot, "left arm folded")

@@ -8,11 +8,10 @@ from __future__ import annotations
 from collections.abc import Callable, Generator
 from math import copysign, sqrt
 
-from btlang.actions.watch import Watch
+from btlang.actions.watch import BaseWatch, Driving
 from btlang.engine.leaves.leaf import ActionFailed, unheard
 from btlang.robots.geometry import wrap
 from btlang.robots.progress import PATIENCE, Progress
-from btlang.robots.robot import Robot
 
 Steps = Generator[None, None, None]
 Tell = Callable[[float], object]
@@ -22,32 +21,32 @@ _ANGLE_CLOSE_ENOUGH = 0.25
 _STRAIGHTENING = 2.0  # degrees a second for each degree off course
 
 
-def move_forward(robot: Robot, distance: float, speed: float | None = None, progress: Tell = unheard) -> Steps:
+def move_forward(robot: Driving, distance: float, speed: float | None = None, progress: Tell = unheard) -> Steps:
     """Drives straight ahead by `distance` metres, to the centimetre, at `speed` m/s (or the robot's normal speed)."""
     yield from drive_straight(robot, distance, speed, progress)
 
 
-def move_backward(robot: Robot, distance: float, speed: float | None = None, progress: Tell = unheard) -> Steps:
+def move_backward(robot: Driving, distance: float, speed: float | None = None, progress: Tell = unheard) -> Steps:
     """Drives straight back by `distance` metres, to the centimetre, at `speed` m/s (or the robot's normal speed)."""
     yield from drive_straight(robot, -distance, speed, progress)
 
 
-def turn_left(robot: Robot, angle: float, progress: Tell = unheard) -> Steps:
+def turn_left(robot: Driving, angle: float, progress: Tell = unheard) -> Steps:
     """Turns on the spot by `angle` degrees counter-clockwise, to the degree."""
     yield from turn(robot, angle, progress)
 
 
-def turn_right(robot: Robot, angle: float, progress: Tell = unheard) -> Steps:
+def turn_right(robot: Driving, angle: float, progress: Tell = unheard) -> Steps:
     """Turns on the spot by `angle` degrees clockwise, to the degree."""
     yield from turn(robot, -angle, progress)
 
 
-def turn_around(robot: Robot) -> Steps:
+def turn_around(robot: Driving) -> Steps:
     """Turns on the spot to where its back was."""
     yield from turn(robot, 180.0)
 
 
-def stop(robot: Robot) -> Steps:
+def stop(robot: Driving) -> Steps:
     """Brings the base to rest. Fails where it does not come to rest within 5 seconds."""
     robot.drive(0.0, 0.0)
     until = robot.time + PATIENCE
@@ -59,24 +58,24 @@ def stop(robot: Robot) -> Steps:
         yield
 
 
-def face_place(robot: Robot, place: str) -> Steps:
+def face_place(robot: Driving, place: str) -> Steps:
     """Turns on the spot towards a place."""
     yield from turn(robot, robot.pose.bearing_to(robot.locate(place)))
 
 
-def face_person(robot: Robot, person: str) -> Steps:
+def face_person(robot: Driving, person: str) -> Steps:
     """Turns on the spot towards a person."""
     yield from turn(robot, robot.pose.bearing_to(robot.locate(person)))
 
 
-def face_object(robot: Robot, object: str) -> Steps:
+def face_object(robot: Driving, object: str) -> Steps:
     """Turns on the spot towards an object."""
     yield from turn(robot, robot.pose.bearing_to(robot.locate(object)))
 
 
-def drive_straight(robot: Robot, distance: float, speed: float | None = None, progress: Tell = unheard) -> Steps:
+def drive_straight(robot: Driving, distance: float, speed: float | None = None, progress: Tell = unheard) -> Steps:
     """Drives `distance` metres along the heading (negative: backwards), keeps the course, and brakes."""
-    start, watch = robot.pose, Watch(robot)
+    start, watch = robot.pose, BaseWatch(robot)
     bounds = Progress(distance, _CLOSE_ENOUGH, False, lambda: robot.time)
     driving = robot.body.driving
     limit, slowing = min(driving.speed if speed is None else abs(speed), driving.top_speed), driving.slowing
@@ -98,9 +97,9 @@ def drive_straight(robot: Robot, distance: float, speed: float | None = None, pr
         robot.drive(0.0, 0.0)
 
 
-def turn(robot: Robot, angle: float, progress: Tell = unheard) -> Steps:
+def turn(robot: Driving, angle: float, progress: Tell = unheard) -> Steps:
     """Turns on the spot by `angle` degrees (left positive; more than a whole turn is fine) and brakes."""
-    heading, turned, watch = robot.pose.heading, 0.0, Watch(robot)
+    heading, turned, watch = robot.pose.heading, 0.0, BaseWatch(robot)
     turning = robot.body.turning
     bounds = Progress(angle, _ANGLE_CLOSE_ENOUGH, True, lambda: robot.time)
     try:

@@ -2,21 +2,35 @@
 
 from __future__ import annotations
 
+from typing import Protocol
+
 from btlang.actions.motion import Steps, drive_straight
 from btlang.actions.navigation import accomplish, travel
-from btlang.actions.watch import Watch
+from btlang.actions.watch import Driving, Watch
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.robots.robot import Robot
+from btlang.robots.capabilities import Docking, Navigation, Power
 
 
-def dock(robot: Robot) -> Steps:
+class Homing(Navigation, Docking, Protocol):
+    """It finds its dock."""
+
+
+class Undocking(Driving, Docking, Protocol):
+    """It can leave its dock."""
+
+
+class Charging(Homing, Power, Protocol):
+    """It finds its dock, and knows its battery."""
+
+
+def dock(robot: Homing) -> Steps:
     """Drives to the dock and connects; does nothing when docked."""
     if not robot.docked:
         yield from travel(robot, "dock")
         yield from accomplish(robot.dock())
 
 
-def undock(robot: Robot) -> Steps:
+def undock(robot: Undocking) -> Steps:
     """Disconnects and backs off; does nothing when not docked."""
     if robot.docked:
         yield from accomplish(robot.undock())
@@ -24,7 +38,7 @@ def undock(robot: Robot) -> Steps:
             yield from drive_straight(robot, -robot.body.dock.backs_off)
 
 
-def charge(robot: Robot, percent: float) -> Steps:
+def charge(robot: Charging, percent: float) -> Steps:
     """Docks if need be and waits until the battery holds `percent`. Fails where the robot leaves the dock before."""
     yield from dock(robot)
     watch = Watch(robot)

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 from btlang.actions.motion import Steps
 from btlang.actions.watch import Watch
-from btlang.robots.robot import Robot
+from btlang.robots.capabilities import Voice
 
 
-def say(robot: Robot, text: str) -> Steps:
+def say(robot: Voice, text: str) -> Steps:
     """Speaks the text to its end; halted, falls silent."""
     watch = Watch(robot)
     robot.say(text)
@@ -19,6 +19,6 @@ def say(robot: Robot, text: str) -> Steps:
         robot.silence()
 
 
-def print_text(robot: Robot, text: str) -> None:
+def print_text(robot: Voice, text: str) -> None:
     """Shows the text."""
     robot.print(text)

@@ -2,22 +2,36 @@
 
 from __future__ import annotations
 
+from typing import Protocol
+
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.robots.robot import Robot
+from btlang.robots.capabilities import Base, Machine, Power, Sensors
+
+
+class Driving(Base, Sensors, Power, Protocol):
+    """A base that says what keeps it from driving on, as far as it has a bumper and a battery."""
 
 
 class Watch:
-    """Notices bumps, emergency stops and the like that happen after it was made."""
+    """Notices emergency stops that happen after it was made."""
 
-    def __init__(self, robot: Robot) -> None:
-        self._robot = robot
-        self._bumps = robot.bumps
+    def __init__(self, robot: Machine) -> None:
+        self._machine = robot
         self._stops = robot.stops
 
     def check_stop(self) -> None:
         """Raises ActionFailed when somebody has stopped the robot."""
-        if self._robot.stops != self._stops:
+        if self._machine.stops != self._stops:
             raise ActionFailed("the robot was stopped")
+
+
+class BaseWatch(Watch):
+    """Notices bumps and the like, too."""
+
+    def __init__(self, robot: Driving) -> None:
+        super().__init__(robot)
+        self._robot = robot
+        self._bumps = robot.bumps
 
     def check_base(self, so_far: str) -> None:
         """Raises ActionFailed when the base cannot go on; `so_far` says how far it got: "0.31 m"."""
