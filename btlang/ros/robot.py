@@ -148,6 +148,7 @@ class RosRobot:
         if self._navigation is not None:
             self._navigation.confirm_stop(_LAST_WORDS)
         self._services.confirm(until - time.monotonic())
+        self._voice.confirm(until - time.monotonic())
         self._closed = True
 
     def _rest(self) -> None:

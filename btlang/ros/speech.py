@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import time
+
+from rclpy.duration import Duration
 from rclpy.node import Node
 from std_msgs.msg import Bool, String
 
@@ -45,6 +48,12 @@ class RosSpeech:
         if not self._print.get_subscription_count():
             raise RobotError(f"nobody listens to {self._print.topic_name}")
         self._print.publish(String(data=text))
+
+    def confirm(self, seconds: float) -> None:
+        """Waits at most so long until whoever listens has the last words: a node that is gone sends nothing again."""
+        until = time.monotonic() + seconds
+        for publisher in (self._speech, self._print):
+            publisher.wait_for_all_acked(Duration(seconds=max(0.0, until - time.monotonic())))
 
     def step(self, dt: float) -> None:
         """`dt` seconds have passed."""
