@@ -169,7 +169,9 @@ def test_a_navigation_server_that_is_killed(
     server.wait_for("accepted")
     server.kill()
     assert code_of(command, 40) == 1
-    assert re.search(r"GoTo: .*the navigation server on /navigate_to_pose (is gone|for 5 s|gives no word)", command.err)
+    assert re.search(
+        r"GoTo: .*the navigation server on /navigate_to_pose (is gone|for 5 s|sends no feedback)", command.err
+    )
 
 
 def test_a_base_that_is_killed(robot: Callable[..., Script], btc: Callable[..., Command]) -> None:

@@ -19,6 +19,7 @@ from btlang.diagnostics.errors import MissionError
 from btlang.engine.status import FAILURE, SUCCESS
 from btlang.run import runner
 from btlang.run.events import Troubled
+from tests.conftest import without_overruns
 from tests.trial import Trial
 
 REPOSITORY = Path(__file__).parent.parent.parent
@@ -94,7 +95,7 @@ def btc(folder: Path, mission: str, *options: str) -> subprocess.CompletedProces
 
 def lines(output: str) -> list[str]:
     """The lines of a run without their times, sorted by nothing but the run."""
-    return [line[9:] for line in output.splitlines()[:-1]]
+    return [line[9:] for line in without_overruns(output).splitlines()[:-1]]
 
 
 def test_async_functions_and_threads_from_a_keyword_file(tmp_path: Path) -> None:
