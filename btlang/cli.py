@@ -121,11 +121,11 @@ def _compile(options: argparse.Namespace) -> int:
 
     name = options.to or (target_of(options.out) if options.out is not None else "")
     if not name:
-        options.usage_error(f"choose a target with --to: {', '.join(TARGETS)}")
+        options.refuse(f"choose a target with --to: {', '.join(TARGETS)}")
     if options.out is None and TARGETS[name].binary and sys.stdout.isatty():
-        options.usage_error(f"{name} isn't text; write it to a file with -o FILE")
+        options.refuse(f"{name} isn't text; write it to a file with -o FILE")
     if options.dialect is not None and "dialect" not in TARGETS[name].options:
-        options.usage_error(f"--dialect is for xml, not for {name}")
+        options.refuse(f"--dialect is for xml, not for {name}")
     made = _mission(options).to(name, dialect=options.dialect)
     if options.out is not None:
         write_file(options.out, made)

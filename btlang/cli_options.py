@@ -30,7 +30,7 @@ def parsed(arguments: Sequence[str] | None) -> argparse.Namespace:
     parser = _Parser("btc", description="Compiles and runs robot missions in plain English.")
     parser.add_argument("--version", action="version", version=f"btc {btlang.__version__}")
     verbs = parser.add_subparsers(dest="verb", metavar="VERB", prog="btc", parser_class=_Parser)
-    parser.set_defaults(**_DEFAULTS, verb="repl", refuse=parser.error)  # behind the verbs, which have none as default
+    parser.set_defaults(**_DEFAULTS, verb="repl")  # behind the verbs, which have none as default
     for verb, (about, add) in _OPTIONS.items():
         add(verbs.add_parser(verb, help=about))
     return parser.parse_args(words)
@@ -99,7 +99,6 @@ def _repl_options(parser: argparse.ArgumentParser) -> None:
     _reading_options(parser)
     _speed_option(parser)
     add_body_options(parser)
-    parser.set_defaults(refuse=parser.error)
 
 
 def _run_options(parser: argparse.ArgumentParser) -> None:
@@ -142,7 +141,6 @@ def _compile_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--to", choices=list(TARGETS), metavar="TARGET", help="target: " + ", ".join(TARGETS))
     parser.add_argument("-o", dest="out", metavar="OUT", help="file to write; its ending can select the target")
     parser.add_argument("--dialect", type=int, choices=(3, 4), help="BehaviorTree.CPP version of the XML (default: 4)")
-    parser.set_defaults(usage_error=parser.error)
 
 
 def _listing_options(parser: argparse.ArgumentParser) -> None:
@@ -225,6 +223,7 @@ class _Help(argparse.HelpFormatter):
 class _Parser(argparse.ArgumentParser):
     def __init__(self, prog: str | None = None, **options: Any) -> None:
         super().__init__(prog, formatter_class=_Help, **options)
+        self.set_defaults(refuse=self.error)  # ends with a usage error what only the verb can see to be wrong
 
     def _print_message(self, message: str, file: Any = None) -> None:
         show(message, sys.stderr if file is None else file, end="")

@@ -61,7 +61,6 @@ def add_robot_options(parser: ArgumentParser) -> None:
     parser.add_argument(
         "--preflight", action="store_true", help="with --robot ros or actions: only list what the mission needs"
     )
-    parser.set_defaults(refuse=parser.error)
 
 
 def add_body_options(parser: ArgumentParser, platforms: Sequence[str] = tuple(ROBOTS)) -> None:

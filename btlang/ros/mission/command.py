@@ -39,7 +39,6 @@ def add_node_options(parser: argparse.ArgumentParser) -> None:
         help="let other programs use this pack, or the keyword files below DIR; these run Python (default: none)",
     )
     parser.add_argument("--ros-args", nargs=argparse.REMAINDER, help="all further arguments are for ROS 2")
-    parser.set_defaults(refuse=parser.error)
 
 
 def serve(options: argparse.Namespace) -> int:

@@ -53,7 +53,6 @@ def add_serving_options(parser: argparse.ArgumentParser) -> None:
     )
     add_namespace(parser, "namespace of the actions, and with --robot ros of the robot (default: none)")
     parser.add_argument("--ros-args", nargs=argparse.REMAINDER, help="all further arguments are for ROS 2")
-    parser.set_defaults(refuse=parser.error)
 
 
 def serve(options: argparse.Namespace) -> int:
