@@ -44,7 +44,6 @@ class Compilation:
         """The definitions, used ones before their users."""
         self._mission = mission
         self._tree = tree
-        self._used_first: list[tuple[str, Node]] = []
         self._nodes: list[tuple[str, list[Node]]] = []
         self._ids: frozenset[str] = frozenset()
 
@@ -68,20 +67,16 @@ class Compilation:
     @tree.setter
     def tree(self, tree: Tree) -> None:
         self._tree = tree
-        self._used_first, self._nodes, self._ids = [], [], frozenset()
-
-    @property
-    def roots(self) -> list[tuple[str, Node]]:
-        """The subtrees by name, used ones before their users, then the main tree under ""."""
-        if not self._used_first:
-            self._used_first = used_first(self.tree)
-        return self._used_first
+        self._nodes, self._ids = [], frozenset()
 
     @property
     def nodes(self) -> list[tuple[str, list[Node]]]:
-        """As `roots`, with all nodes of each tree, children before their parents, from left to right."""
+        """The nodes of each subtree by its name, used ones before their users, then those of the main tree under "".
+
+        Children come before their parents, from left to right.
+        """
         if not self._nodes:
-            self._nodes = [(name, children_first(root)) for name, root in self.roots]
+            self._nodes = [(name, children_first(root)) for name, root in used_first(self.tree)]
         return self._nodes
 
     @property
