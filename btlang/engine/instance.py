@@ -36,7 +36,7 @@ if TYPE_CHECKING:
     Compiled: TypeAlias = tuple[Tick, Halt]
 
     class LeafTrace(Protocol):
-        """What a leaf that takes time tells of itself; see NodeTrace in status_trace.py."""
+        """How a leaf that takes time reports its own status; see NodeTrace in status_trace.py."""
 
         index: int
         reported_by_leaf: bool

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from collections import Counter
 from collections.abc import Callable
 from typing import Self
@@ -25,7 +26,7 @@ class Mission:
         self.emergency = False
 
 
-class ReferenceNode:
+class ReferenceNode(ABC):
     """The state of one node. `working`: its child returned RUNNING when it was last ticked."""
 
     def __init__(self, node: Node, mission: Mission, board: Board, parent: Self | None = None) -> None:
@@ -49,14 +50,17 @@ class ReferenceNode:
         self.queue: list[str] = []
         self.behaviour: Callable[[], int] = getattr(self, node.id, self.leaf)
 
+    @abstractmethod
     def execute(self) -> int:
-        raise NotImplementedError
+        """Its status after one more tick."""
 
+    @abstractmethod
     def halt(self) -> None:
-        raise NotImplementedError
+        """Stops what runs below it, and resets it."""
 
+    @abstractmethod
     def leaf(self) -> int:
-        raise NotImplementedError
+        """What a node does that is none of the built-in ones."""
 
     def suspend(self) -> None:
         if self.lasting and self.status == RUNNING and not self.stopped:
