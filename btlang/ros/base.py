@@ -193,8 +193,10 @@ class RosBase:
         if self._arc(before[1].distance_to((pose.x, pose.y)), turned) >= least * passed:
             self._idle, self._under_way = 0.0, True
         else:
-            self._idle += passed
-            self._under_way |= self._arc(hypot(twist.linear.x, twist.linear.y), degrees(twist.angular.z)) >= least
+            speed = self._arc(hypot(twist.linear.x, twist.linear.y), degrees(twist.angular.z))
+            sets_off = not self._under_way and speed >= least
+            self._idle = 0.0 if sets_off else self._idle + passed  # how long the command took to arrive is not counted
+            self._under_way |= sets_off
 
     def _arc(self, way: float, angle: float) -> float:
         """Metres that the rim of the robot moves, of metres and degrees."""

@@ -83,6 +83,15 @@ def test_wheels_that_say_they_turn_do_not_hide_a_pose_that_stands(bench: Bench) 
     assert bench.base.stuck
 
 
+def test_one_that_sets_off_late_gets_its_second_from_then_on(bench: Bench) -> None:
+    bench.base.drive(0.5, 0.0)
+    bench.step(1.5)
+    bench.step(0.2, speed=0.03)
+    assert not bench.base.stuck
+    bench.step(1.2, speed=0.03)
+    assert bench.base.stuck
+
+
 def test_one_that_braked_since_a_step_came_late_is_not_stuck(bench: Bench) -> None:
     bench.base.drive(0.5, 0.0)
     bench.step(0.5, moves=0.5, speed=0.5)
