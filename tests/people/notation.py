@@ -5,10 +5,10 @@ A sample is the text of a mission, its tree behind `= `, and no blank line:
     Go to the kitchen. Then bring the tea to Alice.
     = S(GoTo place=kitchen, Bring object=tea person=Alice)
 
-A tree is `Id port=value(child, child)`, ports sorted, with S, F, P and RS for the four usual nodes. Lines that two blanks
-indent continue it, a line `name := tree` adds a named subtree. `= refused` stands for a mission that must be refused,
-with messages that offer the sentences behind `> `. `! warning` follows the tree of a mission that needs a warning, `# `
-a remark.
+A tree is `Id port=value(child, child)`, ports sorted, with S, F, P and RS for the four usual nodes. A line indented by two
+blanks continues it, and a line `name := tree` adds a named subtree. `= refused` is for a mission without a good reading.
+After that, `> ` is a sentence that the message offers (with a tree: the message of an error), `! warning` is for a
+mission that deserves a warning, and `# ` says why the tree is what people mean.
 """
 
 from __future__ import annotations
@@ -22,11 +22,15 @@ from btlang.tree.node import Node, Tree
 
 FOLDER = Path(__file__).parent
 SHORT = {"Sequence": "S", "Fallback": "F", "Parallel": "P", "ReactiveSequence": "RS"}
-_ESCAPES = str.maketrans({"\\": "\\\\", '"': '\\"', "\n": "\\n", "\r": "\\r", "\t": "\\t"})
+_LONG = {short: id for id, short in SHORT.items()}
+_PORT = re.compile(r' (\w+)=("(?:[^"\\]|\\.)*"|[^\s"=\\(),]+)')
+_HEAD = re.compile(rf"(\w+)((?:{_PORT.pattern})*)")
+_ESCAPES = {"\\": "\\\\", '"': '\\"', "\n": "\\n", "\r": "\\r", "\t": "\\t"}
+_ESCAPED = {escape: character for character, escape in _ESCAPES.items()}
 
 
 class Sample(Record):
-    """A mission and what it means. `line` is where it begins in its file; `tree` is as `written` gives it, "" if refused."""
+    """A mission and what it means. `line` is its first line in the file; `tree` is in the notation, "" if refused."""
 
     file: str
     line: int
@@ -42,9 +46,39 @@ def written(tree: Tree) -> str:
     return "\n".join([_node(tree.root), *(f"{name} := {_node(root)}" for name, root in sorted(tree.subtrees))])
 
 
+def parsed(text: str) -> Tree:
+    """The tree that `written` gives as this text. ValueError if the text isn't in the notation."""
+    main, *named = text.split("\n")
+    pairs = (line.partition(" := ") for line in named)
+    return Tree(_root(main), tuple((name, _root(tree)) for name, _, tree in pairs))
+
+
 def samples() -> list[Sample]:
-    """Those of all files, in their order. ValueError names a sample without a tree, or a line that is none of its parts."""
+    """All samples, by file and line. ValueError names a sample without a tree, or an unknown kind of line."""
     return [sample for path in sorted(FOLDER.glob("*.txt")) for sample in _samples(path)]
+
+
+def _root(text: str) -> Node:
+    node, end = _parsed(text, 0)
+    if end != len(text):
+        raise ValueError(f"{text[end:]!r} follows a whole tree")
+    return node
+
+
+def _parsed(text: str, at: int) -> tuple[Node, int]:
+    """The node that begins there, and where it ends."""
+    head = _HEAD.match(text, at)
+    if not head:
+        raise ValueError(f"no node at {text[at:]!r}")
+    at = head.end()
+    children: list[Node] = []
+    while text.startswith(", " if children else "(", at):
+        child, at = _parsed(text, at + (2 if children else 1))
+        children.append(child)
+    if children and not text.startswith(")", at):
+        raise ValueError(f"no ')' at {text[at:]!r}")
+    ports = tuple((key, _unquoted(value)) for key, value in _PORT.findall(head[2]))
+    return Node(_LONG.get(head[1], head[1]), tuple(children), ports), at + bool(children)
 
 
 def _node(node: Node) -> str:
@@ -54,7 +88,12 @@ def _node(node: Node) -> str:
 
 
 def _value(text: str) -> str:
-    return text if re.fullmatch(r'[^\s"=\\(),]+', text) else '"' + text.translate(_ESCAPES) + '"'
+    plain = re.fullmatch(r'[^\s"=\\(),]+', text)
+    return text if plain else '"' + text.translate(str.maketrans(_ESCAPES)) + '"'
+
+
+def _unquoted(value: str) -> str:
+    return re.sub(r"\\.", lambda escape: _ESCAPED[escape[0]], value[1:-1]) if value.startswith('"') else value
 
 
 def _samples(path: Path) -> Iterator[Sample]:
