@@ -5,10 +5,11 @@ A sample is the text of a mission, its tree behind `= `, and no blank line:
     Go to the kitchen. Then bring the tea to Alice.
     = S(GoTo place=kitchen, Bring object=tea person=Alice)
 
-A tree is `Id port=value(child, child)`, ports sorted, with S, F, P and RS for the four usual nodes. A line indented by two
-blanks continues it, and a line `name := tree` adds a named subtree. `= refused` is for a mission without a good reading.
-After that, `> ` is a sentence that the message offers (with a tree: the message of an error), `! warning` is for a
-mission that deserves a warning, and `# ` says why the tree is what people mean.
+A tree is `Id port=value(child, child)`, ports sorted, with S, F, P and RS for the four usual nodes. A line indented by
+two blanks continues it, and a line `name := tree` adds a named subtree. `= refused` is for a mission without a good
+reading. After that, `> ` is a sentence that the error message offers (even where a tree says what people mean),
+`! warning` is for a mission that deserves a warning, and `# ` says why people mean this tree. Only the Sequence of a
+list (`go to the lab and the lobby`) stays inside another one.
 """
 
 from __future__ import annotations
@@ -89,7 +90,7 @@ def _node(node: Node) -> str:
 
 def _value(text: str) -> str:
     plain = re.fullmatch(r'[^\s"=\\(),]+', text)
-    return text if plain else '"' + text.translate(str.maketrans(_ESCAPES)) + '"'
+    return text if plain else '"' + "".join(_ESCAPES.get(c, c) for c in text) + '"'
 
 
 def _unquoted(value: str) -> str:
