@@ -9,7 +9,7 @@ A tree is `Id port=value(child, child)`, ports sorted, with S, F, P and RS for t
 two blanks continues it, and a line `name := tree` adds a named subtree. `= refused` is for a mission without a good
 reading. After that, `> ` is a sentence that the error message offers (even where a tree says what people mean),
 `! warning` is for a mission that deserves a warning, and `# ` says why people mean this tree. Only the Sequence of a
-list (`go to the lab and the lobby`) stays inside another one.
+list (`go to the lab and the lobby`, `for each ...`) stays inside another one.
 """
 
 from __future__ import annotations
