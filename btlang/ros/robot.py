@@ -144,11 +144,11 @@ class RosRobot:
         self._latch.shut()
         self._rest()
         self._base.confirm_halt()
+        self._voice.confirm(_LAST_WORDS)  # first, so that no other wait uses up its time: mostly it takes none
         until = time.monotonic() + _LAST_WORDS
         if self._navigation is not None:
             self._navigation.confirm_stop(_LAST_WORDS)
         self._services.confirm(until - time.monotonic())
-        self._voice.confirm(until - time.monotonic())
         self._closed = True
 
     def _rest(self) -> None:
