@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.diagnostics.errors import MissionError
 from btlang.passes.compilation import Compilation
 from btlang.passes.scope import Scope
 from btlang.passes.scripts import assignment, behind, comparison, prepared, script
 from btlang.record import Record
 from btlang.text.source import Span
 from btlang.tree import ast
-from btlang.tree.catalogue import SUBTREE
+from btlang.tree.catalogue import CATALOGUE, MOST_NODES, ON_FAILURE, ON_SUCCESS, SUBTREE
 from btlang.tree.model import NodeModel
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import fold
@@ -22,14 +23,16 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+_LARGE = MOST_NODES // 10  # nodes
 _CHAINS = {"sequence": "Sequence", "all": "Sequence", "fallback": "Fallback", "any": "Fallback", "parallel": "Parallel"}
 
 
 class Lowered(Record):
-    """A node, and whether it can end SKIPPED."""
+    """A node, whether it can end SKIPPED, and whether it is `endless`: it runs until it fails or is stopped."""
 
     node: Node
     can_skip: bool = False
+    endless: bool = False
 
 
 def lower_names(compilation: Compilation) -> Iterator[Diagnostic]:
@@ -39,7 +42,7 @@ def lower_names(compilation: Compilation) -> Iterator[Diagnostic]:
     for definition in ordered:
         lowered = lower(definition.body, scope)
         scope.bodies.append((definition.name, lowered.node))
-        scope.define(definition, lowered.can_skip)
+        scope.define(definition, lowered.can_skip, lowered.endless)
     if mission.body is None and compilation.needs_command:
         last = mission.definitions[-1] if mission.definitions else None
         example = "move forward 1 m" if last is None else f'do subtree "{last.name}"' if last.is_quoted else last.name
@@ -96,7 +99,7 @@ def _name(item: ast.Name, _done: list[Lowered], scope: Scope) -> Lowered:
     scripts, ports = prepared(item.arguments, scope, scope.parameters.get(item.name, {}))
     shared = tuple((key, f"{{{key}}}") for key in scope.free.get(item.name, ()))
     node = Node(SUBTREE, (), (("ID", item.name), *ports, *shared), span=item.span)
-    return Lowered(behind(scripts, node), item.name in scope.skipping and not scripts)
+    return Lowered(behind(scripts, node), item.name in scope.skipping and not scripts, item.name in scope.endless)
 
 
 def _compared(item: ast.Compared, _done: list[Lowered], scope: Scope) -> Lowered:
@@ -125,39 +128,52 @@ def _for_each(item: ast.ForEach, done: list[Lowered], scope: Scope) -> Lowered:
         scripts, ports = prepared([(item.key, text)], scope, {item.key: item.kind})
         rounds.append(behind(scripts, Node(SUBTREE, (), (("ID", name), *ports, *shared), span=item.span)))
     node = rounds[0] if len(rounds) == 1 else _node("Sequence", rounds, item.span)
-    return Lowered(node, done[0].can_skip)
+    return Lowered(node, done[0].can_skip, done[0].endless)
 
 
 def _chain(item: ast.Chain, done: list[Lowered], scope: Scope) -> Lowered:
     if item.operator == "sequence" and any(isinstance(part, ast.Whenever) for part in item.items):
         return _ruled(item, done, scope)
     if item.operator == "parallel":
-        return Lowered(_node("Parallel", [_round(part) for part in done], item.span))
-    children = [part.node for part in done]
-    return Lowered(_node(_CHAINS[item.operator], children, item.span), all(part.can_skip for part in done))
+        return _parallel(item, done)
+    children, endless = [part.node for part in done], [part.endless for part in done]
+    node = _node(_CHAINS[item.operator], children, item.span)
+    never_ends = any(endless) if item.operator == "sequence" else all(endless)
+    return Lowered(node, all(part.can_skip for part in done), never_ends)
 
 
-def _ruled(item: ast.Chain, done: list[Lowered], _scope: Scope) -> Lowered:
+def _parallel(item: ast.Chain, done: list[Lowered]) -> Lowered:
+    """Parts that never end last as long as the others."""
+    ending = sum(not part.endless for part in done)
+    ports = {"success_count": str(ending), "failure_count": "1"} if 0 < ending < len(done) else {}
+    return Lowered(_node("Parallel", [_round(part) for part in done], item.span, **ports), False, ending == 0)
+
+
+def _ruled(item: ast.Chain, done: list[Lowered], scope: Scope) -> Lowered:
     """Standing rules round the other commands; the first one is the outermost, so that it wins."""
     rules = [part for part, own in zip(done, item.items, strict=True) if isinstance(own, ast.Whenever)]
     others = [part for part, own in zip(done, item.items, strict=True) if not isinstance(own, ast.Whenever)]
     if not others:
-        work = Lowered(_node("AlwaysSuccess", (), item.span))
+        work = Lowered(_for_ever(item.span), False, True)
     elif len(others) == 1:
         work = others[0]
     else:
-        work = Lowered(_node("Sequence", [part.node for part in others], item.span), all(p.can_skip for p in others))
+        work = _chain(item.replace(items=()), others, scope)
     for rule in reversed(rules):
         condition, reaction, _ = rule.node.children
-        span = rule.node.span or item.span
-        work = Lowered(_node("Whenever", (condition, reaction, work.node), span), work.can_skip)
+        work = work.replace(node=rule.node.replace(children=(condition, reaction, work.node)))
     return work
 
 
 def _whenever(item: ast.Whenever, done: list[Lowered], _scope: Scope) -> Lowered:
-    """A rule alone has nothing to interrupt."""
-    nothing = _node("AlwaysSuccess", (), item.span)
-    return Lowered(_node("Whenever", (done[0].node, done[1].node, nothing), item.span))
+    """A rule alone watches for ever."""
+    ports = {"once": "true"} if item.once else {}
+    children = done[0].node, done[1].node, _for_ever(item.span)
+    return Lowered(_node("Whenever", children, item.span, **ports), False, True)
+
+
+def _for_ever(span: Span) -> Node:
+    return _node("KeepRunningUntilFailure", (_node("AlwaysSuccess", (), span),), span)
 
 
 def _not(item: ast.Not, done: list[Lowered], _scope: Scope) -> Lowered:
@@ -181,16 +197,37 @@ def _while(item: ast.While, done: list[Lowered], _scope: Scope) -> Lowered:
     return Lowered(_node("WhileDoElse", (condition, again, otherwise.node), item.span), otherwise.can_skip)
 
 
+def _if_works(item: ast.IfWorks, done: list[Lowered], _scope: Scope) -> Lowered:
+    skipped = _node("AlwaysSuccess", (), item.span, _skipIf="true")
+    branches = done[1], done[2] if item.otherwise is not None else Lowered(skipped, True)
+    parts = done[0], *branches
+    return Lowered(_node("IfThenElse", [part.node for part in parts], item.span), any(part.can_skip for part in parts))
+
+
+def _stop_when(item: ast.StopWhen, done: list[Lowered], _scope: Scope) -> Lowered:
+    stopped = _node("AlwaysSuccess", (), item.span)
+    children = (_negated(True, done[0].node), done[1].node, stopped)
+    return Lowered(_node("WhileDoElse", children, item.span), done[1].can_skip)
+
+
 def _provided(item: ast.Provided, done: list[Lowered], _scope: Scope) -> Lowered:
-    return Lowered(_node("ReactiveSequence", [part.node for part in done], item.span))
+    return Lowered(_node("ReactiveSequence", [part.node for part in done], item.span), False, done[1].endless)
 
 
 def _repeat(item: ast.Repeat, done: list[Lowered], _scope: Scope) -> Lowered:
-    return Lowered(_node("Repeat", [_round(done[0])], item.span, num_cycles=item.rounds))
+    endless = item.rounds == "-1" or done[0].endless
+    return Lowered(_node("Repeat", [_round(done[0])], item.span, num_cycles=item.rounds), False, endless)
 
 
-def _retry(item: ast.Retry, done: list[Lowered], _scope: Scope) -> Lowered:
-    return Lowered(_node("RetryUntilSuccessful", [_round(done[0])], item.span, num_attempts=item.attempts))
+def _retry(item: ast.Retry, done: list[Lowered], scope: Scope) -> Lowered:
+    body = _round(done[0])
+    scripts: list[Node] = []
+    if item.pause:
+        scripts, time = _timed(item.pause, scope)
+        pause = _node("Sequence", (_timer(time), _node("AlwaysFailure", (), item.span)), item.span)
+        body = _node("Fallback", (body, pause), item.span)
+    node = _node("RetryUntilSuccessful", [body], item.span, num_attempts=item.attempts)
+    return Lowered(behind(scripts, node))
 
 
 def _try(item: ast.Try, done: list[Lowered], _scope: Scope) -> Lowered:
@@ -228,16 +265,52 @@ def _for(item: ast.For, done: list[Lowered], scope: Scope) -> Lowered:
     return Lowered(behind(scripts, together))
 
 
+def _up_to(item: ast.UpTo, done: list[Lowered], scope: Scope) -> Lowered:
+    scripts, time = _timed(item.seconds, scope)
+    children = _timer(time), _round(done[0])
+    return Lowered(behind(scripts, _node("Parallel", children, item.span, success_count="1", failure_count="1")))
+
+
 def _every(item: ast.Every, done: list[Lowered], scope: Scope) -> Lowered:
     scripts, time = _timed(item.seconds, scope)
     together = _node("Parallel", (_round(done[0]), _timer(time)), item.span)
-    return Lowered(behind(scripts, _node("Repeat", [together], item.span, num_cycles="-1")))
+    node = _node("Repeat", [together], item.span, num_cycles=item.rounds or "-1")
+    return Lowered(behind(scripts, node), False, item.rounds in ("", "-1"))
+
+
+def _apart(item: ast.Apart, done: list[Lowered], scope: Scope) -> Lowered:
+    """The first round, then the others with a delay before each; BT042 where what is said twice is too large."""
+    body = _round(done[0])
+    if item.rounds == "1":
+        return Lowered(body, False, done[0].endless)
+    if _is_large(body):
+        raise MissionError([diagnostic("BT042", item.span, limit=f"{MOST_NODES:,}")])
+    scripts, time = _timed(item.seconds, scope)
+    if item.rounds[:1] == "{":
+        rest = scope.new_key()
+        scripts.append(script(f"{rest} := {item.rounds[1:-1]} - 1"))
+        rounds = f"{{{rest}}}"
+    else:
+        rounds = item.rounds if item.rounds == "-1" else str(int(item.rounds) - 1)
+    others = _node("Repeat", [_node("Delay", [body], item.span, delay_msec=time)], item.span, num_cycles=rounds)
+    node = _node("Sequence", (body, others), item.span)
+    return Lowered(behind(scripts, node), False, rounds == "-1" or done[0].endless)
+
+
+def _is_large(root: Node) -> bool:
+    """Whether a node and all below it are too many to be said twice."""
+    found, stack = 0, [root]
+    while stack and found < _LARGE:
+        node = stack.pop()
+        found += 1
+        stack += node.children
+    return found >= _LARGE
 
 
 def _delay(item: ast.Delay, done: list[Lowered], scope: Scope) -> Lowered:
     scripts, time = _timed(item.seconds, scope)
     node = _node("Delay", [done[0].node], item.span, delay_msec=time)
-    return Lowered(behind(scripts, node), done[0].can_skip and not scripts)
+    return Lowered(behind(scripts, node), done[0].can_skip and not scripts, done[0].endless)
 
 
 def _wait(item: ast.Wait, _done: list[Lowered], scope: Scope) -> Lowered:
@@ -245,17 +318,34 @@ def _wait(item: ast.Wait, _done: list[Lowered], scope: Scope) -> Lowered:
     return Lowered(behind(scripts, _node("Sleep", (), item.span, msec=time)))
 
 
-def _wait_until(item: ast.WaitUntil, done: list[Lowered], _scope: Scope) -> Lowered:
-    return Lowered(_node("RetryUntilSuccessful", [done[0].node], item.span, num_attempts="-1"))
+def _wait_until(item: ast.WaitUntil, done: list[Lowered], scope: Scope) -> Lowered:
+    scripts: list[Node] = []
+    asked = done[0].node
+    if item.held:
+        scripts, time = _timed(item.held, scope)
+        asked = _node("ReactiveSequence", (asked, _timer(time)), item.span)
+    return Lowered(behind(scripts, _node("RetryUntilSuccessful", [asked], item.span, num_attempts="-1")))
 
 
 def _check(_item: ast.Check, done: list[Lowered], _scope: Scope) -> Lowered:
     return done[0]
 
 
-def _exact(item: ast.Exact, done: list[Lowered], _scope: Scope) -> Lowered:
+def _exact(item: ast.Exact, done: list[Lowered], scope: Scope) -> Lowered:
     """Nothing is added to it, not even where it can be skipped."""
-    return Lowered(Node(item.id, tuple(part.node for part in done), item.ports, item.name, item.span))
+    node = Node(item.id, tuple(part.node for part in done), item.ports, item.name, item.span)
+    return Lowered(node, False, _never_ends(node, [part.endless for part in done], scope))
+
+
+def _never_ends(node: Node, endless: Sequence[bool], scope: Scope) -> bool:
+    kind = CATALOGUE.get(node.id)
+    if kind is None or not endless:
+        return node.id == SUBTREE and node.port("ID") in scope.endless
+    if kind.goes_on == ON_FAILURE or kind.at_once:
+        return all(endless)
+    if kind.roles:
+        return kind.roles[-1] == "work" and endless[-1]
+    return any(endless) if kind.goes_on or kind.takes_time else kind.again == ON_SUCCESS and kind.is_endless(node)
 
 
 def _nothing(item: ast.Nothing, _done: list[Lowered], _scope: Scope) -> Lowered:
@@ -279,12 +369,16 @@ _LOWER: dict[type[ast.Ast], Callable[[Any, list[Lowered], Scope], Lowered]] = {
     ast.While: _while,
     ast.Whenever: _whenever,
     ast.Provided: _provided,
+    ast.IfWorks: _if_works,
+    ast.StopWhen: _stop_when,
     ast.Repeat: _repeat,
     ast.Retry: _retry,
     ast.Try: _try,
     ast.Within: _within,
     ast.For: _for,
+    ast.UpTo: _up_to,
     ast.Every: _every,
+    ast.Apart: _apart,
     ast.Delay: _delay,
     ast.Wait: _wait,
     ast.WaitUntil: _wait_until,

@@ -12,14 +12,16 @@ from btlang.vocabulary.values import ValueType
 class Scope:
     """State of lowering one mission, whose defined names and types of values are given.
 
-    `skipping` are the names whose trees can end SKIPPED, `free` the keys of the mission's values that the tree of a
-    name needs from outside, in their order, `parameters` the types of its parameters. `bodies` are the subtrees, used
-    ones before their users. `made` is how many keys of its own it has made.
+    `skipping` are the names whose trees can end SKIPPED, `endless` those whose trees run until they fail, `free` the
+    keys of the mission's values that the tree of a name needs from outside, in their order, `parameters` the types of
+    its parameters. `bodies` are the subtrees, used ones before their users. `made` is how many keys of its own it has
+    made.
     """
 
     def __init__(self, names: Iterable[str], types: Mapping[str, ValueType]) -> None:
         self._types = types
         self.skipping: set[str] = set()
+        self.endless: set[str] = set()
         self.free: dict[str, tuple[str, ...]] = {}
         self.parameters: dict[str, dict[str, str]] = {}
         self.bodies: list[tuple[str, Node]] = []
@@ -43,12 +45,14 @@ class Scope:
         self._names.add(name)
         return name
 
-    def define(self, definition: ast.Definition, can_skip: bool) -> None:
+    def define(self, definition: ast.Definition, can_skip: bool, endless: bool) -> None:
         """Its name may be used from now on."""
         self.parameters[definition.name] = dict(definition.parameters)
         self.free[definition.name] = self.needs(definition.body, dict(definition.parameters))
         if can_skip:
             self.skipping.add(definition.name)
+        if endless:
+            self.endless.add(definition.name)
 
     def needs(self, root: ast.Ast, own: Iterable[str] = ()) -> tuple[str, ...]:
         """The keys of values that a part needs from outside, each once, without its own."""

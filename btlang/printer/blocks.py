@@ -14,7 +14,7 @@ from btlang.printer.exact import exact_block
 from btlang.printer.naming import definition_head, each_head
 from btlang.printer.pieces import COLON, Pieces, is_longer, mark
 from btlang.printer.printer import THEN, Doc, Printer
-from btlang.printer.sentence import is_flat_fallback, statements
+from btlang.printer.sentence import is_flat_fallback, rule_word, statements
 from btlang.tree import ast
 from btlang.tree.catalogue import SEQUENCE
 
@@ -100,7 +100,7 @@ def _branching(positive: str, negative: str) -> Callable[[Any, Printer], Iterato
 
 def _whenever(node: ast.Whenever, printer: Printer) -> Iterator[Section]:
     condition = printer.condition(printer.say(node.condition))
-    yield (printer.word("whenever"), condition.pieces), statements(node.body)
+    yield (printer.word(rule_word(node)), condition.pieces), statements(node.body)
 
 
 def _try(node: ast.Try, printer: Printer) -> Iterator[Section]:
@@ -138,11 +138,8 @@ def _sequence(node: ast.Chain, printer: Printer) -> Iterator[Section]:
         yield (head if i else (*inner, head)), body
 
 
-def _rounds(role: str, field: str) -> Callable[[Any, Printer], Iterator[Section]]:
-    def sections(node: Any, printer: Printer) -> Iterator[Section]:
-        yield (printer.word(role), printer.rounds(getattr(node, field))), statements(node.body)
-
-    return sections
+def _repeat(node: ast.Repeat, printer: Printer) -> Iterator[Section]:
+    yield (printer.word("repeat"), printer.rounds(node.rounds)), statements(node.body)
 
 
 def _timed(*roles: str) -> Callable[[Any, Printer], Iterator[Section]]:
@@ -151,6 +148,17 @@ def _timed(*roles: str) -> Callable[[Any, Printer], Iterator[Section]]:
         yield (*words, printer.duration(roles[-1], node.seconds)), statements(node.body)
 
     return sections
+
+
+def _every(node: ast.Every, printer: Printer) -> Iterator[Section]:
+    """A number of rounds has no place in the head of a block: it would be that of each round."""
+    if not node.rounds:
+        yield (printer.duration("every", node.seconds),), statements(node.body)
+
+
+def _retry(node: ast.Retry, printer: Printer) -> Iterator[Section]:
+    if not node.pause:
+        yield (printer.word("retry"), printer.rounds(node.attempts)), statements(node.body)
 
 
 def _for_each(node: ast.ForEach, printer: Printer) -> Iterator[Section]:
@@ -178,10 +186,10 @@ _SECTIONS: dict[type[ast.Ast], Callable[[Any, Printer], Iterator[Section]]] = {
     ast.While: _branching("while", "until"),
     ast.Whenever: _whenever,
     ast.Try: _try,
-    ast.Repeat: _rounds("repeat", "rounds"),
-    ast.Retry: _rounds("retry", "attempts"),
+    ast.Repeat: _repeat,
+    ast.Retry: _retry,
     ast.For: _timed("repeat", "for"),
-    ast.Every: _timed("every"),
+    ast.Every: _every,
     ast.Delay: _timed("delay"),
     ast.ForEach: _for_each,
     ast.Definition: _definition,

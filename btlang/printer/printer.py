@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     SayNode: TypeAlias = Callable[[Any, list["Doc"], "Printer"], "Doc"]
 
-THEN, OR, AND, FORM, WHOLE = range(5)
+LOOSE, THEN, OR, AND, FORM, WHOLE = range(6)
 """How tightly what is said holds together, loosest first; WHOLE is a leaf or stands in brackets."""
 
 
@@ -190,7 +190,9 @@ class Printer:
     def rounds(self, number: str) -> Piece:
         """`3 times`; one word for once and for a number without end."""
         single = [word for word, rounds in self.vocabulary.counts.items() if str(rounds) == number]
-        return Piece(single[0], WORD) if single and number in ("-1", "1") else self.word("count", count=number)
+        if single and number in ("-1", "1"):
+            return Piece(single[0], WORD)
+        return self.word("once") if number == "1" else self.word("count", count=number)
 
     # -- brackets
 

@@ -13,7 +13,7 @@ from collections.abc import Callable, Iterator, Sequence
 from btlang.printer import naming
 from btlang.printer.exact import exact
 from btlang.printer.pieces import COMMA, LEAF, Piece, Pieces, mark
-from btlang.printer.printer import AND, FORM, OR, THEN, WHOLE, Doc, Printer, bracketed
+from btlang.printer.printer import AND, FORM, LOOSE, OR, THEN, WHOLE, Doc, Printer, bracketed
 from btlang.tree import ast
 from btlang.vocabulary.language_tables import CONNECTIVES
 
@@ -86,28 +86,58 @@ def _branching(positive: str, negative: str) -> Callable[[Any, list[Doc], Printe
     return said
 
 
-def _whenever(_node: ast.Whenever, parts: list[Doc], printer: Printer) -> Doc:
-    return printer.before((printer.word("whenever"), printer.condition(parts[0]).pieces, mark(COMMA)), parts[1])
+def _if_works(node: ast.IfWorks, parts: list[Doc], printer: Printer) -> Doc:
+    tried = printer.inside(parts[0], parts[0].level == LOOSE or parts[0].reaches)
+    head = (tried.pieces, mark(COMMA), printer.word("if_works"), mark(COMMA))
+    otherwise = printer.inside(parts[2], parts[2].level == LOOSE) if node.otherwise is not None else None
+    said = printer.before(head, printer.inside(parts[1], parts[1].level == LOOSE), otherwise)
+    return Doc(said.pieces, LOOSE, True, said.takes_otherwise, said.counts)
+
+
+def _whenever(node: ast.Whenever, parts: list[Doc], printer: Printer) -> Doc:
+    word = printer.word(rule_word(node))
+    return printer.before((word, printer.condition(parts[0]).pieces, mark(COMMA)), parts[1])
+
+
+def rule_word(node: ast.Whenever) -> str:
+    """The role of the word with which a rule begins."""
+    return "first_time" if node.once else "whenever"
 
 
 def _provided(_node: ast.Provided, parts: list[Doc], printer: Printer) -> Doc:
     return printer.behind(parts[1], printer.word("provided"), printer.condition(parts[0]).pieces)
 
 
+def _stop_when(_node: ast.StopWhen, parts: list[Doc], printer: Printer) -> Doc:
+    return printer.behind(parts[1], printer.word("stop_when"), printer.condition(parts[0]).pieces)
+
+
 def _repeat(node: ast.Repeat, parts: list[Doc], printer: Printer) -> Doc:
-    return printer.behind(parts[0], printer.rounds(node.rounds), counts=True)
+    body = printer.inside(parts[0], isinstance(node.body, ast.Every | ast.Apart))  # which the count would pace
+    return printer.behind(body, printer.rounds(node.rounds), counts=True)
 
 
 def _retry(node: ast.Retry, parts: list[Doc], printer: Printer) -> Doc:
     """Its count closes it, so nothing else in it may count."""
     body = printer.inside(parts[0], parts[0].reaches or parts[0].counts)
-    return Doc((printer.word("retry"), body.pieces, printer.rounds(node.attempts)), FORM, takes_otherwise=True)
+    if node.pause:
+        rounds: Pieces = _paced_rounds(node.attempts, node.pause, "every", printer)
+    else:
+        rounds = (printer.rounds(node.attempts),)
+    return Doc((printer.word("retry"), body.pieces, *rounds), FORM, takes_otherwise=True)
+
+
+def _paced_rounds(rounds: str, seconds: str, role: str, printer: Printer) -> tuple[Piece, Piece]:
+    """`3 times every 5 s`; `once every 5 s` would have no number."""
+    count = printer.word("count", count=rounds) if rounds == "1" else printer.rounds(rounds)
+    return count, printer.duration(role, seconds)
 
 
 def _try(node: ast.Try, parts: list[Doc], printer: Printer) -> Doc:
     body = parts[0]
     if node.otherwise is None:
-        return printer.behind(body, printer.word("if_possible"))
+        said = printer.behind(body, printer.word("if_possible"))
+        return Doc(said.pieces, FORM, takes_otherwise=True, counts=said.counts, behind=True)
     otherwise = parts[1]
     if not is_flat_fallback(node.otherwise):
         otherwise = printer.inside(otherwise, otherwise.level == OR)
@@ -124,13 +154,31 @@ def is_flat_fallback(otherwise: ast.Ast) -> bool:
 
 def _timed(role: str) -> Callable[[Any, list[Doc], Printer], Doc]:
     def said(node: Any, parts: list[Doc], printer: Printer) -> Doc:
-        return printer.behind(parts[0], printer.duration(role, node.seconds))
+        own = role == "for" and isinstance(node.body, ast.WaitUntil)  # `wait until C for 10 s`: C has to hold so long
+        return printer.behind(printer.inside(parts[0], own), printer.duration(role, node.seconds))
+
+    return said
+
+
+def _paced(role: str) -> Callable[[Any, list[Doc], Printer], Doc]:
+    def said(node: Any, parts: list[Doc], printer: Printer) -> Doc:
+        counted = ast.Repeat | ast.Retry | ast.Every | ast.Apart  # behind these a count or a pace is part of them
+        body = printer.inside(parts[0], isinstance(node.body, counted))
+        if not node.rounds:
+            return printer.behind(body, printer.duration(role, node.seconds))
+        count, pace = _paced_rounds(node.rounds, node.seconds, role, printer)
+        return printer.behind(body, count, (pace,), counts=True)
 
     return said
 
 
 def _wait(node: ast.Wait, _parts: list[Doc], printer: Printer) -> Doc:
     return _leaf(printer.duration("wait", node.seconds).text)
+
+
+def _wait_until(node: ast.WaitUntil, parts: list[Doc], printer: Printer) -> Doc:
+    held = (printer.duration("for", node.held),) if node.held else ()
+    return Doc((printer.word("wait_until"), printer.condition(parts[0]).pieces, *held), FORM)
 
 
 def _test(role: str) -> Callable[[Any, list[Doc], Printer], Doc]:
@@ -160,15 +208,19 @@ PRINTERS: dict[type[ast.Ast], Callable[[Any, list[Doc], Printer], Doc]] = {
     ast.While: _branching("while", "until"),
     ast.Whenever: _whenever,
     ast.Provided: _provided,
+    ast.IfWorks: _if_works,
+    ast.StopWhen: _stop_when,
     ast.Repeat: _repeat,
     ast.Retry: _retry,
     ast.Try: _try,
     ast.Within: _timed("within"),
     ast.For: _timed("for"),
-    ast.Every: _timed("every"),
+    ast.UpTo: _timed("up_to"),
+    ast.Every: _paced("every"),
+    ast.Apart: _paced("apart"),
     ast.Delay: _timed("delay"),
     ast.Wait: _wait,
-    ast.WaitUntil: _test("wait_until"),
+    ast.WaitUntil: _wait_until,
     ast.Check: _test("check"),
     ast.Nothing: _single("nothing"),
     ast.Fail: _single("fail"),

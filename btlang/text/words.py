@@ -95,6 +95,7 @@ class Words:
         "articles",
         "comments",
         "ends",
+        "going_on",
         "lines",
         "open_quotes",
         "source",
@@ -111,6 +112,8 @@ class Words:
         self.lines: list[Line] = []
         self.articles: dict[int, tuple[int, int]] = {}
         """Where an article stood: index of the word that follows it -> its characters."""
+        self.going_on: set[int] = set()
+        """The words at which statements begin that go on with those before them, once somebody has looked for them."""
         self.comments: list[Span] = []
         """From each `#` to the end of its line."""
         self.open_quotes: list[Span] = []

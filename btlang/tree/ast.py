@@ -1,8 +1,8 @@
 """The syntax tree of a mission, as both parsers give it: what was said, with the exact characters of each part.
 
-Commands: Phrase, Name, Chain, If, While, Provided, Repeat, Retry, Try, Within, For, Every, Delay, Wait, WaitUntil,
-Check, Nothing, Fail, Assign, Remember, ForEach, Exact; Whenever in a sequence. Conditions: Phrase, Name, Compared,
-Chain ("all", "any"), Not, Exact. `parts` names the fields that hold subtrees.
+Commands: Phrase, Name, Chain, If, IfWorks, While, Provided, StopWhen, Repeat, Retry, Try, Within, For, UpTo, Every,
+Apart, Delay, Wait, WaitUntil, Check, Nothing, Fail, Assign, Remember, ForEach, Exact; Whenever in a sequence.
+Conditions: Phrase, Name, Compared, Chain ("all", "any"), Not, Exact. `parts` names the fields that hold subtrees.
 Amounts and values are port texts in base units (seconds); they may refer to values of the mission: `{level}`, in a
 text also `it is {level} percent` (see btlang/vocabulary/references.py).
 """
@@ -127,16 +127,36 @@ class While(_Branching):
     """while, until."""
 
 
-class Whenever(Ast):
-    """A standing rule over the other commands of its block."""
+class IfWorks(Ast):
+    """One command that decides which of two others is next; without `otherwise` its failure skips."""
 
+    tried: Ast
+    body: Ast
+    otherwise: Ast | None
+    span: Span
+    parts = ("tried", "body", "otherwise")
+
+
+class Whenever(Ast):
+    """A standing rule over the other commands of its block; with `once` it fires no second time."""
+
+    condition: Ast
+    body: Ast
+    once: bool
+    span: Span
+    parts = ("condition", "body")
+
+
+class Provided(Ast):
     condition: Ast
     body: Ast
     span: Span
     parts = ("condition", "body")
 
 
-class Provided(Ast):
+class StopWhen(Ast):
+    """The body once, ended early with success when the condition becomes true."""
+
     condition: Ast
     body: Ast
     span: Span
@@ -153,10 +173,11 @@ class Repeat(Ast):
 
 
 class Retry(Ast):
-    """`attempts` is a port text."""
+    """`attempts` is a port text; `pause` are the seconds after each failure, "" for none."""
 
     attempts: str
     body: Ast
+    pause: str
     span: Span
     parts = ("body",)
 
@@ -185,8 +206,24 @@ class For(_Timed):
     """The body over and over until the time is over."""
 
 
-class Every(_Timed):
-    """The body once in each period."""
+class UpTo(_Timed):
+    """The body once, ended with success when the time is over."""
+
+
+class _Paced(Ast):
+    seconds: str
+    body: Ast
+    rounds: str
+    span: Span
+    parts = ("body",)
+
+
+class Every(_Paced):
+    """The body once in each period; `rounds` is a port text, "" for without end."""
+
+
+class Apart(_Paced):
+    """The body so many rounds, with the time between one and the next."""
 
 
 class Delay(_Timed):
@@ -199,7 +236,10 @@ class Wait(Ast):
 
 
 class WaitUntil(Ast):
+    """`held` are the seconds for which the condition has to hold, "" for none."""
+
     condition: Ast
+    held: str
     span: Span
     parts = ("condition",)
 
@@ -346,10 +386,12 @@ def _of_arguments(node: Phrase | Name | Compared | Remember) -> list[str]:
 
 _TEXTS: dict[type[Ast], Callable[[Any], Iterable[str]]] = {
     **dict.fromkeys((Phrase, Name, Compared, Remember), _of_arguments),
-    **dict.fromkeys((Within, For, Every, Delay, Wait), lambda node: (node.seconds,)),
+    **dict.fromkeys((Within, For, UpTo, Delay, Wait), lambda node: (node.seconds,)),
+    **dict.fromkeys((Every, Apart), lambda node: (node.seconds, node.rounds)),
+    WaitUntil: lambda node: (node.held,),
     Assign: lambda node: (node.text,),
     ForEach: lambda node: node.values,
     Repeat: lambda node: (node.rounds,),
-    Retry: lambda node: (node.attempts,),
+    Retry: lambda node: (node.attempts, node.pause),
 }
 """The port texts of a node, where it has some."""

@@ -164,9 +164,10 @@ CATALOGUE: dict[str, NodeKind] = {
             **_BRANCHES,
         ),
         _control(
-            "Whenever", 3, 3, roles=("whenever", "reaction", "work"), reactive=True, skipped="last", origin=BTLANG,
-            text="Condition, reaction, work. Each time the condition becomes true, the work is suspended, the reaction "
-            "runs once, and the work goes on.",
+            "Whenever", 3, 3, roles=("whenever", "reaction", "work"), ports={"once": Port("bool", "false")},
+            reactive=True, skipped="last", origin=BTLANG,
+            text="Condition, reaction, work. Each time the condition becomes true (with once=true only the first "
+            "time), the work is suspended, the reaction runs once, and the work goes on.",
         ),
         _control("TryCatch", 2, ports={"catch_on_halt": Port("bool", "false")}, skipped="tried"),
         _control(

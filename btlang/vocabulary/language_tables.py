@@ -11,20 +11,32 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-CONNECTIVES = {"then": "sequence", "and": "parallel", "or": "fallback", "after": "sequence"}
+CONNECTIVES = {
+    "then": "sequence", "and": "parallel", "or": "fallback", "after": "sequence",
+    "before": "sequence", "meanwhile": "parallel",
+}  # fmt: skip
 """The roles that join commands, each with the operator of the chain that it makes."""
 
+GOES_ON = frozenset((
+    "otherwise", "or", "meanwhile", "in_parallel", "if_works", "if_it_works", "in_any_case",
+    "do_that", "repeat_that", "again",
+))  # fmt: skip
+"""The roles that begin no statement of their own: what they begin goes on with the statement before it."""
+
 _NO_SLOT = (
-    *CONNECTIVES, "otherwise", "if", "unless", "while", "until", "whenever", "provided", "not",
-    "repeat", "try", "retry", "if_possible", "wait_until", "check", "nothing", "fail", "in_parallel", "in_order",
+    *CONNECTIVES, "otherwise", "if_works", "if_it_works", "in_any_case",
+    "if", "unless", "while", "until", "whenever", "first_time", "as_soon_as", "once", "provided", "stop_when", "not",
+    "do_that", "repeat_that", "again", "start_over", "everything", "here",
+    "repeat", "try", "retry", "if_possible", "wait_until", "wait_for", "check", "nothing", "fail", "in_parallel",
+    "in_order",
     "define_strong", "define", "fact", "facing",
     "set", "set_to", "increase", "decrease", "by", "remember", "remember_as", "each", "each_in", "include",
     "do", "test", "called", "with", "newline", "character", "main_name",
 )  # fmt: skip
 ROLES = {
     **dict.fromkeys(_NO_SLOT, ""),
-    **dict.fromkeys(("every", "delay", "for", "within", "wait"), "duration"),
-    "count": "count",
+    **dict.fromkeys(("every", "delay", "for", "up_to", "apart", "within", "wait", "wait_up_to"), "duration"),
+    **dict.fromkeys(("count", "more"), "count"),
 }
 """The roles that words can have, each with the slot that its phrases hold."""
 

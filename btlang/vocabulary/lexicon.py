@@ -14,7 +14,7 @@ from btlang.text.spelling import nearest
 from btlang.text.words import Orthography, split
 from btlang.vocabulary.cache import recent
 from btlang.vocabulary.entry import COMPARISONS, About, Entry, Meaning, SlotSpec
-from btlang.vocabulary.language_tables import about_roles, merged
+from btlang.vocabulary.language_tables import GOES_ON, about_roles, merged
 from btlang.vocabulary.pattern import Form, PatternError, Slot, forms
 from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.trie import SLOTS, TrieNode, add, collisions
@@ -29,7 +29,7 @@ DEFINING = ("define_strong", "define")
 
 NO_PHRASES = frozenset((
     *DEFINING, "fact", "facing", "set_to", "by", "remember_as", "each_in",
-    "called", "with", "newline", "character", "main_name",
+    "called", "with", "newline", "character", "main_name", "here",
 ))  # fmt: skip
 """Roles whose words are looked for where definitions, facts and nodes are, and nowhere else."""
 
@@ -80,6 +80,10 @@ class Lexicon:
         """The file of the correct words of the language, which need not be there."""
         self.quantifiers, self.halting = frozenset(language["quantifiers"]), frozenset(language["halting"])
         """Negations and words for how many, and words like `stop`: corrections are careful about them."""
+        self.continuing = frozenset(
+            str(form[0]) for role in GOES_ON for phrase in self.roles.get(role, ()) for form in self._forms(phrase)
+        )
+        """The words with which a statement may begin that goes on with the one before it."""
         self.counts: dict[str, int] = language["counts"]
         self.nodes: dict[str, str] = language["nodes"]
         """The words of nodes that have some, by their ids."""

@@ -6,7 +6,7 @@
 //
 // Each time the condition becomes true (true at the start counts too) the work is halted, the reaction is ticked until it
 // completes, and then the work goes on. The node ends with the status of the work, or fails where the reaction fails. The
-// condition must have been false before it counts again.
+// condition must have been false before it counts again, which it never does with the port once="true".
 //
 // BehaviorTree.CPP cannot suspend a node: work that was halted starts anew. Where it must keep its place, make it a
 // SequenceWithMemory.
@@ -23,12 +23,18 @@ namespace btlang
 class Whenever : public BT::ControlNode
 {
 public:
-  explicit Whenever(const std::string& name) : BT::ControlNode(name, {})
+  Whenever(const std::string& name, const BT::NodeConfig& config) : BT::ControlNode(name, config)
   {}
+
+  static BT::PortsList providedPorts()
+  {
+    return { BT::InputPort<bool>("once", false, "whether it reacts only the first time") };
+  }
 
   void halt() override
   {
     armed_ = true;
+    fired_ = false;
     reacting_ = false;
     BT::ControlNode::halt();
   }
@@ -49,11 +55,12 @@ private:
     }
     if(asked != BT::NodeStatus::SUCCESS)
     {
-      armed_ = true;
+      armed_ = armed_ || !fired_;
     }
     else if(armed_ && !reacting_)
     {
       armed_ = false;
+      fired_ = getInput<bool>("once").value_or(false);
       reacting_ = true;
       haltChild(2);
     }
@@ -80,11 +87,13 @@ private:
   BT::NodeStatus ended(BT::NodeStatus status)
   {
     armed_ = true;
+    fired_ = false;
     resetChildren();
     return status;
   }
 
   bool armed_ = true;      // the condition has been false since it last counted
+  bool fired_ = false;     // it has reacted, and may not again
   bool reacting_ = false;  // the reaction is under way
 };
 }  // namespace btlang

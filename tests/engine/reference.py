@@ -40,7 +40,7 @@ class Reference(MoreNodes):
         self.completed.clear()
         self.stop_watch()
         self.late = self.stopped = self.catching = self.reacting = self.working = False
-        self.armed = True
+        self.armed, self.fired = True, False
         self.status = IDLE
         if self.started:
             self.started = False

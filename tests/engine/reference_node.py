@@ -45,7 +45,7 @@ class ReferenceNode(ABC):
         self.kept = 0.0
         self.late = self.started = self.stopped = self.catching = self.reacting = self.working = False
         self.left = False  # whether its parent is halting it
-        self.armed = True
+        self.armed, self.fired = True, False
         self.once = IDLE
         self.queue: list[str] = []
         self.behaviour: Callable[[], int] = getattr(self, node.id, self.leaf)

@@ -160,9 +160,10 @@ class MoreNodes(ReferenceNode):
         if asked != RUNNING:
             condition.reset()
         if asked != SUCCESS:
-            self.armed = True
+            self.armed = self.armed or not self.fired
         elif self.armed and not self.reacting:
             self.armed, self.reacting = False, True
+            self.fired = self.node.port("once") in ("true", "1")
             if self.working:
                 self.working = False
                 work.suspend()
@@ -175,12 +176,12 @@ class MoreNodes(ReferenceNode):
             if result == FAILURE:
                 work.reset()
                 condition.reset()
-                self.armed, self.working = True, False
+                self.armed, self.fired, self.working = True, False, False
                 return FAILURE
         result = work.execute()
         self.working = result == RUNNING
         if result != RUNNING:
-            self.armed = True
+            self.armed, self.fired = True, False
             condition.reset()
             work.reset()
         return int(result)

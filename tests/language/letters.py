@@ -52,5 +52,10 @@ def shown(node: ast.Ast | None) -> str:
             return f"{word}({shown(node.condition)}, {shown(node.body)}{otherwise})"
         case ast.Try(otherwise=None):
             return f"Try({shown(node.body)})"
-    plain = [str(getattr(node, f)) for f in node.fields if f not in (*node.parts, "span")]
+    optional = () if isinstance(node, ast.Exact) else (False, "")
+    plain = [
+        str(value)
+        for f in node.fields
+        if f not in (*node.parts, "span") and (value := getattr(node, f)) not in optional
+    ]
     return f"{type(node).__name__}({', '.join(plain + [shown(part) for part in ast.parts(node)])})"

@@ -24,7 +24,7 @@ def shipped() -> Lexicon:
     return world_vocabulary()
 
 
-_OPERANDS = ["", " u", " p", " p u", " s"]
+_OPERANDS = ["", " u", " p", " p u", " s", " twice"]
 _BODIES = ["", " u", ": u"]
 
 

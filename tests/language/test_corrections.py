@@ -50,8 +50,8 @@ UNCHANGED = [
     "move forward 2 feat then nod",
     "wave within 5 parsecs",
     "say hello dear never wave",
-    "Nod then wave, 3 times",
-    "if bumped, wave, within 5 s",
+    "Nod then wave, 3 times, then nod",
+    "if bumped, wave, within 5 s, nod",
     "nod then wave) 3 times",
     "wave not battery is low",
     "move foward and trun left",
@@ -74,7 +74,7 @@ CORRECTED = [
     ("the battery is low", "check the battery is low"),
     ("move forward 2 mters then nod", "move forward 2 meters then nod"),
     ("stop then wvae", "stop then wave"),
-    ("wave, 3 times", "wave 3 times"),
+    ("wave, 3 times, nod", "wave 3 times, nod"),
     ("nod then wave)", "nod then wave"),
 ]
 
@@ -205,7 +205,7 @@ def test_the_text_shows_the_mended_line() -> None:
 
 
 def test_a_comma_that_two_readings_fit_shows_both() -> None:
-    hint = errors("Nod then wave, 3 times", PARSERS[0])[0].hint
+    hint = errors("Nod then wave, 3 times, then nod", PARSERS[0])[0].hint
     assert "Nod then (wave 3 times), or: (Nod then wave) 3 times" in hint
     first, second = (btlang.parse_tree(text) for text in re.findall(r"you mean: (.*), or: (.*)", hint)[0])
     assert str(first) != str(second)

@@ -39,7 +39,7 @@ def mended(text: str) -> str:
         ("wave)", "wave"),
         (", wave", "wave"),
         ("wave,", "wave"),
-        ("wave, twice", "wave twice"),
+        ("wave, twice, nod", "wave twice, nod"),
         ("check rhat the battery is full, then wave", "check that the battery is full, then wave"),
         ("nod until there is a wall in froont", "nod until there is a wall in front"),
         ("wave adn nod", "wave and nod"),

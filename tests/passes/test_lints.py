@@ -163,7 +163,7 @@ def test_unused_names(text: str, codes: list[str]) -> None:
         ("wait until bumped otherwise nod", "continues until it succeeds", "nod"),
         ("(wait 5 s then do nothing) or nod", "always succeeds", "nod"),
         ("try in order:\n  wave\n  nod if possible\n  look up", "always succeeds", "look up"),
-        ("(wave forever and nod) then say hello", "continues until it fails", "say hello"),
+        ("(wave forever and nod forever) then say hello", "continues until it fails", "say hello"),
     ],
 )
 def test_never_runs(text: str, reason: str, never: str) -> None:

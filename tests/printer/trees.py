@@ -88,6 +88,7 @@ conditions: Trees = st.recursive(
     max_leaves=4,
 )
 _seconds = st.sampled_from(["5", "0.2", "90", "{pause}"])
+_pause = st.sampled_from(["", "5", "{pause}"])
 _rounds = st.sampled_from(["-1", "1", "2", "3", "{rounds}"])
 _leaves: Trees = st.one_of(
     st.sampled_from(COMMANDS).map(phrase),
@@ -97,7 +98,7 @@ _leaves: Trees = st.one_of(
     st.builds(ast.Nothing, _span),
     st.builds(ast.Wait, _seconds, _span),
     st.builds(ast.Check, conditions, _span),
-    st.builds(ast.WaitUntil, conditions, _span),
+    st.builds(ast.WaitUntil, conditions, _pause, _span),
 )
 
 
@@ -109,14 +110,18 @@ def _for_each(values: tuple[str, str, tuple[str, ...]], body: ast.Ast) -> ast.As
 
 def _forms(inner: Trees) -> Trees:
     perhaps = st.one_of(st.none(), inner)
-    timed: list[Callable[..., ast.Ast]] = [ast.Within, ast.For, ast.Every, ast.Delay]
+    timed: list[Callable[..., ast.Ast]] = [ast.Within, ast.For, ast.UpTo, ast.Delay]
     return st.one_of(
         _chains(["sequence", "fallback", "parallel"], inner),
         st.builds(ast.If, st.booleans(), conditions, inner, perhaps, _span),
         st.builds(ast.While, st.booleans(), conditions, inner, perhaps, _span),
         st.builds(ast.Provided, conditions, inner, _span),
         st.builds(ast.Repeat, _rounds, inner, _span),
-        st.builds(ast.Retry, _rounds, inner, _span),
+        st.builds(ast.IfWorks, inner, inner, perhaps, _span),
+        st.builds(ast.StopWhen, conditions, inner, _span),
+        st.builds(ast.Retry, _rounds, inner, _pause, _span),
+        st.builds(ast.Every, _seconds, inner, st.one_of(st.just(""), _rounds), _span),
+        st.builds(ast.Apart, _seconds, inner, st.sampled_from(["-1", "1", "3"]), _span),
         st.builds(ast.Try, inner, perhaps, _span),
         *(st.builds(form, _seconds, inner, _span) for form in timed),
         st.builds(
@@ -143,14 +148,14 @@ def _about(inner: Trees) -> Trees:
         st.builds(ast.If, st.booleans(), conditions, inner, perhaps, _span),
         st.builds(ast.While, st.booleans(), conditions, commands, inner, _span),
         st.builds(ast.Repeat, _rounds, inner, _span),
-        st.builds(ast.Retry, _rounds, inner, _span),
+        st.builds(ast.Retry, _rounds, inner, st.just(""), _span),
         st.builds(ast.Try, st.one_of(inner, commands), inner, _span),
         st.builds(ast.Try, inner, st.none(), _span),
-        st.builds(ast.Every, _seconds, inner, _span),
+        st.builds(ast.Every, _seconds, inner, st.just(""), _span),
     )
 
 
-_rules = st.builds(ast.Whenever, conditions, commands, _span)
+_rules = st.builds(ast.Whenever, conditions, commands, st.booleans(), _span)
 ruled: Trees = st.recursive(
     st.builds(_rule_block, st.lists(_rules, min_size=1, max_size=2), st.lists(commands, min_size=1, max_size=2)),
     _about,

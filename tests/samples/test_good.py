@@ -52,9 +52,14 @@ ROWS = {
     "A bare comma": "commas", 'A comma before "and" or "or"': "commas", "A comma before a form at the end": "reach",
     # forms.md
     "if and unless": "if", "while and until": "loops", "provided that": "postfix", "repeat": "loops",
-    "try and retry": "tries", "Time": "timing", "Waiting": "timing", "do nothing and fail": "words",
+    "try and retry": "tries", "Limits, rounds and delays": "timing", "Waiting": "timing",
+    "do nothing and fail": "words",
     # rules.md; what breaks the rule of resources is a bad sample
     "Standing rules": "whenever", "Resources": "connectives", "Skipped rounds": "skipped_rounds",
+    # sentences.md
+    "Going on after a full stop": "going_on", "If that works": "going_on", "In any case": "going_on",
+    "Do that again": "again", "One meaning of and for a mission": "again", "Parts that never end": "going_on",
+    "but stop when": "early", "as soon as": "early",
     # names.md
     "Names": "definitions", "Parameters": "parameters", "Places of the mission": "facts", "include": "includes",
     "Values of the mission": "values_of_the_mission", "for each": "for_each",

@@ -115,5 +115,5 @@ def _plain(tree: Tree, change: Any) -> list[object]:
 
 def _port(node: Node, name: str, text: str, change: Any) -> tuple[str, str]:
     own = node.id != "SubTree" or name == "ID"
-    changed = text if name == "_skipIf" else change(text).replace(change("each_"), "each_")
+    changed = text if name in ("_skipIf", "once") else change(text).replace(change("each_"), "each_")
     return name if own else change(name), changed

@@ -67,7 +67,7 @@ class Checked:
         if not _same(lowered.node, node):
             self.scope.made = made
             return False
-        self.assume(item, Lowered(node, lowered.can_skip))
+        self.assume(item, lowered.replace(node=node))
         return True
 
     def assume(self, item: ast.Ast, lowered: Lowered) -> None:

@@ -72,21 +72,33 @@ def _condition(raised: Candidate) -> tuple[bool, ast.Ast] | None:
 
 def _if_then_else(_node: Node, children: tuple[Candidate, ...], _checked: Checked) -> Iterator[ast.Ast]:
     found = _condition(children[0]) if len(children) == 3 else None
+    if found is not None and isinstance(children[0].command, ast.Remember):
+        found = None  # it measures to decide
     if found is not None:
         otherwise = _otherwise(children[2], ("_skipIf", "true"))
         negated, condition = found if otherwise is None else (False, children[0].condition)
         assert condition is not None
         yield ast.If(negated, condition, children[1].part, otherwise, NOWHERE)
+    elif len(children) == 3 and not any(child.in_lines for child in children):
+        tried, body, last = children
+        yield ast.IfWorks(tried.command, body.command, _otherwise(last, ("_skipIf", "true")), NOWHERE)
 
 
 def _while_do_else(_node: Node, children: tuple[Candidate, ...], checked: Checked) -> Iterator[ast.Ast]:
     found = _condition(children[0]) if len(children) == 3 else None
     again = children[1] if len(children) == 3 else None
     if found is None or again is None or again.node.id != "Repeat" or len(again.children) != 1:
+        yield from _stop_when(children)
         return
     body = _round(again.children[0], checked)
     if body is not None:
         yield ast.While(*found, body, _otherwise(children[2]), NOWHERE)
+
+
+def _stop_when(children: tuple[Candidate, ...]) -> Iterator[ast.Ast]:
+    condition = children[0].condition if len(children) == 3 else None
+    if isinstance(condition, ast.Not) and not children[1].in_lines and _otherwise(children[2]) is None:
+        yield ast.StopWhen(condition.condition, children[1].command, NOWHERE)
 
 
 def _provided(_node: Node, children: tuple[Candidate, ...], _checked: Checked) -> Iterator[ast.Ast]:
@@ -94,13 +106,13 @@ def _provided(_node: Node, children: tuple[Candidate, ...], _checked: Checked) -
         yield ast.Provided(children[0].condition, children[1].command, NOWHERE)
 
 
-def _whenever(_node: Node, children: tuple[Candidate, ...], _checked: Checked) -> Iterator[ast.Ast]:
+def _whenever(node: Node, children: tuple[Candidate, ...], _checked: Checked) -> Iterator[ast.Ast]:
     """The rule, and what it stands over as further lines of its block."""
     if len(children) != 3 or children[0].condition is None:
         return
-    rule = ast.Whenever(children[0].condition, children[1].part, NOWHERE)
+    rule = ast.Whenever(children[0].condition, children[1].part, node.port("once") == "true", NOWHERE)
     rest = children[2]
-    if _is_plain(rest.node, "AlwaysSuccess"):
+    if rest.node.id == "KeepRunningUntilFailure":
         yield ast.Chain("sequence", (rule,), True, NOWHERE)
     elif isinstance(rest.body, ast.Chain) and rest.body.operator == "sequence":
         yield ast.Chain("sequence", (rule, *rest.body.items), True, NOWHERE)
@@ -112,13 +124,14 @@ def _repeat(node: Node, children: tuple[Candidate, ...], checked: Checked) -> It
     if len(children) != 1:
         return
     rounds = node.port("num_cycles")
-    if rounds == _ENDLESS and children[0].node.id == "Parallel" and len(children[0].children) == 2:
-        body, timer = children[0].children
-        every = _round(body, checked)
-        if every is not None and timer.node.id == "Sleep":
-            yield from (ast.Every(seconds, every, NOWHERE) for seconds in _seconds(timer.node.port("msec"), checked))
-    part = _round(children[0], checked)
     number = _rounds(rounds, checked)
+    if number is not None and children[0].node.id == "Parallel" and len(children[0].children) == 2:
+        body, timer = children[0].children
+        every, paced = _round(body, checked), "" if rounds == _ENDLESS else number
+        if every is not None and timer.node.id == "Sleep":
+            times = _seconds(timer.node.port("msec"), checked)
+            yield from (ast.Every(seconds, every, paced, NOWHERE) for seconds in times)
+    part = _round(children[0], checked)
     if part is not None and number is not None:
         yield ast.Repeat(number, part, NOWHERE)
 
@@ -127,13 +140,29 @@ def _retry(node: Node, children: tuple[Candidate, ...], checked: Checked) -> Ite
     if len(children) != 1:
         return
     attempts = node.port("num_attempts")
-    condition = children[0].condition if children[0].is_condition else None
-    if attempts == _ENDLESS and condition is not None:
-        yield ast.WaitUntil(condition, NOWHERE)
-    part = _round(children[0], checked)
+    child = children[0]
+    if attempts == _ENDLESS and child.is_condition and child.condition is not None:
+        yield ast.WaitUntil(child.condition, "", NOWHERE)
+    elif attempts == _ENDLESS and child.node.id == "ReactiveSequence" and len(child.children) == 2:
+        condition, timer = child.children
+        if condition.condition is not None and timer.node.id == "Sleep":
+            times = _seconds(timer.node.port("msec"), checked)
+            yield from (ast.WaitUntil(condition.condition, seconds, NOWHERE) for seconds in times)
     number = _rounds(attempts, checked)
-    if part is not None and number is not None:
-        yield ast.Retry(number, part, NOWHERE)
+    if number is None:
+        return
+    if child.node.id == "Fallback" and len(child.children) == 2 and _is_pause(child.children[1].node):
+        part = _round(child.children[0], checked)
+        times = _seconds(child.children[1].node.children[0].port("msec"), checked)
+        if part is not None and not child.children[0].in_lines:
+            yield from (ast.Retry(number, part, seconds, NOWHERE) for seconds in times)
+    part = _round(child, checked)
+    if part is not None:
+        yield ast.Retry(number, part, "", NOWHERE)
+
+
+def _is_pause(node: Node) -> bool:
+    return node.id == "Sequence" and [part.id for part in node.children] == ["Sleep", "AlwaysFailure"]
 
 
 def _ignoring_failure(_node: Node, children: tuple[Candidate, ...], _checked: Checked) -> Iterator[ast.Ast]:
@@ -148,6 +177,10 @@ def _parallel(node: Node, children: tuple[Candidate, ...], checked: Checked) -> 
         if body is not None:
             timer = children[0].node.port("msec")
             yield from (ast.For(seconds, body, NOWHERE) for seconds in _seconds(timer, checked))
+    if len(children) == 2 and children[0].node.id == "Sleep" and not children[1].in_lines:
+        body, timer = _round(children[1], checked), children[0].node.port("msec")
+        if body is not None:
+            yield from (ast.UpTo(seconds, body, NOWHERE) for seconds in _seconds(timer, checked))
     yield from _chain("parallel")(node, children, checked)
 
 

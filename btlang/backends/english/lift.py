@@ -67,7 +67,8 @@ class Lifter:
         made = ast.Definition(name, self._known.parameters(name), body, NOWHERE, NOWHERE, not is_natural)
         self.printer.note(made, self._comments.trees.get(name, ()))
         if is_natural:
-            self._checked.scope.define(made, self._checked.can_skip(body))
+            lowered = self._checked.lowered(body)
+            self._checked.scope.define(made, lowered.can_skip, lowered.endless)
         return made
 
     def main(self, root: Node) -> ast.Ast:

@@ -196,12 +196,14 @@ class WhileDoElse(Node):
 
 
 class Whenever(Node):
-    """Children: condition, reaction, work. The work is suspended while the reaction runs."""
+    """Children: condition, reaction, work. The work is suspended while the reaction runs, once or each time."""
 
-    armed, reacting, running = True, False, 0
+    armed, fired, reacting, running = True, False, False, 0
 
-    def __init__(self, name: str, children: Sequence[Behaviour], interrupts: list[Callable[[], None]]) -> None:
-        self.interrupts = interrupts
+    def __init__(
+        self, name: str, children: Sequence[Behaviour], once: bool, interrupts: list[Callable[[], None]]
+    ) -> None:
+        self.once, self.interrupts = once, interrupts
         super().__init__(name, children)
 
     def suspend(self) -> None:
@@ -209,13 +211,13 @@ class Whenever(Node):
         halt(self.children[child], keep=True)
 
     def end(self) -> None:
-        self.armed, self.reacting, self.running = True, False, 0
+        self.armed, self.fired, self.reacting, self.running = True, False, False, 0
         halt(self.children[0])
 
     def halt(self, keep: bool) -> None:
         super().halt(keep)
         if not keep:
-            self.armed, self.reacting, self.running = True, False, 0
+            self.armed, self.fired, self.reacting, self.running = True, False, False, 0
 
     def run(self) -> Asking:
         condition, reaction, work = self.children
@@ -227,9 +229,9 @@ class Whenever(Node):
         if status == SKIPPED:
             halt(condition)
         if status != SUCCESS:
-            self.armed = True
+            self.armed = self.armed or not self.fired
         elif self.armed and not self.reacting:
-            self.armed, self.reacting = False, True
+            self.armed, self.fired, self.reacting = False, self.once, True
             if self.running:
                 self.suspend()
         if self.reacting:

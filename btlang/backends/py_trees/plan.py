@@ -239,6 +239,8 @@ def _ours(node: Node) -> tuple[str, tuple[tuple[str, Any], ...]]:
     """Our class for a node, and its arguments."""
     if node.id in _OURS:
         return _OURS[node.id], ()
+    if node.id == "Whenever":
+        return node.id, (("once", _truth(node, "once")), *_INTERRUPTS)
     if node.id in _REACTIVE:
         return node.id, _INTERRUPTS
     if node.id == "RunOnce":

@@ -8,6 +8,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from btlang.engine.instance import NodeInstance, apart
+from btlang.engine.nodes.ports import TRUTHS, choice_port
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
 
 TYPE_CHECKING = False
@@ -20,13 +21,16 @@ def whenever(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
 
     When it becomes true (true at the start counts too), the work is suspended, and the reaction is ticked until it
     completes. If it fails, the whole fails; else the work goes on. The condition must have been false before it counts
-    again; one that is not known is neither. The whole ends with the status of the work. A condition that is RUNNING
-    counts as false; one that is an action suspends what runs before it starts (see reactive.py).
+    again, which it never does with the port once="true"; one that is not known is neither. The whole ends with the
+    status of the work. A condition that is RUNNING counts as false; one that is an action suspends what runs before it
+    starts (see reactive.py).
     """
     ticks, halts = apart(children)
     state = instance.state
     interrupts = state.interrupts
+    once = choice_port(instance, "once", TRUTHS)
     armed = True  # the condition has been false since it last counted
+    fired = False  # it has, and may not again
     reacting = False
     running = 0  # the child that was RUNNING at the last tick, 1 the reaction, 2 the work, 0 none
 
@@ -46,17 +50,17 @@ def whenever(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
         return status == SUCCESS
 
     def end() -> None:
-        nonlocal armed, reacting, running
-        armed, reacting, running = True, False, 0
+        nonlocal armed, fired, reacting, running
+        armed, fired, reacting, running = True, False, False, 0
         halts[0](False)
 
     def tick() -> int:
-        nonlocal armed, reacting, running
+        nonlocal armed, fired, reacting, running
         fault, unknowns = state.fault, state.unknowns
         if not holds():
-            armed = armed or state.unknowns == unknowns
+            armed = armed or (not fired and state.unknowns == unknowns)
         elif armed and not reacting:
-            armed, reacting = False, True
+            armed, reacting, fired = False, True, once()
             if running:
                 suspend()
         if reacting:
@@ -81,7 +85,7 @@ def whenever(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
         return status
 
     def halt(keep: bool) -> None:
-        nonlocal armed, reacting, running
+        nonlocal armed, fired, reacting, running
         if running:  # to halt the condition may start what cleans up after it
             interrupts.append(suspend)
         halts[0](keep)
@@ -90,6 +94,6 @@ def whenever(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
         for stop in halts[1:]:
             stop(keep)
         if not keep:
-            armed, reacting, running = True, False, 0
+            armed, fired, reacting, running = True, False, False, 0
 
     return tick, halt

@@ -139,9 +139,9 @@ class _Reader:
         definitions: dict[str, Definition] = {}
         for unit in grouped.units:
             if unit.header is None:
-                body = parse(unit.tokens, build) if unit.tokens else None
+                body = build.alone(parse(unit.tokens, build)) if unit.tokens else None
                 continue
-            inner = parse(unit.tokens, build)
+            inner = build.alone(parse(unit.tokens, build))
             span = Span(source, unit.header.span.start, inner.span.end)
             definitions.pop(unit.header.name, None)  # a later definition replaces an earlier one
             name, types = unit.header.name, lexer.names.definitions.types[unit.header.body]

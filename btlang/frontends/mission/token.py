@@ -1,6 +1,7 @@
 """Tokens between the stages of reading English.
 
-Raw tokens (from `lexer`) have the kinds of connective roles and punctuation. The grouping stage turns them into
+Raw tokens (from `lexer`) have the kinds of connective roles and punctuation; "stop" is a full stop or line end before
+a word that goes on with the statement before it, so that it ends nothing. The grouping stage turns them into
 grouped tokens, which need no look-ahead any more:
 
     COMMAND CONDITION                      operands
@@ -10,15 +11,17 @@ grouped tokens, which need no look-ahead any more:
     COND_OR_ELSE COND_WIDE_AND COND_OR COND_AND NOT    between and before conditions
     OPEN CLOSE COND_OPEN COND_CLOSE        brackets; a block is a bracket too
     POSTFIX                                after one command: `twice`, `within 10 s`, ...
+    IF_WORKS body [ELSE body] END          after a whole chain: `A. If that works, B`
     FORM cond DO body [ELSE body] END      if, unless, while, until before a command
     AFTER_FORM cond [ELSE body] END        the same after one command, and `provided that`
-    WIDE_FORM cond END                     the same after a comma at the end: takes the whole statement
     LOOP body [STOP cond] END              repeat, every, after 5 s, for each, and try: LOOP body [ELSE body] END;
                                            also a node that is said by its id with its children
     TEST cond END                          check, wait until
 """
 
 from __future__ import annotations
+
+from collections.abc import Sequence
 
 from btlang.record import Record
 from btlang.text.source import Span
@@ -29,7 +32,7 @@ if TYPE_CHECKING:
     from typing import TypeAlias
 
     Said: TypeAlias = "Called | Listed | Assigned | Remembered | NodeCall"
-    Value: TypeAlias = "Said | Each | Header | str | None"
+    Value: TypeAlias = "Said | Each | Paced | Header | str | None"
 
 
 class Called(Record):
@@ -62,6 +65,13 @@ class Remembered(Record):
     key: str
     entry: Entry
     arguments: tuple[tuple[str, str], ...]
+
+
+class Paced(Record):
+    """A number of rounds with the seconds of each, or between them."""
+
+    rounds: str
+    seconds: str
 
 
 class Each(Record):
@@ -117,3 +127,20 @@ class Token:
 
     def __repr__(self) -> str:
         return f"{self.kind}({self.role or self.value or ''})"
+
+
+def go_on(tokens: list[Token]) -> None:
+    """The stops at the end become one token "stop", if they end something: the next word goes on with it."""
+    kept = len(tokens)
+    while kept and tokens[kept - 1].kind in ("newline", "semi"):
+        kept -= 1
+    if 0 < kept < len(tokens) and tokens[kept - 1].kind not in ("indent", "open", "define"):
+        end = tokens[kept - 1].end
+        tokens[kept:] = [Token("stop", end, end)]
+
+
+def begins_condition(tokens: Sequence[Token], at: int) -> bool:
+    """Whether the operand at a place, brackets left out, is a condition or `not`."""
+    while at < len(tokens) and tokens[at].kind == "open":
+        at += 1
+    return at < len(tokens) and tokens[at].kind in ("condition", "not")

@@ -31,6 +31,10 @@ def busy_loops(compilation: Compilation) -> list[Diagnostic]:
             while busy and any(child is busy[-1] for child in node.children):
                 busy.pop()  # the loop of `for 5 s` has an end
             return TAKES_TIME
+        if kind is not None and kind.roles[-1:] == ("work",):
+            children = children[:2]  # what it does is to watch
+            while busy and busy[-1] is node.children[2]:
+                busy.pop()
         most = max(children)
         if kind is None or most == TAKES_TIME or not kind.again or not kind.is_endless(node):
             return TAKES_TIME if kind is None or kind.takes_time else most

@@ -14,13 +14,14 @@ from btlang.frontends.mission.grouping.grouping import group
 from btlang.frontends.mission.reader import lexed
 from btlang.frontends.mission.symbols.includes import ROLE
 from btlang.frontends.mission.symbols.prefixes import SEPARATORS
-from btlang.frontends.mission.token import Token
+from btlang.frontends.mission.token import Token, go_on
 from btlang.record import Record
 from btlang.text.source import Source
 from btlang.text.spelling import nearest
 from btlang.vocabulary.continuations import Begun, begun, meanings, values_on, ways_on
 from btlang.vocabulary.correct_words import correct_words
 from btlang.vocabulary.entry import Meaning
+from btlang.vocabulary.language_tables import GOES_ON
 from btlang.vocabulary.lexicon import DEFINING, NO_PHRASES, Lexicon
 from btlang.vocabulary.pattern import Slot, forms
 from btlang.vocabulary.trie import SLOTS, TrieNode
@@ -31,12 +32,14 @@ _LONG_ENOUGH = 3  # letters; a shorter word is no misspelling yet
 _MOST_CORRECTIONS = 3
 _ALIKE = {
     **dict.fromkeys(("wait", "nothing", "fail"), "command"), "negated": "condition", "unless": "if", "until": "while",
-    "if_possible": "within", "retry": "try", "wait_until": "check", "delay": "every", "in_order": "in_parallel",
+    "if_possible": "within", "if_it_works": "within", "once": "within", "stop_when": "provided", "as_soon_as": "if",
+    "first_time": "whenever",  "retry": "try", "wait_until": "check",
+    "delay": "every", "in_order": "in_parallel",
     **dict.fromkeys(("set", "increase", "decrease", "remember", "include"), "command"), "each": "every",
 }  # fmt: skip
 """Roles that stand where others stand: the grouping stage is asked for one of them."""
 _LOOK_AHEAD = frozenset(("and", "or"))  # whether these are in their place depends on what follows
-_MAY_FOLLOW = ((), ("command",), ("condition",), ("close",), ("colon",))
+_MAY_FOLLOW = ((), ("command",), ("condition",), ("close",), ("colon",), ("count",))
 _LINE_STARTS = frozenset(("newline", "semi", "indent", "dedent"))
 
 
@@ -214,8 +217,12 @@ class Completer:
 
     def _failures(self, at: int, *kinds: str) -> list[int]:
         end = self._tokens[at].start if at < len(self._tokens) else self._start
-        added = [Token(kind, end, end, "1") for kind in kinds]
-        return group(self._source, [*self._tokens[:at], *added], self._lexer.conditions).failed_at
+        before = self._tokens[:at]
+        if kinds[0] in GOES_ON:
+            go_on(before)
+        tokens = [*before, *(Token(kind, end, end, "1") for kind in kinds)]
+        failed = group(self._source, tokens, self._lexer.conditions).failed_at
+        return [place + at - len(before) for place in failed]
 
     def _about(self, meaning: Meaning) -> tuple[str, str]:
         if meaning.entry is not None:

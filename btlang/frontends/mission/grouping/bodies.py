@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from btlang.diagnostics.diagnostic import diagnostic
-from btlang.frontends.mission.grouping.scan import Scan
+from btlang.frontends.mission.grouping.scan import RULES, Scan
 from btlang.frontends.mission.grouping.stack import StackEntry
-from btlang.frontends.mission.token import Token
+from btlang.frontends.mission.token import Paced, Token
 
 
 def separator(scan: Scan) -> None:
@@ -25,7 +25,7 @@ def separator(scan: Scan) -> None:
 
 def begin_otherwise(scan: Scan) -> None:
     if scan.raw[scan.at].kind != "otherwise":
-        scan.at += 1  # a comma or the end of the line before it
+        scan.at += 1  # a comma or a stop before it
     token = scan.raw[scan.at]
     opener = scan.emit("ELSE", token)
     opener.start = scan.last_end
@@ -44,14 +44,21 @@ def end_block(scan: Scan) -> None:
         scan.problems.append(diagnostic("BT027", scan.span(block.opener)))
     scan.out.append(Token("CLOSE", scan.last_end, scan.last_end))
     body = scan.stack[-1]
-    is_rule = body.opener is not None and body.opener.role == "whenever"
-    if body.kind == "body" and body.else_owner is not body and not (is_rule and scan.at_otherwise()):
-        scan.stack.pop()  # an `otherwise` behind a rule is about what the rule does
+    is_rule = body.opener is not None and body.opener.role in RULES
+    if body.kind == "body" and body.else_owner is not body and not (is_rule and scan.raw[scan.at].kind == "stop"):
+        scan.stack.pop()  # what goes on behind a rule is about what the rule does
         scan.emit_end()
 
 
 def block_follows(scan: Scan) -> bool:
     return scan.raw[scan.at].kind == "colon" and scan.raw[scan.at + 1].kind == "indent"
+
+
+def paced(count: Token, pace: Token) -> Paced:
+    """`3 times every 10 s`."""
+    assert isinstance(count.value, str)
+    assert isinstance(pace.value, str)
+    return Paced(count.value, pace.value)
 
 
 def set_amount(scan: Scan, opener: Token, amount: Token) -> None:

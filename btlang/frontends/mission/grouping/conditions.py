@@ -3,21 +3,29 @@
 from __future__ import annotations
 
 from btlang.frontends.mission.grouping.bodies import begin_otherwise, separator
+from btlang.frontends.mission.grouping.problems import waits_for_how_long
 from btlang.frontends.mission.grouping.scan import ENDS, Scan
 from btlang.frontends.mission.grouping.stack import StackEntry
 from btlang.frontends.mission.token import Token
 
 STARTS_OPERAND = frozenset((
     "command", "condition", "unknown", "wait", "nothing", "fail", "not", "open", "repeat", "try", "retry", "check",
-    "wait_until", "whenever", "in_parallel", "in_order", "each", "node",
+    "wait_until", "wait_for", "wait_up_to", "whenever", "first_time", "in_parallel", "in_order", "each", "node",
 ))  # fmt: skip
 """What can only be the start of a command or condition."""
+CONDITION_FORMS = frozenset(("if", "unless", "while", "until", "provided", "as_soon_as", "stop_when"))
+AMOUNTS = frozenset(("count", "for", "up_to", "apart", "within", "every", "delay", "if_possible"))
+"""What may stand behind a command, with a condition or without."""
+
+_CHOOSING = frozenset(("if", "unless", "while", "until"))  # forms that may have an `otherwise`
 
 
 def after_condition(scan: Scan, token: Token) -> None:
     entry = scan.stack[-1]
     joined = connective_of(scan, token)
-    if joined:
+    if token.kind == "again":
+        scan.next(token, False)
+    elif joined:
         entry.connective(scan.emit(joined, token))
         scan.next(token, True)
         if joined.startswith("WIDE"):
@@ -49,20 +57,28 @@ def connective_of(scan: Scan, token: Token) -> str:
 
 
 def closes_statement(scan: Scan, at: int) -> bool:
-    """Whether from here to the end of the statement or bracket there is nothing but a condition."""
-    first, depth = at, 0
+    """Whether from here to the end of the statement or bracket there is nothing but forms behind a command.
+
+    These are amounts, and at the end one form with its condition.
+    """
+    first = at
+    while scan.raw[at].kind in AMOUNTS:
+        at += 1
+    if scan.raw[at].kind not in CONDITION_FORMS:
+        return at > first and scan.raw[at].kind in ENDS
+    at += 1
+    depth, start = 0, at
     while True:
         kind = scan.raw[at].kind
         if kind in ("and", "or", "comma"):
             after = at + 2 if kind == "comma" and scan.raw[at + 1].kind in ("and", "or") else at + 1
             if not scan.condition_at(after):
-                return False
+                return at > start and scan.raw[after].kind == "otherwise"
             at = after
             continue
         if (kind == "close" and depth == 0) or kind in ENDS - {"close"}:
-            otherwise = kind == "newline" and scan.raw[at + 1].kind == "otherwise"
-            return at > first and not otherwise
-        if kind not in ("condition", "not", "open", "close"):
+            return at > start
+        if kind not in ("condition", "not", "open", "close", "again"):
             return False
         depth += (kind == "open") - (kind == "close")
         at += 1
@@ -72,7 +88,8 @@ def end_condition(scan: Scan, entry: StackEntry, token: Token) -> None:
     if entry.after == "body":
         scan.emit("DO", token)
         body = StackEntry("body", entry.opener, scan.stack[-1])
-        body.else_owner = body if entry.opener is not None and entry.opener.role != "whenever" else None
+        body.begins = len(scan.out)
+        body.else_owner = body if entry.opener is not None and entry.opener.role in _CHOOSING else None
         scan.stack.append(body)
         scan.operand_due = True
         if token.kind in ("and", "or"):
@@ -85,6 +102,12 @@ def end_condition(scan: Scan, entry: StackEntry, token: Token) -> None:
     elif entry.after == "postfix" and scan.at_otherwise() and entry.opener and entry.opener.role in ("if", "unless"):
         begin_otherwise(scan)
     elif entry.after != "definition":
+        if token.kind == "for" and entry.opener is not None and entry.opener.role in ("wait_until", "wait_for"):
+            if entry.opener.role == "wait_for":
+                waits_for_how_long(scan, entry.opener, token)
+                return
+            entry.opener.role, entry.opener.value = "hold", token.value
+            scan.next(token, False)
         scan.emit_end()
 
 

@@ -13,7 +13,7 @@ from collections.abc import Callable
 
 from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.frontends.mission.grouping import operands, operators, problems
-from btlang.frontends.mission.grouping.conditions import STARTS_OPERAND, after_condition
+from btlang.frontends.mission.grouping.conditions import CONDITION_FORMS, STARTS_OPERAND, after_condition
 from btlang.frontends.mission.grouping.scan import Scan, Unit
 from btlang.frontends.mission.token import Token
 from btlang.record import Record
@@ -49,22 +49,27 @@ def group(source: Source, raw: list[Token], conditions: set[str], word: Callable
 
 _OPERAND: dict[str, Callable[[Scan, Token], None]] = {
     **dict.fromkeys(("command", "condition", "unknown", "wait", "nothing", "fail"), operands.operand),
-    **dict.fromkeys(("if", "unless", "while", "until"), operands.form),
-    **dict.fromkeys(("check", "wait_until"), operands.test),
+    **dict.fromkeys(("if", "unless", "while", "until", "as_soon_as"), operands.form),
+    **dict.fromkeys(("check", "wait_until", "wait_for", "wait_up_to"), operands.test),
     **dict.fromkeys(operands.SEPARATORS, operands.joined_block),
-    **dict.fromkeys(("repeat", "try", "retry", "every", "delay", "each"), operands.loop),
-    "whenever": operands.rule,
+    **dict.fromkeys(("repeat", "try", "if_possible", "retry", "every", "delay", "each"), operands.loop),
+    **dict.fromkeys(("whenever", "first_time"), operands.rule),
     "not": operands.negation,
     "open": operands.open_bracket,
     "then": operands.leading_then,
+    "do_that": operands.do_block,
+    **dict.fromkeys(("start_over", "everything"), operands.whole_block),
     "define": operands.definition,
 }
 
 _OPERATOR: dict[str, Callable[[Scan, Token], None]] = {
     **dict.fromkeys(CONNECTIVES, operators.connective),
-    **dict.fromkeys(("within", "if_possible", "every", "delay"), operators.postfix),
-    **dict.fromkeys(("if", "unless", "while", "until", "provided"), operators.form_after),
+    "stop": operators.stop,
+    "again": operators.says_nothing,
+    **dict.fromkeys(("within", "if_possible", "every", "delay", "up_to", "apart"), operators.postfix),
+    **dict.fromkeys(CONDITION_FORMS, operators.form_after),
     **dict.fromkeys(STARTS_OPERAND, problems.side_by_side),
+    "in_parallel": operators.at_the_same_time,
     **dict.fromkeys(("newline", "semi", "dedent", "end"), operators.end_statement),
     "repeat": operators.repeat_after,
     "comma": operators.comma,

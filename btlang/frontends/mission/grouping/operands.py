@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from btlang.frontends.mission.grouping.bodies import block_follows, separator, set_amount
-from btlang.frontends.mission.grouping.conditions import is_refused
+from btlang.frontends.mission.grouping.conditions import AMOUNTS, CONDITION_FORMS, is_refused
 from btlang.frontends.mission.grouping.problems import no_operand, word_before
-from btlang.frontends.mission.grouping.scan import Scan
+from btlang.frontends.mission.grouping.scan import ENDS, Scan
 from btlang.frontends.mission.grouping.stack import StackEntry
 from btlang.frontends.mission.token import Header, Token
 
@@ -73,6 +73,7 @@ def rule(scan: Scan, token: Token) -> None:
         scan.fail("BT037", scan.span(token), words=scan.words(token))
         return
     form(scan, token)
+    entry.commands, entry.mixed = None, entry.mixed or entry.has_commands
 
 
 def test(scan: Scan, token: Token) -> None:
@@ -84,7 +85,7 @@ def test(scan: Scan, token: Token) -> None:
 
 
 def loop(scan: Scan, token: Token) -> None:
-    """repeat, try, retry, every 5 s, after 5 s."""
+    """repeat, try, if possible, retry, every 5 s, after 5 s."""
     if is_refused(scan, token):
         return
     following = scan.raw[scan.at + 1]
@@ -93,10 +94,12 @@ def loop(scan: Scan, token: Token) -> None:
         scan.raw[scan.at] = Token(following.kind, token.start, following.end, following.value, following.role)
         return
     scan.begin_statement(token)
-    opener = scan.emit("LOOP", token, token.kind)
+    opener = scan.emit("LOOP", token, "try" if token.kind == "if_possible" else token.kind)
     body = StackEntry("body", opener, scan.stack[-1])
     scan.next(token, True)
-    if token.kind in ("repeat", "try", "retry"):
+    if token.kind == "if_possible":
+        body.else_owner = body
+    elif token.kind in ("repeat", "try", "retry"):
         if following.kind == "count" or (following.kind == "for" and token.kind == "repeat"):
             set_amount(scan, opener, following)
             scan.next(following, True)
@@ -129,6 +132,37 @@ def joined_block(scan: Scan, token: Token) -> None:
         scan.open_block(SEPARATORS[token.kind])
     else:
         scan.skip_statement()  # the lexer has told that the block is missing
+
+
+def do_block(scan: Scan, token: Token) -> None:
+    """`do this 3 times:` opens a block, as `repeat 3 times:` does."""
+    at = scan.at + 1
+    while scan.raw[at].kind not in ENDS and scan.raw[at].kind != "colon":
+        at += 1
+    if scan.raw[at].kind == "colon":
+        scan.raw[scan.at] = Token("repeat", token.start, token.end)
+        loop(scan, scan.raw[scan.at])
+    else:
+        no_operand(scan, token)
+
+
+def whole_block(scan: Scan, token: Token) -> None:
+    """`start over`, `repeat everything 3 times`: all commands of the block before it, which it ends."""
+    entry = scan.stack[-1]
+    if entry.kind not in ("top", "block") or entry.statement != "ended" or entry.separator != "SEMI":
+        scan.fail("BT067", scan.span(token), words=scan.words(token))
+        return
+    if entry.commands is None or entry.mixed:
+        scan.fail("BT059", scan.span(token), words=scan.words(token))
+        return
+    scan.enclose(entry.commands)
+    entry.statement = "open"
+    scan.next(token, False)
+    following = scan.raw[scan.at]
+    if following.kind in ("again", "comma"):
+        scan.at += 1
+    if scan.raw[scan.at].kind not in AMOUNTS | CONDITION_FORMS:
+        scan.emit("POSTFIX", token, "count").value = "-1"
 
 
 def leading_then(scan: Scan, token: Token) -> None:

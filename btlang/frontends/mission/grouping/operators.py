@@ -2,39 +2,63 @@
 
 from __future__ import annotations
 
-from btlang.frontends.mission.grouping.bodies import begin_otherwise, end_block, separator, set_amount
-from btlang.frontends.mission.grouping.conditions import closes_statement
+from collections.abc import Callable
+
+from btlang.frontends.mission.grouping.bodies import begin_otherwise, end_block, paced, separator, set_amount
+from btlang.frontends.mission.grouping.conditions import AMOUNTS, CONDITION_FORMS, STARTS_OPERAND, closes_statement
 from btlang.frontends.mission.grouping.problems import both_readings, is_alone, side_by_side
 from btlang.frontends.mission.grouping.scan import ENDS, Scan, Unit
 from btlang.frontends.mission.grouping.stack import StackEntry
 from btlang.frontends.mission.token import Token
 from btlang.vocabulary.language_tables import CONNECTIVES
 
-_CONDITION_FORMS = frozenset(("if", "unless", "while", "until", "provided"))
+_JOINTS = {"meanwhile": "AND", "in_parallel": "AND", "before": "THEN"}
 
 
 def connective(scan: Scan, token: Token) -> None:
-    scan.stack[-1].connective(scan.emit((token.role or token.kind).upper(), token))
-    scan.next(token, True)
+    _join(scan, token, _joint(token))
     if token.kind == "then" and scan.raw[scan.at].kind == "comma":
+        scan.at += 1
+
+
+def _join(scan: Scan, token: Token, kind: str) -> None:
+    entry = scan.stack[-1]
+    before = [*entry.joints, *entry.commas]
+    made = scan.emit(kind, token)
+    entry.connective(made)
+    entry.joints = [*before, made] if token.kind == "and" else []
+    scan.next(token, True)
+
+
+def _joint(token: Token) -> str:
+    """The grouped token that a connective becomes."""
+    return _JOINTS.get(token.kind, (token.role or token.kind).upper())
+
+
+def _widening(scan: Scan, token: Token) -> None:
+    """A connective behind a comma or a stop."""
+    joint = _joint(token)
+    widens = joint in ("AND", "OR") and not token.role
+    _join(scan, token, f"WIDE_{joint}" if widens else joint)
+    if scan.raw[scan.at].kind == "comma":
         scan.at += 1
 
 
 def comma(scan: Scan, token: Token) -> None:
     following = scan.raw[scan.at + 1]
-    if following.kind in ("and", "or") and not following.role:
-        scan.stack[-1].connective(scan.emit("WIDE_" + following.kind.upper(), following))
-        scan.next(token, True)
-        scan.next(following, True)
-    elif following.kind == "otherwise" or following.kind in CONNECTIVES:
+    entry = scan.stack[-1]
+    owner = entry.count_owner if following.kind == "count" else entry.stop_owner if following.kind == "for" else None
+    if following.kind == "otherwise" or owner is not None:
         scan.at += 1
-    elif following.kind in _CONDITION_FORMS and closes_statement(scan, scan.at + 2):
-        scan.close_forms()
-        scan.stack[-1].close_chain()
-        opener = scan.emit("WIDE_FORM", following, following.kind)
-        scan.stack.append(StackEntry("condition", opener, after="end"))
-        scan.next(token, True)
-        scan.next(following, True)
+    elif following.kind in CONNECTIVES:
+        scan.at += 1
+        _widening(scan, following)
+    elif following.kind == "stop_when" or closes_statement(scan, scan.at + 1):
+        scan.take_statement()
+        scan.at += 1
+    elif following.kind == "if_works":
+        scan.at += 1
+        if_works(scan, following)
     elif following.kind in ("count", "for", "within", "if_possible", "provided"):
         fix = (scan.span(token), "") if is_alone(scan) else None
         advice = "Remove it." if fix else both_readings(scan, following)
@@ -42,6 +66,64 @@ def comma(scan: Scan, token: Token) -> None:
     else:
         scan.stack[-1].connective(scan.emit("COMMA", token))
         scan.next(token, True)
+
+
+def stop(scan: Scan, token: Token) -> None:
+    """A full stop or line end before a word that goes on: a comma that closes no form."""
+    for entry in reversed(scan.stack):
+        entry.stop(token)
+        if entry.is_group:
+            break
+    scan.at += 1
+    following = scan.raw[scan.at]
+    if following.kind in _GOING_ON:
+        _GOING_ON[following.kind](scan, following)
+
+
+def if_works(scan: Scan, token: Token) -> None:
+    """`A. If that works, B`."""
+    scan.stack[-1].close_chain()
+    body = StackEntry("body", scan.emit("IF_WORKS", token, "if_works"), scan.stack[-1])
+    body.else_owner = body
+    scan.stack.append(body)
+    scan.next(token, True)
+    separator(scan)
+
+
+def in_any_case(scan: Scan, token: Token) -> None:
+    """`A. In any case, B`: what A does to the statement behind it is ignored."""
+    scan.take_statement()
+    scan.emit("POSTFIX", token, "if_possible")
+    entry = scan.stack[-1]
+    entry.connective(scan.emit("SEMI" if entry.is_group and entry.separator == "SEMI" else "THEN", token))
+    scan.next(token, True)
+    separator(scan)
+
+
+def about_statement(scan: Scan, token: Token) -> None:
+    """`A. Do that 3 times`, `A. Again`, `A. Repeat that twice`: what follows is about the statement before."""
+    scan.take_statement()
+    scan.next(token, False)
+    amount = scan.raw[scan.at]
+    if token.kind == "do_that" and amount.kind not in ("again", "more"):
+        if amount.kind not in AMOUNTS | CONDITION_FORMS:
+            scan.fail("BT030", scan.span(token), words=scan.words(token))
+        return
+    rounds = "1"
+    if amount.kind in ("count", "more") and isinstance(amount.value, str):
+        rounds = amount.value
+        scan.next(amount, False)
+    elif amount.kind == "again":
+        scan.next(amount, False)
+    if not rounds.isdigit():
+        scan.fail("BT030", scan.span(token, amount), words=scan.words(token))
+        return
+    scan.emit("POSTFIX", token, "count").value = str(int(rounds) + 1)
+
+
+def says_nothing(scan: Scan, token: Token) -> None:
+    """`A again`."""
+    scan.next(token, False)
 
 
 def otherwise(scan: Scan, token: Token) -> None:
@@ -68,11 +150,17 @@ def amount_of_form(scan: Scan, token: Token) -> None:
 
 
 def close_loop(scan: Scan, owner: StackEntry, token: Token) -> None:
-    """The amount closes the form; an `otherwise` right behind belongs to a try."""
+    """The amount closes the form, with a pace behind it; an `otherwise` right behind belongs to a try."""
     scan.close_forms(owner)
     owner.close_chain()
     scan.stack.pop()
     scan.next(token, False)
+    pace = scan.raw[scan.at]
+    if token.kind == "count" and pace.kind in ("every", "apart") and owner.opener is not None:
+        if pace.kind == "every" or owner.opener.role == "repeat":
+            owner.opener.value = paced(token, pace)
+            owner.opener.role = "retry" if owner.opener.role == "retry" else pace.kind
+            scan.next(pace, False)
     if owner.else_owner is owner and scan.at_otherwise():
         begin_otherwise(scan)
     else:
@@ -80,8 +168,36 @@ def close_loop(scan: Scan, owner: StackEntry, token: Token) -> None:
 
 
 def postfix(scan: Scan, token: Token) -> None:
-    scan.emit("POSTFIX", token, token.kind)
     scan.next(token, False)
+    if token.kind == "if_possible" and scan.at_otherwise():
+        scan.open_operand("LOOP", "try")
+        begin_otherwise(scan)
+        return
+    before = scan.out[-1]
+    if before.kind == "POSTFIX" and isinstance(before.value, str) and {before.role, token.kind} in _PACES:
+        count, pace = (before, token) if before.role == "count" else (token, before)
+        before.role = pace.role or pace.kind
+        before.value, before.end = paced(count, pace), token.end
+    elif token.kind == "apart":
+        scan.fail("BT057", scan.span(token), words=scan.words(token))
+    else:
+        scan.emit("POSTFIX", token, token.kind)
+
+
+_PACES = ({"count", "every"}, {"count", "apart"})
+
+
+def at_the_same_time(scan: Scan, token: Token) -> None:
+    """`A at the same time B` joins; behind `A and B` it says that they are a P, whatever `and` means."""
+    entry = scan.stack[-1]
+    if scan.raw[scan.at + 1].kind in STARTS_OPERAND | CONDITION_FORMS:
+        connective(scan, token)
+    elif entry.joints:
+        for joint in entry.joints:
+            joint.kind = "AND"
+        scan.next(token, False)
+    else:
+        scan.fail("BT031", scan.span(token), words=scan.words(token))
 
 
 def form_after(scan: Scan, token: Token) -> None:
@@ -124,9 +240,6 @@ def close_bracket(scan: Scan, token: Token) -> None:
 
 
 def end_statement(scan: Scan, token: Token) -> None:
-    if token.kind == "newline" and scan.at_otherwise():
-        scan.at += 1
-        return
     scan.close_forms()
     entry = scan.stack[-1]
     entry.close_chain()
@@ -148,3 +261,13 @@ def close_definition(scan: Scan) -> None:
     scan.units.append(Unit(scan.header, tuple(scan.out)))
     scan.header = None
     scan.out, scan.stack = scan.main
+
+
+_GOING_ON: dict[str, Callable[[Scan, Token], None]] = {
+    **dict.fromkeys(("or", "meanwhile"), _widening),
+    **dict.fromkeys(("do_that", "repeat_that", "again"), about_statement),
+    "if_works": if_works,
+    "in_any_case": in_any_case,
+    "otherwise": otherwise,
+}
+"""What a word does behind a stop."""

@@ -5,10 +5,15 @@ from __future__ import annotations
 from btlang.frontends.mission.grouping.scan import ENDS, STARTS_STATEMENT, Scan
 from btlang.frontends.mission.token import Token
 from btlang.text.source import Span
-from btlang.vocabulary.language_tables import CONNECTIVES
+from btlang.vocabulary.language_tables import CONNECTIVES, GOES_ON
 
 _COMMANDS = frozenset(("command", "wait", "nothing", "fail", "open"))
-_FOUND = {"newline": "the line ends", "semi": "the sentence ends", "close": "the bracket closes"}
+_FOUND = {
+    "newline": "the line ends",
+    "stop": "the sentence ends",
+    "semi": "the sentence ends",
+    "close": "the bracket closes",
+}
 
 
 def no_operand(scan: Scan, token: Token) -> None:
@@ -17,7 +22,9 @@ def no_operand(scan: Scan, token: Token) -> None:
     before = scan.raw[scan.at - 1] if scan.at else None
     wanted = "condition" if entry.is_condition else "command"
     starts = before is None or before.kind in STARTS_STATEMENT
-    if starts and token.kind in ENDS:
+    if starts and token.kind in GOES_ON - {"in_parallel"}:
+        scan.fail("BT067", scan.span(token), words=scan.words(token))
+    elif starts and token.kind in ENDS:
         nothing_there(scan, token, before)
     elif token.kind == "colon":
         scan.fail("BT026", scan.span(token))
@@ -38,8 +45,6 @@ def nothing_there(scan: Scan, token: Token, before: Token | None) -> None:
     elif before is not None and before.kind == "define":
         words = scan.words(before)
         scan.fail("BT020", scan.span(before), wanted="command", word=words, found="nothing does")
-    elif token.kind == "newline" and scan.at_otherwise():
-        scan.at += 1  # an empty line is nothing to which `otherwise` could be the other way
     else:
         scan.operand_due = False  # an empty line or sentence
 
@@ -50,6 +55,15 @@ def side_by_side(scan: Scan, token: Token) -> None:
         return
     before = scan.raw[scan.at - 1]
     scan.fail("BT021", scan.span(before, token), word_before(scan, token, "then"), word=scan.words(token))
+
+
+def waits_for_how_long(scan: Scan, opener: Token, amount: Token) -> None:
+    """`wait for C for 10 s`."""
+    text, span = scan.source.text, scan.span(opener, amount)
+    until = f"{scan.word('wait_until')} {text[opener.end : scan.last_end].strip()}"
+    seconds = text[amount.start : amount.end].split(maxsplit=1)[-1]
+    at_most = f"{scan.word('up_to')} {seconds}"
+    scan.fail("BT058", span, words=span.text, until=until, amount=scan.words(amount), at_most=at_most)
 
 
 def is_alone(scan: Scan) -> bool:

@@ -6,12 +6,13 @@ from collections.abc import Callable
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.grouping.stack import StackEntry
-from btlang.frontends.mission.token import Header, Token
+from btlang.frontends.mission.token import Header, Token, begins_condition
 from btlang.record import Record
 from btlang.text.source import Source, Span
 
-ENDS = frozenset(("newline", "semi", "close", "dedent", "end"))
+ENDS = frozenset(("newline", "semi", "close", "dedent", "end", "stop"))
 STARTS_STATEMENT = frozenset(("newline", "semi", "indent", "dedent", "open", "define"))
+RULES = ("whenever", "first_time")
 _CLOSES_LINE = frozenset(("newline", "indent", "dedent", "end"))
 
 
@@ -32,7 +33,7 @@ class Scan:
 
     def __init__(self, source: Source, raw: list[Token], conditions: set[str], word: Callable[[str], str]) -> None:
         self.source = source
-        self.raw = [*_without_idle_stops(raw), Token("end", len(source.text), len(source.text))]
+        self.raw = [*raw, Token("end", len(source.text), len(source.text))]
         self.conditions = conditions
         self.word = word
         self.at = 0
@@ -73,13 +74,42 @@ class Scan:
         if entry.is_group:
             if entry.statement == "ended":
                 self.out.append(Token(entry.separator, token.start, token.start))
-            entry.statement = "open"
+            if entry.statement != "open":
+                entry.statement, entry.begins = "open", len(self.out)
+                entry.has_commands = entry.commands is not None
+                if entry.commands is None:
+                    entry.commands = entry.begins
+        entry.operand = len(self.out)
 
     def close_forms(self, down_to: StackEntry | None = None) -> None:
         """Closes the open forms of this bracket, down to one of them (which stays open)."""
         while not self.stack[-1].is_group and self.stack[-1] is not down_to:
             self.stack.pop().close_chain()
             self.emit_end()
+
+    def take_statement(self) -> None:
+        """What comes is about the whole statement so far, of a rule about what it does: puts that in brackets."""
+        group = max(at for at, entry in enumerate(self.stack) if entry.is_group)
+        inner = self.stack[group + 1 :][:1]
+        of_rule = inner and inner[0].kind == "body" and inner[0].opener is not None and inner[0].opener.role in RULES
+        entry = inner[0] if of_rule else self.stack[group]
+        self.close_forms(entry)
+        entry.close_chain()
+        self.enclose(entry.begins)
+
+    def enclose(self, first: int) -> None:
+        """Brackets round all that was made since a place; of a broken statement nothing was."""
+        if first >= len(self.out):
+            return
+        start = self.out[first].start
+        self.out.insert(first, Token("OPEN", start, start))
+        self.out.append(Token("CLOSE", self.last_end, self.last_end))
+
+    def open_operand(self, kind: str, role: str) -> None:
+        """Opens a form before the command that stands right before this place."""
+        entry = self.stack[-1]
+        first = self.out[min(entry.operand, len(self.out) - 1)]
+        self.out.insert(entry.operand, Token(kind, first.start, first.start, None, role))
 
     def open_block(self, separator: str = "SEMI") -> None:
         """At an indent: the lines below are statements of a new group, with a token between them."""
@@ -92,13 +122,11 @@ class Scan:
         self.operand_due = True
 
     def condition_at(self, at: int) -> bool:
-        while self.raw[at].kind == "open":
-            at += 1
-        return self.raw[at].kind in ("condition", "not")
+        return begins_condition(self.raw, at)
 
     def at_otherwise(self) -> bool:
         token = self.raw[self.at]
-        if token.kind == "comma" or (token.kind == "newline" and all(e.kind != "bracket" for e in self.stack)):
+        if token.kind in ("comma", "stop"):
             token = self.raw[self.at + 1]
         return token.kind == "otherwise"
 
@@ -122,16 +150,3 @@ class Scan:
         self.operand_due = False
         if self.raw[self.at].kind == "indent":
             self.open_block()
-
-
-def _without_idle_stops(raw: list[Token]) -> list[Token]:
-    """A stop at the end of a line ends nothing where the next line goes on with `otherwise`."""
-    kept: list[Token] = []
-    for at, token in enumerate(raw):
-        if token.kind == "otherwise" and at and raw[at - 1].kind == "newline":
-            newline = kept.pop()
-            while kept and kept[-1].kind == "semi":
-                kept.pop()
-            kept.append(newline)
-        kept.append(token)
-    return kept

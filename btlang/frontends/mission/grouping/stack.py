@@ -10,21 +10,29 @@ class StackEntry:
 
     The owners are the nearest open forms of the same bracket that a count, an `until` (or `while`, `for`) or an
     `otherwise` would belong to; `after` says what follows the end of a condition. `commas` are those whose meaning
-    the next connective will tell; `last` is the latest connective. `statement` of a group is "", "open" or "ended";
-    `separator` is the token between its statements. `is_group`: it holds statements; `is_condition`: operands in it are
-    conditions.
+    the next connective will tell; `last` is the latest connective. `statement` of a group is "", "open" or "ended",
+    the latest one `begins` at that place of what was made; `separator` is the token between them. The latest operand
+    begins at `operand`. `joints` are the words "and" of the chain that is not over. `is_group`: it holds statements;
+    `is_condition`: operands in it are conditions. `commands` is where those of a group begin that no rule follows;
+    `has_commands`: one stood before the latest statement; `mixed`: rules stand among them.
     """
 
     __slots__ = (
         "after",
+        "begins",
+        "commands",
         "commas",
         "count_owner",
         "else_owner",
+        "has_commands",
         "is_condition",
         "is_group",
+        "joints",
         "kind",
         "last",
+        "mixed",
         "opener",
+        "operand",
         "separator",
         "statement",
         "stop_owner",
@@ -43,7 +51,11 @@ class StackEntry:
         self.else_owner: StackEntry | None = outer.else_owner if outer else None
         self.commas: list[Token] = []
         self.last: Token | None = None
+        self.joints: list[Token] = []
         self.statement = ""
+        self.begins = self.operand = 0
+        self.commands: int | None = None
+        self.has_commands = self.mixed = False
         self.separator = "SEMI"
 
     def connective(self, token: Token) -> None:
@@ -67,10 +79,16 @@ class StackEntry:
             token.kind = "COND_" + token.kind
         self.last = token
 
+    def stop(self, token: Token) -> None:
+        """A stop before a word that goes on: no comma before it looks any further."""
+        self._settle("")
+        self.last = token
+
     def close_chain(self) -> None:
         """The chain of operands ends here: what no connective told the commas, they mean `then` (or `and`)."""
         self._settle("")
         self.last = None
+        self.joints.clear()
 
     def _settle(self, meaning: str) -> None:
         if not self.commas:

@@ -4,9 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
-from btlang.frontends.mission.token import Assigned, Called, Each, Listed, NodeCall, Remembered, Token
+from btlang.frontends.mission.token import Assigned, Called, Each, Listed, NodeCall, Paced, Remembered, Token
 from btlang.text.source import Source, Span
 from btlang.tree.ast import (
+    Apart,
     Assign,
     Ast,
     Chain,
@@ -19,6 +20,7 @@ from btlang.tree.ast import (
     For,
     ForEach,
     If,
+    IfWorks,
     Name,
     Not,
     Nothing,
@@ -27,7 +29,9 @@ from btlang.tree.ast import (
     Remember,
     Repeat,
     Retry,
+    StopWhen,
     Try,
+    UpTo,
     Wait,
     WaitUntil,
     Whenever,
@@ -96,16 +100,27 @@ class Builder:
 
     def group(self, inner: Ast, start: int, end: int) -> Ast:
         """A bracket or block keeps a chain apart; round anything else it changes nothing."""
+        inner = self.alone(inner)
         if type(inner) is Chain and not inner.bracketed:
             return Chain(inner.operator, inner.items, True, Span(self.source, start, end))
         return inner
+
+    def alone(self, statement: Ast) -> Ast:
+        """The only statement of a text or block: a rule that fires once has nothing to interrupt, so it waits."""
+        if type(statement) is Whenever and statement.once:
+            span = statement.span
+            return self.form("as_soon_as", statement.condition, statement.body, None, span.start, span.end)
+        return statement
 
     def negation(self, token: Token, condition: Ast) -> Ast:
         return Not(condition, Span(self.source, token.start, condition.span.end))
 
     def postfix(self, body: Ast, token: Token) -> Ast:
         """POSTFIX."""
-        return self._counted(token.role, _amount(token), body, Span(self.source, body.span.start, token.end))
+        span = Span(self.source, body.span.start, token.end)
+        if isinstance(token.value, Paced):
+            return self._paced(token.role, token.value, body, span)
+        return self._counted(token.role, _amount(token), body, span)
 
     def loop(self, opener: Token, body: Ast, otherwise: Ast | None, end: int, tried_end: int) -> Ast:
         """LOOP body [ELSE otherwise] END; `tried_end` is where the part before `otherwise` ends."""
@@ -118,26 +133,41 @@ class Builder:
             return Exact(value.id, value.ports, value.name, children, False, span)
         if kind == "try":
             return Try(body, otherwise, span)
-        amount = _amount(opener)
-        if otherwise is None:
-            return self._counted(kind, amount, body, span)
-        return Try(self._counted(kind, amount, body, Span(self.source, opener.start, tried_end)), otherwise, span)
+        tried_span = span if otherwise is None else Span(self.source, opener.start, tried_end)
+        if isinstance(value, Paced):
+            tried = self._paced(kind, value, body, tried_span)
+        else:
+            tried = self._counted(kind, _amount(opener), body, tried_span)
+        return tried if otherwise is None else Try(tried, otherwise, span)
+
+    def _paced(self, kind: str, pace: Paced, body: Ast, span: Span) -> Ast:
+        if kind == "retry":
+            return Retry(pace.rounds, body, pace.seconds, span)
+        return (Every if kind == "every" else Apart)(pace.seconds, body, pace.rounds, span)
 
     def _counted(self, kind: str, amount: str, body: Ast, span: Span) -> Ast:
         if kind in ("repeat", "count"):
             return Repeat(amount or "-1", body, span)
         if kind == "retry":
-            return Retry(amount or "-1", body, span)
+            return Retry(amount or "-1", body, "", span)
         if kind == "if_possible":
             return Try(body, None, span)
-        timed = {"for": For, "within": Within, "every": Every, "delay": Delay}[kind]
+        if kind == "every":
+            return Every(amount, body, "", span)
+        timed = {"for": For, "up_to": UpTo, "within": Within, "delay": Delay}[kind]
         return timed(amount, body, span)
 
     def form(self, kind: str, condition: Ast, body: Ast, otherwise: Ast | None, start: int, end: int) -> Ast:
-        """if, unless, while, until, provided, whenever: before or after a command."""
+        """A form with a condition, before or after a command; of `if_works` the condition is a command."""
         span = Span(self.source, start, end)
-        if kind == "whenever":
-            return Whenever(condition, body, span)
+        if kind in ("whenever", "first_time"):
+            return Whenever(condition, body, kind == "first_time", span)
+        if kind == "as_soon_as":
+            return self.chain("sequence", (WaitUntil(condition, "", condition.span), body), start, end)
+        if kind == "if_works":
+            return IfWorks(condition, body, otherwise, span)
+        if kind == "stop_when":
+            return StopWhen(condition, body, span)
         if kind == "provided":
             return Provided(condition, body, span)
         if kind in ("if", "unless"):
@@ -147,7 +177,10 @@ class Builder:
     def test(self, opener: Token, condition: Ast, end: int) -> Ast:
         """check, wait until."""
         span = Span(self.source, opener.start, end)
-        return Check(condition, span) if opener.role == "check" else WaitUntil(condition, span)
+        if opener.role == "check":
+            return Check(condition, span)
+        waiting = WaitUntil(condition, _amount(opener) if opener.role == "hold" else "", span)
+        return UpTo(_amount(opener), waiting, span) if opener.role == "wait_up_to" else waiting
 
 
 def _amount(token: Token) -> str:

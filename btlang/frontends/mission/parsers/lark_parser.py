@@ -110,7 +110,14 @@ class _ToAst:
         otherwise = rest[1] if len(rest) == 3 else None
         return self.build.form(opener.role, condition, body, otherwise, body.span.start, rest[-1].end)
 
-    wide_form = after_form_else = after_form
+    after_form_else = after_form
+
+    def if_works(self, children: list[Any]) -> Ast:
+        tried, opener, body, *rest = children
+        otherwise = rest[1] if len(rest) == 3 else None
+        return self.build.form(opener.role, tried, body, otherwise, tried.span.start, rest[-1].end)
+
+    if_works_else = if_works
 
     def loop(self, children: list[Any]) -> Ast:
         opener, body, *rest = children

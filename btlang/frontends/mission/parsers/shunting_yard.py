@@ -14,10 +14,10 @@ from btlang.tree.ast import Ast, Chain
 
 PRECEDENCE = {
     "SEMI": 1, "BLOCK_AND": 1, "BLOCK_OR": 1, "BLOCK_CHILD": 1,
-    "WIDE_FORM": 2, "OR_ELSE": 3, "WIDE_AND": 4, "THEN": 5, "AFTER": 6, "OR": 7, "AND": 8,
+    "IF_WORKS": 2, "OR_ELSE": 3, "WIDE_AND": 4, "THEN": 5, "AFTER": 6, "OR": 7, "AND": 8,
     "COND_OR_ELSE": 3, "COND_WIDE_AND": 4, "COND_OR": 7, "COND_AND": 8, "NOT": 9,
 }  # fmt: skip
-_OPENERS = frozenset(("OPEN", "COND_OPEN", "FORM", "LOOP", "TEST", "AFTER_FORM", "WIDE_FORM"))
+_OPENERS = frozenset(("OPEN", "COND_OPEN", "FORM", "LOOP", "TEST", "AFTER_FORM", "IF_WORKS"))
 _SECTIONS = frozenset(("DO", "ELSE", "STOP"))
 
 
@@ -92,9 +92,9 @@ def parse(tokens: Sequence[Token], build: Builder) -> Ast:
             level.operands.append(build.postfix(level.take(), token))
         elif kind in _OPENERS:
             inner = _Level(build, token)
-            if kind == "WIDE_FORM":
+            if kind == "IF_WORKS":
                 level.reduce(PRECEDENCE[kind])
-            if kind == "AFTER_FORM" or kind == "WIDE_FORM":
+            if kind == "AFTER_FORM" or kind == "IF_WORKS":
                 inner.parts.append(level.take())
             level = inner
             levels.append(level)
@@ -129,6 +129,8 @@ def _items(operand: Ast | _Run, operator: str, build: Builder) -> list[Ast]:
     """The operands that it adds to a chain: its own where it is an equal chain without brackets."""
     if isinstance(operand, _Run):
         return operand.items if operand.operator == operator else [_settled(operand, build)]
+    if type(operand) is Chain and operand.operator == operator and not operand.bracketed:
+        return list(operand.items)
     return [operand]
 
 
@@ -159,8 +161,12 @@ def _closed(level: _Level, closer: Token, build: Builder) -> Ast:
             return build.form(opener.role, parts[0], parts[1], None, opener.start, end)
         case ("FORM", "END", "DO", "ELSE"):
             return build.form(opener.role, parts[0], parts[1], parts[2], opener.start, end)
-        case ("AFTER_FORM" | "WIDE_FORM", "END"):
+        case ("AFTER_FORM", "END"):
             return build.form(opener.role, parts[1], parts[0], None, parts[0].span.start, end)
+        case ("IF_WORKS", "END"):
+            return build.form(opener.role, parts[0], parts[1], None, parts[0].span.start, end)
+        case ("IF_WORKS", "END", "ELSE"):
+            return build.form(opener.role, parts[0], parts[1], parts[2], parts[0].span.start, end)
         case ("AFTER_FORM", "END", "ELSE"):
             return build.form(opener.role, parts[1], parts[0], parts[2], parts[0].span.start, end)
         case ("LOOP", "END"):

@@ -110,16 +110,22 @@ def _add(trie: TrieNode, name: str, types: Mapping[str, str]) -> Meaning | None:
 def reach(text: Words, at: int) -> int:
     """The word behind the statement in which a word stands, with the block below it; a bracket ends one too."""
     number = bisect_right(text.lines, at, key=lambda line: line.first) - 1
-    line, depth = text.lines[number], 0
-    while at < line.last:
-        depth += (text.words[at] == "(") - (text.words[at] == ")")
-        if depth < 0 or (text.words[at] == END_OF_STATEMENT and depth == 0):
+    depth, margin = 0, text.lines[number].indent
+    while True:
+        line = text.lines[number]
+        while at < line.last:
+            depth += (text.words[at] == "(") - (text.words[at] == ")")
+            stops = text.words[at] == END_OF_STATEMENT and depth == 0 and at + 1 not in text.going_on
+            if depth < 0 or (stops and at + 1 < line.last):
+                return at
+            at += 1
+        number += 1
+        if text.words[line.last - 1] == ":":
+            number += sum(1 for _ in takewhile(lambda other: other.indent > margin, text.lines[number:]))
+            at = text.lines[number - 1].last
+        if number == len(text.lines) or text.lines[number].first not in text.going_on:
             return at
-        at += 1
-    if text.words[line.last - 1] == ":":
-        below = takewhile(lambda other: other.indent > line.indent, text.lines[number + 1 :])
-        at = max((other.last for other in below), default=at)
-    return at
+        at = text.lines[number].first
 
 
 def _header(

@@ -5,9 +5,11 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.frontends.mission.symbols.continuations import find_continuations, named_at
 from btlang.frontends.mission.symbols.definitions import find_definitions
 from btlang.frontends.mission.symbols.facts import find_facts
 from btlang.frontends.mission.symbols.includes import Included, find_includes
+from btlang.frontends.mission.symbols.meanings import find_meanings
 from btlang.frontends.mission.symbols.nodes import find_main_names
 from btlang.frontends.mission.symbols.phrases import Phrases
 from btlang.frontends.mission.symbols.prefixes import find_prefixes
@@ -44,7 +46,10 @@ class Names:
         parts = self.included.values()
         facts = find_facts(text, vocabulary)
         self.facts = facts.found
-        self.ends = includes.ends | facts.ends
+        meanings = find_meanings(text, vocabulary)
+        self.meanings = meanings.found
+        """Joining words that have another role here, each with that."""
+        self.ends = includes.ends | facts.ends | meanings.ends
         self.main_name = ""
         main_span: Span | None = None
         for name, first, last in find_main_names(text, vocabulary):
@@ -58,8 +63,10 @@ class Names:
         compared = {prefix.words for prefix in self.prefixes.values()}
         elsewhere = [definition for part in parts for definition in all_definitions(part.mission)]
         self.phrases = Phrases(text, vocabulary)
+        text.going_on = find_continuations(self.phrases)
         self.definitions = find_definitions(self.phrases, self.ends, compared, elsewhere)
-        self.problems: list[Diagnostic] = [*facts.problems, *self.definitions.problems]
+        text.going_on -= named_at(self.definitions.trie, self.phrases, text.going_on)
+        self.problems: list[Diagnostic] = [*facts.problems, *meanings.problems, *self.definitions.problems]
         if main_span is not None:
             defined = [header.name for header in self.definitions.headers.values()]
             if self.main_name in (*defined, *(definition.name for definition in elsewhere)):

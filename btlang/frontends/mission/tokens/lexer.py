@@ -11,17 +11,20 @@ from btlang.frontends.mission.symbols.includes import misplaced
 from btlang.frontends.mission.symbols.names import Load, Names
 from btlang.frontends.mission.symbols.nodes import Unreadable, read_node, unreadable
 from btlang.frontends.mission.symbols.prefixes import SEPARATORS, Prefix, span_of
-from btlang.frontends.mission.token import Called, Listed, Token
+from btlang.frontends.mission.token import Called, Listed, Token, begins_condition, go_on
 from btlang.frontends.mission.tokens.condition_names import called, condition_names
 from btlang.text.source import Source, Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, split
 from btlang.vocabulary.entry import Entry, Meaning
+from btlang.vocabulary.language_tables import CONNECTIVES
 from btlang.vocabulary.lexicon import NODE_ROLES, Lexicon
 from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.references import keys_in, renamed
 from btlang.vocabulary.trie import SLOTS, Match, SlotValue, longest
 from btlang.vocabulary.values import key_of
 
+_ROLES = {"if_it_works": ("if_possible", "if_works"), "in_parallel": ("in_parallel", "meanwhile")}
+"""What a word is inside a statement, and where it goes on with the one before."""
 _MARKS = {",": "comma", ";": "semi", ":": "colon", "(": "open", ")": "close"}
 
 
@@ -52,14 +55,20 @@ class Lexer:
         self._bounds = [*self.names.bounds, len(self.text.words)]
         self.context = ReadingContext(self.vocabulary.values)
         has_values = self.names.known or self.names.bounds  # a name in it may be longer than a phrase
+        self._meanings_of = CONNECTIVES.keys() if self.names.meanings else ()
         self._found = {} if has_values else self.names.phrases.fixed
         self.tokens: list[Token] = []
         self._lines()
         self.conditions = condition_names(self.tokens, self.names.included_conditions())
         """The defined names that stand for conditions."""
-        for token in self.tokens:
+        for at in range(len(self.tokens) - 1, -1, -1):
+            token = self.tokens[at]
             if token.kind == "name":
                 token.kind = "condition" if called(token).id in self.conditions else "command"
+            elif token.kind == "once":
+                if not begins_condition(self.tokens, at + 1):
+                    token.value = "1"
+                token.kind = "count" if token.value else "as_soon_as"
 
     def again(self, source: Source) -> Lexer:
         """Another text in the place of this one; it may include what this one does, and nothing is said about it."""
@@ -88,7 +97,7 @@ class Lexer:
                     self.problems.append(diagnostic("BT007", self.text.span(line.first, line.first)))
             if number and not opens_block:
                 self._mark("newline", line.first)
-            if line.indent <= indents[0]:
+            if line.indent <= indents[0] and line.first not in self.text.going_on:
                 self.context.latest.clear()  # pronouns do not reach beyond a statement
             self._line(line.first, line.last)
             opens_block = bool(self.tokens) and self.tokens[-1].kind == "colon"  # politeness may stand behind it
@@ -119,7 +128,7 @@ class Lexer:
                 continue
             if word in _MARKS:
                 tokens.append(Token(_MARKS[word], starts[at], ends[at]))
-                if word == END_OF_STATEMENT:
+                if word == END_OF_STATEMENT and at + 1 < last and at + 1 not in text.going_on:
                     context.latest.clear()
                 at += 1
                 continue
@@ -152,9 +161,16 @@ class Lexer:
                 if role == "politeness":
                     at = self._politeness(match, at)
                     continue
+                if at in text.going_on:
+                    go_on(tokens)
+                goes_on = bool(tokens) and tokens[-1].kind == "stop"
                 if role == "negated":
                     tokens.append(Token("not", starts[at], starts[at]))
                 tokens.append(self._phrase(match, at))
+                if role in self._meanings_of:
+                    tokens[-1].role = self.names.meanings.get(" ".join(words[at : match.last]), tokens[-1].role)
+                if role in _ROLES:
+                    tokens[-1].kind = _ROLES[role][goes_on]
                 for value in match.values:
                     context.latest[value.type] = value.text if not value.more else value.more[-1]
                 at = match.last

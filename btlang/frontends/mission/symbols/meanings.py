@@ -1,0 +1,39 @@
+"""Finds the lines that give a joining word another meaning in this text: `here "and" means then`."""
+
+from __future__ import annotations
+
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.text.words import Words, statements
+from btlang.vocabulary.lexicon import Lexicon
+
+_JOINING = ("then", "and", "or")
+
+
+class Meanings:
+    """The role that each word has here, and the words behind each such line, by its first."""
+
+    def __init__(self) -> None:
+        self.found: dict[str, str] = {}
+        self.ends: dict[int, int] = {}
+        self.problems: list[Diagnostic] = []
+
+
+def find_meanings(text: Words, vocabulary: Lexicon) -> Meanings:
+    """Every such line at the left margin. BT066 for two that disagree."""
+    meanings = Meanings()
+    heres = set(vocabulary.roles["here"])
+    if heres.isdisjoint(text.distinct):
+        return meanings
+    roles = {phrase: role for role in _JOINING for phrase in vocabulary.roles[role]}
+    for indent, first, last in statements(text, heres):
+        word = text.words[first + 1]
+        is_line = indent == text.lines[0].indent and last - first > 3 and text.words[first] in heres
+        if not (is_line and word[0] == '"' and text.words[first + 2] in vocabulary.roles["define_strong"]):
+            continue
+        joining, other = word[1:].lower(), " ".join(text.words[first + 3 : last])
+        if joining not in roles or other not in roles:
+            continue
+        meanings.ends[first] = last
+        if meanings.found.setdefault(joining, roles[other]) != roles[other]:
+            meanings.problems.append(diagnostic("BT066", text.span(first, last), word=joining))
+    return meanings
