@@ -7,7 +7,7 @@ from functools import partial
 from weakref import WeakKeyDictionary
 
 from btlang.engine.instance import NodeInstance, blackboard_key
-from btlang.engine.leaves.callables import class_leaf, function_leaf, generator_leaf
+from btlang.engine.leaves.callables import GeneratorLeaf, class_leaf, function_leaf
 from btlang.engine.leaves.leaf import LeafBinding, described
 from btlang.engine.leaves.signature import LeafSignature
 
@@ -58,11 +58,10 @@ def bound_leaf(instance: NodeInstance, signature: LeafSignature) -> Compiled:
         proxied = {name: instance.service(name) for name in given if name in beside}
         background = background_leaf(instance, call, binding.thread, "halted" in given, proxied)
         return class_leaf(instance, background, background.start, stored)
-    return (
-        generator_leaf(instance, call, stored)
-        if signature.kind == "generator"
-        else function_leaf(instance, call, stored)
-    )
+    if signature.kind == "generator":
+        generator = GeneratorLeaf(instance, call, stored)
+        return generator.tick, generator.halt
+    return function_leaf(instance, call, stored)
 
 
 def _arguments(instance: NodeInstance, ports: dict[str, str], binding: LeafBinding) -> tuple[dict[str, Any], Stored]:
