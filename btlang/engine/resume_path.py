@@ -13,7 +13,7 @@ from btlang.engine.status import RUNNING
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.engine.instance import Compiled, Halt, NodeInstance, Tick
+    from btlang.engine.instance import Compiled, NodeInstance, Tick
 
 
 class ResumePath:
@@ -45,8 +45,7 @@ def resumable(path: ResumePath, compiled: Compiled) -> Compiled:
     tick, halt = compiled
     path.used = True
 
-    # what does not change are defaults and not cells, as in control.py
-    def tick_resumable(path: ResumePath = path, tick: Tick = tick) -> int:
+    def tick_resumable() -> int:
         status = path.answer
         if status is None:
             status = tick()
@@ -54,7 +53,7 @@ def resumable(path: ResumePath, compiled: Compiled) -> Compiled:
         path.resumed = tick if status == RUNNING else None
         return status
 
-    def halt_resumable(keep: bool, path: ResumePath = path, halt: Halt = halt) -> None:
+    def halt_resumable(keep: bool) -> None:
         path.answer = path.resumed = None
         halt(keep)
 
