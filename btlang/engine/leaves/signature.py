@@ -6,13 +6,13 @@ from btlang.engine.leaves.leaf import LeafBinding
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping
     from typing import Any, TypeAlias
 
     from btlang.engine.blackboard import Blackboard
-    from btlang.engine.leaves.callables import Stored
 
     Ports: TypeAlias = tuple[tuple[str, str], ...]
+    Call: TypeAlias = tuple[Callable[..., Any], Callable[[], Mapping[str, Any]] | None, list[str]]
 
 
 class LeafSignature:
@@ -31,7 +31,7 @@ class LeafSignature:
         call = binding.call
         self.binding = binding
         self.given: dict[tuple[str, ...], list[str]] = {}
-        self.calls: dict[tuple[Ports, Blackboard], tuple[Callable[..., Any], Stored, list[str]]] = {}
+        self.calls: dict[tuple[Ports, Blackboard], Call] = {}
         self.made_with: list[str] | None = None
         if isclass(call):
             self.kind = "class"
