@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterable, Sequence
 from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.passes.order import used_first
 from btlang.record import Record
-from btlang.tree.ast import Definition, Program
+from btlang.tree.ast import Ast, Definition, Program, parents_first
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import children_first
 from btlang.vocabulary.lexicon import Lexicon
@@ -46,6 +46,7 @@ class Compilation:
         self._tree = tree
         self._nodes: list[tuple[str, list[Node]]] = []
         self._ids: frozenset[str] = frozenset()
+        self._syntax: dict[int, list[Ast]] = {}
 
     @property
     def is_text(self) -> bool:
@@ -57,6 +58,12 @@ class Compilation:
         """The syntax tree; only for passes that need one."""
         assert self._mission is not None
         return self._mission
+
+    def syntax(self, root: Ast) -> list[Ast]:
+        """The nodes of a body in the syntax tree, parents before their parts, in the order of the text."""
+        if id(root) not in self._syntax:
+            self._syntax[id(root)] = parents_first(root)
+        return self._syntax[id(root)]
 
     @property
     def tree(self) -> Tree:

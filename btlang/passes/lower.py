@@ -49,7 +49,8 @@ def lower_names(compilation: Compilation) -> Iterator[Diagnostic]:
         yield diagnostic("BT005", mission.span, example=example)
         return
     root = Node("AlwaysSuccess") if mission.body is None else lower(mission.body, scope).node
-    conditions = dict.fromkeys(node.id for node in ast.exact_nodes(mission) if node.is_condition)
+    exact = (node for body in ast.bodies(mission) for node in compilation.syntax(body) if isinstance(node, ast.Exact))
+    conditions = dict.fromkeys(node.id for node in exact if node.is_condition)
     models = tuple(NodeModel("Condition", id) for id in conditions)
     compilation.tree = Tree(root, tuple(scope.bodies), mission.name, models)
 

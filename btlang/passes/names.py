@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
-from btlang.tree.ast import Ast, Definition, Exact, Name, all_definitions, parts
+from btlang.tree.ast import Ast, Definition, Exact, Name, all_definitions
 from btlang.tree.catalogue import SUBTREE
 from btlang.tree.visit import in_order_of_use
 
@@ -12,7 +14,7 @@ from btlang.tree.visit import in_order_of_use
 def order_names(compilation: Compilation) -> list[Diagnostic]:
     """Puts the definitions in order, used ones before their users. BT040 for a name that reaches itself."""
     definitions = {definition.name: definition for definition in all_definitions(compilation.mission)}
-    uses = {name: names_in(definition.body) for name, definition in definitions.items()}
+    uses = {name: names_in(compilation.syntax(definition.body)) for name, definition in definitions.items()}
     ordered, circles = in_order_of_use(uses)
     compilation.ordered = [definitions[name] for name in ordered]
     return [_circle(circle, definitions) for circle in circles]
@@ -22,14 +24,10 @@ def _subtree(item: Exact) -> str:
     return dict(item.ports).get("ID", "")
 
 
-def names_in(node: Ast) -> list[str]:
-    """The defined names that are used in a subtree, each once, in the order they stand."""
+def names_in(nodes: Iterable[Ast]) -> list[str]:
+    """The defined names that these nodes use, each once, in the order they stand."""
     found: dict[str, None] = {}
-    stack = [node]
-    while stack:
-        item = stack.pop()
-        if item.parts:
-            stack += reversed(parts(item))
+    for item in nodes:
         if isinstance(item, Name):
             found[item.name] = None
         elif isinstance(item, Exact) and item.id == SUBTREE:

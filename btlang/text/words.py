@@ -23,7 +23,8 @@ _MARKS_ABOVE = "\u0300-\u036f"  # accents as characters of their own, which some
 
 # Blanks in front of a word belong to its match, which halves the number of matches.
 _PIECE = re.compile(
-    rf"""[^\S\n]*(?:([^\W\d_]+/[^\W\d_]+(?!\w)|[^\W\d](?:[\w{_MARKS_ABOVE}'-]*[\w{_MARKS_ABOVE}])?)  # word
+    rf"""[^\S\n]*(?:([a-zA-Z]++(?![\w/'{_MARKS_ABOVE}-])  # as below, in half the time
+                    |[^\W\d_]+/[^\W\d_]+(?!\w)|[^\W\d](?:[\w{_MARKS_ABOVE}'-]*[\w{_MARKS_ABOVE}])?)  # word
     |(-?\d+(?:\.\d+)?(?:[eE][+-]?\d+(?!\w))?)                          # number
     |([,:()%°{{}}])                                                    # mark
     |(\n[ \t\r]*)                                                      # line

@@ -357,18 +357,26 @@ def parts(node: Ast) -> list[Ast]:
     return found
 
 
+def parents_first(root: Ast) -> list[Ast]:
+    """Every node, parents before their parts, in the order of the text."""
+    found: list[Ast] = []
+    stack = [root]
+    while stack:
+        node = stack.pop()
+        found.append(node)
+        if node.parts:
+            stack += reversed(parts(node))
+    return found
+
+
+def bodies(mission: Program) -> list[Ast]:
+    """Those of all definitions, then the mission's own."""
+    return [each.body for each in all_definitions(mission)] + ([] if mission.body is None else [mission.body])
+
+
 def exact_nodes(mission: Program) -> list[Exact]:
     """The nodes that a mission and its definitions say by their ids."""
-    found: list[Exact] = []
-    stack = [mission.body] if mission.body is not None else []
-    stack += [definition.body for definition in reversed(all_definitions(mission))]
-    while stack:
-        item = stack.pop()
-        if type(item) is Exact:
-            found.append(item)
-        if item.parts:
-            stack += reversed(parts(item))
-    return found
+    return [node for body in bodies(mission) for node in parents_first(body) if type(node) is Exact]
 
 
 def keys_of(node: Ast) -> list[str]:

@@ -7,7 +7,7 @@ from functools import partial
 from weakref import WeakKeyDictionary
 
 from btlang.engine.instance import NodeInstance, blackboard_key
-from btlang.engine.leaves.callables import class_leaf, function_leaf, generator_leaf
+from btlang.engine.leaves.callables import GeneratorLeaf, class_leaf, function_leaf
 from btlang.engine.leaves.leaf import LeafBinding, described
 from btlang.engine.leaves.signature import LeafSignature
 
@@ -26,43 +26,53 @@ _signatures: WeakKeyDictionary[Callable[..., Any], tuple[Parameter, ...]] = Weak
 
 def bound_leaf(instance: NodeInstance, signature: LeafSignature) -> Compiled:
     """A leaf that is a Python object; raises EngineError where its parameters do not fit its ports."""
-    binding = signature.binding
-    call: Any = binding.call
-    ports = {**binding.defaults, **{port: text for port, text in instance.node.ports if port[:1] != "_"}}
-    if binding.thread and signature.kind != "thread":
+    binding, kind = signature.binding, signature.kind
+    if binding.thread and kind != "thread":
         raise instance.error(f"{instance.node.id} can't run in a thread: only a plain function can")
-    names = tuple(ports)
-    if signature.kind == "class":
-        leaf = _make(instance, signature)
+    if kind == "class":
+        leaf, ports = _make(instance, signature), _ports(instance, binding)
+        names = tuple(ports)
         if names not in signature.given:
             signature.given[names] = _fill(instance, leaf.start, names, ())
         constants, stored = _arguments(instance, ports, binding)
         start = partial(leaf.start, **constants) if constants else leaf.start
         return class_leaf(instance, leaf, start, stored)
+    key = instance.node.ports, instance.scope
+    if key not in signature.calls:
+        signature.calls[key] = _call(instance, signature)
+    call, stored, given = signature.calls[key]
+    if kind == "generator":
+        generator = GeneratorLeaf(instance, call, stored)
+        return generator.tick, generator.halt
+    if kind == "function":
+        return function_leaf(instance, call, stored)
+    from btlang.engine.leaves.background import background_leaf
+
+    proxied = {name: instance.service(name) for name in given if name in instance.state.proxies}
+    background = background_leaf(instance, call, binding.thread, "halted" in given, proxied)
+    return class_leaf(instance, background, background.start, stored)
+
+
+def _ports(instance: NodeInstance, binding: LeafBinding) -> dict[str, str]:
+    return {**binding.defaults, **{port: text for port, text in instance.node.ports if port[:1] != "_"}}
+
+
+def _call(instance: NodeInstance, signature: LeafSignature) -> tuple[Callable[..., Any], Stored, list[str]]:
+    """The callable with its constant values, what reads the others, and the names of the services that it gets."""
+    binding, ports = signature.binding, _ports(instance, signature.binding)
+    names = tuple(ports)
     given = signature.given.get(names)
     if given is None:
         services = instance.state.service_names
         given = signature.given[names] = _fill(
-            instance, call, names, services | {"halted"} if binding.thread else services
+            instance, binding.call, names, services | {"halted"} if binding.thread else services
         )
     constants, stored = _arguments(instance, ports, binding) if ports else ({}, None)
     beside = instance.state.proxies if signature.kind in ("async", "thread") else ()
     for name in given:
         if name not in beside and (name != "halted" or not binding.thread):
             constants[name] = instance.service(name)
-    if constants:
-        call = partial(call, **constants)
-    if signature.kind in ("async", "thread"):
-        from btlang.engine.leaves.background import background_leaf
-
-        proxied = {name: instance.service(name) for name in given if name in beside}
-        background = background_leaf(instance, call, binding.thread, "halted" in given, proxied)
-        return class_leaf(instance, background, background.start, stored)
-    return (
-        generator_leaf(instance, call, stored)
-        if signature.kind == "generator"
-        else function_leaf(instance, call, stored)
-    )
+    return partial(binding.call, **constants) if constants else binding.call, stored, given
 
 
 def _arguments(instance: NodeInstance, ports: dict[str, str], binding: LeafBinding) -> tuple[dict[str, Any], Stored]:

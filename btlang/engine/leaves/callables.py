@@ -70,38 +70,45 @@ def function_leaf(instance: NodeInstance, call: Callable[..., Any], stored: Stor
     return tick, halt_nothing
 
 
-def generator_leaf(instance: NodeInstance, call: Callable[..., Any], stored: Stored) -> Compiled:
-    """A generator function; `stored` gives the values that are read at each start."""
-    generator: Any = None
-    interrupts, trace = instance.state.interrupts, _trace_of(instance)
+class GeneratorLeaf:
+    """A generator function; `stored` gives the values that are read at each start.
 
-    def tick() -> int:
-        nonlocal generator
+    A class and not two closures as most nodes are: there are many of them, and each would need six cells.
+    """
+
+    __slots__ = ("call", "generator", "instance", "stored", "trace")
+
+    def __init__(self, instance: NodeInstance, call: Callable[..., Any], stored: Stored) -> None:
+        self.instance = instance
+        self.call = call
+        self.stored = stored
+        self.trace = _trace_of(instance)
+        self.generator: Any = None
+
+    def tick(self) -> int:
         try:
-            if generator is None:
-                values = None if stored is None else stored()
-                if interrupts or trace is not None:
-                    _begin(interrupts, trace)
-                generator = call() if values is None else call(**values)
-            next(generator)
+            if self.generator is None:
+                values = None if self.stored is None else self.stored()
+                interrupts = self.instance.state.interrupts
+                if interrupts or self.trace is not None:
+                    _begin(interrupts, self.trace)
+                self.generator = self.call() if values is None else self.call(**values)
+            next(self.generator)
             return RUNNING
         except StopIteration as stop:
-            generator = None
-            status = status_of(instance, stop.value)
+            self.generator = None
+            status = status_of(self.instance, stop.value)
         except KeyboardInterrupt:
             raise
         except BaseException as problem:
-            generator = None
-            status = failed(instance, problem)
-        return status if trace is None else trace.ended(status)
+            self.generator = None
+            status = failed(self.instance, problem)
+        return status if self.trace is None else self.trace.ended(status)
 
-    def halt(keep: bool) -> None:
-        nonlocal generator
-        if generator is not None:
-            running, generator = generator, None
-            _stop(instance, running.close)
-
-    return tick, halt
+    def halt(self, keep: bool) -> None:
+        if self.generator is not None:
+            running, self.generator = self.generator, None
+            _stop(self.instance, running.close)
 
 
 def class_leaf(instance: NodeInstance, leaf: Any, start: Callable[..., Any], stored: Stored) -> Compiled:

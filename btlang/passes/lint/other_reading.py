@@ -209,9 +209,12 @@ def in_order(items: Sequence[ast.Ast]) -> Sequence[ast.Ast]:
 
 
 def _in_brackets(span: Span) -> bool:
-    text = span.source.text
-    before, behind = text[: span.start].rstrip(" \t"), text[span.end :].lstrip(" \t")
-    return before.endswith("(") and behind.startswith(")")
+    text, start, end = span.source.text, span.start, span.end
+    while text[start - 1 : start] in (" ", "\t"):
+        start -= 1
+    while text[end : end + 1] in (" ", "\t"):
+        end += 1
+    return text[start - 1 : start] == "(" and text[end : end + 1] == ")"
 
 
 def _bracketed(span: Span) -> tuple[Span, str]:

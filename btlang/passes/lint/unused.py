@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
 from btlang.passes.names import names_in
 from btlang.text.source import Span
-from btlang.tree.ast import Assign, Ast, Program, Remember, all_definitions, keys_of, parts
+from btlang.tree.ast import Assign, Ast, Remember, all_definitions, bodies, keys_of
 
 
 def unused_names(compilation: Compilation) -> Iterator[Diagnostic]:
@@ -16,51 +16,47 @@ def unused_names(compilation: Compilation) -> Iterator[Diagnostic]:
     mission = compilation.mission
     if mission.body is None or compilation.grows:
         return
-    yield from _values(mission)
+    yield from _values(compilation)
     if not mission.definitions:
         return
-    bodies = {definition.name: definition.body for definition in mission.definitions}
+    own = {definition.name: definition.body for definition in mission.definitions}
     reached: set[str] = set()
-    waiting = names_in(mission.body)
+    waiting = names_in(compilation.syntax(mission.body))
     while waiting:
         name = waiting.pop()
-        if name not in reached and name in bodies:
+        if name not in reached and name in own:
             reached.add(name)
-            waiting += names_in(bodies[name])
+            waiting += names_in(compilation.syntax(own[name]))
     for definition in mission.definitions:
         if definition.name not in reached and definition.span.source is mission.span.source:
             yield diagnostic("BT051", definition.name_span, name=definition.name)
 
 
-def _values(mission: Program) -> Iterator[Diagnostic]:
+def _values(compilation: Compilation) -> Iterator[Diagnostic]:
     """Values that are given and never asked for, and parameters that stand nowhere in their body."""
-    asked: set[str] = set()
+    mission = compilation.mission
     given: dict[str, Span] = {}
-    for definition in all_definitions(mission):
-        own = _asked(definition.body, given)
+    for body in bodies(mission):
+        for node in compilation.syntax(body):
+            if isinstance(node, (Assign, Remember)):
+                given.setdefault(node.key, node.span)
+    definitions = all_definitions(mission)
+    if not given and not any(definition.parameters for definition in definitions):
+        return
+    asked: set[str] = set() if mission.body is None else _asked(compilation.syntax(mission.body))
+    for definition in definitions:
+        own = _asked(compilation.syntax(definition.body))
         asked |= own
         for key, _ in definition.parameters:
             if key not in own and definition.span.source is mission.span.source:
                 yield diagnostic("BT051", definition.name_span, name=f"{{{key}}}")
-    if mission.body is not None:
-        asked |= _asked(mission.body, given)
     for key, span in given.items():
         if key not in asked and span.source is mission.span.source:
             yield diagnostic("BT051", span, name=key.replace("_", " ").strip())
 
 
-def _asked(root: Ast, given: dict[str, Span]) -> set[str]:
-    """The keys of values that a tree asks for; adds those that it gives to `given`, with their first place."""
-    asked: set[str] = set()
-    stack = [root]
-    while stack:
-        node = stack.pop()
-        if node.parts:
-            stack.extend(reversed(parts(node)))
-        keys = keys_of(node)
-        if isinstance(node, (Assign, Remember)):
-            given.setdefault(node.key, node.span)
-            keys = [key for key in keys if key != node.key]
-        if keys:
-            asked.update(keys)
-    return asked
+def _asked(nodes: Iterable[Ast]) -> set[str]:
+    """The keys of values that nodes ask for."""
+    return {
+        key for node in nodes for key in keys_of(node) if not isinstance(node, (Assign, Remember)) or key != node.key
+    }
