@@ -10,8 +10,9 @@ from collections.abc import Callable, Sequence
 from functools import partial
 from importlib import import_module
 
+import btlang
 from btlang.api import Mission, format_mission, parse_tree, world_vocabulary
-from btlang.cli_options import parsed
+from btlang.cli_options import parsed, quoted, reads_as_mission, show_help
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source, reason_of
 from btlang.diagnostics.report import Report
@@ -241,6 +242,16 @@ def _repl(options: argparse.Namespace) -> int:
     )
 
 
+def _help(options: argparse.Namespace) -> int:
+    show_help(options.subject)
+    return SUCCESS
+
+
+def _version(options: argparse.Namespace) -> int:
+    show(f"btc {btlang.__version__}")
+    return SUCCESS
+
+
 _NODES = {
     "sim-ros": "btlang.ros.simulator.command",
     "ros-node": "btlang.ros.mission.command",
@@ -259,6 +270,8 @@ _VERBS: dict[str, Callable[[argparse.Namespace], int]] = {
     "explain": _explain,
     "format": _format,
     **dict.fromkeys(_NODES, _node),
+    "help": _help,
+    "version": _version,
 }
 
 
@@ -270,7 +283,7 @@ def _typed(options: argparse.Namespace) -> Source:
 
 def _mission(options: argparse.Namespace) -> Mission:
     """Compiles what the options name; warnings go to the report."""
-    source = _typed(options) if options.text is not None else read_source(options.file, options.include_root)
+    source = _typed(options) if options.text is not None else _read_file(options)
     mission = parse_tree(
         source, parser=options.parser, keywords=options.keywords, world=options.world, main=options.main,
         language=options.language,
@@ -278,6 +291,17 @@ def _mission(options: argparse.Namespace) -> Mission:
     for warning in mission.warnings:
         options.report.add([warning])
     return mission
+
+
+def _read_file(options: argparse.Namespace) -> Source:
+    """The text of the file. Of one that isn't there, the error says how to write a mission as text."""
+    try:
+        return read_source(options.file, options.include_root)
+    except MissionError as error:
+        if os.path.exists(options.file) or not reads_as_mission(options.file):
+            raise
+        told = ("help", f"To give a mission as text: btc {options.verb} -c {quoted(options.file)}")
+        raise MissionError([p.replace(arguments=(*p.arguments, told)) for p in error.diagnostics]) from None
 
 
 if __name__ == "__main__":

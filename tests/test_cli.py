@@ -86,7 +86,6 @@ def test_exit_codes(btc: Screen) -> None:
 @pytest.mark.parametrize(
     "arguments",
     [
-        ["fly"],
         ["run"],
         ["run", "a.txt", "-c", "wave"],
         ["run", "-c", "wave", "--speed", "0"],
@@ -103,7 +102,8 @@ def test_wrong_options_exit_with_2(arguments: list[str], capsys: pytest.CaptureF
     with pytest.raises(SystemExit) as caught:
         main(arguments)
     assert caught.value.code == 2
-    assert "usage: btc" in capsys.readouterr().err
+    lines = capsys.readouterr().err.splitlines()
+    assert (lines[0].startswith("btc run: "), lines[1:]) == (True, ["Run 'btc help run' for help."])
 
 
 @pytest.mark.parametrize(("duration", "seconds"), [("1", "1.0"), ("2s", "2.0"), ("half a minute", "30.0")])
