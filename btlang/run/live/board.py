@@ -81,10 +81,10 @@ class Board:
         self._above.clear()
         return lines
 
-    def frame(self, width: int, height: int, doing: str, keys: bool) -> list[frame.Line]:
+    def frame(self, width: int, height: int, doing: str, legend: str) -> list[frame.Line]:
         """At most `height` lines (7 or more) while the run goes on. `doing` says what it does, "" that it has ended.
 
-        `keys` tells whether keys are read. A run that ended before it began leaves nothing to show.
+        `legend` is that of frame.keys_line. A run that ended before it began leaves nothing to show.
         """
         state, signs, over = self.state, self._signs, not doing
         below = [frame.robot_line(state, signs), frame.counts_line(state, signs)]
@@ -93,7 +93,7 @@ class Board:
         if over:
             return [*frame.tree_lines(state, self._words, height - 2, width, over, signs), *below]
         tree = frame.tree_lines(state, self._words, height - 4, width, over, signs)
-        below.append(frame.keys_line(doing == "paused", keys, signs))
+        below.append(frame.keys_line(doing == "paused", legend, signs))
         return [frame.header(self._title, state, doing, signs), *tree, *below]
 
     def _take(self, event: Event | str) -> None:

@@ -121,10 +121,10 @@ def counts_line(state: State, signs: Signs) -> Line:
     return (("ticks ", "dim"), (str(state.ticks), ""), (f"{signs.apart}overruns ", "dim"), (str(state.overruns), late))
 
 
-def keys_line(paused: bool, keys: bool, signs: Signs) -> Line:
-    """What the keys do; those of signals where the keyboard is not read."""
+def keys_line(paused: bool, legend: str, signs: Signs) -> Line:
+    """What the keys do; those of signals where the keyboard is not read, or only space is."""
     pieces: list[tuple[str, str]] = []
-    for key, deed in _KEYS if keys else _SIGNALS:
+    for key, deed in {"keys": _KEYS, "space": (_KEYS[0], *_SIGNALS)}.get(legend, _SIGNALS):
         deed = "resume" if paused and deed == "pause" else deed
         pieces += [(key, "bold"), (f" {deed}{signs.apart}", "dim")]
     last = pieces.pop()[0].removesuffix(signs.apart)

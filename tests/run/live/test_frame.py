@@ -142,9 +142,9 @@ def test_the_lines_around() -> None:
     state.now, state.ticks, state.overruns = 12.34, 246, 1
     assert text(header("tea.txt", state, "paused", UNICODE)) == "tea.txt · 12.3 s · paused"
     assert text(counts_line(state, UNICODE)) == "ticks 246 · overruns 1"
-    assert text(keys_line(False, True, UNICODE)) == "space pause · s step · q stop · e emergency stop"
-    assert text(keys_line(True, True, UNICODE)) == "space resume · s step · q stop · e emergency stop"
-    assert text(keys_line(True, False, ASCII)) == "Ctrl-C stop - Ctrl-\\ emergency stop"
+    assert text(keys_line(False, "keys", UNICODE)) == "space pause · s step · q stop · e emergency stop"
+    assert text(keys_line(True, "keys", UNICODE)) == "space resume · s step · q stop · e emergency stop"
+    assert text(keys_line(True, "signals", ASCII)) == "Ctrl-C stop - Ctrl-\\ emergency stop"
 
 
 def test_a_terminal_without_unicode() -> None:
