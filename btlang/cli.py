@@ -138,11 +138,14 @@ def _compile(options: argparse.Namespace) -> int:
 
 
 def _words(options: argparse.Namespace) -> int:
-    from btlang.vocabulary.listing import listing
+    from btlang.vocabulary.listing import listing, overview
 
     vocabulary = world_vocabulary(options.keywords, options.world, options.language)
-    lines = listing(vocabulary, " ".join(options.search), listing_width())
-    show("\n".join(lines))
+    search = " ".join(options.search)
+    if search or options.all:
+        show("\n".join(listing(vocabulary, search, listing_width())))
+    else:
+        show("\n".join(overview(vocabulary, listing_width())))
     return SUCCESS
 
 

@@ -223,6 +223,7 @@ def _compile_options(parser: argparse.ArgumentParser) -> None:
 
 def _listing_options(parser: argparse.ArgumentParser) -> None:
     _words_options(parser)
+    parser.add_argument("--all", action="store_true", help="list everything, with what it does and an example")
     parser.add_argument("search", nargs="*", metavar="SEARCH", help="a topic, or words to search for")
 
 

@@ -58,7 +58,7 @@ def take_away_what_is_missed(code: str, patch: pytest.MonkeyPatch) -> None:
     if code == "BT099":
         patch.delenv("BTC_DEBUG")
         patch.setenv("XDG_STATE_HOME", "/dev/null")  # where nothing can be written
-        patch.setattr("btlang.vocabulary.listing.listing", _buggy)
+        patch.setattr("btlang.vocabulary.listing.overview", _buggy)
     patch.setitem(sys.modules, "matplotlib", None)  # BT081
     patch.setitem(sys.modules, "btlang_interfaces", None)  # BT110
     if code != "BT101":

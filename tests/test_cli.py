@@ -155,9 +155,12 @@ def test_worlds_bring_their_names(btc: Screen) -> None:
 
 
 def test_words(btc: Screen) -> None:
-    assert btc("words") == 0
+    assert btc("words", "--all") == 0
     assert "  move forward [{distance}] [at {speed}]\n" in btc.out
     assert "motion:" in btc.out
+    assert btc("words") == 0
+    assert len(btc.out.splitlines()) <= 22
+    assert "btc words --all" in btc.out
     assert btc("words", "battery", "low") == 0
     assert btc.out.splitlines()[1].strip() == "battery is low  (condition)"
 

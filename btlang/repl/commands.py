@@ -18,7 +18,7 @@ from btlang.text.output import listing_width
 from btlang.text.source import Source
 from btlang.text.table import Table
 from btlang.text.words import split
-from btlang.vocabulary.listing import help_on, listing
+from btlang.vocabulary.listing import help_on, listing, overview
 from btlang.vocabulary.trie import longest
 
 TYPE_CHECKING = False
@@ -75,7 +75,7 @@ COMMANDS = (
     Command("robot", "reset", "", "resets the world"),
     Command("robot", "speed", "[real|max|FACTOR]", "how fast time passes when the robot moves"),
     Command("prompt", "help", "[PHRASE]", "explains a phrase or word, or the prompt itself"),
-    Command("prompt", "words", "[SEARCH]", "lists what you can say"),
+    Command("prompt", "words", "[TOPIC|WORD|--all]", "lists what you can say: the topics, one topic, or a word"),
     Command("prompt", "clear", "", "clears the screen; the mission stays"),
     Command("prompt", "quit", "", "leaves, like Ctrl-D twice", ("exit", "bye")),
 )
@@ -171,7 +171,11 @@ class Commands:
             self._write("\n".join(help_on(self._draft.vocabulary, rest, listing_width())))
 
     def _words(self, rest: str) -> None:
-        self._write("\n".join(listing(self._draft.vocabulary, rest, listing_width())))
+        vocabulary, width = self._draft.vocabulary, listing_width()
+        if rest:
+            self._write("\n".join(listing(vocabulary, rest.removeprefix("--all"), width)))
+        else:
+            self._write("\n".join(overview(vocabulary, width, "words")))
 
     def _show(self, rest: str) -> None:
         draft = self._draft
