@@ -12,7 +12,7 @@ from importlib import import_module
 
 import btlang
 from btlang.api import Mission, format_mission, parse_tree, world_vocabulary
-from btlang.cli_options import parsed, quoted, reads_as_mission, show_help
+from btlang.cli_options import parsed, quoted, reads_as_mission, show_help, verb_parsers
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source, reason_of
 from btlang.diagnostics.report import Report
@@ -245,6 +245,26 @@ def _repl(options: argparse.Namespace) -> int:
     )
 
 
+def _completion(options: argparse.Namespace) -> int:
+    from btlang.examples import examples
+    from btlang.robots.body_file import shipped_bodies
+    from btlang.robots.platforms import ROBOTS
+    from btlang.shell_completion import completion_script
+    from btlang.vocabulary.items import items
+    from btlang.vocabulary.shipped import languages
+
+    known = {
+        "VERB": _VERBS,
+        "LANG": languages(),
+        "ROBOT": (*ROBOTS, *shipped_bodies()),
+        "SPEED": ("real", "max"),
+        "SEARCH": dict.fromkeys(item.topic for item in items(world_vocabulary()) if " " not in item.topic),
+        "NAME": [example.name for example in examples()],
+    }
+    pass_on(completion_script(options.shell, verb_parsers(), known))
+    return SUCCESS
+
+
 def _help(options: argparse.Namespace) -> int:
     show_help(options.subject)
     return SUCCESS
@@ -273,6 +293,7 @@ _VERBS: dict[str, Callable[[argparse.Namespace], int]] = {
     "explain": _explain,
     "format": _format,
     **dict.fromkeys(_NODES, _node),
+    "completion": _completion,
     "help": _help,
     "version": _version,
 }

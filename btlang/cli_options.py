@@ -50,6 +50,11 @@ def show_help(verb: str | None) -> None:
         _main_parser().refuse(f"there's no verb '{verb}'", f"Did you mean: btc help {near[0]}" if near else "")
 
 
+def verb_parsers() -> dict[str, tuple[str, argparse.ArgumentParser]]:
+    """What each verb does, and the parser of its arguments."""
+    return {verb: (about, _verb_parser(verb)) for verb, (about, _) in _OPTIONS.items()}
+
+
 def _main_parser() -> _Parser:
     usage = 'btc [VERB] [OPTION ...]\n       btc FILE|"MISSION" [OPTION ...]   as with the verb run'
     parser = _Parser("btc", usage=usage, description="Compiles and runs robot missions in plain English.")
@@ -272,6 +277,12 @@ def _serving_options(parser: argparse.ArgumentParser) -> None:
     add_serving_options(parser)
 
 
+def _completion_options(parser: argparse.ArgumentParser) -> None:
+    from btlang.shell_completion import SHELLS
+
+    parser.add_argument("shell", choices=list(SHELLS), help="bash, zsh or fish; the script says how to use it")
+
+
 def _help_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("subject", nargs="?", metavar="VERB", help="whose options to list")
 
@@ -289,6 +300,7 @@ _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "sim-ros": ("run the simulated robot as a ROS 2 node", _sim_ros_options),
     "ros-node": ("run missions for other programs, as a ROS 2 node", _ros_node_options),
     "serve-actions": ("serve btlang's actions as ROS 2 actions", _serving_options),
+    "completion": ("print a script that completes btc in a shell", _completion_options),
     "help": ("show this help, or that of a verb", _help_options),
     "version": ("print the version", lambda _: None),
 }
