@@ -73,12 +73,12 @@ def _run(options: argparse.Namespace) -> int:
     robot = chosen_robot(options)
     mission = _mission(options)
     if options.preflight:
-        ready = print_preflight(mission.tree, mission.vocabulary, read_world(options.world, robot.body), robot)
+        ready = print_preflight(mission.tree, mission.vocabulary, read_world(mission.world, robot.body), robot)
         return SUCCESS if ready else FAILED
     with pictures_of(mission, options.picture, options.tree_picture) as sinks:
         return run_mission(
             mission,
-            partial(Session, robot, world=options.world),
+            partial(Session, robot, world=mission.world),
             speed=options.speed,
             rate=options.rate,
             time_limit=options.time_limit,
@@ -302,7 +302,7 @@ _VERBS: dict[str, Callable[[argparse.Namespace], int]] = {
 def _typed(options: argparse.Namespace) -> Source:
     """The text of the option -c, whose folder is the current one."""
     roots = None if options.include_root is None else ("", options.include_root)
-    return Source(options.text, "<command line>", roots=roots)
+    return Source(options.text, "<command line>", roots=roots, may_load=True)
 
 
 def _mission(options: argparse.Namespace) -> Mission:

@@ -83,6 +83,7 @@ _ALL = (
     Code("BT046", "'{file}' includes itself: {circle}.", "Move what both need into a third file."),
     Code("BT047", "I can't read '{words}': it needs a line to itself and the name of a file in quotes.", "Write for example: {example}"),
     Code("BT048", "'{name}' is of type {kind} here but of type {other} elsewhere in this mission.", "Give each a different name."),
+    Code("BT049", "'{words}' can't be used: {reason}."),
     Code("BT050", "This can be read in two ways.",
          "I read: {taken}\nIt could also mean: {other}\nDecide with a comma or brackets, for example: {fixed}",
          "warning", "two readings"),

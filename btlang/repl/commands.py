@@ -249,7 +249,7 @@ class Commands:
             self._write("Load which file? load mission.txt")
             return
         source = read_source(rest)
-        self._draft.change(self._draft.entries_of(source.text, rest))
+        self._draft.load(source)
         self._draft.file, self.saved = rest, self._draft.text
         self._write(f"Loaded {_lines(source.text)} from {rest}. 'run' runs the mission, 'show' shows it.")
 
@@ -273,6 +273,7 @@ class Commands:
 
     def _world(self, rest: str) -> None:
         draft = self._draft
+        rest = rest.strip('"')  # as a mission names its world
         if rest:
             before = draft.world, draft.vocabulary, draft.session
             draft.use_world(rest)

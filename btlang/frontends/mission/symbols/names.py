@@ -8,6 +8,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.symbols.definitions import find_definitions
 from btlang.frontends.mission.symbols.facts import find_facts
 from btlang.frontends.mission.symbols.includes import Included, find_includes
+from btlang.frontends.mission.symbols.needs import find_needs
 from btlang.frontends.mission.symbols.nodes import find_main_names
 from btlang.frontends.mission.symbols.phrases import Phrases
 from btlang.frontends.mission.symbols.prefixes import find_prefixes
@@ -44,7 +45,10 @@ class Names:
         parts = self.included.values()
         facts = find_facts(text, vocabulary)
         self.facts = facts.found
-        self.ends = includes.ends | facts.ends
+        needs = find_needs(text, vocabulary)
+        self.needs = tuple((need.role, need.path) for need in needs.found)
+        """What the mission needs, each with the role of the words in front of the path."""
+        self.ends = includes.ends | facts.ends | needs.ends
         self.main_name = ""
         main_span: Span | None = None
         for name, first, last in find_main_names(text, vocabulary):
@@ -59,7 +63,7 @@ class Names:
         elsewhere = [definition for part in parts for definition in all_definitions(part.mission)]
         self.phrases = Phrases(text, vocabulary)
         self.definitions = find_definitions(self.phrases, self.ends, compared, elsewhere)
-        self.problems: list[Diagnostic] = [*facts.problems, *self.definitions.problems]
+        self.problems: list[Diagnostic] = [*needs.problems, *facts.problems, *self.definitions.problems]
         if main_span is not None:
             defined = [header.name for header in self.definitions.headers.values()]
             if self.main_name in (*defined, *(definition.name for definition in elsewhere)):
