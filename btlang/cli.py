@@ -6,7 +6,8 @@ import argparse
 import errno
 import os
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from functools import partial
 from importlib import import_module
 
@@ -75,7 +76,7 @@ def _run(options: argparse.Namespace) -> int:
     if options.preflight:
         ready = print_preflight(mission.tree, mission.vocabulary, read_world(mission.world, robot.body), robot)
         return SUCCESS if ready else FAILED
-    with pictures_of(mission, options.picture, options.tree_picture) as sinks:
+    with pictures_of(mission, options.picture, options.tree_picture, options.quiet) as sinks:
         return run_mission(
             mission,
             partial(Session, robot, world=mission.world),
@@ -170,7 +171,8 @@ def _explain(options: argparse.Namespace) -> int:
     if options.text is not None or (subject is not None and not is_code(subject) and _is_file(subject)):
         return _explain_mission(options)
     if subject is not None:
-        show(explain_code(subject))
+        with _hinting(subject, "explain"):
+            show(explain_code(subject))
         return SUCCESS
     show(all_codes())
     show("\nTo read one: btc explain CODE")
@@ -318,13 +320,20 @@ def _mission(options: argparse.Namespace) -> Mission:
 
 
 def _read_file(options: argparse.Namespace) -> Source:
-    """The text of the file. Of one that isn't there, the error says how to write a mission as text."""
-    try:
+    """The text of the file. If it isn't there, the error may say how to give a mission as text."""
+    with _hinting(options.file, options.verb):
         return read_source(options.file, options.include_root)
+
+
+@contextmanager
+def _hinting(subject: str, verb: str) -> Iterator[None]:
+    """Adds to errors about a subject that isn't a file, but reads as a mission, how to give it as text."""
+    try:
+        yield
     except MissionError as error:
-        if os.path.exists(options.file) or not reads_as_mission(options.file):
+        if os.path.exists(subject) or not reads_as_mission(subject):
             raise
-        told = ("help", f"To give a mission as text: btc {options.verb} -c {quoted(options.file)}")
+        told = ("help", f"To give a mission as text: btc {verb} -c {quoted(subject)}")
         raise MissionError([p.replace(arguments=(*p.arguments, told)) for p in error.diagnostics]) from None
 
 

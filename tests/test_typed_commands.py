@@ -106,3 +106,35 @@ def test_help_on_a_verb_is_that_of_the_verb(capsys: pytest.CaptureFixture[str]) 
 def test_version(word: str, capsys: pytest.CaptureFixture[str]) -> None:
     assert typed(word) == 0
     assert capsys.readouterr().out == f"btc {__version__}\n"
+
+
+@pytest.mark.parametrize(
+    ("mission", "last"),
+    [
+        ("go to the ktichen", "For more, run: btc explain BT013"),
+        ("go to the ktichen then move forward 2", "For more, run: btc explain CODE, where CODE is BT011 or BT013"),
+        ("(wave", "  Add ')' where the group ends, on the same line."),  # the page says no more than this
+    ],
+)
+def test_messages_end_with_where_to_read_more(mission: str, last: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert typed("check", "-c", mission) == 2
+    assert capsys.readouterr().err.splitlines()[-1] == last
+    typed("check", "-c", mission, "--format", "json")
+    assert "For more" not in "".join(capsys.readouterr())
+
+
+def test_explain_asks_for_a_mission_as_text(capsys: pytest.CaptureFixture[str]) -> None:
+    assert typed("explain", "wave") == 2
+    assert 'To give a mission as text: btc explain -c "wave"' in capsys.readouterr().err
+
+
+def test_pictures_are_reported(capsys: pytest.CaptureFixture[str]) -> None:
+    assert typed("tea.txt", *RUN, "--tree-picture", "tree.svg") == 0
+    assert capsys.readouterr().out.endswith("\nWrote tree.svg.\n")
+    assert typed("tea.txt", *RUN, "--tree-picture", "tree.svg", "--quiet") == 0
+    assert capsys.readouterr().out == ""
+
+
+def test_a_failed_not_says_what_was_true(capsys: pytest.CaptureFixture[str]) -> None:
+    assert typed("check that the battery is not full", *RUN) == 1
+    assert capsys.readouterr().err.endswith("\n  BatteryFull: 'battery is full' was true\n")

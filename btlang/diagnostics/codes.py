@@ -144,3 +144,8 @@ _ALL = (
 CODES = {entry.code: entry for entry in _ALL}
 NAMES = {entry.name: entry.code for entry in _ALL if entry.name}
 """The code of each warning by its name."""
+PLAIN = frozenset(f"BT{number:03}" for number in (
+    *(1, 4, 5, 6, 7, 8, 9, 14, 15, 16, 19, 22, 23, 24, 25, 27, 33, 39, 46, 47, 56),
+    *(63, 65, 81, 90, 99, 103, 105, 120, 126, 127),
+))  # fmt: skip
+"""Codes whose messages say all that their pages do."""

@@ -16,6 +16,7 @@ from btlang.run.controls import Controls
 from btlang.run.emergency import emergency_signal
 from btlang.run.json_log import JsonLog
 from btlang.run.lines import Lines, brief
+from btlang.run.overruns import are_many
 from btlang.run.runner import Outcome
 from btlang.run.standstill import Standstill
 from btlang.text.output import can_draw, has_colour, show
@@ -111,7 +112,7 @@ def run_mission(
         raise
     except OSError as error:
         raise MissionError([unwritable(log or "the output", error)]) from None
-    if outcome.worst is not None and not quiet:
+    if outcome.worst is not None and are_many(outcome.overruns, outcome.ticks) and not quiet:
         show(_too_slow(outcome, *outcome.worst, mission.label))
     for slow in run.bus.slow:
         show(f"An event sink was too slow: the run waited {slow.seconds:.1f} s for it.", sys.stderr)

@@ -41,9 +41,10 @@ class LiveView:
 
     It shows the tree at the end of what the terminal shows, and above it the lines that `Lines` writes, which stay; the
     tree stays too unless `tree_stays` is false. The keys space, s, q and e of `keyboard`, where there is one, pause,
-    step and stop the run, and stop the robot at once. With `type_ahead`, only a space does so while the mission runs:
-    that list gets any other key, and what follows it. What is printed to standard output, or to a standard error on a
-    terminal, comes above the tree. Raises EngineError for a tree that cannot be compiled.
+    step and stop the run, and stop the robot at once; ? explains the signs. With `type_ahead`, a space is the only key
+    that does so while the mission runs: that list gets any other key, and what follows it. What is printed to standard
+    output, or to a standard error on a terminal, comes above the tree. Raises EngineError for a tree that cannot be
+    compiled.
     """
 
     policy = INLINE
@@ -69,6 +70,7 @@ class LiveView:
         self._wake = threading.Event()
         self._drawing = threading.RLock()
         self._drawn: object = None  # what the last frame was made from
+        self._explained = False  # what the signs mean
         self._left = False  # for as long as the process is stopped
         self._behind = False  # the process is or was in the background, where it neither draws nor reads
         self._ended = False
@@ -127,16 +129,18 @@ class LiveView:
         """Draws a frame where there is anything new."""
         width, height = self._screen.size()
         doing = self._doing()
-        seen = self._board.changes, width, height, doing
+        seen = self._board.changes, width, height, doing, self._explained
         if seen == self._drawn:
             return
         self._drawn = seen
         above = self._board.take()
-        lines = self._board.frame(width, height - max(height // _OTHER_LINES, 1), doing, self._legend(doing))
+        lines = self._board.frame(
+            width, height - max(height // _OTHER_LINES, 1), doing, self._keys_shown(doing), self._explained
+        )
         self._screen.draw(above, lines)
 
-    def _legend(self, doing: str) -> str:
-        """Which keys are shown: all, those beside `type_ahead`, or none."""
+    def _keys_shown(self, doing: str) -> str:
+        """As frame.keys_line takes it."""
         if self._keys is None:
             return "signals"
         return "keys" if self._type_ahead is None or doing == "paused" else "space"
@@ -179,11 +183,14 @@ class LiveView:
             self._type_ahead.append(key)
             return
         deeds = {" ": controls.toggle, "s": controls.step, "q": controls.stop, "e": controls.emergency_stop}
-        deeds[GONE] = controls.stop
+        deeds |= {GONE: controls.stop, "?": self._explain}
         deed = deeds.get(key.lower())
         if deed is not None:
             deed()
             self._wake.set()
+
+    def _explain(self) -> None:
+        self._explained = not self._explained
 
     def _leave(self) -> None:
         """Gives the terminal back for as long as the process is stopped."""
