@@ -38,8 +38,10 @@ class _Report:
         yield f"{failure.path if failure.span is None else failure.span.place}: {self._words(failure.index)}"
         if failure.span is not None:
             yield from underlined(failure.span, colour)
-        reason = f"'{self._words(named)}' was true" if failure.reason == WAS_TRUE else failure.reason
-        yield f"  {story.engine.node(named).id}: {reason}"
+        denied, reason = story.engine.node(named), failure.reason
+        if reason == WAS_TRUE and not denied.children:
+            reason = f"'{self._words(named)}' was true"
+        yield f"  {denied.id}: {reason}"
         yield from _raised(failure.exception)
         for index, seconds in last.stopped if last is not None else ():
             yield f"  It stopped '{self._words(index)}' after {seconds:.1f} s."

@@ -207,7 +207,7 @@ def _reason(state: State, row: Row, words: Words) -> str:
     while row.inside and (failed := [child for child in shape.children(node) if state.statuses[child] == FAILURE]):
         node = failed[-1]
     reason = state.reasons.get(node, "")
-    if reason == WAS_TRUE:
+    if reason == WAS_TRUE and shape.ends[node + 1] == node + 2:  # it denies a leaf
         reason = f"'{words.of(node + 1)[0]}' was true"
     parts = [words.of(node)[0]] if node != row.node else []
     return ": ".join([*parts, reason] if reason else parts)
