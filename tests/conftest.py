@@ -41,6 +41,11 @@ def without_overruns(printed: str) -> str:
     return re.sub(r"(?m)^ *\S+ +slow .*\n|^\d+ of \d+ ticks took too long;.*\n", "", printed)
 
 
+def without_pointer(errors: str) -> str:
+    """Messages without the last line, which says where to read more about them."""
+    return re.sub(r"\nFor more, run: .*\n", "", errors)
+
+
 def matches_golden(actual: str, path: Path) -> None:
     """Fails where a text is not the one in a file."""
     if os.environ.get("UPDATE_GOLDEN"):
