@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+import os
+import re
+from collections.abc import Callable, Mapping, Sequence
 from functools import partial
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
@@ -15,6 +17,7 @@ from btlang.passes.compilation import Compilation
 from btlang.record import Record
 from btlang.text.output import show
 from btlang.text.source import Source, Span
+from btlang.text.words import split
 from btlang.tree.ast import Fact, Program, all_facts, exact_nodes
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.cache import cached
@@ -50,7 +53,7 @@ def parse_tree(
     """
     source = Source(text) if isinstance(text, str) else text
     with gc_paused:
-        vocabulary = world_vocabulary(keywords, world, language)
+        vocabulary, world = mission_vocabulary(source, keywords, world, language)
         read = read_text(source, main, vocabulary=vocabulary, parser=parser, errors_of=errors_of)
         if isinstance(read, Tree):
             compilation = run_passes(Compilation(vocabulary, tree=read))
@@ -70,7 +73,11 @@ def parse_file(
     include_root: str | None = None,
     language: str = ENGLISH,
 ) -> Mission:
-    """Like `parse_tree`, for the text in a file. It may include files in its folder and below `include_root`."""
+    """Like `parse_tree`, for the text in a file. It may include files in its folder and below `include_root`.
+
+    Its first lines can name its world and keyword files there: `world "museum.toml"`, `words "referee.toml"`. These run
+    Python. A given `world` wins; `keywords` are added.
+    """
     from btlang.diagnostics.reading import read_source
 
     source = read_source(path, include_root)
@@ -95,10 +102,65 @@ def format_mission(
     if frontend_of(source) != "english":
         raise MissionError([diagnostic("BT001", Span(source, 0, 1), file=source.name, reason="it isn't English")])
     with gc_paused:
-        vocabulary = world_vocabulary(keywords, world, language)
+        vocabulary, _ = mission_vocabulary(source, keywords, world, language)
         mission = read_mission(source, vocabulary, parser, errors_of=errors_of).mission
         compile_mission(mission, vocabulary, needs_command=False)
     return laid_out(source, vocabulary.orthography)
+
+
+def mission_vocabulary(
+    source: Source,
+    keywords: Sequence[str | Entry | Callable[..., Any]] = (),
+    world: str | None = None,
+    language: str = ENGLISH,
+) -> tuple[Lexicon, str | None]:
+    """The words of a text and the path of its world, with the files that it needs as its first lines say.
+
+    A given `world` wins over the text's own; `keywords` are added to its own. Raises MissionError.
+    """
+    first = _FIRST_LINE.match(source.text)
+    if first is None or _QUOTES.isdisjoint(first[1]):
+        return world_vocabulary(keywords, world, language), world
+    from btlang.diagnostics.reading import OUTSIDE, included_path, is_below
+    from btlang.frontends.mission.symbols.needs import WORDS, find_needs, unusable
+
+    vocabulary = load_vocabulary(keywords, None, language)
+    files: dict[str, str] = {}
+    lines: dict[str, Span] = {}
+    problems: list[Diagnostic] = []
+    for need in find_needs(split(source, vocabulary.orthography), vocabulary).found:
+        if need.role != WORDS and world is not None:
+            continue
+        path, real = included_path(need.path, source)
+        if not source.may_load:
+            problems.append(unusable(need, "only a mission that you name yourself can load files"))
+        elif not any(is_below(real, root) for root in source.roots):
+            problems.append(unusable(need, OUTSIDE))
+        elif os.path.exists(real) and not os.path.isfile(real):
+            problems.append(unusable(need, "it isn't a regular file"))
+        files[path], lines[path] = need.role, need.span
+    if problems:
+        raise MissionError(problems)
+    own = [path for path, role in files.items() if role == WORDS and path not in keywords]
+    world = next((path for path, role in files.items() if role != WORDS), world)
+    try:
+        return world_vocabulary([*own, *keywords], world, language), world
+    except MissionError as error:
+        raise MissionError([_at_line(problem, lines) for problem in error.diagnostics]) from None
+
+
+_QUOTES = frozenset("\"'“”„«»’‘")  # noqa: RUF001
+_FIRST_LINE = re.compile(r"(?:#[^\n]*\n|[\s\ufeff])*([^\n]*)")
+
+
+def _at_line(problem: Diagnostic, lines: Mapping[str, Span]) -> Diagnostic:
+    """A problem with a file that a mission needs, with the line that names it."""
+    line = lines.get(problem.span.source.name)
+    if line is None:
+        return problem
+    if not problem.span.source.text:
+        return problem.replace(span=line)  # type: ignore[no-any-return]
+    return problem.replace(notes=(*problem.notes, (line, "The mission needs this file.")))  # type: ignore[no-any-return]
 
 
 def world_vocabulary(
@@ -195,7 +257,9 @@ class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax")):
         """
         from btlang.backends.targets import compiled
 
-        return compiled(self.tree, self.vocabulary, target, given={"world": self.world, "facts": self.facts}, **options)
+        needs = self.syntax.needs if self.syntax is not None else ()
+        given = {"world": self.world, "facts": self.facts, "needs": needs}
+        return compiled(self.tree, self.vocabulary, target, given=given, **options)
 
     def label(self, node: Node) -> str:
         """The English of a leaf, `Id port=value` of any other node."""

@@ -6,12 +6,14 @@ import argparse
 import errno
 import os
 import sys
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
 from functools import partial
 from importlib import import_module
 
+import btlang
 from btlang.api import Mission, format_mission, parse_tree, world_vocabulary
-from btlang.cli_options import parsed
+from btlang.cli_options import parsed, quoted, reads_as_mission, show_help, verb_parsers
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source, reason_of
 from btlang.diagnostics.report import Report
@@ -72,12 +74,12 @@ def _run(options: argparse.Namespace) -> int:
     robot = chosen_robot(options)
     mission = _mission(options)
     if options.preflight:
-        ready = print_preflight(mission.tree, mission.vocabulary, read_world(options.world, robot.body), robot)
+        ready = print_preflight(mission.tree, mission.vocabulary, read_world(mission.world, robot.body), robot)
         return SUCCESS if ready else FAILED
-    with pictures_of(mission, options.picture, options.tree_picture) as sinks:
+    with pictures_of(mission, options.picture, options.tree_picture, options.quiet) as sinks:
         return run_mission(
             mission,
-            partial(Session, robot, world=options.world),
+            partial(Session, robot, world=mission.world),
             speed=options.speed,
             rate=options.rate,
             time_limit=options.time_limit,
@@ -137,11 +139,14 @@ def _compile(options: argparse.Namespace) -> int:
 
 
 def _words(options: argparse.Namespace) -> int:
-    from btlang.vocabulary.listing import listing
+    from btlang.vocabulary.listing import listing, overview
 
     vocabulary = world_vocabulary(options.keywords, options.world, options.language)
-    lines = listing(vocabulary, " ".join(options.search), listing_width())
-    show("\n".join(lines))
+    search = " ".join(options.search)
+    if search or options.all:
+        show("\n".join(listing(vocabulary, search, listing_width())))
+    else:
+        show("\n".join(overview(vocabulary, listing_width())))
     return SUCCESS
 
 
@@ -166,7 +171,8 @@ def _explain(options: argparse.Namespace) -> int:
     if options.text is not None or (subject is not None and not is_code(subject) and _is_file(subject)):
         return _explain_mission(options)
     if subject is not None:
-        show(explain_code(subject))
+        with _hinting(subject, "explain"):
+            show(explain_code(subject))
         return SUCCESS
     show(all_codes())
     show("\nTo read one: btc explain CODE")
@@ -241,6 +247,36 @@ def _repl(options: argparse.Namespace) -> int:
     )
 
 
+def _completion(options: argparse.Namespace) -> int:
+    from btlang.examples import examples
+    from btlang.robots.body_file import shipped_bodies
+    from btlang.robots.platforms import ROBOTS
+    from btlang.shell_completion import completion_script
+    from btlang.vocabulary.items import items
+    from btlang.vocabulary.shipped import languages
+
+    known = {
+        "VERB": _VERBS,
+        "LANG": languages(),
+        "ROBOT": (*ROBOTS, *shipped_bodies()),
+        "SPEED": ("real", "max"),
+        "SEARCH": dict.fromkeys(item.topic for item in items(world_vocabulary()) if " " not in item.topic),
+        "NAME": [example.name for example in examples()],
+    }
+    pass_on(completion_script(options.shell, verb_parsers(), known))
+    return SUCCESS
+
+
+def _help(options: argparse.Namespace) -> int:
+    show_help(options.subject)
+    return SUCCESS
+
+
+def _version(options: argparse.Namespace) -> int:
+    show(f"btc {btlang.__version__}")
+    return SUCCESS
+
+
 _NODES = {
     "sim-ros": "btlang.ros.simulator.command",
     "ros-node": "btlang.ros.mission.command",
@@ -259,18 +295,21 @@ _VERBS: dict[str, Callable[[argparse.Namespace], int]] = {
     "explain": _explain,
     "format": _format,
     **dict.fromkeys(_NODES, _node),
+    "completion": _completion,
+    "help": _help,
+    "version": _version,
 }
 
 
 def _typed(options: argparse.Namespace) -> Source:
     """The text of the option -c, whose folder is the current one."""
     roots = None if options.include_root is None else ("", options.include_root)
-    return Source(options.text, "<command line>", roots=roots)
+    return Source(options.text, "<command line>", roots=roots, may_load=True)
 
 
 def _mission(options: argparse.Namespace) -> Mission:
     """Compiles what the options name; warnings go to the report."""
-    source = _typed(options) if options.text is not None else read_source(options.file, options.include_root)
+    source = _typed(options) if options.text is not None else _read_file(options)
     mission = parse_tree(
         source, parser=options.parser, keywords=options.keywords, world=options.world, main=options.main,
         language=options.language,
@@ -278,6 +317,24 @@ def _mission(options: argparse.Namespace) -> Mission:
     for warning in mission.warnings:
         options.report.add([warning])
     return mission
+
+
+def _read_file(options: argparse.Namespace) -> Source:
+    """The text of the file. If it isn't there, the error may say how to give a mission as text."""
+    with _hinting(options.file, options.verb):
+        return read_source(options.file, options.include_root)
+
+
+@contextmanager
+def _hinting(subject: str, verb: str) -> Iterator[None]:
+    """Adds to errors about a subject that isn't a file, but reads as a mission, how to give it as text."""
+    try:
+        yield
+    except MissionError as error:
+        if os.path.exists(subject) or not reads_as_mission(subject):
+            raise
+        told = ("help", f"To give a mission as text: btc {verb} -c {quoted(subject)}")
+        raise MissionError([p.replace(arguments=(*p.arguments, told)) for p in error.diagnostics]) from None
 
 
 if __name__ == "__main__":

@@ -3,37 +3,120 @@
 from __future__ import annotations
 
 import argparse
+import os
+import shlex
 import sys
 from collections.abc import Callable, Sequence
+from itertools import takewhile
 
-import btlang
 from btlang.arguments import between, duration, picture, speed
 from btlang.diagnostics.report import FORMATS
 from btlang.frontends.mission.reader import DEFAULT_PARSER, PARSERS
 from btlang.run.limits import RATES
 from btlang.text.output import WIDEST, columns, show
+from btlang.text.spelling import nearest, respellings
 from btlang.vocabulary.shipped import ENGLISH
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any
+    from typing import Any, NoReturn
 
 
 def parsed(arguments: Sequence[str] | None) -> argparse.Namespace:
-    """The options of the command line. Only those of its verb are made: making all takes a tenth of `btc check`."""
-    words = sys.argv[1:] if arguments is None else list(arguments)
-    if words and words[0] in _OPTIONS:
-        parser = _Parser(f"btc {words[0]}")
-        parser.set_defaults(**_DEFAULTS, verb=words[0])
-        _OPTIONS[words[0]][1](parser)
-        return parser.parse_args(words[1:])
-    parser = _Parser("btc", description="Compiles and runs robot missions in plain English.")
-    parser.add_argument("--version", action="version", version=f"btc {btlang.__version__}")
-    verbs = parser.add_subparsers(dest="verb", metavar="VERB", prog="btc", parser_class=_Parser)
-    parser.set_defaults(**_DEFAULTS, verb="repl")  # behind the verbs, which have none as default
-    for verb, (about, add) in _OPTIONS.items():
-        add(verbs.add_parser(verb, help=about))
-    return parser.parse_args(words)
+    """The options of the command line. Only those of its verb are made: making all takes a tenth of `btc check`.
+
+    Without a verb, `btc` is the prompt, `btc FILE` and `btc "MISSION"` run a mission. A usage error is a line and a
+    hint on standard error, and the exit code 2.
+    """
+    verb, *words = _with_verb(sys.argv[1:] if arguments is None else list(arguments))
+    parser = _verb_parser(verb)
+    for word in takewhile(lambda word: word != "--", words):
+        if word.startswith("--") and " " not in word:
+            parser.check_option(word.partition("=")[0])
+    options, unknown = parser.parse_known_args(words)
+    if unknown:
+        parser.refuse(f"unexpected argument '{unknown[0]}'")
+    return options
+
+
+def show_help(verb: str | None) -> None:
+    """Prints the help of a verb, or that of `btc`. Ends with a usage error where there's no such verb."""
+    if verb is None:
+        _main_parser().print_help()
+    elif verb in _OPTIONS:
+        _verb_parser(verb).print_help()
+    else:
+        near = _near_verbs(verb)
+        _main_parser().refuse(f"there's no verb '{verb}'", f"Did you mean: btc help {near[0]}" if near else "")
+
+
+def verb_parsers() -> dict[str, tuple[str, argparse.ArgumentParser]]:
+    """What each verb does, and the parser of its arguments."""
+    return {verb: (about, _verb_parser(verb)) for verb, (about, _) in _OPTIONS.items()}
+
+
+def _main_parser() -> _Parser:
+    usage = 'btc [VERB] [OPTION ...]\n       btc FILE|"MISSION" [OPTION ...]   as with the verb run'
+    parser = _Parser("btc", usage=usage, description="Compiles and runs robot missions in plain English.")
+    verbs = parser.add_subparsers(metavar="VERB", title="verbs", description="btc help VERB lists its options.")
+    for verb, (about, _) in _OPTIONS.items():
+        verbs.add_parser(verb, help=about)
+    return parser
+
+
+def _verb_parser(verb: str) -> _Parser:
+    parser = _Parser(f"btc {verb}")
+    parser.set_defaults(**_DEFAULTS, verb=verb)
+    _OPTIONS[verb][1](parser)
+    return parser
+
+
+def _with_verb(words: list[str]) -> list[str]:
+    """The words with the verb that was left out. Ends with a usage error where it is rather a mistyped one."""
+    if not words:
+        return ["repl"]
+    first = _ALIASES.get(words[0], words[0])
+    if first in _OPTIONS:
+        return [first, *words[1:]]
+    if first in ("-", "-c") or os.path.exists(first):
+        return ["run", *words]
+    near = _near_verbs(first)
+    is_alone = len(words) == 1 or words[1].startswith("-")
+    mission = " ".join(words)
+    if first.startswith("-"):
+        _main_parser().refuse(f"unexpected option '{first}'", f"A verb comes first: btc VERB {shlex.join(words)}")
+    if is_alone and (looks_like_path(first) or not near or reads_as_mission(first)):
+        return ["run", *([] if looks_like_path(first) else ["-c"]), *words]
+    hint = f"Did you mean: {shlex.join(('btc', near[0], *words[1:]))}" if near else ""
+    if not is_alone and reads_as_mission(mission):
+        hint = f"Put a mission in quotes: btc {quoted(mission)}"
+    return _main_parser().refuse(f"there's no verb or file '{first}'", hint)
+
+
+def _near_verbs(word: str) -> list[str]:
+    return [verb for verb in respellings(word, _OPTIONS) if verb in _OPTIONS]
+
+
+def looks_like_path(text: str) -> bool:
+    """Whether a text is meant as the path of a file, there or not."""
+    return os.path.splitext(text)[1][1:].isalpha() or (os.sep in text and len(text.split()) == 1)
+
+
+def reads_as_mission(text: str) -> bool:
+    """Whether a text is a mission in the words that ship."""
+    from btlang.api import parse_tree
+    from btlang.diagnostics.errors import MissionError
+
+    try:
+        parse_tree(text)
+    except MissionError:
+        return False
+    return True
+
+
+def quoted(mission: str) -> str:
+    """A mission as a word of a shell, in double quotes where these do."""
+    return shlex.quote(mission) if set(mission) & set('"$`\\!') else f'"{mission}"'
 
 
 _DEFAULTS: dict[str, Any] = {
@@ -145,6 +228,7 @@ def _compile_options(parser: argparse.ArgumentParser) -> None:
 
 def _listing_options(parser: argparse.ArgumentParser) -> None:
     _words_options(parser)
+    parser.add_argument("--all", action="store_true", help="list everything, with what it does and an example")
     parser.add_argument("search", nargs="*", metavar="SEARCH", help="a topic, or words to search for")
 
 
@@ -193,6 +277,16 @@ def _serving_options(parser: argparse.ArgumentParser) -> None:
     add_serving_options(parser)
 
 
+def _completion_options(parser: argparse.ArgumentParser) -> None:
+    from btlang.shell_completion import SHELLS
+
+    parser.add_argument("shell", choices=list(SHELLS), help="bash, zsh or fish; the script says how to use it")
+
+
+def _help_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("subject", nargs="?", metavar="VERB", help="whose options to list")
+
+
 _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "repl": ("type a mission line by line, as with `btc` alone", _repl_options),
     "run": ("run a mission on the simulated robot, or a ROS 2 robot", _run_options),
@@ -206,7 +300,13 @@ _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "sim-ros": ("run the simulated robot as a ROS 2 node", _sim_ros_options),
     "ros-node": ("run missions for other programs, as a ROS 2 node", _ros_node_options),
     "serve-actions": ("serve btlang's actions as ROS 2 actions", _serving_options),
+    "completion": ("print a script that completes btc in a shell", _completion_options),
+    "help": ("show this help, or that of a verb", _help_options),
+    "version": ("print the version", lambda _: None),
 }
+
+
+_ALIASES = {"-h": "help", "--help": "help", "--version": "version"}
 
 
 class _Help(argparse.HelpFormatter):
@@ -223,7 +323,22 @@ class _Help(argparse.HelpFormatter):
 class _Parser(argparse.ArgumentParser):
     def __init__(self, prog: str | None = None, **options: Any) -> None:
         super().__init__(prog, formatter_class=_Help, **options)
-        self.set_defaults(refuse=self.error)  # ends with a usage error what only the verb can see to be wrong
+        self.set_defaults(refuse=self.refuse)  # ends with a usage error what only the verb can see to be wrong
+
+    def check_option(self, name: str) -> None:
+        """Refuses an option that doesn't exist, before its value is taken for a file."""
+        known = [option for action in self._actions for option in action.option_strings]
+        if not any(option.startswith(name) for option in known):
+            near = nearest(name, known, 1)
+            self.refuse(f"there's no option '{name}'", f"Did you mean: {near[0]}" if near else "")
+
+    def error(self, message: str) -> NoReturn:
+        self.refuse(message)
+
+    def refuse(self, message: str, hint: str = "") -> NoReturn:
+        """Ends the command with exit code 2, after a line that says what is wrong and one that says what to do."""
+        hint = hint or f"Run 'btc help{self.prog.removeprefix('btc')}' for help."
+        self.exit(2, f"{self.prog}: {message}\n{hint}\n")
 
     def _print_message(self, message: str, file: Any = None) -> None:
         show(message, sys.stderr if file is None else file, end="")

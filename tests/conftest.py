@@ -41,6 +41,11 @@ def without_overruns(printed: str) -> str:
     return re.sub(r"(?m)^ *\S+ +slow .*\n|^\d+ of \d+ ticks took too long;.*\n", "", printed)
 
 
+def without_pointer(errors: str) -> str:
+    """Messages without the last line, which says where to read more about them."""
+    return re.sub(r"\nFor more, run: .*\n", "", errors)
+
+
 def matches_golden(actual: str, path: Path) -> None:
     """Fails where a text is not the one in a file."""
     if os.environ.get("UPDATE_GOLDEN"):
@@ -58,7 +63,7 @@ def take_away_what_is_missed(code: str, patch: pytest.MonkeyPatch) -> None:
     if code == "BT099":
         patch.delenv("BTC_DEBUG")
         patch.setenv("XDG_STATE_HOME", "/dev/null")  # where nothing can be written
-        patch.setattr("btlang.vocabulary.listing.listing", _buggy)
+        patch.setattr("btlang.vocabulary.listing.overview", _buggy)
     patch.setitem(sys.modules, "matplotlib", None)  # BT081
     patch.setitem(sys.modules, "btlang_interfaces", None)  # BT110
     if code != "BT101":

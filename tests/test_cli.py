@@ -86,7 +86,6 @@ def test_exit_codes(btc: Screen) -> None:
 @pytest.mark.parametrize(
     "arguments",
     [
-        ["fly"],
         ["run"],
         ["run", "a.txt", "-c", "wave"],
         ["run", "-c", "wave", "--speed", "0"],
@@ -103,7 +102,8 @@ def test_wrong_options_exit_with_2(arguments: list[str], capsys: pytest.CaptureF
     with pytest.raises(SystemExit) as caught:
         main(arguments)
     assert caught.value.code == 2
-    assert "usage: btc" in capsys.readouterr().err
+    lines = capsys.readouterr().err.splitlines()
+    assert (lines[0].startswith("btc run: "), lines[1:]) == (True, ["Run 'btc help run' for help."])
 
 
 @pytest.mark.parametrize(("duration", "seconds"), [("1", "1.0"), ("2s", "2.0"), ("half a minute", "30.0")])
@@ -155,9 +155,12 @@ def test_worlds_bring_their_names(btc: Screen) -> None:
 
 
 def test_words(btc: Screen) -> None:
-    assert btc("words") == 0
+    assert btc("words", "--all") == 0
     assert "  move forward [{distance}] [at {speed}]\n" in btc.out
     assert "motion:" in btc.out
+    assert btc("words") == 0
+    assert len(btc.out.splitlines()) <= 22
+    assert "btc words --all" in btc.out
     assert btc("words", "battery", "low") == 0
     assert btc.out.splitlines()[1].strip() == "battery is low  (condition)"
 

@@ -37,7 +37,9 @@ TARGETS = {
         (".xml",),
         options=("dialect",),
     ),
-    "english": Target("btlang.backends.english:to_english", "a mission in English", (".txt",), given=("facts",)),
+    "english": Target(
+        "btlang.backends.english:to_english", "a mission in English", (".txt",), given=("facts", "needs")
+    ),
     "json": Target("btlang.backends.json_tree:to_json", "the tree as JSON, for programs", (".json",)),
     "python": Target(
         "btlang.backends.python_module:to_python",

@@ -85,6 +85,7 @@ _ALL = (
     Code("BT046", "'{file}' includes itself: {circle}.", "Move what both need into a third file."),
     Code("BT047", "I can't read '{words}': it needs a line to itself and the name of a file in quotes.", "Write for example: {example}"),
     Code("BT048", "'{name}' is of type {kind} here but of type {other} elsewhere in this mission.", "Give each a different name."),
+    Code("BT049", "'{words}' can't be used: {reason}."),
     Code("BT050", "This can be read in two ways.",
          "I read: {taken}\nIt could also mean: {other}\nDecide with a comma or brackets, for example: {fixed}",
          "warning", "two readings"),
@@ -153,3 +154,8 @@ _ALL = (
 CODES = {entry.code: entry for entry in _ALL}
 NAMES = {entry.name: entry.code for entry in _ALL if entry.name}
 """The code of each warning by its name."""
+PLAIN = frozenset(f"BT{number:03}" for number in (
+    *(1, 4, 5, 6, 7, 8, 9, 14, 15, 16, 19, 22, 23, 24, 25, 27, 33, 39, 46, 47, 56),
+    *(63, 65, 81, 90, 99, 103, 105, 120, 126, 127),
+))  # fmt: skip
+"""Codes whose messages say all that their pages do."""

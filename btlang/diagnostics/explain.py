@@ -8,24 +8,25 @@ from __future__ import annotations
 
 import os
 import re
+from collections.abc import Iterable
 
-from btlang.diagnostics.codes import CODES, NAMES
+from btlang.diagnostics.codes import CODES, NAMES, PLAIN
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.text.source import Source, Span
 from btlang.text.table import Table
 
 PAGES = os.path.join(os.path.dirname(os.path.abspath(__file__)), "pages")
-_CODE = re.compile(r"bt(\d+)", re.IGNORECASE | re.ASCII)
+_CODE = re.compile(r"(?:bt)?(\d+)", re.IGNORECASE | re.ASCII)
 
 
 def is_code(text: str) -> bool:
-    """Whether a text looks like a code, known or not: BT and digits, in any case; or is the name of a warning."""
+    """Whether a text looks like a code, known or not: digits, after BT or not; or is the name of a warning."""
     return _CODE.fullmatch(text) is not None or _plain(text) in NAMES
 
 
 def explain_code(code: str) -> str:
-    """The page of a code without its last line end; `bt13` is BT013, and a warning has a name: `two readings`.
+    """The page of a code without its last line end; `13` is BT013, too, and a warning has a name: `two readings`.
 
     Raises MissionError (BT090).
     """
@@ -35,6 +36,14 @@ def explain_code(code: str) -> str:
     if known not in CODES:
         raise MissionError([_unknown(code)])
     return _page(known)
+
+
+def pointer(codes: Iterable[str]) -> str:
+    """Which command says more about messages with these codes, "" if none does."""
+    known = sorted({code for code in codes if code not in PLAIN})
+    if len(known) < 2:
+        return "".join(f"For more, run: btc explain {code}" for code in known)
+    return f"For more, run: btc explain CODE, where CODE is {', '.join(known[:-1])} or {known[-1]}"
 
 
 def all_codes() -> Table:

@@ -28,7 +28,7 @@ def read_source(path: str, include_root: str | None = None) -> Source:
     """
     folder = os.path.dirname(path)
     roots = (folder,) if include_root is None else (folder, include_root)
-    return _decoded(Source("", path, folder, roots), lambda: read_bytes(path))
+    return _decoded(Source("", path, folder, roots, may_load=True), lambda: read_bytes(path))
 
 
 def read_included(path: str, source: Source) -> Source:
@@ -40,7 +40,7 @@ def read_included(path: str, source: Source) -> Source:
 
     def read() -> bytes:
         if not any(is_below(real, root) for root in source.roots):
-            raise OSError(errno.EACCES, _OUTSIDE if source.roots else "files can't be included here")
+            raise OSError(errno.EACCES, OUTSIDE if source.roots else "files can't be included here")
         # a pipe that nobody writes to would block; O_NONBLOCK changes nothing for regular files
         with open(real, "rb", opener=lambda name, flags: os.open(name, flags | getattr(os, "O_NONBLOCK", 0))) as file:
             if not stat.S_ISREG(os.fstat(file.fileno()).st_mode):
@@ -57,7 +57,7 @@ def included_path(path: str, source: Source) -> tuple[str, str]:
     return where, where if "\0" in where else os.path.realpath(where)
 
 
-_OUTSIDE = "it is outside the folder of the mission; to allow another folder, use --include-root"
+OUTSIDE = "it is outside the folder of the mission; to allow another folder, use --include-root"
 
 
 def read_bytes(path: str) -> bytes:

@@ -22,7 +22,7 @@ FORMATS = ("text", "json")
 
 
 class Report:
-    """Text is printed as it is added; JSON is held until `close` prints it all.
+    """Text is printed as it is added; JSON is held until `close` prints it all. After text, `close` points to pages.
 
     `on_output` puts the JSON on standard output, for a command that prints nothing else there.
     """
@@ -34,16 +34,22 @@ class Report:
 
     def add(self, problems: Iterable[Diagnostic]) -> None:
         """Tells these diagnostics, with an empty line between them where it is text."""
-        if self.is_json:
-            self._held += problems
-        else:
+        problems = list(problems)
+        self._held += problems
+        if not self.is_json:
             from btlang.diagnostics.render import render  # most missions have nothing to tell of
 
             colour = has_colour(sys.stderr)
             show("\n\n".join(render(problem, colour) for problem in problems), stream=sys.stderr)
 
     def close(self) -> None:
-        """Prints the document, `[]` where there was nothing to tell."""
+        """Prints the document, `[]` where there was nothing to tell; or, below the text, where more is explained."""
+        if self._held and not self.is_json:
+            from btlang.diagnostics.explain import pointer
+
+            more = pointer(problem.code for problem in self._held)
+            if more:
+                show(f"\n{more}", stream=sys.stderr)
         if self.is_json:
             show(as_json(self._held), stream=sys.stdout if self._on_output else sys.stderr)
 

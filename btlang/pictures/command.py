@@ -6,6 +6,7 @@ from collections.abc import Iterator
 from contextlib import contextmanager
 
 from btlang.pictures.files import check_picture
+from btlang.text.output import show
 from btlang.tree.node import Node, Tree
 
 TYPE_CHECKING = False
@@ -29,8 +30,9 @@ if TYPE_CHECKING:
 
 
 @contextmanager
-def pictures_of(mission: Mission, run: str | None, tree: str | None) -> Iterator[list[Sink]]:
-    """Gives the sinks for a run, and draws it to the files (None: no picture) at the end, however it ends.
+def pictures_of(mission: Mission, run: str | None, tree: str | None, quiet: bool) -> Iterator[list[Sink]]:
+    """Gives the sinks for a run, and draws it to the files (None: no picture) at the end, however it ends, and says so
+    unless it is `quiet`.
 
     Raises MissionError (BT009, BT081), as far as it can before the run.
     """
@@ -38,6 +40,7 @@ def pictures_of(mission: Mission, run: str | None, tree: str | None) -> Iterator
         if path is not None:
             check_picture(path, of_run=path is run)
     sinks: list[Sink] = []
+    written: list[str] = []
     if tree is not None:
         from btlang.pictures.statuses import LastStatuses
 
@@ -55,7 +58,11 @@ def pictures_of(mission: Mission, run: str | None, tree: str | None) -> Iterator
     finally:
         if run is not None:
             picture.save(run)
+            written.append(run)
         if tree is not None and statuses.by_path:
             from btlang.pictures.tree_picture import draw_tree
 
             draw_tree(mission.tree, mission.label, mission.is_action, tree, run=statuses)
+            written.append(tree)
+        if written and not quiet:
+            show(f"Wrote {' and '.join(written)}.")

@@ -28,6 +28,8 @@ def english(node: ast.Ast, vocabulary: Lexicon, *, brackets: str = "needed", nam
 
 def mission_lines(mission: ast.Program, printer: Printer, width: float = math.inf) -> Iterator[str]:
     """The lines of a mission; see `lines_of`."""
+    for role, path in mission.needs:
+        yield f"{printer.word(role).text} {quoted(path, printer.vocabulary)}"
     if mission.name:
         yield f"{printer.word('main_name').text} {quoted(mission.name, printer.vocabulary)}"
     named = (*mission.includes, *mission.facts, *mission.definitions)

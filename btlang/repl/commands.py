@@ -18,7 +18,7 @@ from btlang.text.output import listing_width
 from btlang.text.source import Source
 from btlang.text.table import Table
 from btlang.text.words import split
-from btlang.vocabulary.listing import help_on, listing
+from btlang.vocabulary.listing import help_on, listing, overview
 from btlang.vocabulary.trie import longest
 
 TYPE_CHECKING = False
@@ -32,10 +32,19 @@ A line of the mission runs at once, and is kept: move forward 1 m
 A definition is only kept: patrol is go to the lobby then go to the lab
 A line that ends in ':' opens a block, and an empty line closes it.
 """
-_KEYS = f"""
-  Tab  takes the suggestion      Ctrl-F  corrects the mistake      Up  earlier lines
-  Ctrl-C  stops the robot, or clears the line      Ctrl-D twice  leaves
-  If your mission uses one of these words too, add a colon for this one: {_MARK}show"""
+_MORE = f"""
+'words' lists what you can say by topic, 'help wave' explains a phrase or word.
+'help files' or 'help save' explains these, 'help keys' keys such as Ctrl-D.
+If your mission uses one of these words too, add a colon for this one: {_MARK}show"""
+_KEYS = (
+    ("Tab", "takes the suggestion"),
+    ("Ctrl-F", "corrects the mistake"),
+    ("Up", "earlier lines"),
+    ("Ctrl-C", "stops the robot, or clears the line"),
+    ("Ctrl-D", "twice: leaves"),
+    ("Space", "pauses the mission that runs, and resumes it; while it is paused, s takes a single step"),
+    ("Ctrl-\\", "emergency stop"),
+)
 
 
 class Leave(Exception):
@@ -43,31 +52,35 @@ class Leave(Exception):
 
 
 class Command(Record):
-    """One word of the REPL; `arguments` and `help` are for people."""
+    """One word of the REPL; `topic`, `arguments` and `help` are for people, `aliases` mean the same."""
 
+    topic: str
     name: str
     arguments: str
     help: str
+    aliases: tuple[str, ...] = ()
 
 
 COMMANDS = (
-    Command("help", "[PHRASE]", "explains a phrase or word, or the prompt itself"),
-    Command("words", "[SEARCH]", "lists what you can say"),
-    Command("show", "[NAME|tree]", "shows the mission, one definition, or the tree of all"),
-    Command("names", "", "lists what is defined"),
-    Command("run", "", "runs the whole mission from where the robot is; `reset` first for a new world"),
-    Command("undo", "", "takes back the last line"),
-    Command("redo", "", "takes back an undo"),
-    Command("save", "[over] FILE", "writes the mission to a file; `over` replaces another file"),
-    Command("load", "FILE", "continues with the mission in a file; `undo` brings the current one back"),
-    Command("new", "", "starts an empty mission; `undo` brings the current one back"),
-    Command("restore", "", "brings back the last session"),
-    Command("world", "[FILE]", "shows the world and the robot in it, or changes the world"),
-    Command("reset", "", "resets the world"),
-    Command("speed", "[real|max|FACTOR]", "how fast time passes when the robot moves"),
-    Command("quit", "", "leaves, like Ctrl-D twice"),
+    Command("mission", "show", "[NAME|tree]", "shows the mission, one definition, or the tree of all"),
+    Command("mission", "names", "", "lists what is defined"),
+    Command("mission", "run", "", "runs the whole mission from where the robot is; `reset` first for a new world"),
+    Command("mission", "undo", "", "takes back the last line"),
+    Command("mission", "redo", "", "takes back an undo"),
+    Command("mission", "new", "", "starts an empty mission; `undo` brings the current one back"),
+    Command("files", "save", "[over] FILE", "writes the mission to a file; `over` replaces another file"),
+    Command("files", "load", "FILE", "continues with the mission in a file; `undo` brings the current one back"),
+    Command("files", "restore", "", "brings back the last session"),
+    Command("robot", "world", "[FILE]", "shows the world and the robot in it, or changes the world"),
+    Command("robot", "reset", "", "resets the world"),
+    Command("robot", "speed", "[real|max|FACTOR]", "how fast time passes when the robot moves"),
+    Command("prompt", "help", "[PHRASE]", "explains a phrase or word, or the prompt itself"),
+    Command("prompt", "words", "[TOPIC|WORD|--all]", "lists what you can say: the topics, one topic, or a word"),
+    Command("prompt", "clear", "", "clears the screen; the mission stays"),
+    Command("prompt", "quit", "", "leaves, like Ctrl-D twice", ("exit", "bye")),
 )
-_NAMES = {command.name: command for command in COMMANDS}
+_NAMES = {name: command for command in COMMANDS for name in (command.name, *command.aliases)}
+_TOPICS = tuple(dict.fromkeys(command.topic for command in COMMANDS))
 
 
 def command_of(text: str, draft: MissionDraft) -> tuple[str, str] | None:
@@ -79,7 +92,7 @@ def command_of(text: str, draft: MissionDraft) -> tuple[str, str] | None:
     line = text.strip()
     name, _, rest = line.partition(" ")
     if name.startswith(_MARK):
-        return name[1:].lower(), rest.strip()
+        return _own(name[1:]), rest.strip()
     if "\n" in line or name.lower() not in _NAMES:
         return None
     if name.lower() == "show" and (rest in ("", "tree") or rest.lower() in draft.definitions):
@@ -89,7 +102,20 @@ def command_of(text: str, draft: MissionDraft) -> tuple[str, str] | None:
     definitions = find_definitions(Phrases(words, draft.vocabulary))
     at = words.lines[-1].first
     known = (longest(trie, words, at, draft.vocabulary.context) for trie in (draft.vocabulary.trie, definitions.trie))
-    return None if any(known) else (name.lower(), rest.strip())
+    return None if any(known) else (_own(name), rest.strip())
+
+
+def _own(word: str) -> str:
+    """The command that a word means; the word itself if there's none."""
+    name = word.lower()
+    return _NAMES[name].name if name in _NAMES else name
+
+
+def near_command(text: str) -> str:
+    """The word of the REPL that a line may have misspelt, "" if there's none."""
+    from btlang.text.spelling import respellings
+
+    return next((word for word in respellings(text.strip().lower(), _NAMES) if word in _NAMES), "")
 
 
 def is_begun(text: str) -> bool:
@@ -112,6 +138,7 @@ class Commands:
         """The mission as some file has it."""
         self.draft = ""
         """What the next line begins with."""
+        self.clear_screen: Callable[[], object] = lambda: None
 
     @property
     def is_saved(self) -> bool:
@@ -131,16 +158,24 @@ class Commands:
     def _help(self, rest: str) -> None:
         if not rest:
             self._write(_FIRST)
-            rows = tuple((f"{command.name} {command.arguments}", command.help) for command in COMMANDS)
-            self._write(Table(rows, indent=2))
-            self._write(_KEYS)
+            rows = ((topic, ", ".join(c.name for c in COMMANDS if c.topic == topic)) for topic in _TOPICS)
+            self._write(Table(tuple(rows), indent=2))
+            self._write(_MORE)
+        elif rest == "keys":
+            self._write(Table(_KEYS, indent=2))
+        elif rest in _TOPICS:
+            self._write(Table(tuple((_usage(c), c.help) for c in COMMANDS if c.topic == rest), indent=2))
         elif rest in _NAMES:
-            self._write(_described(_NAMES[rest]))
+            self._write(f"{_usage(_NAMES[rest])}: {_NAMES[rest].help}")
         else:
             self._write("\n".join(help_on(self._draft.vocabulary, rest, listing_width())))
 
     def _words(self, rest: str) -> None:
-        self._write("\n".join(listing(self._draft.vocabulary, rest, listing_width())))
+        vocabulary, width = self._draft.vocabulary, listing_width()
+        if rest:
+            self._write("\n".join(listing(vocabulary, rest.removeprefix("--all"), width)))
+        else:
+            self._write("\n".join(overview(vocabulary, width, "words")))
 
     def _show(self, rest: str) -> None:
         draft = self._draft
@@ -214,7 +249,7 @@ class Commands:
             self._write("Load which file? load mission.txt")
             return
         source = read_source(rest)
-        self._draft.change(self._draft.entries_of(source.text, rest))
+        self._draft.load(source)
         self._draft.file, self.saved = rest, self._draft.text
         self._write(f"Loaded {_lines(source.text)} from {rest}. 'run' runs the mission, 'show' shows it.")
 
@@ -238,6 +273,7 @@ class Commands:
 
     def _world(self, rest: str) -> None:
         draft = self._draft
+        rest = rest.strip('"')  # as a mission names its world
         if rest:
             before = draft.world, draft.vocabulary, draft.session
             draft.use_world(rest)
@@ -277,6 +313,9 @@ class Commands:
             self.speed = factor
         self._write(f"The speed is {self.speed if isinstance(self.speed, str) else f'{self.speed:g} times real time'}.")
 
+    def _clear(self, rest: str) -> None:
+        self.clear_screen()
+
     def _quit(self, rest: str) -> None:
         raise Leave
 
@@ -300,8 +339,8 @@ def _robot_line(robot: Robot) -> str:
     return ", ".join(parts)
 
 
-def _described(command: Command) -> str:
-    return f"{command.name} {command.arguments}".rstrip() + f": {command.help}"
+def _usage(command: Command) -> str:
+    return f"{', '.join((command.name, *command.aliases))} {command.arguments}".rstrip()
 
 
 def _lines(text: str) -> str:

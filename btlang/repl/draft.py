@@ -6,8 +6,9 @@ import os
 from collections.abc import Mapping, Sequence
 from textwrap import indent
 
-from btlang.api import Mission, world_vocabulary
+from btlang.api import Mission, mission_vocabulary
 from btlang.diagnostics.diagnostic import Diagnostic
+from btlang.diagnostics.errors import MissionError
 from btlang.engine.blackboard import Blackboard
 from btlang.frontends.mission.reader import DEFAULT_PARSER, lexed, read_mission
 from btlang.frontends.mission.tokens.lexer import Lexer
@@ -65,6 +66,8 @@ class MissionDraft:
         self._robot, self._over = robot, over
         self.is_simulated = runs_on(robot, over)[1] == "simulated"
         self._keywords = keywords
+        self.file: str | None = None
+        """The file that the mission was loaded from or saved to last."""
         self._language = language
         self._include_root = include_root
         self._parser = parser
@@ -73,16 +76,32 @@ class MissionDraft:
         self.entries: tuple[Entry, ...] = ()
         self._known_of: tuple[str, Mapping[str, Known]] = "", {}
         self._blackboard = Blackboard()
-        self.file: str | None = None
-        """The file that the mission was loaded from or saved to last."""
         self.use_world(world)
 
     def use_world(self, world: str | None) -> None:
         """Puts the robot into a world of its own file, None for the one that ships. Raises MissionError."""
-        vocabulary = world_vocabulary(self._keywords, world, self._language)
+        vocabulary, world = mission_vocabulary(self._source(self.text), self._keywords, world, self._language)
         self.session = Session(self._robot, world=world, over=self._over)
         self.vocabulary = vocabulary
         self.world = world
+
+    def load(self, source: Source) -> None:
+        """Changes to another mission, in its own world and with its own words if it names them. Raises MissionError.
+
+        A world that the user has chosen stays.
+        """
+        before = self.vocabulary, self.world
+        self.vocabulary, self.world = mission_vocabulary(source, self._keywords, self.world, self._language)
+        try:
+            entries = self.entries_of(source.text, source.name)
+            if self.world != before[1]:
+                session = Session(self._robot, world=self.world, over=self._over)
+                self.session.close()
+                self.session = session
+        except MissionError:
+            self.vocabulary, self.world = before
+            raise
+        self.change(entries)
 
     def reset(self) -> None:
         """No values, and the simulated world as it was at the start; another robot stays where it is."""
@@ -97,7 +116,7 @@ class MissionDraft:
     def _source(self, text: str, name: str = ENTRY) -> Source:
         folder = os.path.dirname(self.file or "")
         roots = (folder,) if self._include_root is None else (folder, self._include_root)
-        return Source(text, name, folder, roots)
+        return Source(text, name, folder, roots, may_load=True)
 
     @property
     def definitions(self) -> dict[str, str]:

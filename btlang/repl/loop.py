@@ -63,12 +63,14 @@ class Repl:
         self._store = store
         self._commands = Commands(draft, show, self._run_all, store)
         self._commands.speed = speed
+        self._ahead: list[str] = []  # keys that were typed while a mission ran
 
     def talk(self) -> None:
         """At the keyboard, until the user leaves."""
         from btlang.repl.screen import CONTINUED, PROMPT, Screen
 
         screen = Screen(self._draft, self._store)
+        self._commands.clear_screen = screen.clear
         show("btlang: type what the robot should do. 'help' explains; Ctrl-D twice leaves.")
         if self._store.problem:
             show(f"What you type isn't saved: {self._store.problem}")
@@ -80,7 +82,11 @@ class Repl:
                 text = screen.ask(self._commands.draft)
                 self._commands.draft = ""
                 show(PROMPT + text.replace("\n", f"\n{CONTINUED}"))
-                self._do(text)
+                try:
+                    self._do(text)
+                finally:
+                    screen.type_ahead("".join(self._ahead))
+                    self._ahead.clear()
                 self._keep()
             except (EOFError, Leave):
                 break
@@ -133,7 +139,7 @@ class Repl:
         with _type_ahead():
             return run_mission(
                 mission, lambda: nullcontext(self._draft.session), speed=speed, rate=20.0, time_limit=None, log=None,
-                quiet=False, keys=False, tree_stays=False, values=values,
+                quiet=False, type_ahead=self._ahead, tree_stays=False, values=values,
             )  # fmt: skip
 
     def _keep(self) -> None:
@@ -142,7 +148,7 @@ class Repl:
 
 @contextmanager
 def _type_ahead() -> Iterator[None]:
-    """What is typed while the robot moves is not shown, and stands in the next line."""
+    """What is typed while the robot moves isn't shown, and is in the next line, also where there is no live view."""
     try:
         import termios
 

@@ -16,6 +16,9 @@ from prompt_toolkit.filters import Condition, has_completions
 from prompt_toolkit.formatted_text import ANSI, StyleAndTextTuples
 from prompt_toolkit.history import FileHistory, History, InMemoryHistory
 from prompt_toolkit.input import Input
+from prompt_toolkit.input.typeahead import store_typeahead
+from prompt_toolkit.input.vt100_parser import Vt100Parser
+from prompt_toolkit.key_binding.key_processor import KeyPress
 from prompt_toolkit.layout import HSplit, Layout, Window
 from prompt_toolkit.layout.containers import ConditionalContainer, ScrollOffsets
 from prompt_toolkit.layout.controls import BufferControl, FormattedTextControl
@@ -29,7 +32,7 @@ from rich.padding import Padding
 from rich.styled import Styled
 from rich.text import Text
 
-from btlang.repl.commands import command_of, is_begun, robot_line
+from btlang.repl.commands import command_of, is_begun, near_command, robot_line
 from btlang.repl.draft import MissionDraft
 from btlang.repl.keys import key_bindings
 from btlang.repl.offers import Offers
@@ -102,13 +105,34 @@ class Screen:
         text = self.buffer.text
         if self._seen[0] != text or not text:
             seen = preview(self.draft, text)
-            is_own = command_of(text, self.draft) is not None or (seen.errors and is_begun(text))
+            may_be_own = seen.errors and is_begun(text) and self._refused != text
+            is_own = command_of(text, self.draft) is not None or may_be_own
             self._seen = text, Preview() if is_own else seen
         return self._seen[1]
 
     def refuse(self) -> None:
         """Shows what is wrong with the entry although more might come: the user wants to run it."""
         self._refused = self.buffer.text
+        self._seen = "", Preview()
+        near, fix = near_command(self.buffer.text), self.fix()
+        self.note = "Not run: correct the mistake, or clear the line with Ctrl-C."
+        if fix is not None:
+            self.note = f"Not run: there's a mistake. Ctrl-F writes: {fix[2]}"
+        elif near:
+            self.note = f"Not run. Did you mean: {near}"
+
+    def clear(self) -> None:
+        """Clears the terminal."""
+        output = self.application.output
+        output.erase_screen()
+        output.cursor_goto(0, 0)
+        output.flush()
+
+    def type_ahead(self, keys: str) -> None:
+        """What was typed while a mission ran: the next line gets it as if it were typed then."""
+        presses: list[KeyPress] = []
+        Vt100Parser(presses.append).feed_and_flush(keys.replace("\n", "\r"))
+        store_typeahead(self.application.input, presses)
 
     def _is_unfinished(self) -> bool:
         return self.preview().unfinished and self._refused != self.buffer.text

@@ -16,6 +16,7 @@ from btlang.run.controls import Controls
 from btlang.run.emergency import emergency_signal
 from btlang.run.json_log import JsonLog
 from btlang.run.lines import Lines, brief
+from btlang.run.overruns import are_many
 from btlang.run.runner import Outcome
 from btlang.run.standstill import Standstill
 from btlang.text.output import can_draw, has_colour, show
@@ -77,7 +78,7 @@ def run_mission(
     log: str | None,
     quiet: bool,
     lines: bool = False,
-    keys: bool = True,
+    type_ahead: list[str] | None = None,
     tree_stays: bool = True,
     sinks: Iterable[Sink] = (),
     values: Blackboard | None = None,
@@ -85,12 +86,13 @@ def run_mission(
     """Runs and reports; returns the exit code. Raises MissionError where the log cannot be opened (BT009).
 
     A log that cannot be written to the end does not change the mission: it is said after it, and a mission that
-    succeeded has the exit code 2. On a terminal it shows the live view, with keys or not, whose tree stays at the end
-    or not; elsewhere and where `lines` is true plain lines; and nothing when `quiet`. `sinks` get all events too;
-    `open_session` gives the session to run in, and `values` are as for Session.prepare.
+    succeeded has the exit code 2. On a terminal it shows the live view, whose tree stays at the end or not and which
+    puts keys that aren't for it into `type_ahead`, if given; elsewhere and where `lines` is true plain lines; and
+    nothing when `quiet`. `sinks` get all events too; `open_session` gives the session to run in, and `values` are as
+    for Session.prepare.
     """
     controls = Controls()
-    view = None if quiet or lines else _live_view(mission, controls, keys, tree_stays)
+    view = None if quiet or lines else _live_view(mission, controls, type_ahead, tree_stays)
     shown: list[Sink] = [view] if view is not None else [] if quiet else [Lines(mission.label, mission.is_action, show)]
     sinks = [*shown, *sinks]
     options = {"speed": speed, "rate": rate, "time_limit": time_limit, "values": values, "controls": controls}
@@ -110,7 +112,7 @@ def run_mission(
         raise
     except OSError as error:
         raise MissionError([unwritable(log or "the output", error)]) from None
-    if outcome.worst is not None and not quiet:
+    if outcome.worst is not None and are_many(outcome.overruns, outcome.ticks) and not quiet:
         show(_too_slow(outcome, *outcome.worst, mission.label))
     for slow in run.bus.slow:
         show(f"An event sink was too slow: the run waited {slow.seconds:.1f} s for it.", sys.stderr)
@@ -157,7 +159,7 @@ def _interrupted_by_signals() -> Iterator[list[int]]:
             signal.signal(number, signal.SIG_DFL)
 
 
-def _live_view(mission: Mission, controls: Controls, keys: bool, tree_stays: bool) -> LiveView | None:
+def _live_view(mission: Mission, controls: Controls, type_ahead: list[str] | None, tree_stays: bool) -> LiveView | None:
     """None where standard output is no terminal in which it can be shown."""
     output = sys.stdout
     if output is None or not can_draw(output):
@@ -172,7 +174,7 @@ def _live_view(mission: Mission, controls: Controls, keys: bool, tree_stays: boo
     from btlang.run.live.view import LiveView
 
     try:
-        return LiveView(mission, controls, output, sys.stdin if keys else None, tree_stays)
+        return LiveView(mission, controls, output, sys.stdin, tree_stays, type_ahead)
     except EngineError:
         return None  # the run itself tells what is wrong
 

@@ -14,6 +14,11 @@ _TO_BLAME = 0.5  # of a period: a leaf that took less is not the reason, the com
 _NOISE = 0.02  # seconds that anything may take on a busy computer
 
 
+def are_many(overruns: int, ticks: int) -> bool:
+    """Whether more than one tick in a hundred took too long: fewer are of no interest to people."""
+    return overruns * 100 > ticks
+
+
 class Overruns:
     """Ticks an engine that was made with a stopwatch, and tells of each tick that took too long.
 

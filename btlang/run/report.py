@@ -7,6 +7,7 @@ from collections.abc import Callable, Iterator
 
 from btlang.diagnostics.render import underlined
 from btlang.engine.engine import Failure
+from btlang.engine.nodes.decorators import WAS_TRUE
 from btlang.run.failure_history import Attempt, Attempts, FailureHistory
 from btlang.text.escaping import printable
 from btlang.tree.catalogue import CATALOGUE, SUBTREE
@@ -37,7 +38,10 @@ class _Report:
         yield f"{failure.path if failure.span is None else failure.span.place}: {self._words(failure.index)}"
         if failure.span is not None:
             yield from underlined(failure.span, colour)
-        yield f"  {story.engine.node(named).id}: {failure.reason}"
+        denied, reason = story.engine.node(named), failure.reason
+        if reason == WAS_TRUE and not denied.children:
+            reason = f"'{self._words(named)}' was true"
+        yield f"  {denied.id}: {reason}"
         yield from _raised(failure.exception)
         for index, seconds in last.stopped if last is not None else ():
             yield f"  It stopped '{self._words(index)}' after {seconds:.1f} s."

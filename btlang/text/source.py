@@ -15,9 +15,10 @@ class Source:
     What the text includes is looked for in `folder`, by default that of the path. It has to lie below one of the
     folders `roots`, by default `folder`; with () nothing can be included. Messages show nothing of a `hidden` text but
     places in it; with `hides_includes`, what the text includes is hidden, since its author may not read these files.
+    A text that the user named or typed `may_load` the keyword files that it names, which run Python.
     """
 
-    __slots__ = ("_starts", "folder", "hidden", "hides_includes", "name", "roots", "text")
+    __slots__ = ("_starts", "folder", "hidden", "hides_includes", "may_load", "name", "roots", "text")
 
     def __init__(
         self,
@@ -28,6 +29,7 @@ class Source:
         *,
         hidden: bool = False,
         hides_includes: bool = False,
+        may_load: bool = False,
     ) -> None:
         self.text = text
         self.name = name
@@ -35,6 +37,7 @@ class Source:
         self.roots = (self.folder,) if roots is None else roots
         self.hidden = hidden
         self.hides_includes = hides_includes
+        self.may_load = may_load
         self._starts: list[int] | None = None
 
     def position(self, offset: int) -> tuple[int, int]:

@@ -311,7 +311,8 @@ class Include(Ast):
 class Program(Ast):
     """A whole text: the sequence of its commands (None where there are none), its definitions and facts in order.
 
-    `name` is that of its tree, "" where it has none. `all_definitions` and `all_facts` also give those of what it
+    `name` is that of its tree, "" where it has none. `needs` are the roles and paths of lines that name what it needs,
+    such as ("needs_world", "museum.toml"). `all_definitions` and `all_facts` also give those of what it
     includes.
     """
 
@@ -321,6 +322,7 @@ class Program(Ast):
     facts: tuple[Fact, ...] = ()
     includes: tuple[Include, ...] = ()
     name: str = ""
+    needs: tuple[tuple[str, str], ...] = ()
     parts = ("body", "definitions")
 
 

@@ -32,6 +32,7 @@ _NO_SLOT = (
     "define_strong", "define", "fact", "facing",
     "set", "set_to", "increase", "decrease", "by", "remember", "remember_as", "each", "each_in", "include",
     "do", "test", "called", "with", "newline", "character", "main_name",
+    "needs_world", "needs_words",
 )  # fmt: skip
 ROLES = {
     **dict.fromkeys(_NO_SLOT, ""),

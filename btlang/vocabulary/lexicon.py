@@ -30,6 +30,7 @@ DEFINING = ("define_strong", "define")
 NO_PHRASES = frozenset((
     *DEFINING, "fact", "facing", "set_to", "by", "remember_as", "each_in",
     "called", "with", "newline", "character", "main_name", "here",
+    "needs_world", "needs_words",
 ))  # fmt: skip
 """Roles whose words are looked for where definitions, facts and nodes are, and nowhere else."""
 

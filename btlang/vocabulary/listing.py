@@ -18,8 +18,22 @@ _FEW = 3  # of so few found, all is told
 _KEY = (
     "[...] is optional, {{...}} takes a value (see the end), a/b is a choice,",
     "time(s) is time or times. A condition isn't a command: it needs a word such as",
-    "'{if}' or '{until}'. btc words TOPIC shows a topic, btc words WORD finds a word.",
+    "'{if}' or '{until}'.",
 )
+
+
+def overview(vocabulary: Lexicon, width: int = _WIDTH, command: str = "btc words") -> list[str]:
+    """The topics, each with the number of things to say and the first of them; `command` is what lists more."""
+    known = items(vocabulary)
+    lines = ["What you can say, by topic:"]
+    for topic in dict.fromkeys(item.topic for item in known):
+        ways = [item.ways[0] for item in known if item.topic == topic]
+        brief = textwrap.shorten(", ".join(ways), width - 20, placeholder=" ...")
+        lines.append(f"  {topic:<13} {len(ways):>2}  {brief}")
+    more = (
+        f"{command} {known[0].topic} lists a topic, {command} battery finds a word, {command} --all lists everything."
+    )
+    return [*lines, *_wrapped(more, "", "", width)]
 
 
 def listing(vocabulary: Lexicon, search: str = "", width: int = _WIDTH) -> list[str]:
@@ -42,12 +56,10 @@ def help_on(vocabulary: Lexicon, text: str = "", width: int = _WIDTH) -> list[st
     """Help on a topic, a phrase (with or without values), a node id, a word of the language or a type of values.
 
     Of a phrase or word: all ways to say it, what it does, its slots, what it needs of the robot, and an example.
-    For "" all topics with what they hold; for what is not known the nearest words.
+    For what is not known the nearest words.
     """
     known = items(vocabulary)
     wanted = text.strip().strip("{}")
-    if not wanted:
-        return _topics(known, width)
     if any(_is_called(item, wanted) for item in known):
         return _by_topic((item for item in known if _is_called(item, wanted)), width)
     found = _said_so(known, wanted, vocabulary) or _found(known, wanted) or _begun_so(known, wanted, vocabulary)
@@ -147,14 +159,6 @@ def _whole(item: Item, width: int) -> list[str]:
     if "\n" in item.example:
         return [*lines, "    for example:", *_block(item.example, 6)]
     return [*lines, *([f"    for example: {item.example}"] if item.example else [])]
-
-
-def _topics(known: Sequence[Item], width: int) -> list[str]:
-    lines = ["Ask for help on a topic, or on any word or phrase:"]
-    for topic in dict.fromkeys(item.topic for item in known):
-        ways = ", ".join(item.ways[0] for item in known if item.topic == topic)
-        lines.append(f"  {topic:<13} " + textwrap.shorten(ways, width - 16, placeholder=" ..."))
-    return lines
 
 
 def _unknown(known: Sequence[Item], search: str) -> list[str]:

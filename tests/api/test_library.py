@@ -121,7 +121,7 @@ def test_why_it_failed() -> None:
         "<text>:1:50: not the battery is above 20%",
         "  try grasp the cup up to 2 times, otherwise check not the battery is above 20%",
         f"  {'':49}{'^' * 28}",
-        "  Battery: it is true",
+        "  Battery: 'battery is above 20%' was true",
         "What had been tried before:",
         "    0.0 s  grasp cup: the cup is not within reach of the right hand (2 times, last at 0.1 s)",
     ]

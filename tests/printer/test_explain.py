@@ -45,7 +45,7 @@ def test_every_mission_fits(path: Path, monkeypatch: pytest.MonkeyPatch) -> None
     monkeypatch.chdir(path.parent)  # where it includes from
     text = path.read_text(encoding="utf-8-sig")
     world = re.search(r"--world (\S+)", text)
-    tree = parse_tree(Source(text, str(path)), world=str(ROOT / world[1]) if world else None)
+    tree = parse_tree(Source(text, str(path), may_load=True), world=str(ROOT / world[1]) if world else None)
     for width in (60, 80, 120):
         lines = tree.explain(width).splitlines()
         assert all(len(line) <= width for line in lines)

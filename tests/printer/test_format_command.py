@@ -92,4 +92,4 @@ def test_wrong_options(arguments: list[str], capsys: pytest.CaptureFixture[str])
     with pytest.raises(SystemExit) as caught:
         main(arguments)
     assert caught.value.code == 2
-    assert "usage: btc" in capsys.readouterr().err
+    assert capsys.readouterr().err.endswith(f"\nRun 'btc help {arguments[0]}' for help.\n")

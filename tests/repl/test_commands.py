@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from btlang.diagnostics.errors import MissionError
-from btlang.repl.commands import COMMANDS, Commands, Leave, command_of
+from btlang.repl.commands import COMMANDS, Commands, Leave, command_of, near_command
 from btlang.repl.draft import MissionDraft
 from btlang.repl.entering import entries, needs_more
 from btlang.repl.store import Store
@@ -47,7 +47,7 @@ def test_every_word_is_done() -> None:
             with pytest.raises(Leave):
                 repl.do("quit")
         else:
-            assert repl.do(command.name) or command.name == "run"
+            assert repl.do(command.name) or command.name in ("run", "clear")
     assert repl.runs == 1
 
 
@@ -66,6 +66,12 @@ def test_every_word_is_done() -> None:
         ("fest", None),
         ("undo\nwave", None),
         (":flarp", ("flarp", "")),
+        ("exit", ("quit", "")),
+        (":Exit", ("quit", "")),
+        ("bye", ("quit", "")),
+        (":bye", ("quit", "")),
+        (":quit", ("quit", "")),
+        ("clear", ("clear", "")),
     ],
 )
 def test_whose_a_line_is(line: str, own: tuple[str, str] | None) -> None:
@@ -226,3 +232,31 @@ def test_a_store_that_cannot_write(tmp_path: Path) -> None:
     store.save(["wave"], "")
     store.forget()
     assert store.left() is None
+
+
+def test_clear_clears_the_screen_and_not_the_mission() -> None:
+    repl = Repl("bow is nod")
+    cleared: list[bool] = []
+    repl.commands.clear_screen = lambda: cleared.append(True)
+    assert (repl.do("clear"), cleared, len(repl.session.entries)) == ("", [True], 1)
+    repl.do(":clear")
+    assert len(cleared) == 2
+
+
+def test_help_fits_the_screen_and_leads_to_every_word() -> None:
+    repl = Repl()
+    overview = repl.do("help")
+    assert len(overview.splitlines()) <= 16
+    assert max(map(len, overview.splitlines())) <= 80
+    assert [command.name for command in COMMANDS if command.name not in overview] == []
+    for command in COMMANDS:
+        assert command.help in repl.do(f"help {command.topic}")
+        assert command.help in repl.do(f"help {command.name}")
+    assert "leaves, like Ctrl-D" in repl.do("help exit")
+    assert "Space" in repl.do("help keys")
+
+
+def test_a_misspelt_word_of_the_repl() -> None:
+    assert near_command("hepl") == "help"
+    assert near_command(" Undoo") == "undo"
+    assert near_command("frobnicate") == ""

@@ -150,7 +150,7 @@ def test_wrong_options(options: list[str], capsys: pytest.CaptureFixture[str]):
     with pytest.raises(SystemExit) as caught:
         main(["ros-node", *options])
     assert caught.value.code == 2
-    assert "usage: btc ros-node" in capsys.readouterr().err
+    assert "Run 'btc help ros-node'" in capsys.readouterr().err
 
 
 def test_what_others_send_reads_no_files_and_runs_no_python(

@@ -251,4 +251,4 @@ def test_wrong_options(options: list[str], capsys: pytest.CaptureFixture[str]):
     with pytest.raises(SystemExit) as caught:
         main(options)
     assert caught.value.code == 2
-    assert f"usage: btc {options[0]}" in capsys.readouterr().err
+    assert f"Run 'btc help {options[0]}'" in capsys.readouterr().err

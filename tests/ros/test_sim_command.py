@@ -71,7 +71,7 @@ def test_wrong_options(options: list[str], capsys: pytest.CaptureFixture[str]):
     with pytest.raises(SystemExit) as caught:
         main(["sim-ros", *options])
     assert caught.value.code == 2
-    assert "usage: btc sim-ros" in capsys.readouterr().err
+    assert "Run 'btc help sim-ros'" in capsys.readouterr().err
 
 
 class WithoutNav2(Command):

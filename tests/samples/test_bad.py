@@ -12,7 +12,7 @@ import pytest
 
 from btlang.cli import CRASHED, main
 from btlang.diagnostics.codes import CODES
-from tests.conftest import matches_golden, take_away_what_is_missed
+from tests.conftest import matches_golden, take_away_what_is_missed, without_pointer
 from tests.ros.bound import bind_words
 
 BAD = Path(__file__).parent / "bad"
@@ -28,7 +28,7 @@ def test_message(sample: Path, capsys: pytest.CaptureFixture[str], monkeypatch: 
         code = bind_words(first.removeprefix("# ros "))
     else:
         code = run_sample(sample, first)
-    errors = capsys.readouterr().err
+    errors = without_pointer(capsys.readouterr().err)
     assert sample.stem[:5] in errors
     assert "Traceback" not in errors
     expected = 0 if CODES[sample.stem[:5]].severity == "warning" else 2

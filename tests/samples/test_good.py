@@ -36,6 +36,7 @@ ROWS = {
     # missions.md
     "Statements": "layout", "What does not matter": "layout", "Blocks": "if", "Joined blocks": "joined_blocks",
     "Brackets": "brackets", "Silencing a warning": "silenced",
+    "What a mission needs": "needs",
     # phrases.md
     "Phrases": "values", "Values and units": "values", "Texts": "layout", "Lists": "lists_and_quantities",
     "Pronouns": "pronouns", "Quantities": "lists_and_quantities",

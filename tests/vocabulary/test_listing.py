@@ -11,7 +11,7 @@ from btlang.api import parse_tree, world_vocabulary
 from btlang.engine.status import FAILURE, SKIPPED, SUCCESS
 from btlang.vocabulary.items import items
 from btlang.vocabulary.language_tables import EXPLAINED, ROLES
-from btlang.vocabulary.listing import help_on, listing
+from btlang.vocabulary.listing import help_on, listing, overview
 from btlang.vocabulary.load import load_vocabulary
 from btlang.vocabulary.pattern import forms
 
@@ -70,7 +70,7 @@ def test_everything_has_its_topic_help_and_example() -> None:
 
 
 def test_examples_of_words_use_their_words() -> None:
-    for role in ROLES.keys() - {"include"}:  # an include needs a file beside it
+    for role in ROLES.keys() - {"include", "needs_world", "needs_words"}:  # these need a file beside the mission
         about, [item] = VOCABULARY.about[role], [item for item in ITEMS if item.names == (role,)]
         words = {word for way in item.ways for form in forms(way) for word in form}
         assert words & set(about.example.replace(",", "").lower().split()), role
@@ -183,11 +183,19 @@ def test_help_finds(text: str, firsts: list[str]) -> None:
     assert [block.splitlines()[0] for block in blocks] == firsts
 
 
-def test_help_on_nothing_shows_the_topics() -> None:
-    lines = help_on(VOCABULARY, " ")
-    assert lines[0].startswith("Ask for help")
-    assert [line[2:16].strip() for line in lines[1:]] == list(dict.fromkeys(item.topic for item in ITEMS))
-    assert "  joining       then, and, or, in parallel, after, before, meanwhile, if ..." in lines
+def test_the_overview_counts_what_each_topic_lists() -> None:
+    first, *lines, more, last = overview(VOCABULARY)
+    assert first == "What you can say, by topic:"
+    assert len(lines) <= 20
+    assert max(map(len, lines)) <= 80
+    assert [line[2:16].strip() for line in lines] == list(dict.fromkeys(item.topic for item in ITEMS))
+    for line in lines:
+        topic, count = line[2:16].strip(), int(line[16:18])
+        assert count == sum(item.topic == topic for item in ITEMS)
+    assert "  joining       11  then, and, or, in parallel, after, before, meanwhile, if ..." in lines
+    assert f"{more} {last}" == (
+        "btc words motion lists a topic, btc words battery finds a word, btc words --all lists everything."
+    )
 
 
 @pytest.mark.parametrize("text", ["((", '"', "\0", "\n", "{", "then", "   (", "#", "é", "1" * 400])

@@ -47,7 +47,7 @@ def test_it_is_listed(pack: str, capsys: pytest.CaptureFixture[str]) -> None:
         "      node: Juggle\n"
         "      for example: juggle 3 balls for Alice\n"
     )
-    assert "circus:\n  juggle {count} ball(s)" in printed(capsys, "words", "--keywords", pack)
+    assert "circus:\n  juggle {count} ball(s)" in printed(capsys, "words", "--all", "--keywords", pack)
 
 
 def offers(draft: MissionDraft, text: str) -> list[str]:

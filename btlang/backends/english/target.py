@@ -30,11 +30,13 @@ WIDTH = 100
 """Columns; what would be a longer line becomes a block where it can."""
 
 
-def to_english(tree: Tree, vocabulary: Lexicon, *, facts: Sequence[Fact] = ()) -> str:
+def to_english(
+    tree: Tree, vocabulary: Lexicon, *, facts: Sequence[Fact] = (), needs: tuple[tuple[str, str], ...] = ()
+) -> str:
     """A mission that compiles to an equal tree: natural words where the language has them, else nodes by their ids.
 
-    It begins with the `facts`, whose places it may name. Raises MissionError (BT142) for a tree that no text can say,
-    such as one with a line end in the name of a subtree.
+    It begins with what it `needs` and the `facts`, whose places it may name. Raises MissionError (BT142) for a tree
+    that no text can say, such as one with a line end in the name of a subtree.
     """
     names = [name for name, _ in tree.subtrees] + [name for node in tree.walk() for name, _ in node.ports]
     odd = next((name for name in names if not is_one_piece(name)), None)
@@ -45,7 +47,9 @@ def to_english(tree: Tree, vocabulary: Lexicon, *, facts: Sequence[Fact] = ()) -
     comments, refused = comments_of(tree), Refused()
     for level in _LEVELS:
         mission, printer = _mission(tree, words, level, refused, comments)
-        text = "".join(f"{line}\n" for line in _lines(mission.replace(facts=tuple(facts)), printer, comments))
+        text = "".join(
+            f"{line}\n" for line in _lines(mission.replace(facts=tuple(facts), needs=needs), printer, comments)
+        )
         try:
             again = lower_mission(read_mission(Source(text), vocabulary).mission, vocabulary)
         except MissionError as error:
@@ -55,7 +59,7 @@ def to_english(tree: Tree, vocabulary: Lexicon, *, facts: Sequence[Fact] = ()) -
             both = _said_both_ways(mission, words)
             if both:
                 tested = tuple(NodeModel("Condition", node_id) for node_id in both)
-                return to_english(tree.replace(models=(*tree.models, *tested)), vocabulary, facts=facts)
+                return to_english(tree.replace(models=(*tree.models, *tested)), vocabulary, facts=facts, needs=needs)
             return text
         refused = Refused(frozenset(_differing(tree, again)))
     raise _unsayable(tree, reason)

@@ -12,6 +12,10 @@ if TYPE_CHECKING:
     from btlang.engine.instance import Compiled
 
 
+WAS_TRUE = "it is true"
+"""The reason of an Inverter: what it denies succeeded."""
+
+
 def inverter(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
     """SUCCESS for FAILURE and the other way round (inverter_node.cpp); what is not known stays a FAILURE."""
     [(child, halt)] = children
@@ -21,7 +25,7 @@ def inverter(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
         unknowns = state.unknowns
         status = child()
         if status == SUCCESS:
-            return instance.fail("it is true")
+            return instance.fail(WAS_TRUE)
         return SUCCESS if status == FAILURE and not instance.not_known(unknowns) else status
 
     return tick, halt

@@ -150,7 +150,13 @@ class _Reader:
         whole = Span(source, 0, len(source.text))
         names = lexer.names
         return Program(
-            body, tuple(definitions.values()), whole, tuple(facts.values()), tuple(names.includes), names.main_name
+            body,
+            tuple(definitions.values()),
+            whole,
+            tuple(facts.values()),
+            tuple(names.includes),
+            names.main_name,
+            names.needs,
         )
 
 

@@ -13,7 +13,7 @@ from btlang.record import Record
 from btlang.robots.registry import connector
 from btlang.session import Session
 from btlang.text.source import Source, Span
-from btlang.vocabulary.shipped import ENGLISH
+from btlang.vocabulary.shipped import DEFAULT_WORLD, ENGLISH
 
 _NOT_ALLOWED = "other programs can't use it; to allow it, start the node with --allow-keywords and its name or folder"
 
@@ -64,5 +64,5 @@ class Setup(Record):
 
     def compiled(self, source: Source, keywords: Sequence[str] = ()) -> Mission:
         """A mission, with further keyword files. Raises MissionError."""
-        known = [*self.keywords, *keywords]
-        return parse_tree(source, parser=self.parser, keywords=known, world=self.world, language=self.language)
+        known, world = [*self.keywords, *keywords], self.world or DEFAULT_WORLD  # the robot's, not that of the text
+        return parse_tree(source, parser=self.parser, keywords=known, world=world, language=self.language)

@@ -10,6 +10,7 @@ from btlang.engine.compile import outline
 from btlang.run.events import PeriodPassed
 from btlang.run.lines import Lines
 from btlang.run.live import frame
+from btlang.run.live.selection import LEAST_HEIGHT
 from btlang.run.shape import Shape
 from btlang.run.snapshot import State
 from btlang.text.escaping import one_line
@@ -81,10 +82,11 @@ class Board:
         self._above.clear()
         return lines
 
-    def frame(self, width: int, height: int, doing: str, keys: bool) -> list[frame.Line]:
+    def frame(self, width: int, height: int, doing: str, keys: str, explained: bool = False) -> list[frame.Line]:
         """At most `height` lines (7 or more) while the run goes on. `doing` says what it does, "" that it has ended.
 
-        `keys` tells whether keys are read. A run that ended before it began leaves nothing to show.
+        `keys` is that of frame.keys_line; `explained` adds what the signs mean, as far as there is room. A run that
+        ended before it began leaves nothing to show.
         """
         state, signs, over = self.state, self._signs, not doing
         below = [frame.robot_line(state, signs), frame.counts_line(state, signs)]
@@ -92,8 +94,10 @@ class Board:
             return []
         if over:
             return [*frame.tree_lines(state, self._words, height - 2, width, over, signs), *below]
-        tree = frame.tree_lines(state, self._words, height - 4, width, over, signs)
         below.append(frame.keys_line(doing == "paused", keys, signs))
+        if explained:
+            below = [*frame.legend_lines(width, signs)[: height - LEAST_HEIGHT - 4], *below]
+        tree = frame.tree_lines(state, self._words, height - 1 - len(below), width, over, signs)
         return [frame.header(self._title, state, doing, signs), *tree, *below]
 
     def _take(self, event: Event | str) -> None:

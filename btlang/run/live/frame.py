@@ -7,12 +7,15 @@ from collections.abc import Callable, Sequence
 
 from rich.cells import cell_len, set_cell_size
 
+from btlang.engine.nodes.decorators import WAS_TRUE
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 from btlang.record import Record
 from btlang.run.live.selection import LEAST_HEIGHT, Row, choose_rows
+from btlang.run.overruns import are_many
 from btlang.run.robot_state import RobotState
 from btlang.run.snapshot import HALTED, SUSPENDED, State
 from btlang.text.escaping import one_line
+from btlang.tree.catalogue import CATALOGUE
 from btlang.tree.node import Node
 
 TYPE_CHECKING = False
@@ -24,8 +27,12 @@ if TYPE_CHECKING:
 
 _STYLES = {IDLE: "dim", RUNNING: "bold cyan", SUCCESS: "green", FAILURE: "bold red", SKIPPED: "dim"}
 _STYLES |= {HALTED: "yellow", SUSPENDED: "bold yellow"}
+_MEANINGS = {
+    RUNNING: "running", SUCCESS: "succeeded", FAILURE: "failed", SKIPPED: "skipped", IDLE: "not run", HALTED: "halted",
+    SUSPENDED: "paused",
+}  # fmt: skip
 _LABELS = {IDLE: "dim", RUNNING: "bold", FAILURE: "red", SKIPPED: "dim", SUSPENDED: "bold"}
-_KEYS = (("space", "pause"), ("s", "step"), ("q", "stop"), ("e", "emergency stop"))
+_KEYS = (("space", "pause"), ("s", "step"), ("q", "stop"), ("e", "emergency stop"), ("?", "legend"))
 _SIGNALS = (("Ctrl-C", "stop"), *((("Ctrl-\\", "emergency stop"),) if hasattr(signal, "SIGQUIT") else ()))
 
 
@@ -45,8 +52,10 @@ ASCII = Signs("x+>-.!=", ("|-- ", "`-- ", "|   "), "...", " - ")
 class Words:
     """The words for the nodes of a tree, each looked up once: id or command, and the sentence of what has children."""
 
-    def __init__(self, nodes: Sequence[Node], label: Callable[[Node], str]) -> None:
+    def __init__(self, nodes: Sequence[Node], label: Callable[[Node], str], parents: Sequence[int] = ()) -> None:
         self._nodes = nodes
+        self.asked = _asked(nodes, parents)
+        """Whether a node is in a condition of the node above, whose failure is an answer and no mistake."""
         self._label = label
         self._known: dict[int, tuple[str, str]] = {}
 
@@ -62,6 +71,15 @@ class Words:
                 first = ""  # the first of many sentences says too little, and a name twice too much
             found = self._known[index] = one_line(name), one_line(first)
         return found
+
+
+def _asked(nodes: Sequence[Node], parents: Sequence[int]) -> list[bool]:
+    asked = [False] * len(nodes)
+    for index, parent in enumerate(parents):
+        if parent >= 0:
+            kind = CATALOGUE.get(nodes[parent].id)
+            asked[index] = asked[parent] or (index == parent + 1 and kind is not None and kind.asks_first)
+    return asked
 
 
 def _heads_a_block(node: Node, line: str) -> bool:
@@ -116,15 +134,28 @@ def robot_line(state: State, signs: Signs) -> Line:
 
 
 def counts_line(state: State, signs: Signs) -> Line:
-    """Ticks and overruns."""
-    late = "bold yellow" if state.overruns else ""
-    return (("ticks ", "dim"), (str(state.ticks), ""), (f"{signs.apart}overruns ", "dim"), (str(state.overruns), late))
+    """Ticks, and overruns if there are many."""
+    ticks = (("ticks ", "dim"), (str(state.ticks), ""))
+    if not are_many(state.overruns, state.ticks):
+        return ticks
+    return (*ticks, (f"{signs.apart}overruns ", "dim"), (str(state.overruns), "bold yellow"))
 
 
-def keys_line(paused: bool, keys: bool, signs: Signs) -> Line:
-    """What the keys do; those of signals where the keyboard is not read."""
+def legend_lines(width: int, signs: Signs) -> list[Line]:
+    """What the signs in front of the nodes mean."""
+    lines: list[Line] = [()]
+    for status, meaning in _MEANINGS.items():
+        piece = ((f"{signs.statuses[status]} ", _STYLES[status]), (f"{meaning}  ", "dim"))
+        if sum(cell_len(text) for text, _ in (*lines[-1], *piece)) > width:
+            lines.append(())
+        lines[-1] += piece
+    return lines
+
+
+def keys_line(paused: bool, keys: str, signs: Signs) -> Line:
+    """What the "keys" do, or only "space" and those of signals, or else just these."""
     pieces: list[tuple[str, str]] = []
-    for key, deed in _KEYS if keys else _SIGNALS:
+    for key, deed in {"keys": _KEYS, "space": (_KEYS[0], *_SIGNALS)}.get(keys, _SIGNALS):
         deed = "resume" if paused and deed == "pause" else deed
         pieces += [(key, "bold"), (f" {deed}{signs.apart}", "dim")]
     last = pieces.pop()[0].removesuffix(signs.apart)
@@ -145,7 +176,9 @@ def _node(
     name = fitted(name, room, signs)
     sentence = fitted(f"  {sentence}", room - cell_len(name), signs) if sentence else ""
     note = fitted(note, width - 2 - cell_len(name + sentence + end), signs)
-    pieces = [(signs.statuses[status] + " ", _STYLES[status]), (name, _LABELS.get(status, ""))]
+    is_answer = status == FAILURE and words.asked[node]
+    styles = ("dim", "dim") if is_answer else (_STYLES[status], _LABELS.get(status, ""))
+    pieces = [(signs.statuses[status] + " ", styles[0]), (name, styles[1])]
     pieces += [(sentence, "dim italic"), (end, "cyan" if status == RUNNING else "dim"), (note, note_style)]
     return pieces
 
@@ -154,7 +187,7 @@ def _note(state: State, row: Row, words: Words, status: int) -> tuple[str, str]:
     """What is to be said of the end of a node, with its style."""
     if status == FAILURE:
         reason = one_line(_reason(state, row, words))
-        return (f"  {reason}" if reason else ""), "red"
+        return (f"  {reason}" if reason else ""), "dim" if words.asked[row.node] else "red"
     is_leaf = state.shape.ends[row.node] == row.node + 1
     return ("  halted" if status == HALTED and is_leaf else ""), "yellow"
 
@@ -174,6 +207,8 @@ def _reason(state: State, row: Row, words: Words) -> str:
     while row.inside and (failed := [child for child in shape.children(node) if state.statuses[child] == FAILURE]):
         node = failed[-1]
     reason = state.reasons.get(node, "")
+    if reason == WAS_TRUE and shape.ends[node + 1] == node + 2:  # it denies a leaf
+        reason = f"'{words.of(node + 1)[0]}' was true"
     parts = [words.of(node)[0]] if node != row.node else []
     return ": ".join([*parts, reason] if reason else parts)
 

@@ -22,10 +22,8 @@ if TYPE_CHECKING:
 _SEQUENCE = re.compile(r"\x1b(?:[\[O][0-?]*[ -/]*[@-~]?|.)?", re.DOTALL)  # an arrow key or the like
 _PATIENCE = 0.2  # seconds until a process in the background looks again
 
-STOP = "q"
-"""The key that ends the run."""
-EMERGENCY = "e"
-"""The key that stops the robot at once."""
+GONE = ""
+"""In place of a key: the terminal is gone."""
 
 
 class Keys:
@@ -94,7 +92,7 @@ class Keys:
             except OSError:
                 text = ""
             if not text:  # the terminal is gone, and nobody could end a pause
-                self._pressed(STOP)
+                self._pressed(GONE)
                 return
             for key in _SEQUENCE.sub("", text):
                 self._pressed(key)

@@ -13,7 +13,7 @@ from btlang.run.events import PeriodPassed
 from btlang.run.live import frame
 from btlang.run.live.board import Board
 from btlang.run.live.capture import captured
-from btlang.run.live.keys import EMERGENCY, STOP, Keys
+from btlang.run.live.keys import GONE, Keys
 from btlang.run.live.screen import Screen
 from btlang.run.live.stopping import stoppable
 
@@ -41,8 +41,10 @@ class LiveView:
 
     It shows the tree at the end of what the terminal shows, and above it the lines that `Lines` writes, which stay; the
     tree stays too unless `tree_stays` is false. The keys space, s, q and e of `keyboard`, where there is one, pause,
-    step and stop the run, and stop the robot at once. What is printed to standard output, or to a standard error on a
-    terminal, comes above the tree. Raises EngineError for a tree that cannot be compiled.
+    step and stop the run, and stop the robot at once; ? explains the signs. With `type_ahead`, a space is the only key
+    that does so while the mission runs: that list gets any other key, and what follows it. What is printed to standard
+    output, or to a standard error on a terminal, comes above the tree. Raises EngineError for a tree that cannot be
+    compiled.
     """
 
     policy = INLINE
@@ -54,10 +56,12 @@ class LiveView:
         output: TextIO,
         keyboard: TextIO | None = None,
         tree_stays: bool = True,
+        type_ahead: list[str] | None = None,
     ) -> None:
         unicode = (output.encoding or "").lower().startswith("utf")
         self._board = Board(mission, frame.UNICODE if unicode else frame.ASCII)
         self._tree_stays = tree_stays
+        self._type_ahead = type_ahead
         self._controls = controls
         self._output = output
         self._screen = Screen(output, lambda: os.get_terminal_size(output.fileno()))
@@ -66,6 +70,7 @@ class LiveView:
         self._wake = threading.Event()
         self._drawing = threading.RLock()
         self._drawn: object = None  # what the last frame was made from
+        self._explained = False  # what the signs mean
         self._left = False  # for as long as the process is stopped
         self._behind = False  # the process is or was in the background, where it neither draws nor reads
         self._ended = False
@@ -124,13 +129,21 @@ class LiveView:
         """Draws a frame where there is anything new."""
         width, height = self._screen.size()
         doing = self._doing()
-        seen = self._board.changes, width, height, doing
+        seen = self._board.changes, width, height, doing, self._explained
         if seen == self._drawn:
             return
         self._drawn = seen
         above = self._board.take()
-        lines = self._board.frame(width, height - max(height // _OTHER_LINES, 1), doing, self._keys is not None)
+        lines = self._board.frame(
+            width, height - max(height // _OTHER_LINES, 1), doing, self._keys_shown(doing), self._explained
+        )
         self._screen.draw(above, lines)
+
+    def _keys_shown(self, doing: str) -> str:
+        """As frame.keys_line takes it."""
+        if self._keys is None:
+            return "signals"
+        return "keys" if self._type_ahead is None or doing == "paused" else "space"
 
     def _doing(self) -> str:
         if self._ended:
@@ -166,11 +179,18 @@ class LiveView:
 
     def _press(self, key: str) -> None:
         controls = self._controls
-        deeds = {" ": controls.toggle, "s": controls.step, STOP: controls.stop, EMERGENCY: controls.emergency_stop}
+        if key and self._type_ahead is not None and not controls.paused and (key != " " or self._type_ahead):
+            self._type_ahead.append(key)
+            return
+        deeds = {" ": controls.toggle, "s": controls.step, "q": controls.stop, "e": controls.emergency_stop}
+        deeds |= {GONE: controls.stop, "?": self._explain}
         deed = deeds.get(key.lower())
         if deed is not None:
             deed()
             self._wake.set()
+
+    def _explain(self) -> None:
+        self._explained = not self._explained
 
     def _leave(self) -> None:
         """Gives the terminal back for as long as the process is stopped."""

@@ -16,10 +16,12 @@ from btlang.run.live.frame import (
     fitted,
     header,
     keys_line,
+    legend_lines,
     robot_line,
     tree_lines,
 )
 from btlang.run.robot_state import RobotState
+from btlang.run.shape import Shape
 from btlang.run.snapshot import HALTED, SUSPENDED, State
 from btlang.text.source import Source, Span
 from btlang.tree.node import Node
@@ -141,10 +143,30 @@ def test_the_lines_around() -> None:
     state, _ = made("all")
     state.now, state.ticks, state.overruns = 12.34, 246, 1
     assert text(header("tea.txt", state, "paused", UNICODE)) == "tea.txt · 12.3 s · paused"
-    assert text(counts_line(state, UNICODE)) == "ticks 246 · overruns 1"
-    assert text(keys_line(False, True, UNICODE)) == "space pause · s step · q stop · e emergency stop"
-    assert text(keys_line(True, True, UNICODE)) == "space resume · s step · q stop · e emergency stop"
-    assert text(keys_line(True, False, ASCII)) == "Ctrl-C stop - Ctrl-\\ emergency stop"
+    assert text(counts_line(state, UNICODE)) == "ticks 246"
+    state.overruns = 3  # more than one in a hundred
+    assert text(counts_line(state, UNICODE)) == "ticks 246 · overruns 3"
+    assert text(keys_line(False, "keys", UNICODE)) == "space pause · s step · q stop · e emergency stop · ? legend"
+    assert text(keys_line(True, "keys", UNICODE)) == "space resume · s step · q stop · e emergency stop · ? legend"
+    assert text(keys_line(True, "signals", ASCII)) == "Ctrl-C stop - Ctrl-\\ emergency stop"
+
+
+def test_the_legend_explains_every_sign_in_any_width() -> None:
+    for width in (100, 34):
+        shown = legend_lines(width, UNICODE)
+        assert max(cell_len(text(line)) for line in shown) <= width
+        words = " ".join(map(text, shown))
+        assert [sign for sign in UNICODE.statuses if f"{sign} " not in words] == []
+
+
+def test_an_answer_of_a_condition_is_not_red() -> None:
+    nodes = [Node("IfThenElse"), Node("Inverter"), Node("BatteryFull"), Node("Wave")]
+    state, words = State(Shape([-1, 0, 1, 0]), nodes), Words(nodes, lambda node: node.id, [-1, 0, 1, 0])
+    state.statuses[:] = bytes([SKIPPED, FAILURE, SUCCESS, FAILURE])
+    state.reasons = {1: "it is true", 3: "the arm is stuck"}
+    shown = tree_lines(state, words, 10, 80, False, UNICODE)
+    assert text(shown[1]).endswith("Inverter  'BatteryFull' was true")
+    assert [any("red" in style for _, style in line) for line in shown] == [False, False, False, True]
 
 
 def test_a_terminal_without_unicode() -> None:

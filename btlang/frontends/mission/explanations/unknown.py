@@ -92,7 +92,9 @@ def unknown_value(span: Span, key: str, known: Iterable[str]) -> Diagnostic:
     return diagnostic("BT043", span, fix=fix, name=name, help=advice)
 
 
-_NOT_OFFERED = frozenset((*NODE_ROLES, "called", "with", "newline", "character", "main_name"))
+_NOT_OFFERED = frozenset(
+    (*NODE_ROLES, "called", "with", "newline", "character", "main_name", "needs_world", "needs_words")
+)
 """Roles for texts that programs write: what is like their words was hardly meant so."""
 
 

@@ -10,6 +10,7 @@ from btlang.frontends.mission.symbols.definitions import find_definitions
 from btlang.frontends.mission.symbols.facts import find_facts
 from btlang.frontends.mission.symbols.includes import Included, find_includes
 from btlang.frontends.mission.symbols.meanings import find_meanings
+from btlang.frontends.mission.symbols.needs import find_needs
 from btlang.frontends.mission.symbols.nodes import find_main_names
 from btlang.frontends.mission.symbols.phrases import Phrases
 from btlang.frontends.mission.symbols.prefixes import find_prefixes
@@ -49,7 +50,10 @@ class Names:
         meanings = find_meanings(text, vocabulary)
         self.meanings = meanings.found
         """Joining words that have another role here, each with that."""
-        self.ends = includes.ends | facts.ends | meanings.ends
+        needs = find_needs(text, vocabulary)
+        self.needs = tuple((need.role, need.path) for need in needs.found)
+        """What the mission needs, each with the role of the words in front of the path."""
+        self.ends = includes.ends | facts.ends | needs.ends | meanings.ends
         self.main_name = ""
         main_span: Span | None = None
         for name, first, last in find_main_names(text, vocabulary):
@@ -66,7 +70,8 @@ class Names:
         text.going_on = find_continuations(self.phrases)
         self.definitions = find_definitions(self.phrases, self.ends, compared, elsewhere)
         text.going_on -= named_at(self.definitions.trie, self.phrases, text.going_on)
-        self.problems: list[Diagnostic] = [*facts.problems, *meanings.problems, *self.definitions.problems]
+        self.problems: list[Diagnostic] = [*needs.problems, *facts.problems, *meanings.problems]
+        self.problems += self.definitions.problems
         if main_span is not None:
             defined = [header.name for header in self.definitions.headers.values()]
             if self.main_name in (*defined, *(definition.name for definition in elsewhere)):

@@ -1,0 +1,140 @@
+"""The command line as people type it: without a verb, with a mistyped one, asking for help."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from btlang import __version__
+from btlang.cli import _VERBS, main
+from btlang.cli_options import _OPTIONS
+
+RUN = ["--speed", "max", "--lines"]
+
+
+@pytest.fixture(autouse=True)
+def in_a_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    Path("tea.txt").write_text("wave\n", encoding="utf-8")
+
+
+def typed(*arguments: str) -> int | str | None:
+    try:
+        return main(arguments)
+    except SystemExit as end:
+        return end.code
+
+
+@pytest.mark.parametrize("mission", ["wave", "wave then wait 1 s", "wave.", "-c wave", "tea.txt", "./tea.txt"])
+def test_a_mission_runs_without_a_verb(mission: str, capsys: pytest.CaptureFixture[str]) -> None:
+    words = mission.split(maxsplit=1) if mission.startswith("-") else [mission]
+    assert typed(*words, *RUN) == 0
+    assert "done   wave" in capsys.readouterr().out
+
+
+def test_a_file_wins_over_a_mission_of_the_same_words(capsys: pytest.CaptureFixture[str]) -> None:
+    Path("wave then nod").write_text("say hi\n", encoding="utf-8")
+    assert typed("wave then nod", *RUN) == 0
+    assert 'says   "hi"' in capsys.readouterr().out
+
+
+@pytest.mark.parametrize(
+    ("line", "error"),
+    [
+        ("rnu tea.txt", "btc: there's no verb or file 'rnu'\nDid you mean: btc run tea.txt\n"),
+        ("chekc", "btc: there's no verb or file 'chekc'\nDid you mean: btc check\n"),
+        ("go to the lab", "btc: there's no verb or file 'go'\nPut a mission in quotes: btc \"go to the lab\"\n"),
+        ('say "hi"', "btc: there's no verb or file 'say'\nPut a mission in quotes: btc 'say \"hi\"'\n"),
+        ("fly x", "btc: there's no verb or file 'fly'\nRun 'btc help' for help.\n"),
+        ("--world x.toml", "btc: unexpected option '--world'\nA verb comes first: btc VERB --world x.toml\n"),
+        ("help rnu", "btc: there's no verb 'rnu'\nDid you mean: btc help run\n"),
+        ("help wave", "btc: there's no verb 'wave'\nRun 'btc help' for help.\n"),
+        ("run --sped max -c wave", "btc run: there's no option '--sped'\nDid you mean: --speed\n"),
+        ("tea.txt --xyz", "btc run: there's no option '--xyz'\nRun 'btc help run' for help.\n"),
+        ("tree tea.txt wave", "btc tree: unexpected argument 'wave'\nRun 'btc help tree' for help.\n"),
+    ],
+)  # fmt: skip
+def test_a_usage_error_is_a_line_and_a_hint(line: str, error: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert typed(*line.split()) == 2
+    assert capsys.readouterr().err == error
+
+
+def test_a_word_that_is_neither_is_read_as_a_mission(capsys: pytest.CaptureFixture[str]) -> None:
+    assert typed("fly") == 2
+    assert "<command line>:1:1: error BT010: I don't know the command 'fly'." in capsys.readouterr().err
+    assert typed("tee.txt") == 2
+    assert "error BT001: I can't read tee.txt" in capsys.readouterr().err
+
+
+@pytest.mark.parametrize(
+    ("line", "hint"),
+    [
+        (["run", "wave"], 'To give a mission as text: btc run -c "wave"'),
+        (["tree", 'say "$5"'], """To give a mission as text: btc tree -c 'say "$5"'"""),
+    ],
+)
+def test_a_missing_file_that_reads_as_a_mission(line: list[str], hint: str, capsys: pytest.CaptureFixture[str]) -> None:
+    """It doesn't run: a file name that is mistyped never moves a robot."""
+    assert typed(*line) == 2
+    assert capsys.readouterr().err.splitlines()[1:] == [f"  {hint}"]
+
+
+def test_a_missing_file_that_is_no_mission(capsys: pytest.CaptureFixture[str]) -> None:
+    assert typed("run", "nowhere") == 2
+    assert len(capsys.readouterr().err.splitlines()) == 1
+
+
+@pytest.mark.parametrize("line", [["help"], ["-h"], ["--help"]])
+def test_help_lists_the_verbs(line: list[str], capsys: pytest.CaptureFixture[str]) -> None:
+    assert not typed(*line)
+    out = capsys.readouterr().out
+    assert [verb for verb in _VERBS if f"\n    {verb}" not in out] == []
+    assert _VERBS.keys() == _OPTIONS.keys()
+
+
+def test_help_on_a_verb_is_that_of_the_verb(capsys: pytest.CaptureFixture[str]) -> None:
+    helps = []
+    for line in (["help", "run"], ["run", "--help"], ["tea.txt", "-h"]):
+        assert not typed(*line)
+        helps.append(capsys.readouterr().out)
+    assert helps[0].startswith("usage: btc run ")
+    assert helps == [helps[0]] * 3
+
+
+@pytest.mark.parametrize("word", ["version", "--version"])
+def test_version(word: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert typed(word) == 0
+    assert capsys.readouterr().out == f"btc {__version__}\n"
+
+
+@pytest.mark.parametrize(
+    ("mission", "last"),
+    [
+        ("go to the ktichen", "For more, run: btc explain BT013"),
+        ("go to the ktichen then move forward 2", "For more, run: btc explain CODE, where CODE is BT011 or BT013"),
+        ("(wave", "  Add ')' where the group ends, on the same line."),  # the page says no more than this
+    ],
+)
+def test_messages_end_with_where_to_read_more(mission: str, last: str, capsys: pytest.CaptureFixture[str]) -> None:
+    assert typed("check", "-c", mission) == 2
+    assert capsys.readouterr().err.splitlines()[-1] == last
+    typed("check", "-c", mission, "--format", "json")
+    assert "For more" not in "".join(capsys.readouterr())
+
+
+def test_explain_asks_for_a_mission_as_text(capsys: pytest.CaptureFixture[str]) -> None:
+    assert typed("explain", "wave") == 2
+    assert 'To give a mission as text: btc explain -c "wave"' in capsys.readouterr().err
+
+
+def test_pictures_are_reported(capsys: pytest.CaptureFixture[str]) -> None:
+    assert typed("tea.txt", *RUN, "--tree-picture", "tree.svg") == 0
+    assert capsys.readouterr().out.endswith("\nWrote tree.svg.\n")
+    assert typed("tea.txt", *RUN, "--tree-picture", "tree.svg", "--quiet") == 0
+    assert capsys.readouterr().out == ""
+
+
+def test_a_failed_not_says_what_was_true(capsys: pytest.CaptureFixture[str]) -> None:
+    assert typed("check that the battery is not full", *RUN) == 1
+    assert capsys.readouterr().err.endswith("\n  BatteryFull: 'battery is full' was true\n")
