@@ -14,7 +14,7 @@ from btlang.printer.exact import exact_block
 from btlang.printer.naming import definition_head, each_head
 from btlang.printer.pieces import COLON, Pieces, is_longer, mark
 from btlang.printer.printer import THEN, Doc, Printer
-from btlang.printer.sentence import is_flat_fallback, rule_word, statements
+from btlang.printer.sentence import is_flat_fallback, paced_rounds, rule_word, statements
 from btlang.tree import ast
 from btlang.tree.catalogue import SEQUENCE
 
@@ -151,14 +151,25 @@ def _timed(*roles: str) -> Callable[[Any, Printer], Iterator[Section]]:
 
 
 def _every(node: ast.Every, printer: Printer) -> Iterator[Section]:
-    """A number of rounds has no place in the head of a block: it would be that of each round."""
-    if not node.rounds:
+    if node.rounds:
+        yield from _paced("repeat", node.rounds, "every", node.seconds, node.body, printer)
+    else:
         yield (printer.duration("every", node.seconds),), statements(node.body)
 
 
+def _apart(node: ast.Apart, printer: Printer) -> Iterator[Section]:
+    yield from _paced("repeat", node.rounds, "apart", node.seconds, node.body, printer)
+
+
 def _retry(node: ast.Retry, printer: Printer) -> Iterator[Section]:
-    if not node.pause:
+    if node.pause:
+        yield from _paced("retry", node.attempts, "every", node.pause, node.body, printer)
+    else:
         yield (printer.word("retry"), printer.rounds(node.attempts)), statements(node.body)
+
+
+def _paced(head: str, rounds: str, role: str, seconds: str, body: ast.Ast, printer: Printer) -> Iterator[Section]:
+    yield (printer.word(head), *paced_rounds(rounds, seconds, role, printer)), statements(body)
 
 
 def _for_each(node: ast.ForEach, printer: Printer) -> Iterator[Section]:
@@ -190,6 +201,7 @@ _SECTIONS: dict[type[ast.Ast], Callable[[Any, Printer], Iterator[Section]]] = {
     ast.Retry: _retry,
     ast.For: _timed("repeat", "for"),
     ast.Every: _every,
+    ast.Apart: _apart,
     ast.Delay: _timed("delay"),
     ast.ForEach: _for_each,
     ast.Definition: _definition,

@@ -121,13 +121,13 @@ def _retry(node: ast.Retry, parts: list[Doc], printer: Printer) -> Doc:
     """Its count closes it, so nothing else in it may count."""
     body = printer.inside(parts[0], parts[0].reaches or parts[0].counts)
     if node.pause:
-        rounds: Pieces = _paced_rounds(node.attempts, node.pause, "every", printer)
+        rounds: Pieces = paced_rounds(node.attempts, node.pause, "every", printer)
     else:
         rounds = (printer.rounds(node.attempts),)
     return Doc((printer.word("retry"), body.pieces, *rounds), FORM, takes_otherwise=True)
 
 
-def _paced_rounds(rounds: str, seconds: str, role: str, printer: Printer) -> tuple[Piece, Piece]:
+def paced_rounds(rounds: str, seconds: str, role: str, printer: Printer) -> tuple[Piece, Piece]:
     """`3 times every 5 s`; `once every 5 s` would have no number."""
     count = printer.word("count", count=rounds) if rounds == "1" else printer.rounds(rounds)
     return count, printer.duration(role, seconds)
@@ -166,7 +166,7 @@ def _paced(role: str) -> Callable[[Any, list[Doc], Printer], Doc]:
         body = printer.inside(parts[0], isinstance(node.body, counted))
         if not node.rounds:
             return printer.behind(body, printer.duration(role, node.seconds))
-        count, pace = _paced_rounds(node.rounds, node.seconds, role, printer)
+        count, pace = paced_rounds(node.rounds, node.seconds, role, printer)
         return printer.behind(body, count, (pace,), counts=True)
 
     return said

@@ -102,6 +102,7 @@ RULES = [
     ('here "and" means then\nu, v and w at the same time', "P(U, V, W)"),
     ("u and v at the same time", "P(U, V)"),
     ("u at the same time v then w", "S(P(U, V), W)"),
+    ("once more is u\nv\nonce more", "once more = U; S(V, <once more>)"),
     # as soon as, but stop when, only if
     ("as soon as p, u then v", "S(WaitUntil(P), U, V)"),
     ("u then v once p", "S(U, WaitUntil(P), V)"),
@@ -123,6 +124,9 @@ RULES = [
     ("u 3 times with 10 s in between", "Apart(10, 3, U)"),
     ("u twice 10 s apart", "Apart(10, 2, U)"),
     ("repeat u then v 3 times every 10 s", "Every(10, 3, S(U, V))"),
+    ("repeat 3 times every 10 s:\n  u\n  v", "Every(10, 3, S~(U, V))"),
+    ("repeat 3 times every 10 s, u", "Repeat(3, Every(10, U))"),
+    ("try 3 times every 5 s:\n  u\notherwise v", "Try(Retry(3, 5, U), V)"),
     ("try u up to 3 times every 5 s otherwise v", "Try(Retry(3, 5, U), V)"),
     ("wait until p for 10 s", "WaitUntil(10, P)"),
     ("wait until p for 10 s within 20 s", "Within(20, WaitUntil(10, P))"),

@@ -12,7 +12,7 @@ from btlang.vocabulary.entry import Entry
 from tests.language.letters import COMMANDS, CONDITIONS, letters
 
 SPAN = Span(Source("x"), 0, 1)
-NAMES = ("big dance", "once more")
+NAMES = ("big dance", "one more round")
 
 Trees = st.SearchStrategy[ast.Ast]
 
@@ -148,10 +148,11 @@ def _about(inner: Trees) -> Trees:
         st.builds(ast.If, st.booleans(), conditions, inner, perhaps, _span),
         st.builds(ast.While, st.booleans(), conditions, commands, inner, _span),
         st.builds(ast.Repeat, _rounds, inner, _span),
-        st.builds(ast.Retry, _rounds, inner, st.just(""), _span),
+        st.builds(ast.Retry, _rounds, inner, _pause, _span),
         st.builds(ast.Try, st.one_of(inner, commands), inner, _span),
         st.builds(ast.Try, inner, st.none(), _span),
-        st.builds(ast.Every, _seconds, inner, st.just(""), _span),
+        st.builds(ast.Every, _seconds, inner, st.one_of(st.just(""), _rounds), _span),
+        st.builds(ast.Apart, _seconds, inner, st.sampled_from(["-1", "2"]), _span),
     )
 
 

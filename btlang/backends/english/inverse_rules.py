@@ -34,6 +34,19 @@ def _chain(operator: str) -> Form:
     return forms
 
 
+def _sequence(node: Node, children: tuple[Candidate, ...], checked: Checked) -> Iterator[ast.Ast]:
+    """`A 3 times 10 s apart`, or a chain."""
+    last = children[-1]
+    if len(children) == 2 and last.node.id == "Repeat" and [part.node.id for part in last.children] == ["Delay"]:
+        delay, rounds = last.children[0].node, last.node.port("num_cycles")
+        body = _round(children[0], checked) if delay.children == (children[0].node,) else None
+        if body is not None and _ROUNDS.fullmatch(rounds):
+            number = rounds if rounds == _ENDLESS else str(int(rounds) + 1)
+            times = _seconds(delay.port("delay_msec"), checked)
+            yield from (ast.Apart(seconds, body, number, NOWHERE) for seconds in times)
+    yield from _chain("sequence")(node, children, checked)
+
+
 def _block(raised: Candidate) -> ast.Ast:
     return raised.part
 
@@ -154,7 +167,7 @@ def _retry(node: Node, children: tuple[Candidate, ...], checked: Checked) -> Ite
     if child.node.id == "Fallback" and len(child.children) == 2 and _is_pause(child.children[1].node):
         part = _round(child.children[0], checked)
         times = _seconds(child.children[1].node.children[0].port("msec"), checked)
-        if part is not None and not child.children[0].in_lines:
+        if part is not None:
             yield from (ast.Retry(number, part, seconds, NOWHERE) for seconds in times)
     part = _round(child, checked)
     if part is not None:
@@ -231,7 +244,7 @@ def _fail(_node: Node, _children: tuple[Candidate, ...], _checked: Checked) -> I
 
 
 INVERSE_RULES: dict[str, Form] = {
-    "Sequence": _chain("sequence"),
+    "Sequence": _sequence,
     "Fallback": _fallback,
     "Parallel": _parallel,
     "IfThenElse": _if_then_else,

@@ -54,6 +54,15 @@ def block_follows(scan: Scan) -> bool:
     return scan.raw[scan.at].kind == "colon" and scan.raw[scan.at + 1].kind == "indent"
 
 
+def set_pace(opener: Token, count: Token, pace: Token) -> bool:
+    """Whether a time behind the count of a repeat or try belongs to it, which it is then given."""
+    if pace.kind != "every" and not (pace.kind == "apart" and opener.role == "repeat"):
+        return False
+    opener.value = paced(count, pace)
+    opener.role = "retry" if opener.role == "retry" else pace.kind
+    return True
+
+
 def paced(count: Token, pace: Token) -> Paced:
     """`3 times every 10 s`."""
     assert isinstance(count.value, str)

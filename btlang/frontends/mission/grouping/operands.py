@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from btlang.frontends.mission.grouping.bodies import block_follows, separator, set_amount
+from btlang.frontends.mission.grouping.bodies import block_follows, separator, set_amount, set_pace
 from btlang.frontends.mission.grouping.conditions import AMOUNTS, CONDITION_FORMS, is_refused
 from btlang.frontends.mission.grouping.problems import no_operand, word_before
 from btlang.frontends.mission.grouping.scan import ENDS, Scan
@@ -103,6 +103,13 @@ def loop(scan: Scan, token: Token) -> None:
         if following.kind == "count" or (following.kind == "for" and token.kind == "repeat"):
             set_amount(scan, opener, following)
             scan.next(following, True)
+            pace = scan.raw[scan.at]
+            if (
+                following.kind == "count"
+                and scan.raw[scan.at + 1].kind == "colon"
+                and set_pace(opener, following, pace)
+            ):
+                scan.next(pace, True)
         elif not block_follows(scan):
             body.count_owner = body
             body.stop_owner = body if token.kind == "repeat" else body.stop_owner

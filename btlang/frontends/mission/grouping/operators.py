@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from btlang.frontends.mission.grouping.bodies import begin_otherwise, end_block, paced, separator, set_amount
+from btlang.frontends.mission.grouping.bodies import begin_otherwise, end_block, paced, separator, set_amount, set_pace
 from btlang.frontends.mission.grouping.conditions import AMOUNTS, CONDITION_FORMS, STARTS_OPERAND, closes_statement
 from btlang.frontends.mission.grouping.problems import both_readings, is_alone, side_by_side
 from btlang.frontends.mission.grouping.scan import ENDS, Scan, Unit
@@ -156,11 +156,8 @@ def close_loop(scan: Scan, owner: StackEntry, token: Token) -> None:
     scan.stack.pop()
     scan.next(token, False)
     pace = scan.raw[scan.at]
-    if token.kind == "count" and pace.kind in ("every", "apart") and owner.opener is not None:
-        if pace.kind == "every" or owner.opener.role == "repeat":
-            owner.opener.value = paced(token, pace)
-            owner.opener.role = "retry" if owner.opener.role == "retry" else pace.kind
-            scan.next(pace, False)
+    if token.kind == "count" and owner.opener is not None and set_pace(owner.opener, token, pace):
+        scan.next(pace, False)
     if owner.else_owner is owner and scan.at_otherwise():
         begin_otherwise(scan)
     else:

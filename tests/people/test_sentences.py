@@ -1,0 +1,83 @@
+"""What becomes of the sentences: how many are read as people mean them, and what the others get.
+
+`read.out` has a line for each: `right`, `warned` (right, with the warning that it deserves), `refused`, `message` with its
+code, or `other` where the tree is another one. No sentence may be read otherwise without a warning, but for those that
+`SILENT` lists, which are still to be warned about.
+"""
+
+from __future__ import annotations
+
+from functools import cache
+
+import pytest
+
+import btlang
+from btlang.diagnostics.errors import MissionError
+from btlang.tree.node import Node
+from tests.conftest import matches_golden
+from tests.people.notation import FOLDER, Sample, parsed, samples, written
+
+SILENT = {
+    "inspection.txt:64", "inspection.txt:97", "patrol.txt:7", "patrol.txt:45", "patrol.txt:90", "patrol.txt:95",
+    "search.txt:95",
+}  # fmt: skip
+"""Read otherwise than people mean, in silence."""
+LEAST = 110
+"""So many are right; it only grows."""
+
+
+def place(sample: Sample) -> str:
+    return f"{sample.file}:{sample.line}"
+
+
+def flat(node: Node) -> Node:
+    """Sequences in sequences as one: nobody means a difference."""
+    children = [flat(child) for child in node.children]
+    if node.id == "Sequence":
+        inner = [part.children if part.id == "Sequence" and not part.ports else (part,) for part in children]
+        children = [one for part in inner for one in part]
+    return node.replace(children=tuple(children), span=None)
+
+
+def shape(notation: str) -> object:
+    tree = parsed(notation)
+    return flat(tree.root), [(name, flat(root)) for name, root in sorted(tree.subtrees)]
+
+
+@cache
+def outcome(sample: Sample) -> str:
+    pack, world = str(FOLDER / "people.toml"), str(FOLDER / "world.toml")
+    try:
+        mission = btlang.parse_tree(sample.text, keywords=[pack], world=world)
+    except MissionError as error:
+        codes = sorted({problem.code for problem in error.diagnostics if problem.is_error})
+        return "refused" if sample.refused else f"message {' '.join(codes)}"
+    if sample.refused:
+        return "read"
+    if shape(written(mission.tree)) == shape(sample.tree):
+        return "warned" if sample.warned and mission.warnings else "right"
+    return "other, warned" if mission.warnings else "other"
+
+
+def test_what_becomes_of_each() -> None:
+    lines = [f"{place(sample)} {outcome(sample)}\n" for sample in samples()]
+    matches_golden("".join(lines), FOLDER / "read.out")
+
+
+def test_what_must_be_refused_is() -> None:
+    assert [place(sample) for sample in samples() if outcome(sample) == "read"] == []
+
+
+def test_none_is_read_otherwise_in_silence() -> None:
+    assert {place(sample) for sample in samples() if outcome(sample) == "other"} <= SILENT
+
+
+def test_so_many_are_right() -> None:
+    assert sum(outcome(sample) in ("right", "warned") for sample in samples()) >= LEAST
+
+
+@pytest.mark.parametrize("sample", [one for one in samples() if one.proposals], ids=place)
+def test_what_a_message_should_offer_reads(sample: Sample) -> None:
+    for proposal in sample.proposals:
+        pack, world = str(FOLDER / "people.toml"), str(FOLDER / "world.toml")
+        assert btlang.parse_tree(proposal, keywords=[pack], world=world).tree.root.children
