@@ -11,6 +11,7 @@ from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.diagnostics.errors import MissionError, in_order
 from btlang.passes.compilation import Compilation, Pass
 from btlang.passes.lint.allow import silence
+from btlang.passes.lint.asked_once import asked_once
 from btlang.passes.lint.busy import busy_loops
 from btlang.passes.lint.cut_off import cut_off
 from btlang.passes.lint.line_end import line_ends
@@ -36,6 +37,7 @@ CHECKS = (
 PASSES = (
     *CHECKS,
     Pass("two readings", two_readings, needs_text=True),
+    Pass("asked once", asked_once, needs_text=True),
     Pass("unused", unused_names, needs_text=True),
     Pass("never runs", never_runs),
     Pass("busy loop", busy_loops),

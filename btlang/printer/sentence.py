@@ -53,6 +53,9 @@ def _chain(node: ast.Chain, parts: list[Doc], printer: Printer) -> Doc:
     word = printer.word(role)
     inner = [printer.inside(p, p.level <= level or p.reaches or printer.reads_on(p, word)) for p in parts[:-1]]
     inner.append(printer.inside(parts[-1], parts[-1].level <= level))
+    if printer.is_clear and node.operator == "any":
+        negated = [isinstance(item, ast.Not) for item in node.items]
+        inner = [printer.inside(p, own) for p, own in zip(inner, negated, strict=True)]
     if printer.is_clear:
         inner = [printer.inside(p, p.level < FORM or p.reaches or (p.behind and i > 0)) for i, p in enumerate(inner)]
     return Doc(tuple(_joined(inner, word)), level, *_flags(inner))

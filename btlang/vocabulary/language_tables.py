@@ -49,7 +49,7 @@ EXPLAINED = (*ROLES, "compare", "politeness")
 
 SWITCHES = frozenset(("decimal_comma",))
 
-WORD_LISTS = frozenset(("articles", "politeness", "unit_joiner", "quantifiers", "halting"))
+WORD_LISTS = frozenset(("articles", "politeness", "unit_joiner", "quantifiers", "halting", "asked_once"))
 
 
 def _words(value: object) -> bool:
@@ -142,7 +142,7 @@ def _phrase_problems(kind: str, name: str, phrases: list[str], known: Mapping[st
 
 _LANGUAGE: dict[str, Any] = {
     "language": "", "decimal_comma": False,
-    "articles": [], "politeness": [], "unit_joiner": [], "quantifiers": [], "halting": [],
+    "articles": [], "politeness": [], "unit_joiner": [], "quantifiers": [], "halting": [], "asked_once": [],
     "roles": {}, "contractions": {}, "about": {}, "comparisons": {}, "counts": {}, "negations": {},
     "pronouns": {}, "nodes": {}, "meanings": {}, "numbers": {}, "multipliers": {}, "fractions": {},
 }  # fmt: skip

@@ -80,6 +80,7 @@ class Lexicon:
         self.word_list = os.path.join(folder, f"{name}.words") if folder and name.isalpha() else ""
         """The file of the correct words of the language, which need not be there."""
         self.quantifiers, self.halting = frozenset(language["quantifiers"]), frozenset(language["halting"])
+        self.asked_once = frozenset(language["asked_once"])
         """Negations and words for how many, and words like `stop`: corrections are careful about them."""
         self.continuing = frozenset(
             str(form[0]) for role in GOES_ON for phrase in self.roles.get(role, ()) for form in self._forms(phrase)

@@ -15,6 +15,10 @@ def warned(text: str) -> list[str]:
 
 
 TWO_READINGS = [
+    "if not bumped or stuck, wave",
+    "check not bumped or stuck or docked",
+    "if bumped, wave. Nod. Otherwise say hello",
+    "unless bumped, wave; nod; otherwise say hello",
     "wave then nod and say hello",
     "wave and nod then say hello",
     "wave and nod or say hello",
@@ -53,6 +57,13 @@ TWO_READINGS = [
     "say hello and go to the lobby and the lab",
 ]
 ONE_READING = [
+    "if (not bumped) or stuck, wave",
+    "if not bumped or not stuck, wave",
+    "if not (bumped or stuck), wave",
+    "if bumped, wave. Otherwise nod",
+    "if bumped, wave otherwise look up. Nod. Otherwise say hello",
+    "wave. Nod. Otherwise say hello",
+    "if bumped, wave. Nod otherwise say hello",
     "wave then nod then look up",
     "wave, nod and say hello",
     "wave, nod, then say hello",

@@ -1,8 +1,8 @@
 """What becomes of the sentences: how many are read as people mean them, and what the others get.
 
-`read.out` has a line for each: `right`, `warned` (right, with the warning that it deserves), `refused`, `message` with
-its code, or `other` where the tree is another one. No sentence may be read otherwise without a warning, but for those that
-`SILENT` lists, which are still to be warned about.
+`read.out` has a line for each: `right`, `warned` (right, with the warning that it deserves), `refused`, `message`
+with its code, or `other` where the tree is another one. No sentence may be read otherwise without a warning, but
+for those that `SILENT` lists, which are still to be warned about.
 """
 
 from __future__ import annotations
@@ -17,12 +17,9 @@ from btlang.tree.node import Node
 from tests.conftest import matches_golden
 from tests.people.notation import FOLDER, Sample, parsed, samples, written
 
-SILENT = {
-    "guide.txt:95", "inspection.txt:64", "inspection.txt:97", "patrol.txt:7", "patrol.txt:45", "patrol.txt:90",
-    "search.txt:95",
-}  # fmt: skip
+SILENT = {"patrol.txt:7", "search.txt:95"}
 """Read otherwise than people mean, in silence."""
-LEAST = 110
+LEAST = 111
 """So many are right; it only grows."""
 
 

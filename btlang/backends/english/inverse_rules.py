@@ -36,8 +36,8 @@ def _chain(operator: str) -> Form:
 
 def _sequence(node: Node, children: tuple[Candidate, ...], checked: Checked) -> Iterator[ast.Ast]:
     """`A 3 times 10 s apart`, or a chain."""
-    last = children[-1]
-    if len(children) == 2 and last.node.id == "Repeat" and [part.node.id for part in last.children] == ["Delay"]:
+    last = children[1] if len(children) == 2 else None
+    if last is not None and last.node.id == "Repeat" and [part.node.id for part in last.children] == ["Delay"]:
         delay, rounds = last.children[0].node, last.node.port("num_cycles")
         body = _round(children[0], checked) if delay.children == (children[0].node,) else None
         if body is not None and _ROUNDS.fullmatch(rounds):

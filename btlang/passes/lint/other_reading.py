@@ -20,7 +20,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-MIXED, POSTFIX, LIST, OTHERWISE = "mixed", "postfix", "list", "otherwise"
+MIXED, POSTFIX, LIST, OTHERWISE, NEGATED = "mixed", "postfix", "list", "otherwise", "negated"
 
 
 class Readings(Record):
@@ -33,7 +33,7 @@ class Readings(Record):
 
 
 class Attachment(Record):
-    """A place of one of the four kinds. Its readings are made when they are asked for: most are never told."""
+    """A place of one of the five kinds. Its readings are made when they are asked for: most are never told."""
 
     kind: str
     start: int
@@ -47,6 +47,8 @@ def in_chain(chain: ast.Chain, items: Sequence[ast.Ast], is_part: bool, vocabula
 
     Only neighbours that could be read otherwise are looked at, so that a long chain of plain commands costs little.
     """
+    if chain.operator == "any" and _negates_first(items):
+        yield Attachment(NEGATED, items[0].span.start, partial(_negated, chain))
     gaps: Gaps | None = None
     for at, (left, right) in enumerate(pairwise(items)):
         if not left.parts and not right.parts:
@@ -91,6 +93,20 @@ def in_form(node: ast.If | ast.Try) -> Iterator[Attachment]:
     if _in_brackets(part.span) or "\n" in text[node.span.start : part.span.start]:
         return
     yield Attachment(OTHERWISE, node.span.start, partial(_moved, node, path, part))
+
+
+def _negates_first(items: Sequence[ast.Ast]) -> bool:
+    """`not C or D`, without a second `not` that would make it clear."""
+    first = items[0]
+    is_prefix = isinstance(first, ast.Not) and first.span.start < first.condition.span.start
+    return is_prefix and not _in_brackets(first.span) and not any(isinstance(item, ast.Not) for item in items[1:])
+
+
+def _negated(chain: ast.Chain) -> Readings:
+    """`not C or D`: not (C or D)."""
+    first: Any = chain.items[0]
+    inner = ast.Chain("any", (first.condition, *chain.items[1:]), True, chain.span)
+    return Readings(chain, ast.Not(inner, chain.span), chain.span, _bracketed(first.span))
 
 
 def _moved(node: Any, path: Sequence[ast.Ast], part: Any) -> Readings:

@@ -3,6 +3,7 @@
 - `then`, `and` and `or` mixed: `A then B and C`;
 - a form behind a chain: `A then B 3 times`;
 - an `otherwise` that two forms could have: `if C, if D, A otherwise B`;
+- `not` before one of two conditions: `not C or D`;
 - a list beside `and`: `go to the lobby and the lab and wave`.
 """
 

@@ -104,11 +104,8 @@ def loop(scan: Scan, token: Token) -> None:
             set_amount(scan, opener, following)
             scan.next(following, True)
             pace = scan.raw[scan.at]
-            if (
-                following.kind == "count"
-                and scan.raw[scan.at + 1].kind == "colon"
-                and set_pace(opener, following, pace)
-            ):
+            heads_block = pace.kind in ("every", "apart") and scan.raw[scan.at + 1].kind == "colon"
+            if heads_block and following.kind == "count" and set_pace(opener, following, pace):
                 scan.next(pace, True)
         elif not block_follows(scan):
             body.count_owner = body

@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from btlang.frontends.mission.grouping.bodies import begin_otherwise, end_block, paced, separator, set_amount, set_pace
 from btlang.frontends.mission.grouping.conditions import AMOUNTS, CONDITION_FORMS, STARTS_OPERAND, closes_statement
-from btlang.frontends.mission.grouping.problems import both_readings, is_alone, side_by_side
+from btlang.frontends.mission.grouping.problems import both_readings, is_alone, otherwise_of_another, side_by_side
 from btlang.frontends.mission.grouping.scan import ENDS, Scan, Unit
 from btlang.frontends.mission.grouping.stack import StackEntry
 from btlang.frontends.mission.token import Token
@@ -76,6 +76,8 @@ def stop(scan: Scan, token: Token) -> None:
             break
     scan.at += 1
     following = scan.raw[scan.at]
+    if following.kind == "otherwise" and scan.stack[-1].else_owner is None:
+        otherwise_of_another(scan, following)
     if following.kind in _GOING_ON:
         _GOING_ON[following.kind](scan, following)
 
@@ -245,6 +247,7 @@ def end_statement(scan: Scan, token: Token) -> None:
         return
     if entry.statement == "open":
         entry.statement = "ended"
+        entry.latest = entry.begins
     if entry.kind == "top" and scan.header is not None:
         close_definition(scan)
     if token.kind == "dedent":

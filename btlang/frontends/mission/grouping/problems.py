@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.grouping.scan import ENDS, STARTS_STATEMENT, Scan
 from btlang.frontends.mission.token import Token
 from btlang.text.source import Span
@@ -64,6 +65,29 @@ def waits_for_how_long(scan: Scan, opener: Token, amount: Token) -> None:
     seconds = text[amount.start : amount.end].split(maxsplit=1)[-1]
     at_most = f"{scan.word('up_to')} {seconds}"
     scan.fail("BT058", span, words=span.text, until=until, amount=scan.words(amount), at_most=at_most)
+
+
+def otherwise_of_another(scan: Scan, otherwise: Token) -> None:
+    """BT050 for `if C, A. B. Otherwise D`, which joins B though the `if` could have it too."""
+    entry, out = scan.stack[-1], scan.out
+    if not entry.is_group or entry.latest is None or scan.problems:
+        return  # of a broken statement nothing was made
+    form = out[entry.latest]
+    before = out[entry.latest : entry.begins]
+    if form.kind != "FORM" or form.role not in ("if", "unless") or any(token.kind == "ELSE" for token in before):
+        return
+    body = next(out[at + 1].start for at in range(entry.latest, entry.begins) if out[at].kind == "DO")
+    end = next(token for token in scan.raw[scan.at :] if token.kind in ENDS)
+    first, middle = out[entry.begins].start, before[-1].start
+    text = scan.source.text
+    span = Span(scan.source, form.start, end.start)
+    if "\n" in span.text:
+        return
+    kept, rest = text[first : scan.last_end], text[otherwise.end : end.start].strip(" ,")
+    head, done = text[form.start : body], text[body:middle].strip(" .;")
+    then, word = scan.word("then"), scan.word("otherwise")
+    taken, other = f"({kept}) {word} {rest}", f"{head}({done} {then} {kept}) {word} {rest}"
+    scan.problems.append(diagnostic("BT050", span, taken=taken, other=other, fixed=f"{kept} {word} {rest}"))
 
 
 def is_alone(scan: Scan) -> bool:

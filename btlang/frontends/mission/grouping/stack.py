@@ -11,10 +11,11 @@ class StackEntry:
     The owners are the nearest open forms of the same bracket that a count, an `until` (or `while`, `for`) or an
     `otherwise` would belong to; `after` says what follows the end of a condition. `commas` are those whose meaning
     the next connective will tell; `last` is the latest connective. `statement` of a group is "", "open" or "ended",
-    the latest one `begins` at that place of what was made; `separator` is the token between them. The latest operand
-    begins at `operand`. `joints` are the words "and" of the chain that is not over. `is_group`: it holds statements;
-    `is_condition`: operands in it are conditions. `commands` is where those of a group begin that no rule follows;
-    `has_commands`: one stood before the latest statement; `mixed`: rules stand among them.
+    the latest one `begins` at that place of what was made, and the `latest` that has ended at that; `separator` is
+    the token between them. The latest operand begins at `operand`. `joints` are the words "and" of the chain that
+    is not over. `is_group`: it holds statements; `is_condition`: operands in it are conditions. `commands` is where
+    those of a group begin that no rule follows; `has_commands`: one stood before the latest statement; `mixed`:
+    rules stand among them.
     """
 
     __slots__ = (
@@ -30,6 +31,7 @@ class StackEntry:
         "joints",
         "kind",
         "last",
+        "latest",
         "mixed",
         "opener",
         "operand",
@@ -54,6 +56,7 @@ class StackEntry:
         self.joints: list[Token] = []
         self.statement = ""
         self.begins = self.operand = 0
+        self.latest: int | None = None
         self.commands: int | None = None
         self.has_commands = self.mixed = False
         self.separator = "SEMI"
