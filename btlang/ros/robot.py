@@ -38,6 +38,7 @@ if TYPE_CHECKING:
 _STOP = "stop"
 _TOLD_TO_STOP = "the robot was stopped"
 _STOPPING = 5.0  # seconds for which a robot that was stopped is told zero velocity
+_HEARTBEAT = 3.5  # seconds in which DDS learns for sure what has arrived
 _LAST_WORDS = 2.0  # seconds that servers get to answer at the end
 
 
@@ -138,13 +139,13 @@ class RosRobot:
         self._latch.open()
 
     def close(self) -> None:
-        """The end: at rest, and waits two seconds or so at most until all who have to know of it do."""
+        """The end: at rest, and waits a few seconds at most until all who have to know of it do."""
         if self._closed:
             return
         self._latch.shut()
         self._rest()
         self._base.confirm_halt()
-        self._voice.confirm(_LAST_WORDS)  # first, so that no other wait uses up its time: mostly it takes none
+        self._voice.confirm(_HEARTBEAT)
         until = time.monotonic() + _LAST_WORDS
         if self._navigation is not None:
             self._navigation.confirm_stop(_LAST_WORDS)

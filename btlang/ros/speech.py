@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import time
+from typing import Any
 
 from rclpy.duration import Duration
 from rclpy.node import Node
@@ -14,6 +15,7 @@ from btlang.ros.subscription_cache import SubscriptionCache
 
 SPEECH, SPEAKING, PRINT = "speech", "speaking", "print"
 _BEGINS = 0.5  # seconds of real time that it gets to begin
+_YOUNG = 2.0  # seconds in which a listener may not have found this node yet: what it misses then is sent again
 _LATEST = 5.0  # how many times as long as expected it may speak
 
 
@@ -24,6 +26,7 @@ class RosSpeech:
         self._subscriptions = subscriptions
         self._speech = node.create_publisher(String, SPEECH, 10)
         self._print = node.create_publisher(String, PRINT, 10)
+        self._made, self._risky = time.monotonic(), False
         self._expected = 0.0
         self._age = self._since = 0.0
         self._asked = self._heard = self._told = False
@@ -35,7 +38,7 @@ class RosSpeech:
             raise RobotError(f"nobody listens to {self._speech.topic_name}")
         self._asked, self._heard, self._age, self._since = True, False, 0.0, AWAKE.now()
         self._expected = 0.35 + 0.06 * len(text)
-        self._speech.publish(String(data=text))
+        self._publish(self._speech, text)
 
     def silence(self) -> None:
         """Ends speech at once; from any thread."""
@@ -47,10 +50,20 @@ class RosSpeech:
         """Shows text. Raises RobotError where nobody listens."""
         if not self._print.get_subscription_count():
             raise RobotError(f"nobody listens to {self._print.topic_name}")
-        self._print.publish(String(data=text))
+        self._publish(self._print, text)
+
+    def _publish(self, publisher: Any, text: str) -> None:
+        publisher.publish(String(data=text))
+        self._risky = self._risky or time.monotonic() - self._made < _YOUNG
 
     def confirm(self, seconds: float) -> None:
-        """Waits at most so long until whoever listens has the last words: a node that is gone sends nothing again."""
+        """Waits at most so long until whoever listens has all words: a node that is gone sends nothing again.
+
+        Only where something was said so early that a listener may have missed it: the answer takes up to three seconds,
+        as DDS asks for it that often.
+        """
+        if not self._risky:
+            return
         until = time.monotonic() + seconds
         for publisher in (self._speech, self._print):
             publisher.wait_for_all_acked(Duration(seconds=max(0.0, until - time.monotonic())))

@@ -172,7 +172,7 @@ def postfix(scan: Scan, token: Token) -> None:
         scan.open_operand("LOOP", "try")
         begin_otherwise(scan)
         return
-    before = scan.out[-1]
+    before = scan.out[-1] if scan.out else token  # of a broken statement nothing was made
     if before.kind == "POSTFIX" and isinstance(before.value, str) and {before.role, token.kind} in _PACES:
         count, pace = (before, token) if before.role == "count" else (token, before)
         before.role = pace.role or pace.kind

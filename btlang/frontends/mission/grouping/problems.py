@@ -70,13 +70,16 @@ def waits_for_how_long(scan: Scan, opener: Token, amount: Token) -> None:
 def otherwise_of_another(scan: Scan, otherwise: Token) -> None:
     """BT050 for `if C, A. B. Otherwise D`, which joins B though the `if` could have it too."""
     entry, out = scan.stack[-1], scan.out
-    if not entry.is_group or entry.latest is None or scan.problems:
-        return  # of a broken statement nothing was made
+    if not entry.is_group or entry.latest is None or entry.latest >= len(out):
+        return
     form = out[entry.latest]
     before = out[entry.latest : entry.begins]
     if form.kind != "FORM" or form.role not in ("if", "unless") or any(token.kind == "ELSE" for token in before):
         return
-    body = next(out[at + 1].start for at in range(entry.latest, entry.begins) if out[at].kind == "DO")
+    do = next((at for at, token in enumerate(before, entry.latest) if token.kind == "DO"), None)
+    if do is None or entry.begins >= len(out):
+        return  # of a broken statement not all was made
+    body = out[do + 1].start
     end = next(token for token in scan.raw[scan.at :] if token.kind in ENDS)
     first, middle = out[entry.begins].start, before[-1].start
     text = scan.source.text
