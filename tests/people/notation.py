@@ -18,10 +18,12 @@ import re
 from collections.abc import Iterator
 from pathlib import Path
 
+import btlang
 from btlang.record import Record
 from btlang.tree.node import Node, Tree
 
 FOLDER = Path(__file__).parent
+PACK, WORLD = str(FOLDER / "people.toml"), str(FOLDER / "world.toml")
 SHORT = {"Sequence": "S", "Fallback": "F", "Parallel": "P", "ReactiveSequence": "RS"}
 _LONG = {short: id for id, short in SHORT.items()}
 _PORT = re.compile(r' (\w+)=("(?:[^"\\]|\\.)*"|[^\s"=\\(),]+)')
@@ -40,6 +42,16 @@ class Sample(Record):
     refused: bool
     proposals: tuple[str, ...]
     warned: bool
+
+    @property
+    def place(self) -> str:
+        """The file and line."""
+        return f"{self.file}:{self.line}"
+
+
+def compiled(text: str) -> btlang.Mission:
+    """A mission in the words, and in the world, of the samples."""
+    return btlang.parse_tree(text, keywords=[PACK], world=WORLD)
 
 
 def written(tree: Tree) -> str:

@@ -9,22 +9,16 @@ from __future__ import annotations
 
 from functools import cache
 
-import pytest
-
-import btlang
 from btlang.diagnostics.errors import MissionError
 from btlang.tree.node import Node
 from tests.conftest import matches_golden
-from tests.people.notation import FOLDER, Sample, parsed, samples, written
+from tests.people.notation import FOLDER, Sample, compiled, parsed, samples, written
 
 SILENT = {"patrol.txt:7", "search.txt:95"}
 """Read otherwise than people mean, in silence."""
 LEAST = 111
 """So many are right; it only grows."""
-
-
-def place(sample: Sample) -> str:
-    return f"{sample.file}:{sample.line}"
+SAMPLES = samples()
 
 
 def flat(node: Node) -> Node:
@@ -43,9 +37,8 @@ def shape(notation: str) -> object:
 
 @cache
 def outcome(sample: Sample) -> str:
-    pack, world = str(FOLDER / "people.toml"), str(FOLDER / "world.toml")
     try:
-        mission = btlang.parse_tree(sample.text, keywords=[pack], world=world)
+        mission = compiled(sample.text)
     except MissionError as error:
         codes = sorted({problem.code for problem in error.diagnostics if problem.is_error})
         return "refused" if sample.refused else f"message {' '.join(codes)}"
@@ -57,24 +50,17 @@ def outcome(sample: Sample) -> str:
 
 
 def test_what_becomes_of_each() -> None:
-    lines = [f"{place(sample)} {outcome(sample)}\n" for sample in samples()]
+    lines = [f"{sample.place} {outcome(sample)}\n" for sample in SAMPLES]
     matches_golden("".join(lines), FOLDER / "read.out")
 
 
 def test_what_must_be_refused_is() -> None:
-    assert [place(sample) for sample in samples() if outcome(sample) == "read"] == []
+    assert [sample.place for sample in SAMPLES if outcome(sample) == "read"] == []
 
 
 def test_none_is_read_otherwise_in_silence() -> None:
-    assert {place(sample) for sample in samples() if outcome(sample) == "other"} <= SILENT
+    assert {sample.place for sample in SAMPLES if outcome(sample) == "other"} <= SILENT
 
 
 def test_so_many_are_right() -> None:
-    assert sum(outcome(sample) in ("right", "warned") for sample in samples()) >= LEAST
-
-
-@pytest.mark.parametrize("sample", [one for one in samples() if one.proposals], ids=place)
-def test_what_a_message_should_offer_reads(sample: Sample) -> None:
-    for proposal in sample.proposals:
-        pack, world = str(FOLDER / "people.toml"), str(FOLDER / "world.toml")
-        assert btlang.parse_tree(proposal, keywords=[pack], world=world).tree.root.children
+    assert sum(outcome(sample) in ("right", "warned") for sample in SAMPLES) >= LEAST

@@ -72,8 +72,9 @@ def rule(scan: Scan, token: Token) -> None:
     if entry.kind not in ("top", "block") or entry.statement == "open" or entry.separator != "SEMI" or entry.last:
         scan.fail("BT037", scan.span(token), words=scan.words(token))
         return
+    entry.mixed |= entry.commands is not None
     form(scan, token)
-    entry.commands, entry.mixed = None, entry.mixed or entry.has_commands
+    entry.commands = None
 
 
 def test(scan: Scan, token: Token) -> None:

@@ -76,7 +76,6 @@ class Scan:
                 self.out.append(Token(entry.separator, token.start, token.start))
             if entry.statement != "open":
                 entry.statement, entry.begins = "open", len(self.out)
-                entry.has_commands = entry.commands is not None
                 if entry.commands is None:
                     entry.commands = entry.begins
         entry.operand = len(self.out)

@@ -14,8 +14,7 @@ class StackEntry:
     the latest one `begins` at that place of what was made, and the `latest` that has ended at that; `separator` is
     the token between them. The latest operand begins at `operand`. `joints` are the words "and" of the chain that
     is not over. `is_group`: it holds statements; `is_condition`: operands in it are conditions. `commands` is where
-    those of a group begin that no rule follows; `has_commands`: one stood before the latest statement; `mixed`:
-    rules stand among them.
+    those of a group begin that no rule follows; `mixed`: rules stand among them.
     """
 
     __slots__ = (
@@ -25,7 +24,6 @@ class StackEntry:
         "commas",
         "count_owner",
         "else_owner",
-        "has_commands",
         "is_condition",
         "is_group",
         "joints",
@@ -58,7 +56,7 @@ class StackEntry:
         self.begins = self.operand = 0
         self.latest: int | None = None
         self.commands: int | None = None
-        self.has_commands = self.mixed = False
+        self.mixed = False
         self.separator = "SEMI"
 
     def connective(self, token: Token) -> None:

@@ -59,7 +59,7 @@ def find_definitions(
         if not definition.is_quoted:
             _add(found.trie, definition.name, dict(definition.parameters))
     defining = {word for role in DEFINING for word in vocabulary.roles[role]}
-    if defining.isdisjoint(text.words):
+    if defining.isdisjoint(text.distinct):
         return found
     margin = text.lines[0].indent if text.lines else 0
     for indent, first, last in statements(text, defining):

@@ -28,7 +28,7 @@ def find_facts(text: Words, vocabulary: Lexicon) -> Facts:
     """Every fact of the text. Where a place is given twice both are listed; the later one counts."""
     facts = Facts()
     placing = [phrase.split() for phrase in vocabulary.roles["fact"]]
-    if not any(words[0] in text.words for words in placing) or _OPEN not in text.words:
+    if not any(words[0] in text.distinct for words in placing) or _OPEN not in text.distinct:
         return facts
     for _, first, last in statements(text, {_OPEN}):
         for at in range(first, last) if _OPEN in text.words[first:last] else ():

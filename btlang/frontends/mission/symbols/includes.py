@@ -34,7 +34,7 @@ def find_includes(text: Words, vocabulary: Lexicon) -> Includes:
     """Every include of the text."""
     includes = Includes()
     firsts = {phrase.split()[0] for phrase in vocabulary.roles[ROLE]}
-    if firsts.isdisjoint(text.words):
+    if firsts.isdisjoint(text.distinct):
         return includes
     for indent, first, last in statements(text, firsts):
         match = longest(vocabulary.trie, text, first, vocabulary.context) if text.words[first] in firsts else None

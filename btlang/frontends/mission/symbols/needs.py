@@ -33,10 +33,10 @@ def find_needs(text: Words, vocabulary: Lexicon) -> Needs:
     """Every statement that names a file that the mission needs. They come before all others."""
     needs = Needs()
     phrases = [(role, phrase.split()) for role in (WORLD, WORDS) for phrase in vocabulary.roles[role]]
-    if {words[0] for _, words in phrases}.isdisjoint(text.words):
+    if {words[0] for _, words in phrases}.isdisjoint(text.distinct):
         return needs
     is_top = True
-    for indent, first, last in statements(text, frozenset(text.words)):
+    for indent, first, last in statements(text, text.distinct):
         if first == last or indent > text.lines[0].indent:
             continue
         path = text.words[last - 1]

@@ -70,7 +70,7 @@ def find_main_names(text: Words, vocabulary: Lexicon) -> Iterator[tuple[str, int
         [word for word in phrase.split() if word not in vocabulary.articles] for phrase in vocabulary.roles["main_name"]
     ]
     holding = {phrase[-1] for phrase in phrases}
-    if holding.isdisjoint(text.words):
+    if holding.isdisjoint(text.distinct):
         return
     reader = _Reader(text, vocabulary)
     for _, first, last in statements(text, holding):

@@ -37,7 +37,7 @@ def find_prefixes(text: Words, vocabulary: Lexicon) -> dict[int, Prefix]:
     """The statements of a text that name a value."""
     firsts = {str(form[0]) for role in SEPARATORS for phrase in vocabulary.roles[role] for form in forms(phrase)}
     prefixes: dict[int, Prefix] = {}
-    if firsts.isdisjoint(text.words):
+    if firsts.isdisjoint(text.distinct):
         return prefixes
     vocabulary = vocabulary.with_references()
     for at, word in enumerate(text.words):

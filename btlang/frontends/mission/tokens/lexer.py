@@ -163,14 +163,13 @@ class Lexer:
                     continue
                 if at in text.going_on:
                     go_on(tokens)
-                goes_on = bool(tokens) and tokens[-1].kind == "stop"
                 if role == "negated":
                     tokens.append(Token("not", starts[at], starts[at]))
                 tokens.append(self._phrase(match, at))
                 if role in self._meanings_of:
                     tokens[-1].role = self.names.meanings.get(" ".join(words[at : match.last]), tokens[-1].role)
                 if role in _ROLES:
-                    tokens[-1].kind = _ROLES[role][goes_on]
+                    tokens[-1].kind = _ROLES[role][len(tokens) > 1 and tokens[-2].kind == "stop"]
                 for value in match.values:
                     context.latest[value.type] = value.text if not value.more else value.more[-1]
                 at = match.last
