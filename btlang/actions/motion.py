@@ -73,12 +73,30 @@ def face_object(robot: Driving, object: str) -> Steps:
     yield from turn(robot, robot.pose.bearing_to(robot.locate(object)))
 
 
+class _Approach:
+    """How fast to go on, by what is left: `limit` and `slowing` are per second, `gain` is how much of the rest in one.
+
+    Each overshoot halves the pace: where commands or poses arrive late, the robot would swing round the goal for ever.
+    """
+
+    def __init__(self, limit: float, slowing: float, gain: float) -> None:
+        self._limit, self._slowing, self._gain = limit, slowing, gain
+        self._before = 0.0
+
+    def velocity(self, left: float) -> float:
+        if left * self._before < 0:
+            self._limit, self._gain = self._limit / 2, self._gain / 2
+        self._before = left
+        return copysign(min(self._limit, sqrt(2 * self._slowing * abs(left)), self._gain * abs(left)), left)
+
+
 def drive_straight(robot: Driving, distance: float, speed: float | None = None, progress: Tell = unheard) -> Steps:
     """Drives `distance` metres along the heading (negative: backwards), keeps the course, and brakes."""
     start, watch = robot.pose, BaseWatch(robot)
     bounds = Progress(distance, _CLOSE_ENOUGH, False, lambda: robot.time)
     driving = robot.body.driving
-    limit, slowing = min(driving.speed if speed is None else abs(speed), driving.top_speed), driving.slowing
+    limit = min(driving.speed if speed is None else abs(speed), driving.top_speed)
+    approach = _Approach(limit, driving.slowing, 3.0)
     try:
         while True:
             pose = robot.pose
@@ -89,9 +107,8 @@ def drive_straight(robot: Driving, distance: float, speed: float | None = None, 
                 return
             bounds.check(left, start.distance_to((pose.x, pose.y)))
             progress(gone / distance)
-            pace = min(limit, sqrt(2 * slowing * abs(left)), 3.0 * abs(left))
             course = wrap(start.heading - pose.heading)
-            robot.drive(copysign(pace, left), _STRAIGHTENING * course)
+            robot.drive(approach.velocity(left), _STRAIGHTENING * course)
             yield
     finally:
         robot.drive(0.0, 0.0)
@@ -101,6 +118,7 @@ def turn(robot: Driving, angle: float, progress: Tell = unheard) -> Steps:
     """Turns on the spot by `angle` degrees (left positive; more than a whole turn is fine) and brakes."""
     heading, turned, watch = robot.pose.heading, 0.0, BaseWatch(robot)
     turning = robot.body.turning
+    approach = _Approach(turning.speed, turning.slowing, 4.0)
     bounds = Progress(angle, _ANGLE_CLOSE_ENOUGH, True, lambda: robot.time)
     try:
         while True:
@@ -112,8 +130,7 @@ def turn(robot: Driving, angle: float, progress: Tell = unheard) -> Steps:
                 return
             bounds.check(left, turned)
             progress(turned / angle)
-            pace = min(turning.speed, sqrt(2 * turning.slowing * abs(left)), 4.0 * abs(left))
-            robot.drive(0.0, copysign(pace, left))
+            robot.drive(0.0, approach.velocity(left))
             yield
     finally:
         robot.drive(0.0, 0.0)

@@ -62,6 +62,33 @@ def test_keeps_straight_with_a_slipping_wheel(bench):
     assert abs(b.robot.pose.heading) < 20
 
 
+@pytest.mark.parametrize("late", [0.2, 0.6, 1.0])
+def test_commands_that_arrive_late(bench, late):
+    """A busy machine or network: the robot settles instead of swinging round the goal."""
+    b = bench()
+    b.run(lambda robot, **ports: motion.move_forward(Late(robot, late), **ports), distance=0.3)
+    assert b.robot.pose.x == pytest.approx(0.3, abs=0.02)
+    b = bench()
+    b.run(lambda robot, **ports: motion.turn_left(Late(robot, late), **ports), angle=90.0)
+    assert b.robot.pose.heading == pytest.approx(90.0, abs=1.0)
+
+
+class Late:
+    """A robot that hears each drive command some seconds late."""
+
+    def __init__(self, robot, seconds):
+        self._robot, self._seconds, self._waiting = robot, seconds, []
+
+    def __getattr__(self, name):
+        return getattr(self._robot, name)
+
+    def drive(self, linear, angular):
+        now = self._robot.time
+        self._waiting.append((now + self._seconds, linear, angular))
+        while self._waiting and self._waiting[0][0] <= now:
+            self._robot.drive(*self._waiting.pop(0)[1:])
+
+
 def test_bumps_fail(bench):
     b = bench(**WALL)
     with pytest.raises(ActionFailed, match=r"^bumped into something after 0\.80 m$"):
