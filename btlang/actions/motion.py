@@ -6,12 +6,11 @@ All fail when the robot bumps, gets stuck, does not get on, goes much too far or
 from __future__ import annotations
 
 from collections.abc import Callable, Generator
-from math import copysign, sqrt
 
 from btlang.actions.watch import BaseWatch, Driving
 from btlang.engine.leaves.leaf import ActionFailed, unheard
 from btlang.robots.geometry import wrap
-from btlang.robots.progress import PATIENCE, Progress
+from btlang.robots.progress import PATIENCE, Approach, Progress
 
 Steps = Generator[None, None, None]
 Tell = Callable[[float], object]
@@ -73,30 +72,13 @@ def face_object(robot: Driving, object: str) -> Steps:
     yield from turn(robot, robot.pose.bearing_to(robot.locate(object)))
 
 
-class _Approach:
-    """How fast to go on, by what is left: `limit` and `slowing` are per second, `gain` is how much of the rest in one.
-
-    Each overshoot halves the pace: where commands or poses arrive late, the robot would swing round the goal for ever.
-    """
-
-    def __init__(self, limit: float, slowing: float, gain: float) -> None:
-        self._limit, self._slowing, self._gain = limit, slowing, gain
-        self._before = 0.0
-
-    def velocity(self, left: float) -> float:
-        if left * self._before < 0:
-            self._limit, self._gain = self._limit / 2, self._gain / 2
-        self._before = left
-        return copysign(min(self._limit, sqrt(2 * self._slowing * abs(left)), self._gain * abs(left)), left)
-
-
 def drive_straight(robot: Driving, distance: float, speed: float | None = None, progress: Tell = unheard) -> Steps:
     """Drives `distance` metres along the heading (negative: backwards), keeps the course, and brakes."""
     start, watch = robot.pose, BaseWatch(robot)
     bounds = Progress(distance, _CLOSE_ENOUGH, False, lambda: robot.time)
     driving = robot.body.driving
     limit = min(driving.speed if speed is None else abs(speed), driving.top_speed)
-    approach = _Approach(limit, driving.slowing, 3.0)
+    approach = Approach(limit, 3.0, driving.slowing)
     try:
         while True:
             pose = robot.pose
@@ -118,7 +100,7 @@ def turn(robot: Driving, angle: float, progress: Tell = unheard) -> Steps:
     """Turns on the spot by `angle` degrees (left positive; more than a whole turn is fine) and brakes."""
     heading, turned, watch = robot.pose.heading, 0.0, BaseWatch(robot)
     turning = robot.body.turning
-    approach = _Approach(turning.speed, turning.slowing, 4.0)
+    approach = Approach(turning.speed, 4.0, turning.slowing)
     bounds = Progress(angle, _ANGLE_CLOSE_ENOUGH, True, lambda: robot.time)
     try:
         while True:

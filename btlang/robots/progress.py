@@ -1,8 +1,9 @@
-"""Bounds of a drive or a turn: one that does not get on, or goes much too far, must not go on without end."""
+"""The pace of a drive or a turn, and its bounds: one that gets no further, or goes much too far, must end."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
+from math import copysign, inf, sqrt
 
 from btlang.engine.leaves.leaf import ActionFailed
 
@@ -40,3 +41,22 @@ class Progress:
     def _of(self, gone: float) -> str:
         digits, unit = (0, "degrees") if self._turns else (2, "m")
         return f"{gone:.{digits}f} of {self._wanted:.{digits}f} {unit}"
+
+
+class Approach:
+    """How fast to go on, in metres or degrees a second: `gain` is how much of what is left to go in a second.
+
+    Each overshoot halves the pace: where commands or poses arrive late, the robot would swing round the goal for ever.
+    """
+
+    def __init__(self, fastest: float, gain: float, slowing: float = inf, slowest: float = 0.0) -> None:
+        self._fastest, self._gain, self._slowing, self._slowest = fastest, gain, slowing, slowest
+        self._before = 0.0
+
+    def velocity(self, left: float) -> float:
+        """With the sign of what is left."""
+        if left * self._before < 0:
+            self._fastest, self._gain = self._fastest / 2, self._gain / 2
+        self._before, way = left, abs(left)
+        pace = min(max(self._slowest, self._gain * way), self._fastest, sqrt(2 * self._slowing * way))
+        return copysign(pace, left)

@@ -8,7 +8,7 @@ from collections.abc import Callable, Generator
 from nav_msgs.msg import Odometry
 
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.robots.progress import PATIENCE, Progress
+from btlang.robots.progress import PATIENCE, Approach, Progress
 from btlang.ros.clients import Clients
 from btlang.ros.commands import velocity
 from btlang.ros.graph import no_listener
@@ -46,7 +46,8 @@ def drive_leaf(word: Word, clients: Clients) -> Callable[..., Any]:
         publisher.publish(velocity(cls, *speeds, clients.clock.message()))
 
     def drive(**values: Any) -> Generator[None, None, bool]:
-        way_to_go, fastest = sign * amount(values), abs(speed(values))
+        way_to_go = sign * amount(values)
+        approach = Approach(abs(speed(values)), _GAIN, slowest=_SLOWEST[turns])
         if not publisher.get_subscription_count() or not odometry.has_come:
             yield from _ready(clients, cls, name, publisher, odometry, patience)
         travelled = _turned if turns else _driven
@@ -61,8 +62,7 @@ def drive_leaf(word: Word, clients: Clients) -> Callable[..., Any]:
                 if abs(left) <= close:
                     return True
                 bounds.check(shown(left), shown(done) if turns else math.dist(start[:2], pose[:2]))
-                pace = math.copysign(min(fastest, max(_SLOWEST[turns], abs(left) * _GAIN)), left)
-                send(pace, 0.0 if turns else -_GAIN * _turned(start, pose))
+                send(approach.velocity(left), 0.0 if turns else -_GAIN * _turned(start, pose))
                 yield
         finally:
             send(0.0)
