@@ -10,6 +10,7 @@ import os
 from collections.abc import Callable
 from itertools import count
 
+from rcl_interfaces.srv import GetParameters
 from rclpy.clock import Clock, ClockType
 from rclpy.duration import Duration
 from rclpy.event_handler import SubscriptionEventCallbacks
@@ -27,7 +28,8 @@ _CLIENT, _GOAL = 6, 6  # bytes of a goal id, after the mark
 _ASSERTED = 0.25  # seconds within which a client asserts that it lives: a few of them may get lost
 _SILENCE = 0.7  # seconds without a word after which DDS tells of it
 _ROUND = 0.1  # seconds
-_SILENT, _FIRST = 3, 15  # rounds in which a word may still come, and those in which the first one has to
+_SILENT, _FIRST = 3, 15  # rounds in which a word may still come, and those in which the first one should
+_ASKED = 11  # rounds before the end of these in which it is asked for an answer: most are heard before
 
 
 class Lease:
@@ -76,7 +78,8 @@ class _Client:
     def __init__(self, node: Node, name: bytes, clock: Clock, gone: Callable[[], object]) -> None:
         self.goals: dict[bytes, Callable[[], object]] = {}
         self._node, self._topic, self._gone = node, _topic(name), gone
-        self._heard = False
+        self._heard = self._asked = self._answered = False
+        self._question: Any = None
         self._rounds = _FIRST
         self._timer = node.create_timer(_ROUND, self._doubt, clock=clock)
         self._subscription = node.create_subscription(
@@ -96,15 +99,33 @@ class _Client:
     def _doubt(self) -> None:
         """Rounds are counted, and not seconds: in each of them this process was there to hear something."""
         self._rounds -= 1
-        if self._rounds > 0:
-            return
+        if not self._heard and self._rounds < _ASKED:
+            self._ask()
+        found = self._node.get_publishers_info_by_topic(self._topic) if self._rounds <= 0 else []
+        if self._rounds > 0 or (found and self._answered and not self._heard):
+            return  # DDS says nothing of the life of one that answers: then its discovery tells of its end
         # where it was never heard: it died as soon as it had sent its goal, or has no lease and something passed it on
-        lost = tuple(self.goals.values()) if self._heard or self._node.count_publishers(self._topic) else ()
+        lost = tuple(self.goals.values()) if self._heard or self._answered or found else ()
+        if self._question is not None:
+            self._node.destroy_client(self._question)
         self._node.destroy_timer(self._timer)
         self._node.destroy_subscription(self._subscription)
         self._gone()
         for tell in lost:
             tell()
+
+    def _ask(self) -> None:
+        """Whether its node answers, as any does that is spun, where liveliness has not come though it should have."""
+        if self._question is None:
+            for end in self._node.get_publishers_info_by_topic(self._topic):
+                name = f"{end.node_namespace.rstrip('/')}/{end.node_name}/get_parameters"
+                self._question = self._node.create_client(GetParameters, name)
+        elif not self._asked and self._question.service_is_ready():
+            self._asked = True
+            self._question.call_async(GetParameters.Request()).add_done_callback(self._live)
+
+    def _live(self, _: object) -> None:
+        self._answered = True
 
 
 def _client_of(goal_id: bytes) -> bytes | None:

@@ -10,6 +10,7 @@ from typing import Any
 
 from rclpy.action import ActionClient
 from rclpy.qos import DurabilityPolicy, QoSProfile
+from unique_identifier_msgs.msg import UUID
 
 from btlang.ros.node import SpunNode
 from tests.ros.processes import LONG, wait_until
@@ -105,11 +106,11 @@ class Client:
 class Goal:
     """A goal that was sent and answered, with what is heard of it."""
 
-    def __init__(self, client: Client, server: ActionClient, goal: Any) -> None:
+    def __init__(self, client: Client, server: ActionClient, goal: Any, goal_id: UUID | None = None) -> None:
         self.feedback = Heard()
         self._client = client
         self._handle = answer(
-            client.begin(lambda: server.send_goal_async(goal, lambda message: self.feedback(message.feedback)))
+            client.begin(lambda: server.send_goal_async(goal, lambda message: self.feedback(message.feedback), goal_id))
         )
         self.accepted: bool = self._handle.accepted
 

@@ -11,6 +11,8 @@ from typing import Any
 
 import pytest
 from nav_msgs.msg import Odometry
+from std_msgs.msg import Empty
+from unique_identifier_msgs.msg import UUID
 
 from tests.ros.client import Client, Goal
 from tests.ros.declared import Peer
@@ -92,6 +94,26 @@ def test_a_client_without_a_lease_is_not_watched(
     goal = Goal(client, client.action(RunPhrase, "/actions/move_forward"), request)
     assert goal.accepted
     assert goal.result().result.success
+
+
+def test_a_client_of_whose_life_dds_says_nothing(
+    start: Callable[..., Command], client: Client, run_mission: object
+) -> None:
+    """It is not taken for dead: it counts as gone when its publisher is."""
+    from btlang_interfaces.action import RunPhrase
+
+    server = start("serve-actions", "--only", "motion")
+    server.wait_for("ready")
+    goal_id = UUID(uuid=list(b"btc\x01" + bytes(range(12))))
+    silent = client.begin(lambda: client.node.create_publisher(Empty, f"/_btlang/lease_{bytes(range(6)).hex()}", 1))
+    request = RunPhrase.Goal(names=["distance", "speed"], values=["3 m", "0.1 m/s"])
+    goal = Goal(client, client.action(RunPhrase, "/actions/move_forward"), request, goal_id)
+    assert goal.accepted
+    server.wait_for("start  move forward")
+    time.sleep(2.5)
+    assert "halted" not in server.out
+    client.begin(lambda: client.node.destroy_publisher(silent))
+    server.wait_for("halted move forward")
 
 
 def test_a_client_that_is_held_up_keeps_its_goals(
