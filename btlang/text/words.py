@@ -2,14 +2,14 @@
 
 A word is kept in lower case; quoted text keeps its case behind a leading `"`; a unit is a word of its own
 ("2m" is `2`, `m`);
-each punctuation mark is a word of its own. Articles leave no word, only a note of where they stood. `Orthography` holds
-what languages differ in.
+each punctuation mark is a word of its own. Articles leave no word, only a note of where they stood, and the mark of a
+list item (`- `, `1. `) leaves nothing. `Orthography` holds what languages differ in.
 """
 
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Set
+from collections.abc import Iterable, Iterator, Mapping, Sequence, Set
 
 from btlang.record import Record
 from btlang.text.source import Source, Span
@@ -21,13 +21,15 @@ _TYPOGRAPHIC = str.maketrans({
 _DECIMAL_COMMA = r"(?<![\d,.])(\d+),(\d+)(?!\d|,\d)"  # but `1,2,3` is a list; compiled where a language needs it
 _MARKS_ABOVE = "\u0300-\u036f"  # accents as characters of their own, which some keyboards send
 
+_ITEM = r"(?:(?:[-*\u2022\u2013\u2014]|\d{1,3}[.)])(?=[ \t]))?"  # the mark of a list item: `- `, `* `, `1. `, `1) `
+
 # Blanks in front of a word belong to its match, which halves the number of matches.
 _PIECE = re.compile(
     rf"""[^\S\n]*(?:([a-zA-Z]++(?![\w/'{_MARKS_ABOVE}-])  # as below, in half the time
                     |[^\W\d_]+/[^\W\d_]+(?!\w)|[^\W\d](?:[\w{_MARKS_ABOVE}'-]*[\w{_MARKS_ABOVE}])?)  # word
     |(-?\d+(?:\.\d+)?(?:[eE][+-]?\d+(?!\w))?)                          # number
     |([,:()%°{{}}])                                                    # mark
-    |(\n[ \t\r]*)                                                      # line
+    |(\n[ \t\r]*{_ITEM})                                               # line
     |("[^"\n]*"|(?<!\w)'[^'\n]*'(?!\w))                                # quote
     |([.!?]+|;)                                                        # stop
     |(\#[^\n]*|\Z)                                                     # comment
@@ -81,11 +83,15 @@ def without_accents(word: str) -> str:
 
 
 class Line(Record):
-    """Words `first` to `last` (exclusive) of one line that is not blank; `indent` counts columns, a tab up to 4."""
+    """Words `first` to `last` (exclusive) of one line that is not blank; `indent` counts columns, a tab up to 4.
+
+    `is_item`: the mark of a list item stands before them.
+    """
 
     indent: int
     first: int
     last: int
+    is_item: bool = False
 
 
 class Words:
@@ -128,6 +134,14 @@ class Words:
             self._distinct = frozenset(self.words)
         return self._distinct
 
+    def with_word(self, at: int, word: str) -> Words:
+        """The same text with another word in one place."""
+        made = Words(self.source)
+        made.words = [*self.words[:at], word, *self.words[at + 1 :]]
+        made.starts, made.ends, made.lines, made.articles = self.starts, self.ends, self.lines, self.articles
+        made.going_on = self.going_on
+        return made
+
     def span(self, first: int, last: int) -> Span:
         """The characters of words `first` to `last` (exclusive); never empty where there is a word."""
         if first >= last:
@@ -143,18 +157,20 @@ def split(source: Source, orthography: Orthography) -> Words:
     if orthography.decimal_comma:
         text = re.sub(_DECIMAL_COMMA, r"\1.\2", text)
     articles, spellings = orthography.articles, orthography.spellings
-    first, indent = 0, _indent(re.match(r"[ \t]*", text).group())  # type: ignore[union-attr]
+    first = 0
+    margin = re.match(rf"[ \t\r]*{_ITEM}", text).group()  # type: ignore[union-attr]
+    indent, is_item = _indent(margin)
 
     def end_line(at: int) -> None:
         nonlocal first
         if len(words) > first:
-            result.lines.append(Line(indent, first, len(words)))
+            result.lines.append(Line(indent, first, len(words), is_item))
             words.append(END_OF_TEXT)
             starts.append(at)
             ends.append(at)
         first = len(words)
 
-    for match in _PIECE.finditer(text):
+    for match in _PIECE.finditer(text, len(margin)):
         kind = match.lastindex or _OTHER
         word = match[kind]
         start, end = match.span(kind)
@@ -167,7 +183,7 @@ def split(source: Source, orthography: Orthography) -> Words:
                 continue
         elif kind == _LINE:
             end_line(start)
-            indent = _indent(word[1:])
+            indent, is_item = _indent(word[1:])
             continue
         elif kind == _STOP:
             if len(words) == first or words[-1] == END_OF_STATEMENT:
@@ -196,11 +212,29 @@ def split(source: Source, orthography: Orthography) -> Words:
     words.append(END_OF_TEXT)  # so that looking one word ahead is always possible
     starts.append(len(text))
     ends.append(len(text))
+    if any(line.is_item for line in result.lines):
+        result.lines = list(_indented_items(words, result.lines))
     return result
 
 
-def _indent(blank: str) -> int:
-    return len(blank.replace("\r", "").expandtabs(4))
+def _indent(margin: str) -> tuple[int, bool]:
+    """The columns of the blanks at the start of a line, and whether the mark of a list item follows them."""
+    blank = margin.rstrip("-*\u2022\u2013\u2014.)0123456789")
+    return len(blank.replace("\r", "").expandtabs(4)), len(blank) < len(margin)
+
+
+def _indented_items(words: Sequence[str], lines: Iterable[Line]) -> Iterator[Line]:
+    """The items of a list that a line with a colon begins are a block, also where they are not indented."""
+    before: Line | None = None
+    margin: int | None = None  # of a list that is not indented
+    for line in lines:
+        if margin is not None and (line.indent < margin or (line.indent == margin and not line.is_item)):
+            margin = None
+        opens = before is not None and not before.is_item and words[before.last - 1] == ":"
+        if margin is None and line.is_item and before is not None and opens and line.indent == before.indent:
+            margin = line.indent
+        before = line
+        yield line if margin is None else line.replace(indent=line.indent + 1)
 
 
 def statements(text: Words, holding: Set[str]) -> Iterator[tuple[int, int, int]]:

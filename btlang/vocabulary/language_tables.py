@@ -23,10 +23,13 @@ GOES_ON = frozenset((
 ))  # fmt: skip
 """The roles that begin no statement of their own: what they begin goes on with the statement before it."""
 
+NOT_ALONE = frozenset(("ordinal", "keep", "fails"))
+"""The roles whose words are ordinary words everywhere but in one place."""
+
 _NO_SLOT = (
     *CONNECTIVES, "otherwise", "if_works", "if_it_works", "in_any_case",
     "if", "unless", "while", "until", "whenever", "first_time", "as_soon_as", "once", "provided", "stop_when", "not",
-    "do_that", "repeat_that", "again", "start_over", "everything", "here",
+    "do_that", "repeat_that", "again", "start_over", "everything", "here", "ordinal", "following", "keep", "fails",
     "repeat", "try", "retry", "if_possible", "wait_until", "wait_for", "check", "nothing", "fail", "in_parallel",
     "in_order",
     "define_strong", "define", "fact", "facing",
@@ -49,11 +52,15 @@ EXPLAINED = (*ROLES, "compare", "politeness")
 
 SWITCHES = frozenset(("decimal_comma",))
 
-WORD_LISTS = frozenset(("articles", "politeness", "unit_joiner", "quantifiers", "halting", "asked_once"))
+WORD_LISTS = frozenset(("articles", "politeness", "unit_joiner", "one_each", "quantifiers", "halting", "asked_once"))
 
 
 def _words(value: object) -> bool:
     return isinstance(value, list) and all(isinstance(item, str) and item for item in value)
+
+
+def _endings(value: object) -> bool:
+    return isinstance(value, list) and all(isinstance(item, str) for item in value)
 
 
 def _between(value: object) -> bool:
@@ -81,6 +88,7 @@ TABLES: dict[str, tuple[Callable[[object], bool], str]] = {
     "about": (_about, "a table with the texts topic, help and example"),
     "comparisons": (_words, "a list of phrases"),
     "negations": (_words, "a list of words"),
+    "doing": (_endings, "a list of endings"),
     "pronouns": (_words, "a list of types"),
     "meanings": (_between, "one of " + ", ".join(CONNECTIVES)),
     "nodes": (_is_text, "the words of a node"),
@@ -142,8 +150,9 @@ def _phrase_problems(kind: str, name: str, phrases: list[str], known: Mapping[st
 
 _LANGUAGE: dict[str, Any] = {
     "language": "", "decimal_comma": False,
-    "articles": [], "politeness": [], "unit_joiner": [], "quantifiers": [], "halting": [], "asked_once": [],
-    "roles": {}, "contractions": {}, "about": {}, "comparisons": {}, "counts": {}, "negations": {},
+    "articles": [], "politeness": [], "unit_joiner": [], "one_each": [],
+    "quantifiers": [], "halting": [], "asked_once": [],
+    "roles": {}, "contractions": {}, "about": {}, "comparisons": {}, "counts": {}, "negations": {}, "doing": {},
     "pronouns": {}, "nodes": {}, "meanings": {}, "numbers": {}, "multipliers": {}, "fractions": {},
 }  # fmt: skip
 

@@ -87,6 +87,8 @@ class Lexicon:
         )
         """The words with which a statement may begin that goes on with the one before it."""
         self.counts: dict[str, int] = language["counts"]
+        self.doing: dict[str, list[str]] = language["doing"]
+        """The endings of the form that a verb has behind `while` or `before`, each with those of the verb itself."""
         self.nodes: dict[str, str] = language["nodes"]
         """The words of nodes that have some, by their ids."""
         self.meanings: dict[str, str] = language["meanings"]

@@ -96,6 +96,7 @@ class Values:
         self._numbers: Mapping[str, float] = language["numbers"]
         self._multipliers: Mapping[str, float] = language["multipliers"]
         self._joiner = frozenset(language["unit_joiner"])
+        self._one_each = frozenset(language["one_each"])
         self._orthography = Orthography(frozenset(language["articles"]))
         # words that an article before them makes no text: `print a then wave`
         self._connectives = frozenset(phrase for phrases in language["roles"].values() for phrase in phrases)
@@ -208,9 +209,9 @@ class Values:
         """A number with a unit: its value in the base unit, the name of the type, and where it ends."""
         number = self.number(text, at)
         if number is None:
-            if at not in text.articles:
+            if at not in text.articles and not (at and text.words[at - 1] in self._one_each):
                 return None
-            number = 1.0, at  # "a minute"
+            number = 1.0, at  # "a minute", "every hour"
         value, after = number
         if text.words[after] in self._joiner:
             after += 1

@@ -36,7 +36,7 @@ ROWS = {
     # missions.md
     "Statements": "layout", "What does not matter": "layout", "Blocks": "if", "Joined blocks": "joined_blocks",
     "Brackets": "brackets", "Silencing a warning": "silenced",
-    "What a mission needs": "needs",
+    "What a mission needs": "needs", "Lists of statements": "list_items",
     # phrases.md
     "Phrases": "values", "Values and units": "values", "Texts": "layout", "Lists": "lists_and_quantities",
     "Pronouns": "pronouns", "Quantities": "lists_and_quantities",
@@ -60,6 +60,7 @@ ROWS = {
     # sentences.md
     "Going on after a full stop": "going_on", "If that works": "going_on", "In any case": "going_on",
     "Do that again": "again", "One meaning of and for a mission": "again", "Parts that never end": "going_on",
+    "Words left out": "left_out", "Before, after and while with a verb": "verb_forms",
     "but stop when": "early", "as soon as": "early",
     # names.md
     "Names": "definitions", "Parameters": "parameters", "Places of the mission": "facts", "include": "includes",

@@ -14,6 +14,7 @@ grouped tokens, which need no look-ahead any more:
     IF_WORKS body [ELSE body] END          after a whole chain: `A. If that works, B`
     FORM cond DO body [ELSE body] END      if, unless, while, until before a command
     AFTER_FORM cond [ELSE body] END        the same after one command, and `provided that`
+    LOOP head DO body END                  before, after, while, if with a command as their head: `after waving, nod`
     LOOP body [STOP cond] END              repeat, every, after 5 s, for each, and try: LOOP body [ELSE body] END;
                                            also a node that is said by its id with its children
     TEST cond END                          check, wait until

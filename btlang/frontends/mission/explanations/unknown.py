@@ -18,6 +18,7 @@ from btlang.record import Record
 from btlang.text.source import Span
 from btlang.text.spelling import nearest, nearest_start
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words
+from btlang.vocabulary.language_tables import NOT_ALONE
 from btlang.vocabulary.lexicon import NODE_ROLES, Lexicon
 from btlang.vocabulary.pattern import Slot, forms
 from btlang.vocabulary.reading_context import Known, ReadingContext
@@ -92,10 +93,10 @@ def unknown_value(span: Span, key: str, known: Iterable[str]) -> Diagnostic:
     return diagnostic("BT043", span, fix=fix, name=name, help=advice)
 
 
-_NOT_OFFERED = frozenset(
-    (*NODE_ROLES, "called", "with", "newline", "character", "main_name", "needs_world", "needs_words")
-)
-"""Roles for texts that programs write: what is like their words was hardly meant so."""
+_NOT_OFFERED = NOT_ALONE | {
+    *NODE_ROLES, "called", "with", "newline", "character", "main_name", "needs_world", "needs_words",
+}  # fmt: skip
+"""Roles that say nothing alone or are for texts that programs write: what is like their words was hardly meant so."""
 
 
 class _Misfit(Record):

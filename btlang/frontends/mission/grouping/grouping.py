@@ -41,7 +41,7 @@ def group(source: Source, raw: list[Token], conditions: set[str], word: Callable
             _OPERAND.get(token.kind, problems.no_operand)(scan, token)
         elif scan.stack[-1].is_condition:
             after_condition(scan, token)
-        else:
+        elif scan.stack[-1].kind != "head" or not operands.after_head(scan, token):
             _OPERATOR.get(token.kind, problems.side_by_side)(scan, token)
     scan.units.append(Unit(None, tuple(scan.out)))
     return Grouped(tuple(scan.units), scan.problems, scan.failed_at)
@@ -57,13 +57,14 @@ _OPERAND: dict[str, Callable[[Scan, Token], None]] = {
     "not": operands.negation,
     "open": operands.open_bracket,
     "then": operands.leading_then,
-    "do_that": operands.do_block,
+    **dict.fromkeys(("do_that", "following"), operands.do_block),
+    **dict.fromkeys(("before", "after", "while_doing", "if_doing"), operands.fronted),
     **dict.fromkeys(("start_over", "everything"), operands.whole_block),
     "define": operands.definition,
 }
 
 _OPERATOR: dict[str, Callable[[Scan, Token], None]] = {
-    **dict.fromkeys(CONNECTIVES, operators.connective),
+    **dict.fromkeys((*CONNECTIVES, "while_doing"), operators.connective),
     "stop": operators.stop,
     "again": operators.says_nothing,
     **dict.fromkeys(("within", "if_possible", "every", "delay", "up_to", "apart"), operators.postfix),

@@ -4,13 +4,17 @@ from __future__ import annotations
 
 from btlang.frontends.mission.grouping.bodies import block_follows, separator, set_amount, set_pace
 from btlang.frontends.mission.grouping.conditions import AMOUNTS, CONDITION_FORMS, is_refused
-from btlang.frontends.mission.grouping.problems import no_operand, word_before
+from btlang.frontends.mission.grouping.problems import found_words, no_operand, word_before
 from btlang.frontends.mission.grouping.scan import ENDS, Scan
 from btlang.frontends.mission.grouping.stack import StackEntry
 from btlang.frontends.mission.token import Header, Token
 
-SEPARATORS = {"in_parallel": "BLOCK_AND", "in_order": "BLOCK_OR", "node": "BLOCK_CHILD"}
-"""What begins a block with another token than SEMI between its lines."""
+SEPARATORS = {"in_parallel": "BLOCK_AND", "in_order": "BLOCK_OR", "node": "BLOCK_CHILD", "following": "SEMI"}
+"""What begins a block, each with the token between its lines."""
+
+
+COMMANDS = frozenset(("command", "wait", "wait_until", "wait_for", "wait_up_to"))
+"""What may stand in the head of `before waving, A`."""
 
 
 def operand(scan: Scan, token: Token) -> None:
@@ -117,6 +121,49 @@ def loop(scan: Scan, token: Token) -> None:
     separator(scan)
 
 
+def fronted(scan: Scan, token: Token) -> None:
+    """`before going home, A`, `after you wave, A`, `while singing, A`, `if grasping the cup fails, A`."""
+    if is_refused(scan, token):
+        return
+    following = scan.raw[scan.at + 1]
+    if following.kind == "unknown":
+        scan.begin_statement(token)
+        scan.skip_statement()
+        return
+    if following.kind not in COMMANDS:
+        no_operand(scan, token)
+        return
+    scan.begin_statement(token)
+    scan.stack.append(StackEntry("head", scan.emit("LOOP", token, token.kind), after=following.role))
+    scan.next(token, True)
+
+
+def after_head(scan: Scan, token: Token) -> bool:
+    """Behind a command of the head of such a form: ends the head, unless what comes belongs to it."""
+    entry = scan.stack[-1]
+    assert entry.opener is not None
+    if token.kind in AMOUNTS | CONDITION_FORMS:
+        return False
+    if token.kind in ("comma", "and", "or", "then") and entry.opener.role != "if_doing":
+        joined = token.kind == "comma" and scan.raw[scan.at + 1].kind in ("and", "or", "then")
+        following = scan.raw[scan.at + 1 + joined]
+        if following.kind in COMMANDS and following.role == entry.after and (following.role or token.kind != "comma"):
+            return False
+    if token.kind in ENDS or token.kind in ("otherwise", "and", "or"):
+        words = scan.span(entry.opener, scan.raw[scan.at - 1]).text
+        scan.fail("BT020", scan.span(entry.opener), wanted="command", word=words, found=found_words(scan, token))
+        return True
+    entry.close_chain()
+    scan.stack.pop()
+    scan.emit("DO", token)
+    body = StackEntry("body", entry.opener, scan.stack[-1])
+    body.begins = len(scan.out)
+    scan.stack.append(body)
+    scan.operand_due = True
+    separator(scan)
+    return True
+
+
 def joined_block(scan: Scan, token: Token) -> None:
     """`in parallel:`, `the first that works:` or a node that is said by its id, and the lines below."""
     if is_refused(scan, token):
@@ -140,8 +187,11 @@ def joined_block(scan: Scan, token: Token) -> None:
 
 
 def do_block(scan: Scan, token: Token) -> None:
-    """`do this 3 times:` opens a block, as `repeat 3 times:` does."""
+    """`do this 3 times:` opens a block, as `repeat 3 times:` does; `do the following:` opens a plain one."""
     at = scan.at + 1
+    if token.kind == "following" and scan.raw[at].kind not in AMOUNTS | CONDITION_FORMS:
+        joined_block(scan, token)
+        return
     while scan.raw[at].kind not in ENDS and scan.raw[at].kind != "colon":
         at += 1
     if scan.raw[at].kind == "colon":

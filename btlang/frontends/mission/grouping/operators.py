@@ -12,7 +12,7 @@ from btlang.frontends.mission.grouping.stack import StackEntry
 from btlang.frontends.mission.token import Token
 from btlang.vocabulary.language_tables import CONNECTIVES
 
-_JOINTS = {"meanwhile": "AND", "in_parallel": "AND", "before": "THEN"}
+_JOINTS = {"meanwhile": "AND", "in_parallel": "AND", "while_doing": "AND", "before": "THEN"}
 
 
 def connective(scan: Scan, token: Token) -> None:
@@ -50,9 +50,11 @@ def comma(scan: Scan, token: Token) -> None:
     owner = entry.count_owner if following.kind == "count" else entry.stop_owner if following.kind == "for" else None
     if following.kind == "otherwise" or owner is not None:
         scan.at += 1
-    elif following.kind in CONNECTIVES:
+    elif following.kind in CONNECTIVES or following.kind == "while_doing":
         scan.at += 1
         _widening(scan, following)
+    elif following.kind == "apart" and scan.raw[scan.at - 1].kind == "count":
+        scan.at += 1
     elif following.kind == "stop_when" or closes_statement(scan, scan.at + 1):
         scan.take_statement()
         scan.at += 1

@@ -6,15 +6,15 @@ from btlang.frontends.mission.token import Token
 
 
 class StackEntry:
-    """One open thing. `kind` is "top", "block", "bracket", "body", "condition" or "condition bracket".
+    """One open thing. `kind` is "top", "block", "bracket", "head", "body", "condition" or "condition bracket".
 
     The owners are the nearest open forms of the same bracket that a count, an `until` (or `while`, `for`) or an
-    `otherwise` would belong to; `after` says what follows the end of a condition. `commas` are those whose meaning
-    the next connective will tell; `last` is the latest connective. `statement` of a group is "", "open" or "ended",
-    the latest one `begins` at that place of what was made, and the `latest` that has ended at that; `separator` is
-    the token between them. The latest operand begins at `operand`. `joints` are the words "and" of the chain that
-    is not over. `is_group`: it holds statements; `is_condition`: operands in it are conditions. `commands` is where
-    those of a group begin that no rule follows; `mixed`: rules stand among them.
+    `otherwise` would belong to; `after` says what follows the end of a condition, of a head how its verbs are written.
+    `commas` are those whose meaning the next connective will tell; `last` is the latest connective. `statement` of a
+    group is "", "open" or "ended", the latest one `begins` at that place of what was made, and the `latest` that has
+    ended at that; `separator` is the token between them. The latest operand begins at `operand`. `joints` are the words
+    "and" of the chain that is not over. `is_group`: it holds statements; `is_condition`: operands in it are conditions.
+    `commands` is where those of a group begin that no rule follows; `mixed`: rules stand among them.
     """
 
     __slots__ = (

@@ -140,6 +140,12 @@ class Builder:
             tried = self._counted(kind, _amount(opener), body, tried_span)
         return tried if otherwise is None else Try(tried, otherwise, span)
 
+    def fronted(self, kind: str, head: Ast, body: Ast, start: int, end: int) -> Ast:
+        """LOOP head DO body END: `before`, `after`, `while` and `if` with a command as their head."""
+        parts = (head, body) if kind in ("after", "if_doing") else (body, head)
+        operator = {"while_doing": "parallel", "if_doing": "fallback"}.get(kind, "sequence")
+        return self.group(self.chain(operator, parts, start, end), start, end)
+
     def _paced(self, kind: str, pace: Paced, body: Ast, span: Span) -> Ast:
         if kind == "retry":
             return Retry(pace.rounds, body, pace.seconds, span)

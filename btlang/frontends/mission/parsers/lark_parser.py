@@ -128,6 +128,10 @@ class _ToAst:
 
     loop_else = loop
 
+    def fronted(self, children: list[Any]) -> Ast:
+        opener, head, _do, body, end = children
+        return self.build.fronted(opener.role, head, body, opener.start, end.end)
+
     def loop_stop(self, children: list[Any]) -> Ast:
         opener, body, stop, condition, end = children
         return self.build.form(stop.role, condition, body, None, opener.start, end.end)

@@ -173,6 +173,8 @@ def _closed(level: _Level, closer: Token, build: Builder) -> Ast:
             return build.loop(opener, parts[0], None, end, end)
         case ("LOOP", "END", "ELSE"):
             return build.loop(opener, parts[0], parts[1], end, level.sections[0].start)
+        case ("LOOP", "END", "DO"):
+            return build.fronted(opener.role, parts[0], parts[1], opener.start, end)
         case ("LOOP", "END", "STOP"):
             return build.form(level.sections[0].role, parts[1], parts[0], None, opener.start, end)
         case ("TEST", "END"):

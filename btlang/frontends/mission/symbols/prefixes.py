@@ -7,6 +7,7 @@ from collections.abc import Iterable
 from btlang.record import Record
 from btlang.text.source import Span
 from btlang.text.words import Words
+from btlang.vocabulary.language_tables import NOT_ALONE
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.pattern import forms
 from btlang.vocabulary.trie import longest
@@ -110,7 +111,7 @@ def _is_part(text: Words, at: int, vocabulary: Lexicon) -> bool:
     if word in ("{", "}"):
         return True
     match = longest(vocabulary.trie, text, at, vocabulary.context)
-    joins = match is not None and match.meaning.entry is None
+    joins = match is not None and match.meaning.entry is None and match.meaning.role not in NOT_ALONE
     return word[0].isalpha() and not joins
 
 

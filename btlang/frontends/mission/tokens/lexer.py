@@ -13,10 +13,19 @@ from btlang.frontends.mission.symbols.nodes import Unreadable, read_node, unread
 from btlang.frontends.mission.symbols.prefixes import SEPARATORS, Prefix, span_of
 from btlang.frontends.mission.token import Called, Listed, Token, begins_condition, go_on
 from btlang.frontends.mission.tokens.condition_names import called, condition_names
+from btlang.frontends.mission.tokens.partial_commands import (
+    doing,
+    enlist,
+    left_out,
+    may_be_doing,
+    said_before,
+    with_verb,
+    words_of,
+)
 from btlang.text.source import Source, Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, split
 from btlang.vocabulary.entry import Entry, Meaning
-from btlang.vocabulary.language_tables import CONNECTIVES
+from btlang.vocabulary.language_tables import CONNECTIVES, NOT_ALONE
 from btlang.vocabulary.lexicon import NODE_ROLES, Lexicon
 from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.references import keys_in, renamed
@@ -25,6 +34,9 @@ from btlang.vocabulary.values import key_of
 
 _ROLES = {"if_it_works": ("if_possible", "if_works"), "in_parallel": ("in_parallel", "meanwhile")}
 """What a word is inside a statement, and where it goes on with the one before."""
+_NOT_READ = frozenset((*SEPARATORS, INCLUDE, *NOT_ALONE))
+_BEGINS = frozenset(("newline", "semi", "indent", "dedent", "open", "define", "colon"))
+"""Behind these a statement begins."""
 _MARKS = {",": "comma", ";": "semi", ":": "colon", "(": "open", ")": "close"}
 
 
@@ -58,6 +70,8 @@ class Lexer:
         self._meanings_of = CONNECTIVES.keys() if self.names.meanings else ()
         self._found = {} if has_values else self.names.phrases.fixed
         self.tokens: list[Token] = []
+        self._said: dict[int, list[int]] = {}  # the words of commands that leave some out, by where these begin
+        self._doing_endings = tuple(self.vocabulary.doing)
         self._lines()
         self.conditions = condition_names(self.tokens, self.names.included_conditions())
         """The defined names that stand for conditions."""
@@ -149,12 +163,28 @@ class Lexer:
                 if named is not None and (match is None or named.last >= match.last):
                     match = named
             role = match.meaning.role if match is not None else ""
-            if match is None or role in SEPARATORS or role == INCLUDE:
+            if match is not None and role == "ordinal" and (not tokens or tokens[-1].kind in _BEGINS):
+                at = match.last + (words[match.last] == ",")
+                continue
+            if match is not None and role == "keep" and self._doing(match.last) is not None:
+                tokens.append(Token("repeat", starts[at], ends[match.last - 1], role="doing"))
+                at = match.last
+                continue
+            if word.endswith(self._doing_endings) and may_be_doing(tokens):
+                end = self._add_doing(at, match)
+                if end:
+                    at = end
+                    continue
+            if match is None or role in _NOT_READ:
+                end = self._add_left_out(at)
+                if end:
+                    at = end
+                    continue
                 end = self._unknown_end(at, last)
                 if role == INCLUDE:
                     end += words[end][0] == '"'
                 if self._explain:
-                    self.problems.append(self._why(at, end, match))
+                    self.problems.append(self._why(at, end, match if role not in NOT_ALONE else None))
                 tokens.append(Token("unknown", starts[at], ends[end - 1]))
                 at = end
             else:
@@ -163,6 +193,8 @@ class Lexer:
                     continue
                 if at in text.going_on:
                     go_on(tokens)
+                if role == "command" and at in text.articles:
+                    self._whole_command(match, at)
                 if role == "negated":
                     tokens.append(Token("not", starts[at], starts[at]))
                 tokens.append(self._phrase(match, at))
@@ -170,17 +202,74 @@ class Lexer:
                     tokens[-1].role = self.names.meanings.get(" ".join(words[at : match.last]), tokens[-1].role)
                 if role in _ROLES:
                     tokens[-1].kind = _ROLES[role][len(tokens) > 1 and tokens[-2].kind == "stop"]
-                for value in match.values:
-                    context.latest[value.type] = value.text if not value.more else value.more[-1]
+                self._note(match)
                 at = match.last
+
+    def _note(self, match: Match) -> None:
+        """What pronouns stand for from here on."""
+        for value in match.values:
+            self.context.latest[value.type] = value.text if not value.more else value.more[-1]
+
+    def _doing(self, at: int) -> Match | None:
+        tries = self.vocabulary.trie, self.names.definitions.trie
+        return doing(self.text, at, self.vocabulary.doing, tries, self.context)
+
+    def _add_doing(self, at: int, other: Match | None) -> int:
+        """A command in the form of its verb, unless another phrase is as long. Returns where to go on, 0 if none is."""
+        match, before = self._doing(at), self.tokens[-1]
+        if match is None or (other is not None and other.last >= match.last):
+            return 0
+        end = match.last
+        if before.kind == "if":
+            failing = longest(self.vocabulary.trie, self.text, end, self.context)
+            if failing is None or failing.meaning.role != "fails":
+                return 0
+            end = failing.last
+        before.kind = {"if": "if_doing", "while": "while_doing"}.get(before.kind, before.kind)
+        token = self._phrase(match, at)
+        token.role = "doing"
+        self.tokens.append(token)
+        self._note(match)
+        return end
+
+    def _left_out(self, at: int) -> tuple[Match, list[int]] | None:
+        said = said_before(self.tokens)
+        if said is None:
+            return None
+        tries = self.vocabulary.trie, self.names.definitions.trie
+        return left_out(self.text, self._said.get(said.start) or words_of(self.text, said), at, tries, self.context)
+
+    def _add_left_out(self, at: int) -> int:
+        """A command whose first words are those of the one before it. Returns where to go on, 0 if there is none."""
+        read = self._left_out(at)
+        if read is None:
+            return 0
+        token = self._phrase(read[0], at)
+        self._said[token.start] = read[1]
+        enlist(self.tokens, token)
+        self._note(read[0])
+        return read[0].last
+
+    def _whole_command(self, match: Match, at: int) -> None:
+        """BT050 where a command that has an article could be the rest of one: `go to the hall, then the dock`."""
+        read = self._left_out(at)
+        if read is not None and read[0].last >= match.last:
+            words = self.text.words
+            span = Span(self.text.source, self.text.articles[at][0], self.text.ends[match.last - 1])
+            front = " ".join(words[place] for place in read[1] if place < at)
+            bare = self.text.span(at, match.last).text
+            self.problems.append(diagnostic("BT050", span, taken=bare, other=f"{front} {span.text}", fixed=bare))
 
     def _why(self, at: int, end: int, match: Match | None) -> Diagnostic:
         """What is wrong with words that are no phrase, or one that stands where it cannot."""
         from btlang.frontends.mission.explanations import unknown  # most missions have nothing to explain
 
         if match is None:
+            text = self.text
+            if text.words[at].endswith(self._doing_endings) and may_be_doing(self.tokens):
+                text = with_verb(text, at, self.vocabulary.doing, self.vocabulary.trie)
             return unknown.explain_unknown(
-                self.text, at, end, self.vocabulary, self.context, self.names.definitions, self.tokens
+                text, at, end, self.vocabulary, self.context, self.names.definitions, self.tokens
             )
         if match.meaning.role == INCLUDE:
             return misplaced(self.text.span(at, end), self.vocabulary)
@@ -290,7 +379,7 @@ class Lexer:
             if at >= last or text.words[at] in _MARKS:
                 return at
             match = longest(self.vocabulary.trie, text, at, context)
-            if match is not None and match.meaning.role in NODE_ROLES:
+            if match is not None and match.meaning.role in (*NODE_ROLES, *NOT_ALONE):
                 continue
             if match is not None and (match.meaning.entry is None or match.last > at + 1):
                 return at

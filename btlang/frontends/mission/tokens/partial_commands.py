@@ -1,0 +1,155 @@
+"""Commands that are not written whole: `then to the office`, and the form of a verb behind `while`, `before`, `keep`.
+
+Both are read as the words that they stand for would be, in a text put together for that.
+"""
+
+from __future__ import annotations
+
+from bisect import bisect_left
+from collections.abc import Iterator, Mapping, Sequence
+
+from btlang.frontends.mission.token import Token
+from btlang.text.words import END_OF_TEXT, Words
+from btlang.vocabulary.reading_context import ReadingContext
+from btlang.vocabulary.trie import Match, TrieNode, longest
+
+BEFORE_DOING = frozenset(("before", "after", "while"))
+"""The kinds of tokens behind which a command may have the form of its verb: `after waving`."""
+JOINTS = frozenset(("then", "and", "or", "comma", "otherwise"))
+"""Behind these a command may leave out words of the one before it."""
+_COMMANDS = frozenset(("command", "name"))
+_DOING = frozenset(("command", "name", "wait", "wait_until", "wait_for", "wait_up_to"))
+_ENDS = frozenset(("newline", "semi", "indent", "dedent", "define"))
+_MOST_WORDS = 60
+
+
+def said_before(tokens: Sequence[Token]) -> Token | None:
+    """The command before the joining word at the end, in the same bracket."""
+    at = len(tokens) - 1
+    if at < 0 or tokens[at].kind not in JOINTS:
+        return None
+    depth = 0
+    while at and depth >= 0:
+        at -= 1
+        token = tokens[at]
+        if token.kind in ("define", "unknown"):
+            return None
+        if token.role != "list":
+            depth += (token.kind in ("close", "dedent")) - (token.kind in ("open", "indent"))
+        if not depth and token.kind in _COMMANDS:
+            return token
+    return None
+
+
+def may_be_doing(tokens: Sequence[Token]) -> bool:
+    """Whether a command that comes may have the form of its verb: behind such a word or another such command."""
+    if not tokens or tokens[-1].kind in ("if", *BEFORE_DOING) or tokens[-1].role == "doing":
+        return bool(tokens)
+    if tokens[-1].kind not in JOINTS:
+        return False
+    before = (token for token in reversed(tokens) if token.kind in _DOING or token.kind in _ENDS)
+    return next((token.role == "doing" for token in before), False)
+
+
+def enlist(tokens: list[Token], command: Token) -> None:
+    """Adds a command that left words out: behind a comma, `and` or `or` it goes on with the command as a list does."""
+    joint = len(tokens) - 1
+    first = joint - (tokens[joint - 1].kind == "comma")
+    before = tokens[first - 1]
+    if tokens[joint].kind not in ("and", "or", "comma") or not (before.kind in _COMMANDS or before.role == "list"):
+        tokens.append(command)
+        return
+    if tokens[joint].kind == "and":
+        tokens[joint].role = "then"
+    if before.role == "list":
+        del tokens[first - 1]
+    else:
+        tokens.insert(first - 1, Token("open", before.start, before.start, role="list"))
+    tokens += (command, Token("close", command.end, command.end, role="list"))
+
+
+def words_of(text: Words, token: Token) -> range:
+    """The words of a token."""
+    return range(bisect_left(text.starts, token.start), bisect_left(text.starts, token.end))
+
+
+def left_out(
+    text: Words, said: Sequence[int], at: int, tries: Sequence[TrieNode], context: ReadingContext
+) -> tuple[Match, list[int]] | None:
+    """The command that words make behind the longest beginning of another one, `said`, and all of its words.
+
+    A text is never a part of it: `say hello, then goodbye` is no such command.
+    """
+    rest = _rest(text, at)
+    for kept in range(len(said), 0, -1):
+        places = [*said[:kept], *rest]
+        match = _match(text, places, {}, tries, context)
+        if match is None or match.last <= kept or match.meaning.role not in ("command", "name"):
+            continue
+        if all(context.types[value.type].kind != "text" for value in match.values):
+            return _relocated(match, places), places[: match.last]
+    return None
+
+
+def doing(
+    text: Words,
+    at: int,
+    endings: Mapping[str, Sequence[str]],
+    tries: Sequence[TrieNode],
+    context: ReadingContext,
+) -> Match | None:
+    """The command whose verb has this form: `going to the lab`."""
+    found: Match | None = None
+    for verb in _verbs(text.words[at], endings):
+        places = list(_rest(text, at))
+        match = _match(text, places, {0: verb}, tries, context)
+        if match is not None and match.meaning.role in _DOING and (found is None or match.last > found.last):
+            found = match
+    return found and _relocated(found, list(_rest(text, at)))
+
+
+def with_verb(text: Words, at: int, endings: Mapping[str, Sequence[str]], trie: TrieNode) -> Words:
+    """The same text with the verb itself in place of its form, where a phrase begins with that."""
+    verb = next((verb for verb in _verbs(text.words[at], endings) if verb in trie), text.words[at])
+    return text.with_word(at, verb)
+
+
+def _verbs(word: str, endings: Mapping[str, Sequence[str]]) -> Iterator[str]:
+    """The verbs that may have this form."""
+    for ending, bare in endings.items():
+        if word.endswith(ending) and word != ending:
+            yield from (word[: -len(ending)] + end for end in bare)
+
+
+def _rest(text: Words, at: int) -> range:
+    """The words of the line from one on, with what ends it."""
+    last = at
+    while text.words[last] != END_OF_TEXT and last < at + _MOST_WORDS:
+        last += 1
+    return range(at, last)
+
+
+def _match(
+    text: Words, places: Sequence[int], other: Mapping[int, str], tries: Sequence[TrieNode], context: ReadingContext
+) -> Match | None:
+    """The longest phrase of words of a text side by side, some of them replaced."""
+    read = Words(text.source)
+    for number, place in enumerate(places):
+        read.words.append(other.get(number, text.words[place]))
+        if place in text.articles:
+            read.articles[number] = text.articles[place]
+    read.starts, read.ends = [text.starts[place] for place in places], [text.ends[place] for place in places]
+    end = places[-1] + 1
+    for _ in range(2):  # as behind each text
+        read.words.append(END_OF_TEXT)
+        read.starts.append(text.ends[end - 1])
+        read.ends.append(text.ends[end - 1])
+    found = [longest(trie, read, 0, context, other) for trie, other in zip(tries, reversed(tries), strict=True)]
+    return max((match for match in found if match is not None), key=lambda match: match.last, default=None)
+
+
+def _relocated(match: Match, places: Sequence[int]) -> Match:
+    """A match in such words as one in their text."""
+    values = tuple(value.replace(first=places[value.first], last=places[value.last - 1] + 1) for value in match.values)
+    moved: Match = match.replace(last=places[match.last - 1] + 1, values=values)
+    return moved
