@@ -14,6 +14,7 @@ class Diagnostic(Record):
     """`arguments` fill the braces of the code's texts; `notes` are further places, each with a line about it.
 
     `fix` is a change that probably mends it: characters and what to write in their place. An editor may offer it.
+    `readings` are such changes too, each of which leaves one of several readings: a choice that only people can make.
     """
 
     code: str
@@ -21,6 +22,7 @@ class Diagnostic(Record):
     arguments: tuple[tuple[str, str], ...] = ()
     notes: tuple[tuple[Span, str], ...] = ()
     fix: tuple[Span, str] | None = None
+    readings: tuple[tuple[Span, str], ...] = ()
 
     @property
     def kind(self) -> Code:

@@ -69,13 +69,26 @@ def as_data(problem: Diagnostic) -> dict[str, Any]:
       characters (Unicode code points); the end is exclusive: the place just after the last character;
     - `words`: the text at that place;
     - `fix`: None, or `text` and the place whose characters it replaces;
+    - `readings`: such changes, each of which leaves one of the readings that the text has;
     - `notes`: objects with a `message` and its place.
     """
     kind = problem.kind
     told = {"code": problem.code, "severity": kind.severity, "message": problem.message, "hint": problem.hint}
-    fix = None if problem.fix is None else {"text": problem.fix[1], **_place(problem.fix[0])}
+    fix = None if problem.fix is None else _change(*problem.fix)
+    readings = [_change(*reading) for reading in problem.readings]
     notes = [{"message": text, **_place(span)} for span, text in problem.notes]
-    return {**told, **_place(problem.span), "words": problem.span.text, "fix": fix, "notes": notes}
+    return {
+        **told,
+        **_place(problem.span),
+        "words": problem.span.text,
+        "fix": fix,
+        "readings": readings,
+        "notes": notes,
+    }
+
+
+def _change(span: Span, text: str) -> dict[str, str | int]:
+    return {"text": text, **_place(span)}
 
 
 def _place(span: Span) -> dict[str, str | int]:

@@ -15,6 +15,7 @@ from btlang.printer.exact import exact
 from btlang.printer.pieces import COMMA, LEAF, Piece, Pieces, mark
 from btlang.printer.printer import AND, FORM, LOOSE, OR, THEN, WHOLE, Doc, Printer, bracketed
 from btlang.tree import ast
+from btlang.tree.journeys import takes_its_time
 from btlang.vocabulary.language_tables import CONNECTIVES
 
 TYPE_CHECKING = False
@@ -58,13 +59,16 @@ def _chain(node: ast.Chain, parts: list[Doc], printer: Printer) -> Doc:
         inner = [printer.inside(p, own) for p, own in zip(inner, negated, strict=True)]
     if printer.is_clear:
         inner = [printer.inside(p, p.level < FORM or p.reaches or (p.behind and i > 0)) for i, p in enumerate(inner)]
-    return Doc(tuple(_joined(inner, word)), level, *_flags(inner))
+    words = [word] * (len(inner) - 1)
+    if node.operator == "parallel":  # whatever people take the plain word for
+        words = [printer.word("meanwhile") if takes_its_time(item) else word for item in node.items[:-1]]
+    return Doc(tuple(_joined(inner, words)), level, *_flags(inner))
 
 
-def _joined(parts: Sequence[Doc], word: Piece) -> Iterator[Pieces | Piece]:
+def _joined(parts: Sequence[Doc], words: Sequence[Piece]) -> Iterator[Pieces | Piece]:
     for i, part in enumerate(parts):
         if i:
-            yield word
+            yield words[i - 1]
         yield part.pieces
 
 

@@ -15,7 +15,7 @@ from tests.diagnostics.samples import sample_diagnostics
 
 ROOT = Path(__file__).parent.parent.parent
 PLACE = {"file", "line", "column", "end_line", "end_column"}
-KEYS = PLACE | {"code", "severity", "message", "hint", "words", "fix", "notes"}
+KEYS = PLACE | {"code", "severity", "message", "hint", "words", "fix", "readings", "notes"}
 
 
 def test_a_diagnostic_of_a_misspelt_name(capsys: pytest.CaptureFixture[str]) -> None:
@@ -32,6 +32,7 @@ def test_a_diagnostic_of_a_misspelt_name(capsys: pytest.CaptureFixture[str]) -> 
             **place,
             "words": "ktichen",
             "fix": {"text": "kitchen", **place},
+            "readings": [],
             "notes": [],
         }
     ]
@@ -89,7 +90,7 @@ def test_every_sample_can_be_used() -> None:
         assert between(sources[told["file"]], told) == told["words"]
         if told["fix"] is not None:
             assert told["fix"].keys() == PLACE | {"text"}
-        for part in (told, *told["notes"], *([told["fix"]] if told["fix"] else [])):
+        for part in (told, *told["notes"], *([told["fix"]] if told["fix"] else []), *told["readings"]):
             assert (1, 1) <= (part["line"], part["column"]) <= (part["end_line"], part["end_column"])
 
 

@@ -118,7 +118,7 @@ def test_explain_lists_all_codes(capsys: pytest.CaptureFixture[str]) -> None:
 @pytest.mark.parametrize(
     ("written", "told"),
     [
-        ("BT069", "Similar: BT068, BT070"),
+        ("BT079", "Similar: BT080, BT081"),
         ("BT9999999999999", "Similar: BT1"),
         ("BT" + "9" * 6000, "Similar: "),
         ("BT", "A code is BT and three digits"),

@@ -130,12 +130,12 @@ def test_one_of_a_kind_for_each_sentence() -> None:
 
 
 def test_what_two_readings_shows() -> None:
-    [warning] = parse_tree("go to the lobby then go to the lab and look around").warnings
+    [warning] = parse_tree("go to the lobby then wave and look around").warnings
     assert warning.message == "This can be read in two ways."
     assert warning.hint.splitlines() == [
-        "I read: go to lobby then (go to lab and look around)",
-        "It could also mean: (go to lobby then go to lab) and look around",
-        "Decide with a comma or brackets, for example: go to the lobby, then go to the lab and look around",
+        "I read: go to lobby then (wave and look around)",
+        "It could also mean: (go to lobby then wave) and look around",
+        "Decide with a comma or brackets, for example: go to the lobby, then wave and look around",
     ]
 
 

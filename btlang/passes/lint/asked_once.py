@@ -9,6 +9,7 @@ from collections.abc import Iterator
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
+from btlang.text.source import Span
 from btlang.tree import ast
 from btlang.vocabulary.lexicon import Lexicon
 
@@ -38,13 +39,15 @@ def _warning(node: ast.If, before: ast.Ast | None, vocabulary: Lexicon) -> Itera
     if node.body.span.start < condition.start:
         if before is not None and node.body.span.text.lower() in vocabulary.halting and "\n" not in before.span.text:
             fixed = f"{before.span.text} {vocabulary.word('stop_when')} {condition.text}"
-            yield diagnostic(
-                "BT068", node.span, words=node.span.text, advice=f"To stop what comes before, write: {fixed}"
-            )
+            advice = f"To stop what comes before, write: {fixed}"
+            reading = Span(source, before.span.start, node.span.end), fixed
+            yield diagnostic("BT068", node.span, words=node.span.text, advice=advice).replace(readings=(reading,))
         return
     word = source.text[node.span.start : condition.start].split(maxsplit=1)[0]
     if word.lower() in vocabulary.asked_once:
         rest = source.text[node.span.start + len(word) : node.span.end].lstrip()
         once, each = (f"{vocabulary.word(role)} {rest}" for role in ("as_soon_as", "whenever"))
         advice, other = f"To wait until it is true, write: {once}", f"To do it each time, write: {each}"
-        yield diagnostic("BT068", node.span, words=f"{word} {condition.text}", advice=advice, help=other)
+        readings = (node.span, once), (node.span, each)
+        words = f"{word} {condition.text}"
+        yield diagnostic("BT068", node.span, words=words, advice=advice, help=other).replace(readings=readings)

@@ -85,7 +85,9 @@ def _told(found: Readings, printer: Printer) -> Diagnostic:
     taken, other = printer.statement(found.taken), printer.statement(found.other)
     fix = None if "\n" in found.fix[0].text else found.fix
     fixed = taken if fix is None or "\n" in found.span.text else _changed(found.span, *found.fix)
-    return diagnostic("BT050", found.span, (), fix, taken=taken, other=other, fixed=fixed)
+    readings = () if fix is None else (fix, (found.span, other))
+    told = diagnostic("BT050", found.span, (), fix, taken=taken, other=other, fixed=fixed)
+    return told.replace(readings=readings)  # type: ignore[no-any-return]
 
 
 def _changed(span: Span, part: Span, words: str) -> str:
