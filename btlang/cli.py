@@ -20,6 +20,12 @@ from btlang.diagnostics.report import Report
 from btlang.text.output import listing_width, pass_on, show
 from btlang.text.source import Source
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import TextIO
+
+    from btlang.diagnostics.diagnostic import Diagnostic
+
 SUCCESS, FAILED, UNFORMATTED, BAD_INPUT, CRASHED, INTERRUPTED = 0, 1, 1, 2, 70, 130
 
 
@@ -91,10 +97,43 @@ def _run(options: argparse.Namespace) -> int:
 
 
 def _check(options: argparse.Namespace) -> int:
+    if options.fix or options.then:
+        _mend(options)
     _mission(options).check()
     if not options.report.is_json:
         show("No problems found.")
     return SUCCESS
+
+
+def _mend(options: argparse.Namespace) -> None:
+    """Writes corrections into the file; of a text, and of standard input, shows what it becomes, and reads that."""
+    from btlang.backends.files import replace_text
+    from btlang.diagnostics.mending import certain, mended, one_after_the_other
+
+    def problems_of(source: Source) -> Sequence[Diagnostic]:
+        try:
+            return _parsed(source, options).warnings
+        except MissionError as error:
+            return error.diagnostics
+
+    source = _source(options)
+    count = 0
+    for wanted, choose in ((options.fix, certain), (options.then, one_after_the_other)):
+        if wanted:
+            source, made = mended(source, problems_of, choose)
+            count += made
+    if options.text is None and options.file != "-":
+        if count:
+            replace_text(source.name, source.text)
+            show(f"Corrected {source.name}: {count} change{'s' * (count > 1)}.", stream=_aside(options))
+    else:
+        options.text, options.file = source.text, None
+        show(source.text.rstrip("\n"), stream=_aside(options))
+
+
+def _aside(options: argparse.Namespace) -> TextIO:
+    """Standard output, unless that is for JSON."""
+    return sys.stderr if options.report.is_json else sys.stdout
 
 
 def _show_tree(options: argparse.Namespace) -> int:
@@ -309,14 +348,21 @@ def _typed(options: argparse.Namespace) -> Source:
 
 def _mission(options: argparse.Namespace) -> Mission:
     """Compiles what the options name; warnings go to the report."""
-    source = _typed(options) if options.text is not None else _read_file(options)
-    mission = parse_tree(
-        source, parser=options.parser, keywords=options.keywords, world=options.world, main=options.main,
-        language=options.language,
-    )  # fmt: skip
+    mission = _parsed(_source(options), options)
     for warning in mission.warnings:
         options.report.add([warning])
     return mission
+
+
+def _source(options: argparse.Namespace) -> Source:
+    return _typed(options) if options.text is not None else _read_file(options)
+
+
+def _parsed(source: Source, options: argparse.Namespace) -> Mission:
+    return parse_tree(
+        source, parser=options.parser, keywords=options.keywords, world=options.world, main=options.main,
+        language=options.language,
+    )  # fmt: skip
 
 
 def _read_file(options: argparse.Namespace) -> Source:

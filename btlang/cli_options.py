@@ -172,6 +172,12 @@ def _mission_options(parser: argparse.ArgumentParser) -> None:
     text.add_argument("-c", dest="text", metavar="TEXT", help="mission as text")
 
 
+def _check_options(parser: argparse.ArgumentParser) -> None:
+    _mission_options(parser)
+    parser.add_argument("--fix", action="store_true", help="write the corrections that are certain into the file")
+    parser.add_argument("--then", action="store_true", help="write 'then' where 'and' stands on the way (BT069)")
+
+
 def _speed_option(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--speed", type=speed, default="real", help="real, max, or a factor of real time")
 
@@ -290,7 +296,7 @@ def _help_options(parser: argparse.ArgumentParser) -> None:
 _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "repl": ("type a mission line by line, as with `btc` alone", _repl_options),
     "run": ("run a mission on the simulated robot, or a ROS 2 robot", _run_options),
-    "check": ("report the mistakes in a mission", _mission_options),
+    "check": ("report the mistakes in a mission", _check_options),
     "tree": ("print the behavior tree of a mission", _tree_options),
     "compile": ("write the tree of a mission as XML, English, JSON, a picture ...", _compile_options),
     "words": ("list what missions can say", _listing_options),

@@ -287,3 +287,23 @@ def test_a_log_on_a_full_disk_does_not_hide_how_the_mission_ended(
     assert btc("run", "-c", mission, "--speed", "max", "--log", "/dev/full") == code
     assert f"The mission {told}" in btc.out + btc.err
     assert "error BT009: I can't write /dev/full: no space left on device" in btc.err
+
+
+def test_certain_corrections_are_written(btc: Screen, tmp_path: Path) -> None:
+    """What leaves a choice stays as it is, until `--then` chooses."""
+    file = tmp_path / "mission.txt"
+    file.write_text("go to the kitchenn and look around\nwav then nod\nif bumped, nod. Wave. Otherwise say hi\n")
+    assert btc("check", "--fix", str(file)) == 0
+    assert btc.out == f"Corrected {file}: 2 changes.\nNo problems found.\n"
+    mended = "go to the kitchen and look around\nwave then nod\nif bumped, nod. Wave. Otherwise say hi\n"
+    assert file.read_text() == mended
+    assert "BT069" in btc.err
+    assert "BT050" in btc.err
+    assert btc("check", "--then", str(file)) == 0
+    assert file.read_text() == mended.replace("kitchen and", "kitchen then")
+    assert btc("check", "--fix", "-c", "go to the lbby") == 0
+    assert btc.out == "go to the lobby\nNo problems found.\n"
+    assert btc("check", "--fix", "-c", "frobnicate") == 2
+    assert btc.out == "frobnicate\n"
+    assert btc("check", "--fix", "--format", "json", "-c", "go to the lbby") == 0
+    assert (btc.out.strip(), btc.err) == ("[]", "go to the lobby\n")

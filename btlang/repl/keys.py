@@ -30,12 +30,19 @@ if TYPE_CHECKING:
 
         def refuse(self) -> None: ...
 
+        def readings(self) -> list[tuple[int, int, str]]: ...
+
+        def ask_which(self) -> bool: ...
+
+        @property
+        def asks(self) -> bool: ...
+
 
 _INDENT = "  "
 
 
 def key_bindings(screen: Editor) -> KeyBindings:
-    """Enter, Tab, Ctrl-F, Ctrl-C, Ctrl-D and Backspace."""
+    """Enter, Tab, Ctrl-F, 1 and 2 where there is a choice, Ctrl-C, Ctrl-D and Backspace."""
     keys = KeyBindings()
     buffer = screen.buffer
 
@@ -56,6 +63,8 @@ def key_bindings(screen: Editor) -> KeyBindings:
             if errors:
                 buffer.cursor_position = min(errors[0].span.end, len(text))
                 screen.refuse()
+                return
+            if screen.ask_which():
                 return
         buffer.append_to_history()
         event.app.exit(result=text.rstrip())
@@ -80,10 +89,17 @@ def key_bindings(screen: Editor) -> KeyBindings:
     def mend(event: KeyPressEvent) -> None:
         fix = screen.fix()
         if fix is not None:
-            start, end, words = fix
-            after = len(buffer.text) - buffer.cursor_position
-            buffer.text = buffer.text[:start] + words + buffer.text[end:]
-            buffer.cursor_position = max(start + len(words), len(buffer.text) - after)
+            change(*fix)
+
+    @keys.add("1", filter=Condition(lambda: screen.asks))
+    @keys.add("2", filter=Condition(lambda: screen.asks))
+    def choose(event: KeyPressEvent) -> None:
+        change(*screen.readings()[int(event.data) - 1])
+
+    def change(start: int, end: int, words: str) -> None:
+        after = len(buffer.text) - buffer.cursor_position
+        buffer.text = buffer.text[:start] + words + buffer.text[end:]
+        buffer.cursor_position = max(start + len(words), len(buffer.text) - after)
 
     @keys.add("backspace", filter=Condition(lambda: bool(buffer.document.current_line_before_cursor)
                                             and buffer.document.current_line_before_cursor.isspace()))  # fmt: skip

@@ -73,9 +73,9 @@ class Screen:
         self._seen: tuple[str, Preview] = ("", Preview())
         self.note = ""
         """A line at the bottom, until the text changes."""
-        self.leaving = False
+        self.leaving = self.asks = False
         """Whether the user has asked once to leave."""
-        self._refused = ""
+        self._refused = self._asked = ""
         history: History = InMemoryHistory() if store.problem else FileHistory(str(store.history))
         self.buffer = Buffer(
             completer=Offers(draft),
@@ -96,7 +96,7 @@ class Screen:
     def ask(self, text: str = "") -> str:
         """Lets the user type, from a text to begin with. Raises EOFError when the user wants to leave."""
         self.buffer.reset(Document(text))
-        self._refused, self.note, self.leaving = "", "", False
+        self._refused, self._asked, self.note, self.leaving, self.asks = "", "", "", False, False
         self._keep()
         return self.application.run()
 
@@ -121,6 +121,26 @@ class Screen:
         elif near:
             self.note = f"Not run. Did you mean: {near}"
 
+    def readings(self) -> list[tuple[int, int, str]]:
+        """The changes between which the first warning with two readings leaves a choice."""
+        text = self.buffer.text
+        for problem in self.preview().problems:
+            if len(problem.readings) == 2 and all(span.end <= len(text) for span, _ in problem.readings):
+                return [(span.start, span.end, words) for span, words in problem.readings]
+        return []
+
+    def ask_which(self) -> bool:
+        """Whether the entry has two readings, and nobody was asked yet which of them is meant."""
+        readings = self.readings()
+        if not readings or self._asked == self.buffer.text:
+            return False
+        self._asked, self.asks = self.buffer.text, True
+        first, second = (words for _, _, words in readings)
+        self.note = (
+            f"Two readings. 1 writes: {first} \N{MIDDLE DOT} 2 writes: {second} \N{MIDDLE DOT} Enter runs it as it is"
+        )
+        return True
+
     def clear(self) -> None:
         """Clears the terminal."""
         output = self.application.output
@@ -138,7 +158,7 @@ class Screen:
         return self.preview().unfinished and self._refused != self.buffer.text
 
     def _changed(self, _: Buffer) -> None:
-        self.note, self.leaving = "", False
+        self.note, self.leaving, self.asks = "", False, False
         self._keep()
 
     def _keep(self) -> None:

@@ -123,6 +123,18 @@ def test_a_killed_session_is_offered_again(repl: Callable[..., Terminal], tmp_pa
     assert again.wait_for_end() == 0
 
 
+def test_a_choice_between_two_readings(repl: Callable[..., Terminal]) -> None:
+    user = repl()
+    user.type("go to the lab and say there")
+    screen = user.wait_for("Enter runs it as it")
+    assert "Two readings. 1 writes: and meanwhile" in screen
+    assert "2 writes: then" in screen
+    user.press("2")
+    user.wait_for("go to the lab then say there")
+    user.press("Enter")
+    user.wait_for('says "there"')
+
+
 def test_ctrl_c_stops_the_robot_and_not_the_repl(repl: Callable[..., Terminal]) -> None:
     user = repl()
     user.type("turn left forever")

@@ -85,7 +85,7 @@ def _told(found: Readings, printer: Printer) -> Diagnostic:
     taken, other = printer.statement(found.taken), printer.statement(found.other)
     fix = None if "\n" in found.fix[0].text else found.fix
     fixed = taken if fix is None or "\n" in found.span.text else _changed(found.span, *found.fix)
-    readings = () if fix is None else (fix, (found.span, other))
+    readings = () if "\n" in found.span.text else ((found.span, fixed), (found.span, other))
     told = diagnostic("BT050", found.span, (), fix, taken=taken, other=other, fixed=fixed)
     return told.replace(readings=readings)  # type: ignore[no-any-return]
 

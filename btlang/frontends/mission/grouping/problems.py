@@ -80,17 +80,19 @@ def otherwise_of_another(scan: Scan, otherwise: Token) -> None:
     if do is None or entry.begins >= len(out):
         return  # of a broken statement not all was made
     body = out[do + 1].start
-    end = next(token for token in scan.raw[scan.at :] if token.kind in ENDS)
+    last = next(at for at in range(scan.at, len(scan.raw)) if scan.raw[at].kind in ENDS) - 1
+    end = scan.raw[last].end
     first, middle = out[entry.begins].start, before[-1].start
     text = scan.source.text
-    span = Span(scan.source, form.start, end.start)
+    span = Span(scan.source, form.start, end)
     if "\n" in span.text:
         return
-    kept, rest = text[first : scan.last_end], text[otherwise.end : end.start].strip(" ,")
+    kept, rest = text[first : scan.last_end], text[otherwise.end : end].strip(" ,")
     head, done = text[form.start : body], text[body:middle].strip(" .;")
     then, word = scan.word("then"), scan.word("otherwise")
     taken, other = f"({kept}) {word} {rest}", f"{head}({done} {then} {kept}) {word} {rest}"
-    scan.problems.append(diagnostic("BT050", span, taken=taken, other=other, fixed=f"{kept} {word} {rest}"))
+    problem = diagnostic("BT050", span, taken=taken, other=other, fixed=f"{kept} {word} {rest}")
+    scan.problems.append(problem.replace(readings=((span, f"{text[form.start : first]}{taken}"), (span, other))))
 
 
 def is_alone(scan: Scan) -> bool:

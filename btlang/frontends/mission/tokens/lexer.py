@@ -258,7 +258,9 @@ class Lexer:
             span = Span(self.text.source, self.text.articles[at][0], self.text.ends[match.last - 1])
             front = " ".join(words[place] for place in read[1] if place < at)
             bare = self.text.span(at, match.last).text
-            self.problems.append(diagnostic("BT050", span, taken=bare, other=f"{front} {span.text}", fixed=bare))
+            other = f"{front} {span.text}"
+            problem = diagnostic("BT050", span, taken=bare, other=other, fixed=bare)
+            self.problems.append(problem.replace(readings=((span, bare), (span, other))))
 
     def _why(self, at: int, end: int, match: Match | None) -> Diagnostic:
         """What is wrong with words that are no phrase, or one that stands where it cannot."""

@@ -1,0 +1,50 @@
+"""Changes of a text that its diagnostics offer: corrections that are certain, and one reading of those that it has."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+
+from btlang.diagnostics.diagnostic import Diagnostic
+from btlang.text.source import Source, Span
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+    Change: TypeAlias = tuple[Span, str]
+
+_ROUNDS = 20  # a correction may show the next mistake, but no text has that many behind each other
+
+
+def certain(problems: Iterable[Diagnostic]) -> list[Change]:
+    """The corrections that leave no choice."""
+    return [problem.fix for problem in problems if problem.fix is not None and not problem.readings]
+
+
+def one_after_the_other(problems: Iterable[Diagnostic]) -> list[Change]:
+    """For each `and` on the way (BT069), the reading `then`."""
+    return [problem.readings[-1] for problem in problems if problem.code == "BT069"]
+
+
+def mended(
+    source: Source, problems_of: Callable[[Source], Iterable[Diagnostic]], choose: Callable[..., list[Change]]
+) -> tuple[Source, int]:
+    """The source with all changes that are chosen, and their number; included texts stay as they are."""
+    count = 0
+    for _ in range(_ROUNDS):
+        changes = [change for change in choose(problems_of(source)) if change[0].source.name == source.name]
+        made, text, before = 0, source.text, len(source.text) + 1
+        for span, words in sorted(changes, key=lambda change: (change[0].start, change[0].end), reverse=True):
+            if span.end <= before and text[span.start : span.end] != words:
+                text, before, made = text[: span.start] + words + text[span.end :], span.start, made + 1
+        if not made:
+            break
+        source, count = _with_text(source, text), count + made
+    return source, count
+
+
+def _with_text(source: Source, text: str) -> Source:
+    return Source(
+        text, source.name, source.folder, source.roots,
+        hidden=source.hidden, hides_includes=source.hides_includes, may_load=source.may_load,
+    )  # fmt: skip
