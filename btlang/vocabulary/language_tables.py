@@ -26,6 +26,7 @@ GOES_ON = frozenset((
 _NO_SLOT = (
     *CONNECTIVES, "otherwise", "if_works", "if_it_works", "in_any_case",
     "if", "unless", "while", "until", "whenever", "first_time", "as_soon_as", "once", "provided", "stop_when", "not",
+    "either", "both", "neither", "nor", "not_both", "any_of", "all_of", "none_of", "one_of",
     "do_that", "repeat_that", "again", "start_over", "everything", "here",
     "repeat", "try", "retry", "if_possible", "wait_until", "wait_for", "check", "nothing", "fail", "in_parallel",
     "in_order",
@@ -37,7 +38,7 @@ _NO_SLOT = (
 ROLES = {
     **dict.fromkeys(_NO_SLOT, ""),
     **dict.fromkeys(("every", "delay", "for", "up_to", "apart", "within", "wait", "wait_up_to"), "duration"),
-    **dict.fromkeys(("count", "more"), "count"),
+    **dict.fromkeys(("count", "more", "at_least_of"), "count"),
 }
 """The roles that words can have, each with the slot that its phrases hold."""
 
@@ -81,6 +82,8 @@ TABLES: dict[str, tuple[Callable[[object], bool], str]] = {
     "about": (_about, "a table with the texts topic, help and example"),
     "comparisons": (_words, "a list of phrases"),
     "negations": (_words, "a list of words"),
+    "negative_subjects": (_words, "a list of words"),
+    "plurals": (_words, "a list of words"),
     "pronouns": (_words, "a list of types"),
     "meanings": (_between, "one of " + ", ".join(CONNECTIVES)),
     "nodes": (_is_text, "the words of a node"),
@@ -144,6 +147,7 @@ _LANGUAGE: dict[str, Any] = {
     "language": "", "decimal_comma": False,
     "articles": [], "politeness": [], "unit_joiner": [], "quantifiers": [], "halting": [], "asked_once": [],
     "roles": {}, "contractions": {}, "about": {}, "comparisons": {}, "counts": {}, "negations": {},
+    "negative_subjects": {}, "plurals": {},
     "pronouns": {}, "nodes": {}, "meanings": {}, "numbers": {}, "multipliers": {}, "fractions": {},
 }  # fmt: skip
 

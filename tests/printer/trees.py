@@ -46,6 +46,12 @@ def _entry(node_id: str) -> Entry:
     return entry
 
 
+def _at_least(inner: Trees) -> Trees:
+    """So many of two or three."""
+    items = st.lists(inner, min_size=2, max_size=3).map(tuple)
+    return st.builds(ast.AtLeast, st.integers(1, 2), items, st.just(SPAN))
+
+
 _texts = st.sampled_from(
     ["{count}", "it is {count}", "it's {count} {{m}}", "hello", "{{count}}", "{gap_to_wall} {count}"]
 )
@@ -84,7 +90,7 @@ defined = (
 
 conditions: Trees = st.recursive(
     st.one_of(st.sampled_from(CONDITIONS).map(phrase), st.sampled_from(CONDITIONS).map(phrase), compared),
-    lambda inner: st.one_of(_chains(["all", "any"], inner), st.builds(ast.Not, inner, st.just(SPAN))),
+    lambda inner: st.one_of(_chains(["all", "any"], inner), st.builds(ast.Not, inner, st.just(SPAN)), _at_least(inner)),
     max_leaves=4,
 )
 _seconds = st.sampled_from(["5", "0.2", "90", "{pause}"])

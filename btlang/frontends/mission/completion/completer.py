@@ -33,12 +33,12 @@ _MOST_CORRECTIONS = 3
 _ALIKE = {
     **dict.fromkeys(("wait", "nothing", "fail"), "command"), "negated": "condition", "unless": "if", "until": "while",
     "if_possible": "within", "if_it_works": "within", "once": "within", "stop_when": "provided", "as_soon_as": "if",
-    "first_time": "whenever",  "retry": "try", "wait_until": "check",
-    "delay": "every", "in_order": "in_parallel",
+    "first_time": "whenever",  "retry": "try", "one_of": "try", "wait_until": "check",
+    "delay": "every", "in_order": "in_parallel", "either": "open", "both": "open",
     **dict.fromkeys(("set", "increase", "decrease", "remember", "include"), "command"), "each": "every",
 }  # fmt: skip
 """Roles that stand where others stand: the grouping stage is asked for one of them."""
-_LOOK_AHEAD = frozenset(("and", "or"))  # whether these are in their place depends on what follows
+_LOOK_AHEAD = frozenset(("and", "or", "nor"))  # whether these are in their place depends on what follows
 _MAY_FOLLOW = ((), ("command",), ("condition",), ("close",), ("colon",), ("count",))
 _LINE_STARTS = frozenset(("newline", "semi", "indent", "dedent"))
 

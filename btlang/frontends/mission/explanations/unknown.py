@@ -13,7 +13,7 @@ from btlang.frontends.mission.explanations.spelling_rule import is_respelling
 from btlang.frontends.mission.symbols.definitions import Definitions
 from btlang.frontends.mission.symbols.nodes import misread_node
 from btlang.frontends.mission.symbols.prefixes import span_of
-from btlang.frontends.mission.token import Called, Token
+from btlang.frontends.mission.token import CORRELATIVES, QUANTIFIERS, Called, Token
 from btlang.record import Record
 from btlang.text.source import Span
 from btlang.text.spelling import nearest, nearest_start
@@ -258,13 +258,16 @@ def _unknown_phrase(
     return diagnostic("BT010", span, fix=fix, kind=kind, words=span.text, help=nearest_known(near))
 
 
-_ASKING = frozenset(("if", "unless", "whenever", "while", "until", "check", "wait_until", "condition"))
+_ASKING = frozenset(("if", "unless", "whenever", "while", "until", "check", "wait_until", "condition", *QUANTIFIERS))
+
+
+_BEFORE_ANY = frozenset(("not", "open", "and", "or", "nor", *CORRELATIVES))
 
 
 def _asks(before: list[Token]) -> bool:
     """Whether a condition belongs after these tokens."""
     kinds = (token.kind for token in reversed(before))
-    return next((kind for kind in kinds if kind not in ("not", "open", "and", "or")), "") in _ASKING
+    return next((kind for kind in kinds if kind not in _BEFORE_ANY), "") in _ASKING
 
 
 def nearest_known(words: Iterable[str]) -> str:

@@ -20,12 +20,23 @@ from btlang.vocabulary.language_tables import CONNECTIVES
 from btlang.vocabulary.lexicon import NODE_ROLES, Lexicon
 from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.references import keys_in, renamed
-from btlang.vocabulary.trie import SLOTS, Match, SlotValue, longest
+from btlang.vocabulary.trie import SLOTS, Match, SlotValue, TrieNode, longest
 from btlang.vocabulary.values import key_of
 
+TYPE_CHECKING = False
 _ROLES = {"if_it_works": ("if_possible", "if_works"), "in_parallel": ("in_parallel", "meanwhile")}
 """What a word is inside a statement, and where it goes on with the one before."""
+_NEGATED = ("negated", "negated_twice")
+_CONDITIONS = ("condition", "negated")
+_JOINING = ("and", "or")
 _MARKS = {",": "comma", ";": "semi", ":": "colon", "(": "open", ")": "close"}
+
+
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+    Origin: TypeAlias = tuple[Token, int, Match, TrieNode]
+    """A condition that was read as a whole: the latest part of it, its first word, and where it was found."""
 
 
 class Lexer:
@@ -111,6 +122,7 @@ class Lexer:
         words, starts, ends, tokens = text.words, text.starts, text.ends, self.tokens
         found = self._found
         headers, prefixes, others = self.names.definitions.headers, self.names.prefixes, self.names.others
+        origin: Origin | None = None
         while at < last:
             word = words[at]
             if at >= self._bounds[0]:
@@ -144,10 +156,15 @@ class Lexer:
                     at = end
                     continue
                 match = None
+            root = trie
             if names and (word in names or SLOTS in names):
                 named = longest(names, text, at, context, trie)
                 if named is not None and (match is None or named.last >= match.last):
-                    match = named
+                    match, root = named, names
+            shared = None
+            if origin is not None and tokens[-1].kind in _JOINING and (match is None or match.meaning.role == "not"):
+                shared = self._with_words_before(origin, match, at)
+                match = shared or match
             role = match.meaning.role if match is not None else ""
             if match is None or role in SEPARATORS or role == INCLUDE:
                 end = self._unknown_end(at, last)
@@ -163,9 +180,13 @@ class Lexer:
                     continue
                 if at in text.going_on:
                     go_on(tokens)
-                if role == "negated":
+                if role in _NEGATED:
                     tokens.append(Token("not", starts[at], starts[at]))
+                    if not shared:
+                        self._check_negation(match, at)
                 tokens.append(self._phrase(match, at))
+                if role in _CONDITIONS:
+                    origin = (tokens[-1], *origin[1:]) if shared and origin else (tokens[-1], at, match, root)
                 if role in self._meanings_of:
                     tokens[-1].role = self.names.meanings.get(" ".join(words[at : match.last]), tokens[-1].role)
                 if role in _ROLES:
@@ -186,6 +207,34 @@ class Lexer:
             return misplaced(self.text.span(at, end), self.vocabulary)
         return unknown.misread_head(self.text, at, match.meaning.role, self.vocabulary)
 
+    def _with_words_before(self, origin: Origin, match: Match | None, at: int) -> Match | None:
+        """Words behind `and` or `or` that are no condition, read with those of the one before them in front."""
+        before = self.tokens[-2 if self.tokens[-2].kind != "comma" else -3]
+        if before is not origin[0]:
+            return None
+        if match is not None:  # `not`
+            roots = (self.vocabulary.trie, self.names.definitions.trie)
+            following = (longest(root, self.text, match.last, self.context) for root in roots)
+            if any(own is not None and own.meaning.role in ("name", *_CONDITIONS) for own in following):
+                return None
+        from btlang.frontends.mission.tokens.shared_words import continued  # most missions have none
+
+        found = continued(*origin[1:], self.text, at, self.vocabulary, self.context)
+        if found is not None and found[1] is not None:
+            self.problems.append(found[1])
+        return found[0] if found is not None else None
+
+    def _check_negation(self, match: Match, at: int) -> None:
+        """BT151 for a second negation, and for the negation of a list that is the subject."""
+        subject = match.values[0] if match.values else None
+        is_list = subject is not None and subject.first == at and subject.more
+        if is_list or match.meaning.role == "negated_twice":
+            from btlang.frontends.mission.explanations import negations  # most missions have none
+
+            told = negations.negated_list if is_list else negations.negated_twice
+            before = self.tokens[-2] if len(self.tokens) > 1 else None
+            self.problems.append(told(self.text, at, match.last, self.vocabulary, before))
+
     def _politeness(self, match: Match, at: int) -> int:
         """Politeness is left out with the comma beside it: `Robot, go home, please`. Returns where to go on."""
         words, tokens = self.text.words, self.tokens
@@ -202,7 +251,7 @@ class Lexer:
         if values and values[-1].first == match.last:  # the article was the value: `print a`
             end = text.articles[match.last][1]
         if meaning.entry is not None:
-            kind = "condition" if meaning.role == "negated" else meaning.role
+            kind = "condition" if meaning.role in _NEGATED else meaning.role
             return Token(kind, start, end, self._called(meaning.entry, match, at))
         if values:
             return Token(meaning.role, start, end, values[0].text)
