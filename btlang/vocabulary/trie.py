@@ -163,7 +163,9 @@ def _listed(
         if joined is not None and role:
             at = joined.last
         value = context.read(first.type, text, at)
-        if value is None or any(_is_longer(trie, text, at, value[1], context, is_subject) for trie in (root, names or {})):
+        if value is None or any(
+            _is_longer(trie, text, at, value[1], context, is_subject) for trie in (root, names or {})
+        ):
             break
         if comma and not role and _is_command(root, text, at, value[1], context):
             break

@@ -55,7 +55,9 @@ def after_item(scan: Scan, entry: StackEntry, token: Token) -> None:
         _not_joined(scan, entry.begins, wanted)
         return
     elif entry.items < 2:
-        _misfit(scan, opener, "two conditions or more must follow", f"{scan.words(opener)} ..., ... {scan.word('and')} ...")
+        _misfit(
+            scan, opener, "two conditions or more must follow", f"{scan.words(opener)} ..., ... {scan.word('and')} ..."
+        )
         return
     number = opener.value if opener.role == "at_least_of" and isinstance(opener.value, str) else "1"
     if not number.isdigit() or int(number) > entry.items:
@@ -163,7 +165,7 @@ def correlative(scan: Scan, token: Token) -> None:
         at += 1
     if commas == 1 and scan.raw[at - 1].kind == "comma" and entry.last is not None:
         joint = scan.raw[at]  # the comma would widen it over what stands before
-        before = scan.source.text[token.start : scan.raw[at - 1].start]
+        before = scan.source.text[token.start : scan.raw[at - 1].start].strip()
         reason = f"there is a comma before '{scan.words(joint)}'"
         _misfit(scan, token, reason, f"{before} {scan.words(joint)} {_rest(scan, joint)}")
         return
@@ -210,7 +212,8 @@ def _not_joined(scan: Scan, at: int, wanted: str) -> None:
         if found.kind == wanted:
             example = f"{words} ({before}) {joint} {behind}"
         else:
-            example, fix = f"{words} {before} {joint} {behind}", (scan.span(found), joint)
+            example = f"{words} {before} {joint} {behind}"
+            fix = (scan.span(found), joint) if wanted == "nor" else None  # of `either A and B` either word may be wrong
     _misfit(scan, opener, f"'{joint}' must join what follows", example, fix)
 
 
