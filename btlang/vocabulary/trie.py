@@ -94,8 +94,8 @@ def longest(
 ) -> Match | None:
     """The longest phrase at a word; where two are equally long, the one with words in place of slots.
 
-    `found` are the values that have led to the root. A slot of an entry also takes a list of values, unless `lists` is False. It ends before a phrase, also before one in
-    the trie `names`, in which connectives are looked for too.
+    `found` are the values that have led to the root. A slot of an entry also takes a list of values, unless `lists` is
+    False. It ends before a phrase, also before one in the trie `names`, in which connectives are looked for too.
     """
     words = text.words
     if words[at] not in root and SLOTS not in root:

@@ -25,6 +25,7 @@ def shipped() -> Lexicon:
 
 
 _OPERANDS = ["", " u", " p", " p u", " s", " twice"]
+_OPERANDS += [" u or v", " u and v", " u, v", " p or q", " p and q", " p, q", " p nor q", " nor q"]
 _BODIES = ["", " u", ": u"]
 
 

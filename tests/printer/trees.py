@@ -202,5 +202,5 @@ def _use(name: str, body: ast.Ast) -> ast.Ast:
     used = ast.Name(name, (), SPAN)
     chain = isinstance(body, ast.Chain) and body.operator in ("all", "any")
     phrase = isinstance(body, ast.Phrase) and body.entry.sort == "condition"
-    is_condition = chain or phrase or isinstance(body, ast.Not | ast.Compared)
+    is_condition = chain or phrase or isinstance(body, ast.Not | ast.AtLeast | ast.Compared)
     return ast.Check(used, SPAN) if is_condition else ast.Repeat("2", used, SPAN)

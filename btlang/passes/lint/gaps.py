@@ -28,7 +28,7 @@ class Gaps:
         return left.source.text[left.end : right.start]
 
     def is_open(self, at: int) -> bool:
-        """Whether nothing but a connective stands there: no comma, no line end, and no word that begins a clause or list."""
+        """Whether nothing but a connective stands there: no comma, line end, or word that begins a clause or list."""
         gap = self.text(at)
         return "," not in gap and not self._ends(gap) and not gap.rstrip().lower().endswith(self._openers)
 

@@ -14,7 +14,7 @@ from btlang.frontends.mission.grouping.grouping import group
 from btlang.frontends.mission.reader import lexed
 from btlang.frontends.mission.symbols.includes import ROLE
 from btlang.frontends.mission.symbols.prefixes import SEPARATORS
-from btlang.frontends.mission.token import Token, go_on
+from btlang.frontends.mission.token import CORRELATIVES, Token, go_on
 from btlang.record import Record
 from btlang.text.source import Source
 from btlang.text.spelling import nearest
@@ -34,7 +34,7 @@ _ALIKE = {
     **dict.fromkeys(("wait", "nothing", "fail"), "command"), "negated": "condition", "unless": "if", "until": "while",
     "if_possible": "within", "if_it_works": "within", "once": "within", "stop_when": "provided", "as_soon_as": "if",
     "first_time": "whenever",  "retry": "try", "one_of": "try", "wait_until": "check",
-    "delay": "every", "in_order": "in_parallel", "either": "open", "both": "open",
+    "delay": "every", "in_order": "in_parallel",
     **dict.fromkeys(("set", "increase", "decrease", "remember", "include"), "command"), "each": "every",
 }  # fmt: skip
 """Roles that stand where others stand: the grouping stage is asked for one of them."""
@@ -198,6 +198,8 @@ class Completer:
 
     def _may_stand(self, at: int, role: str) -> bool:
         """Whether a token of the role is accepted behind the first `at` tokens, and can be gone on from."""
+        if role in CORRELATIVES:
+            return self._may_stand(at, "try") or self._may_stand(at, "not")
         kind = _ALIKE.get(role, role)
         key = at, kind
         if key not in self._accepted:

@@ -41,7 +41,7 @@ def needs_check(scan: Scan, token: Token) -> None:
 
 
 def after_item(scan: Scan, entry: StackEntry, token: Token) -> None:
-    """Another condition of a list, or its end: that of a list of values, of the condition, or where other words join."""
+    """Another condition of a list, or its end: behind a list of values, or where nothing joins that may."""
     opener = entry.opener
     assert opener is not None
     wanted, value = _WANTED.get(opener.role, ""), scan.raw[scan.at - 1].value

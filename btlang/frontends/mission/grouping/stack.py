@@ -15,8 +15,8 @@ class StackEntry:
     the latest one `begins` at that place of what was made, and the `latest` that has ended at that; `separator` is
     the token between them. The latest operand begins at `operand`. `joints` are the words "and" of the chain that
     is not over. `is_group`: it holds statements; `is_condition`: operands in it are conditions. `commands` is where
-    those of a group begin that no rule follows; `mixed`: rules stand among them. `items` are the parts of a list so far.
-    A list `begins` at a raw token.
+    those of a group begin that no rule follows; `mixed`: rules stand among them. A list `begins` at a raw
+    token and has so many `items` so far.
     """
 
     __slots__ = (

@@ -9,7 +9,7 @@ from btlang.vocabulary.entry import Entry
 
 
 def condition_names(tokens: list[Token], included: Iterable[str]) -> set[str]:
-    """A name is a condition where its body holds only conditions, `not`, `and`, `or`, words such as `any of`, and condition names.
+    """A name is a condition where its body holds only conditions, condition names, and words that join or deny them.
 
     `included` are those of included missions.
     """
