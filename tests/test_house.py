@@ -118,10 +118,11 @@ def headings(page: Path) -> set[str]:
 
 
 def test_documents_name_every_key() -> None:
-    keywords, worlds, robots = (text(ROOT / "docs" / page) for page in ("keywords.md", "worlds.md", "robots.md"))
+    pages = ("keywords.md", "language_words.md", "worlds.md", "robots.md")
+    keywords, words, worlds, robots = (text(ROOT / "docs" / page) for page in pages)
     keys = keyword_file._TOP | keyword_file._ENTRY | keyword_file._TYPE
-    assert [key for key in sorted(keys) if not re.search(rf"`\[*{key}\]*`", keywords)] == []
-    assert [role for role in language_tables.ROLES if f"`{role}`" not in keywords.partition("### Roles")[2]] == []
+    assert [key for key in sorted(keys) if not re.search(rf"`\[*{key}\]*`", keywords + words)] == []
+    assert [role for role in language_tables.ROLES if f"`{role}`" not in words.partition("## Roles")[2]] == []
     assert [need for need in CAPABILITIES if f'`"{need}"`' not in keywords] == []
     assert [key for key in Body.fields if f"`{key}`" not in robots] == []
     assert [kind for kind in world_file._FAULTS if f'`"{kind}"`' not in worlds] == []

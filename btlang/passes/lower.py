@@ -150,6 +150,11 @@ def _parallel(item: ast.Chain, done: list[Lowered]) -> Lowered:
     return Lowered(_node("Parallel", [_round(part) for part in done], item.span, **ports), False, ending == 0)
 
 
+def _at_least(item: ast.AtLeast, done: list[Lowered], _scope: Scope) -> Lowered:
+    ports = {"success_count": str(item.number), "failure_count": str(len(done) - item.number + 1)}
+    return Lowered(_node("Parallel", [part.node for part in done], item.span, **ports))
+
+
 def _ruled(item: ast.Chain, done: list[Lowered], scope: Scope) -> Lowered:
     """Standing rules round the other commands; the first one is the outermost, so that it wins."""
     rules = [part for part, own in zip(done, item.items, strict=True) if isinstance(own, ast.Whenever)]
@@ -365,6 +370,7 @@ _LOWER: dict[type[ast.Ast], Callable[[Any, list[Lowered], Scope], Lowered]] = {
     ast.Remember: _remember,
     ast.ForEach: _for_each,
     ast.Chain: _chain,
+    ast.AtLeast: _at_least,
     ast.Not: _not,
     ast.If: _if,
     ast.While: _while,

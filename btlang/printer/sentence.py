@@ -65,6 +65,14 @@ def _chain(node: ast.Chain, parts: list[Doc], printer: Printer) -> Doc:
     return Doc(tuple(_joined(inner, words)), level, *_flags(inner))
 
 
+def _at_least(node: ast.AtLeast, parts: list[Doc], printer: Printer) -> Doc:
+    """Its list reaches to the end of the condition, so inside another one it is in brackets."""
+    word = printer.word("and")
+    inner = [printer.inside(p, p.level < FORM or printer.reads_on(p, word)) for p in parts]
+    pieces = [piece for part in inner[:-1] for piece in (part.pieces, mark(COMMA))]
+    return Doc((printer.word("at_least_of", count=str(node.number)), *pieces[:-1], word, inner[-1].pieces), LOOSE)
+
+
 def _joined(parts: Sequence[Doc], words: Sequence[Piece]) -> Iterator[Pieces | Piece]:
     for i, part in enumerate(parts):
         if i:
@@ -210,6 +218,7 @@ PRINTERS: dict[type[ast.Ast], Callable[[Any, list[Doc], Printer], Doc]] = {
     ast.Remember: naming.remember,
     ast.ForEach: naming.for_each,
     ast.Chain: _chain,
+    ast.AtLeast: _at_least,
     ast.Not: _not,
     ast.If: _branching("if", "unless"),
     ast.While: _branching("while", "until"),

@@ -2,7 +2,7 @@
 
 Commands: Phrase, Name, Chain, If, IfWorks, While, Provided, StopWhen, Repeat, Retry, Try, Within, For, UpTo, Every,
 Apart, Delay, Wait, WaitUntil, Check, Nothing, Fail, Assign, Remember, ForEach, Exact; Whenever in a sequence.
-Conditions: Phrase, Name, Compared, Chain ("all", "any"), Not, Exact. `parts` names the fields that hold subtrees.
+Conditions: Phrase, Name, Compared, Chain ("all", "any"), AtLeast, Not, Exact. `parts` are fields with subtrees.
 Amounts and values are port texts in base units (seconds); they may refer to values of the mission: `{level}`, in a
 text also `it is {level} percent` (see btlang/vocabulary/references.py).
 """
@@ -98,6 +98,15 @@ class Chain(Ast):
     operator: str
     items: tuple[Ast, ...]
     bracketed: bool
+    span: Span
+    parts = ("items",)
+
+
+class AtLeast(Ast):
+    """A condition: so many of the items are true."""
+
+    number: int
+    items: tuple[Ast, ...]
     span: Span
     parts = ("items",)
 

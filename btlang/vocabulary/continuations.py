@@ -36,12 +36,16 @@ def begun(root: TrieNode, text: Words, first: int, last: int, context: ReadingCo
             nodes.append(node)
             continue
         for _, kind, child in node.get(SLOTS, ()):
-            value = context.read(kind, text, at)
-            if value is not None and value[1] <= last:
+            behind = at
+            while True:  # each value of a list
+                slots.append((kind, behind, child))
+                value = context.read(kind, text, behind)
+                if value is None or value[1] > last:
+                    break
                 paths.append((child, value[1]))
-                if value[1] < last and context.joiners.issuperset(text.words[value[1] : last]):
-                    slots.append((kind, last, child))  # the next value of a list
-            slots.append((kind, at, child))
+                behind = next(i for i in range(value[1], last + 1) if i == last or text.words[i] not in context.joiners)
+                if behind == value[1]:
+                    break
         child = node.get(text.words[at])
         if child is not None:
             paths.append((child, at + 1))

@@ -23,12 +23,20 @@ GOES_ON = frozenset((
 ))  # fmt: skip
 """The roles that begin no statement of their own: what they begin goes on with the statement before it."""
 
+NO_PHRASES = frozenset((
+    "define_strong", "define", "fact", "facing", "set_to", "by", "remember_as", "each_in",
+    "called", "with", "newline", "character", "main_name", "here",
+    "needs_world", "needs_words",
+))  # fmt: skip
+"""Roles whose words are looked for where definitions, facts and nodes are, and nowhere else."""
+
 NOT_ALONE = frozenset(("ordinal", "keep", "fails"))
 """The roles whose words are ordinary words everywhere but in one place."""
 
 _NO_SLOT = (
     *CONNECTIVES, "otherwise", "if_works", "if_it_works", "in_any_case",
     "if", "unless", "while", "until", "whenever", "first_time", "as_soon_as", "once", "provided", "stop_when", "not",
+    "either", "both", "neither", "nor", "not_both", "any_of", "all_of", "none_of", "one_of",
     "do_that", "repeat_that", "again", "start_over", "everything", "here", "ordinal", "following", "keep", "fails",
     "repeat", "try", "retry", "if_possible", "wait_until", "wait_for", "check", "nothing", "fail", "in_parallel",
     "in_order",
@@ -40,7 +48,7 @@ _NO_SLOT = (
 ROLES = {
     **dict.fromkeys(_NO_SLOT, ""),
     **dict.fromkeys(("every", "delay", "for", "up_to", "apart", "within", "wait", "wait_up_to"), "duration"),
-    **dict.fromkeys(("count", "more"), "count"),
+    **dict.fromkeys(("count", "more", "at_least_of"), "count"),
 }
 """The roles that words can have, each with the slot that its phrases hold."""
 
@@ -89,6 +97,8 @@ TABLES: dict[str, tuple[Callable[[object], bool], str]] = {
     "comparisons": (_words, "a list of phrases"),
     "negations": (_words, "a list of words"),
     "doing": (_endings, "a list of endings"),
+    "negative_subjects": (_words, "a list of words"),
+    "plurals": (_words, "a list of words"),
     "pronouns": (_words, "a list of types"),
     "meanings": (_between, "one of " + ", ".join(CONNECTIVES)),
     "nodes": (_is_text, "the words of a node"),
@@ -153,6 +163,7 @@ _LANGUAGE: dict[str, Any] = {
     "articles": [], "politeness": [], "unit_joiner": [], "one_each": [],
     "quantifiers": [], "halting": [], "asked_once": [],
     "roles": {}, "contractions": {}, "about": {}, "comparisons": {}, "counts": {}, "negations": {}, "doing": {},
+    "negative_subjects": {}, "plurals": {},
     "pronouns": {}, "nodes": {}, "meanings": {}, "numbers": {}, "multipliers": {}, "fractions": {},
 }  # fmt: skip
 

@@ -14,8 +14,8 @@ from btlang.text.spelling import nearest
 from btlang.text.words import Orthography, split
 from btlang.vocabulary.cache import recent
 from btlang.vocabulary.entry import COMPARISONS, About, Entry, Meaning, SlotSpec
-from btlang.vocabulary.language_tables import GOES_ON, about_roles, merged
-from btlang.vocabulary.pattern import Form, PatternError, Slot, forms
+from btlang.vocabulary.language_tables import GOES_ON, NO_PHRASES, about_roles, merged
+from btlang.vocabulary.pattern import Form, PatternError, Slot, forms, replaced, variants
 from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.trie import SLOTS, TrieNode, add, collisions
 from btlang.vocabulary.values import END, Values, ValueType
@@ -26,13 +26,6 @@ if TYPE_CHECKING:
 
 DEFINING = ("define_strong", "define")
 """Roles whose words define a name where they are found first in a line; elsewhere they are words like any other."""
-
-NO_PHRASES = frozenset((
-    *DEFINING, "fact", "facing", "set_to", "by", "remember_as", "each_in",
-    "called", "with", "newline", "character", "main_name", "here",
-    "needs_world", "needs_words",
-))  # fmt: skip
-"""Roles whose words are looked for where definitions, facts and nodes are, and nowhere else."""
 
 NODE_ROLES = ("do", "test")
 """Roles whose words begin a node that is said by its id, a command or a condition."""
@@ -97,10 +90,14 @@ class Lexicon:
         self.quantities: TrieNode = {}
         """The phrases of quantities alone: before `is` they compare and define nothing."""
         self.comparisons: dict[str, list[str]] = language["comparisons"]
-        self._negations: dict[str, list[str]] = language["negations"]
+        self.negations: dict[str, list[str]] = language["negations"]
+        self.negative_subjects: dict[str, list[str]] = language["negative_subjects"]
+        self._plurals: dict[str, list[str]] = language["plurals"]
         self._add_roles()
         for entry in (*(e for f in files for e in f.entries), *entries):
             self._add_entry(entry)
+        for entry in () if self._problems else chain(*self.entries.values()):
+            self._add_variants(entry)
         self._find_collisions()
         if self._problems:
             raise MissionError(self._problems)
@@ -268,8 +265,6 @@ class Lexicon:
         for phrase in entry.phrases:
             try:
                 self._add_phrase(phrase, Meaning("command" if entry.sort == "action" else "condition", entry), types)
-                if entry.sort == "condition":
-                    self._add_negations(phrase, Meaning("negated", entry), types)
             except PatternError as error:
                 self._wrong(entry, str(error))
 
@@ -332,24 +327,29 @@ class Lexicon:
 
     def _add_phrase(self, phrase: str, meaning: Meaning, types: dict[str, str]) -> None:
         for form in self._forms(phrase):
-            self._add_form(form, meaning, types)
+            before = self._add_form(form, meaning, types)
+            if before is not None:
+                self._collide(before, meaning)
 
-    def _add_form(self, form: Form, meaning: Meaning, types: dict[str, str]) -> None:
+    def _add_form(self, form: Form, meaning: Meaning, types: dict[str, str]) -> Meaning | None:
         own = {part.name: types.get(part.name, part.name) for part in form if isinstance(part, Slot)}
-        before = add(self.trie, form, own, meaning)
-        if before is not None:
-            self._collide(before, meaning)
+        return add(self.trie, form, own, meaning)
 
-    def _add_negations(self, phrase: str, meaning: Meaning, types: dict[str, str]) -> None:
-        for form in self._forms(phrase):
-            for negated in self.negated(form):
-                self._add_form(negated, meaning, types)
+    def _add_variants(self, entry: Entry) -> None:
+        """Further ways to say a condition, or that it is not so; a phrase of the same words keeps them."""
+        types = {slot.name: slot.type for slot in entry.slots}
+        phrases = entry.phrases if entry.sort == "condition" else ()
+        for form in chain.from_iterable(map(self._forms, phrases)):
+            for variant, role in variants(form, self.negations, self.negative_subjects, self._plurals):
+                before = self._add_form(variant, Meaning(role, entry), types)
+                if before is not None and before.role in ("negated", "negated_twice"):
+                    self._collide(before, Meaning(role, entry))
+                elif before is not None:
+                    self._add_form(variant, before, types)
 
     def negated(self, form: Form) -> Iterator[Form]:
         """`battery is low` is also said `battery is not low`."""
-        for at, part in enumerate(form):
-            for words in self._negations.get(part, ()) if isinstance(part, str) else ():
-                yield (*form[:at], *words.split(), *form[at + 1 :])
+        yield from replaced(form, self.negations)
 
     def comparing_forms(self, kind: str) -> Iterator[Form]:
         """Ways to go on behind a quantity or name in order to compare it; names and texts can only be equal."""

@@ -13,6 +13,12 @@ from itertools import product
 
 from btlang.record import Record
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Iterator, Mapping, Sequence
+
+    Table = Mapping[str, Sequence[str]]
+
 
 class Slot(Record):
     """A `{name}` in a pattern."""
@@ -73,6 +79,25 @@ def forms(pattern: str, articles: frozenset[str] = frozenset()) -> tuple[Form, .
 def name_form(name: str) -> Form:
     """The form of a defined name with parameters, `greet {someone}`, in which no other character means anything."""
     return tuple(Slot(word[1:-1]) if word[0] == "{" and len(word) > 2 else word for word in name.split())
+
+
+def replaced(form: Form, table: Table) -> Iterator[Form]:
+    """The form with other words in place of one that the table has."""
+    for at, part in enumerate(form):
+        for words in table.get(part, ()) if isinstance(part, str) else ():
+            yield (*form[:at], *words.split(), *form[at + 1 :])
+
+
+def variants(form: Form, negations: Table, negative_subjects: Table, plurals: Table) -> Iterator[tuple[Form, str]]:
+    """Further forms of a condition, each with what it says: "condition", "negated" or "negated_twice"."""
+    yield from ((negated, "negated") for negated in replaced(form, negations))
+    for verb in replaced(form[1:2], plurals) if isinstance(form[0], Slot) else ():
+        plural = (form[0], *verb, *form[2:])
+        yield plural, "condition"
+        yield from ((negated, "negated") for negated in replaced(plural, negations))
+    for denied in replaced(form, negative_subjects):
+        yield denied, "negated"
+        yield from ((twice, "negated_twice") for twice in replaced(denied, negations))
 
 
 def _joined(left: list[Form], right: list[Form], pattern: str) -> list[Form]:

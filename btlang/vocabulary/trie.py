@@ -5,7 +5,7 @@ A node is a dict: word -> node, `END` -> meaning, `SLOTS` -> list of (slot name,
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 
 from btlang.record import Record
 from btlang.text.words import Words
@@ -26,8 +26,8 @@ TrieNode = dict[str, "Any"]
 class SlotValue(Record):
     """The value that was read in a slot: its port text and the words `first` to `last` (exclusive).
 
-    Of a list (`the lab, the hall and the dock`) `more` holds the further values; `joiner` is "and", "or", or "" where
-    there are only commas.
+    Of a list (`the lab, the hall and the dock`) `more` holds the further values; `joiner` is "and", "or", "nor", or ""
+    where there are only commas.
     """
 
     name: str
@@ -68,13 +68,34 @@ def add(root: TrieNode, form: Form, types: Mapping[str, str], meaning: Meaning) 
     return before
 
 
+def resumed(root: TrieNode, text: Words, at: int, last: int, values: Iterable[SlotValue]) -> TrieNode | None:
+    """Where the words `at` to `last` (exclusive) of a phrase lead that has these values."""
+    taken = {value.first: value for value in values}
+    node: TrieNode | None = root
+    while node is not None and at < last:
+        value = taken.get(at)
+        if value is None:
+            node, at = node.get(text.words[at]), at + 1
+        else:
+            edges = node.get(SLOTS, ())
+            node = next((child for name, kind, child in edges if (name, kind) == (value.name, value.type)), None)
+            at = value.last
+    return node
+
+
 def longest(
-    root: TrieNode, text: Words, at: int, context: ReadingContext, names: TrieNode | None = None, lists: bool = True
+    root: TrieNode,
+    text: Words,
+    at: int,
+    context: ReadingContext,
+    names: TrieNode | None = None,
+    lists: bool = True,
+    found: tuple[SlotValue, ...] = (),
 ) -> Match | None:
     """The longest phrase at a word; where two are equally long, the one with words in place of slots.
 
-    A slot of an entry also takes a list of values, unless `lists` is False. It ends before a phrase, also before one in
-    the trie `names`, in which connectives are looked for too.
+    `found` are the values that have led to the root. A slot of an entry also takes a list of values, unless `lists` is
+    False. It ends before a phrase, also before one in the trie `names`, in which connectives are looked for too.
     """
     words = text.words
     if words[at] not in root and SLOTS not in root:
@@ -86,7 +107,6 @@ def longest(
     paths: list[tuple[TrieNode, int, Any]] = []
     node: TrieNode | None = root
     i = at
-    found: tuple[SlotValue, ...] = ()
     while True:
         while node is not None:
             word = words[i]
@@ -105,7 +125,7 @@ def longest(
                     one = SlotValue(name, kind, value[0], i, value[1])
                     paths.append((child, value[1], (*found, one)))
                     if lists and words[value[1]] in context.joiners and _may_go_on(child, text):
-                        listed = _listed(root, text, one, context, names)
+                        listed = _listed(root, text, one, context, names, is_subject=i == at and not found)
                         if listed is not None:
                             paths.append((child, listed.last, (*found, listed)))
             node = node.get(word)
@@ -122,9 +142,12 @@ def _may_go_on(node: TrieNode, text: Words) -> bool:
 
 
 def _listed(
-    root: TrieNode, text: Words, first: SlotValue, context: ReadingContext, names: TrieNode | None
+    root: TrieNode, text: Words, first: SlotValue, context: ReadingContext, names: TrieNode | None, *, is_subject: bool
 ) -> SlotValue | None:
-    """The list that a value begins. It goes on while a value of the type follows that starts no longer phrase."""
+    """The list that a value begins. It goes on while a value of the type follows that starts no longer phrase.
+
+    A list that `is_subject` begins the phrase itself (`Alice or Bob is near`), as its last value alone would.
+    """
     if context.types[first.type].kind == "text":
         return None
     more: list[str] = []
@@ -134,13 +157,15 @@ def _listed(
         comma = text.words[at] == ","
         at += comma
         joined = _joiner(root, names, text, at, context) if text.words[at] in context.joiners else None
-        role = joined.meaning.role if joined is not None and joined.meaning.role in ("and", "or") else ""
+        role = joined.meaning.role if joined is not None and joined.meaning.role in ("and", "or", "nor") else ""
         if (joiner and role != joiner) or not (role or comma):
             break
         if joined is not None and role:
             at = joined.last
         value = context.read(first.type, text, at)
-        if value is None or any(reaches_beyond(trie, text, at, value[1], context) for trie in (root, names or {})):
+        if value is None or any(
+            _is_longer(trie, text, at, value[1], context, is_subject) for trie in (root, names or {})
+        ):
             break
         if comma and not role and _is_command(root, text, at, value[1], context):
             break
@@ -158,6 +183,13 @@ def _is_command(root: TrieNode, text: Words, at: int, last: int, context: Readin
     """Whether words without an article are a whole command, too: `if you are at the door, dock`."""
     match = longest(root, text, at, context, lists=False) if at not in text.articles else None
     return match is not None and match.last == last and match.meaning.role == "command"
+
+
+def _is_longer(root: TrieNode, text: Words, at: int, last: int, context: ReadingContext, is_subject: bool) -> bool:
+    """Whether a phrase begins with a value and goes on behind it; of a subject only one that has no slot for it."""
+    match = longest(root, text, at, context, lists=False)
+    begins = match is not None and match.values and match.values[0].first == at
+    return match is not None and match.last > last and not (is_subject and begins)
 
 
 def reaches_beyond(root: TrieNode, text: Words, at: int, last: int, context: ReadingContext) -> bool:

@@ -100,7 +100,7 @@ class Values:
         self._orthography = Orthography(frozenset(language["articles"]))
         # words that an article before them makes no text: `print a then wave`
         self._connectives = frozenset(phrase for phrases in language["roles"].values() for phrase in phrases)
-        joining = (phrase for role in ("and", "or") for phrase in language["roles"].get(role, ()))
+        joining = (phrase for role in ("and", "or", "nor") for phrase in language["roles"].get(role, ()))
         self.joiners = frozenset((",", *(phrase.split()[0] for phrase in joining)))
         """The first words of what stands between the values of a list."""
         self.pronouns: Mapping[str, Sequence[str]] = language["pronouns"]

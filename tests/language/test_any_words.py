@@ -19,6 +19,7 @@ _WORDS = [
     "if possible", "for up to 5 s", "3 times", "twice", "forever", "every 5 s", "5 s apart", "2 more times",
     "wait until", "wait for", "wait up to 5 s until", "5 s later", "for 5 s", "within 5 s", "repeat", "try", "retry",
     "if", "unless", "while", "until", "whenever", "not", "check", "in parallel",
+    "either", "both", "neither", "nor", "not both", "any of", "none of", "at least 2 of", "one of",
 ]  # fmt: skip
 _text = st.lists(
     st.one_of(st.sampled_from(_OPERANDS), st.sampled_from(_WORDS), st.sampled_from(_MARKS)), max_size=14

@@ -25,6 +25,7 @@ def shipped() -> Lexicon:
 
 
 _OPERANDS = ["", " u", " p", " p u", " s", " twice"]
+_OPERANDS += [" u or v", " u and v", " u, v", " p or q", " p and q", " p, q", " p nor q", " nor q"]
 _BODIES = ["", " u", ": u"]
 
 
@@ -93,7 +94,12 @@ def is_finishable(text: str) -> bool:
         ("if the battery ", ["is low", "is full", "is not low"]),
         ("if battery is low ", ["wave", "and"]),
         ("if battery is low, ", ["wave", "someone is near"]),
-        ("wave if ", ["not", "someone is near"]),
+        ("wave if ", ["not", "someone is near", "neither", "any of"]),
+        ("if neither bumped ", ["nor"]),
+        ("if neither bumped nor ", ["stuck"]),
+        ("if any of bumped, ", ["stuck"]),
+        ("if Alice and Bob ", ["are near", "is near"]),
+        ("one of wave, ", ["nod"]),
         ("wave 3 ", ["times"]),
         ("(wave then nod", [" "]),
         ("(wave ", [")"]),
@@ -118,6 +124,8 @@ def test_offered(text: str, among: list[str]) -> None:
         ("wave ", ["go to ", "battery is low", "not", ")"]),
         ("", ["and", "twice", "battery is low", "not", ")", "otherwise"]),
         ("if ", ["wave", "then"]),
+        ("if bumped ", ["nor"]),
+        ("wave then ", ["neither", "any of"]),
         ("wave and ", ["battery is low", "or"]),
         ("if battery is low and ", ["wave"]),
         ("go to the ", ["move forward", "is "]),

@@ -46,6 +46,12 @@ def _entry(node_id: str) -> Entry:
     return entry
 
 
+def _at_least(inner: Trees) -> Trees:
+    """So many of two or three."""
+    items = st.lists(inner, min_size=2, max_size=3).map(tuple)
+    return st.builds(ast.AtLeast, st.integers(1, 2), items, st.just(SPAN))
+
+
 _texts = st.sampled_from(
     ["{count}", "it is {count}", "it's {count} {{m}}", "hello", "{{count}}", "{gap_to_wall} {count}"]
 )
@@ -84,7 +90,7 @@ defined = (
 
 conditions: Trees = st.recursive(
     st.one_of(st.sampled_from(CONDITIONS).map(phrase), st.sampled_from(CONDITIONS).map(phrase), compared),
-    lambda inner: st.one_of(_chains(["all", "any"], inner), st.builds(ast.Not, inner, st.just(SPAN))),
+    lambda inner: st.one_of(_chains(["all", "any"], inner), st.builds(ast.Not, inner, st.just(SPAN)), _at_least(inner)),
     max_leaves=4,
 )
 _seconds = st.sampled_from(["5", "0.2", "90", "{pause}"])
@@ -196,5 +202,5 @@ def _use(name: str, body: ast.Ast) -> ast.Ast:
     used = ast.Name(name, (), SPAN)
     chain = isinstance(body, ast.Chain) and body.operator in ("all", "any")
     phrase = isinstance(body, ast.Phrase) and body.entry.sort == "condition"
-    is_condition = chain or phrase or isinstance(body, ast.Not | ast.Compared)
+    is_condition = chain or phrase or isinstance(body, ast.Not | ast.AtLeast | ast.Compared)
     return ast.Check(used, SPAN) if is_condition else ast.Repeat("2", used, SPAN)

@@ -42,12 +42,15 @@ ROWS = {
     "Pronouns": "pronouns", "Quantities": "lists_and_quantities",
     # conditions.md
     "check": "conditions", "Joined conditions": "conditions", "not": "conditions",
+    "Nobody and nothing": "lists_of_conditions", "Lists as subjects": "lists_of_conditions",
+    "neither, both, any of": "lists_of_conditions", "Shared words": "shared_words",
     "Where a condition ends": "conditions", "Names of conditions": "definitions",
     # joining.md
     "After a command": "postfix", "At the same time": "connectives", "One if the other fails": "connectives",
     "One after the other": "connectives", "Tighter and looser": "connectives",
     "How far a form before a command reaches": "reach", "Where repeat ends": "reach",
     "Which form an otherwise belongs to": "otherwise",
+    "either, both and one of": "lists_of_commands",
     "Merging": "merging", "Words with another meaning in a pack": "meanings",
     # commas.md
     "A bare comma": "commas", 'A comma before "and" or "or"': "commas", "A comma before a form at the end": "reach",

@@ -170,7 +170,7 @@ class Lifter:
         form = INVERSE_RULES.get(node.id)
         if form is not None:
             yield from form(node, children, self._checked)
-        if children and not isinstance(condition, ast.Not):
+        if children and not isinstance(condition, ast.Not | ast.AtLeast):
             return
         if node.id == "Script":
             yield from assigned(node, self._checked)
@@ -200,6 +200,10 @@ class Lifter:
             yield ast.Not(inner[0], NOWHERE)
         elif node.id in ("Sequence", "Fallback") and len(inner) > 1:
             yield ast.Chain("all" if node.id == "Sequence" else "any", tuple(inner), True, NOWHERE)
+        elif node.id == "Parallel" and len(inner) > 1:
+            number = node.port("success_count")
+            if number.isdecimal() and 1 <= int(number) <= len(inner):
+                yield ast.AtLeast(int(number), tuple(inner), NOWHERE)
         elif node.id == "ScriptCondition":
             yield from compared(node, self._checked)
         elif node.port("ID") in self._conditions:

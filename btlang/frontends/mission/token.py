@@ -10,6 +10,7 @@ grouped tokens, which need no look-ahead any more:
     BLOCK_CHILD                            the same between the children of a node that is said by its id
     COND_OR_ELSE COND_WIDE_AND COND_OR COND_AND NOT    between and before conditions
     OPEN CLOSE COND_OPEN COND_CLOSE        brackets; a block is a bracket too
+    COND_OF items COND_CLOSE               `neither`, `any of` ...; its role tells, COND_OR stands between the items
     POSTFIX                                after one command: `twice`, `within 10 s`, ...
     IF_WORKS body [ELSE body] END          after a whole chain: `A. If that works, B`
     FORM cond DO body [ELSE body] END      if, unless, while, until before a command
@@ -28,6 +29,11 @@ from btlang.record import Record
 from btlang.text.source import Span
 from btlang.vocabulary.entry import Entry
 
+QUANTIFIERS = frozenset(("neither", "not_both", "any_of", "all_of", "none_of", "at_least_of"))
+"""Raw kinds that begin a list of conditions, or stand before a condition whose subject is a list."""
+CORRELATIVES = frozenset(("either", "both"))
+"""Raw kinds that say nothing before `A or B`, `A and B`."""
+
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import TypeAlias
@@ -44,7 +50,7 @@ class Called(Record):
 
 
 class Listed(Record):
-    """A phrase with a list in one slot: arguments for each value. `joiner` is "and", "or" or ""."""
+    """A phrase with a list in one slot: arguments for each value. `joiner` is "and", "or", "nor" or ""."""
 
     entry: Entry
     arguments: tuple[tuple[tuple[str, str], ...], ...]
@@ -141,7 +147,7 @@ def go_on(tokens: list[Token]) -> None:
 
 
 def begins_condition(tokens: Sequence[Token], at: int) -> bool:
-    """Whether the operand at a place, brackets left out, is a condition or `not`."""
-    while at < len(tokens) and tokens[at].kind == "open":
+    """Whether the operand at a place, brackets left out, is a condition, `not` or a list of conditions."""
+    while at < len(tokens) and (tokens[at].kind == "open" or tokens[at].kind in CORRELATIVES):
         at += 1
-    return at < len(tokens) and tokens[at].kind in ("condition", "not")
+    return at < len(tokens) and (tokens[at].kind in ("condition", "not") or tokens[at].kind in QUANTIFIERS)

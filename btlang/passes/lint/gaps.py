@@ -20,6 +20,7 @@ class Gaps:
     def __init__(self, items: Sequence[Ast], vocabulary: Lexicon) -> None:
         self.items = items
         self._clauses = vocabulary.roles["otherwise"]
+        self._openers = tuple(f" {word}" for role in ("either", "both") for word in vocabulary.roles[role])
 
     def text(self, at: int) -> str:
         """What stands between a part and the one behind it."""
@@ -27,9 +28,9 @@ class Gaps:
         return left.source.text[left.end : right.start]
 
     def is_open(self, at: int) -> bool:
-        """Whether nothing but a connective stands there: no comma, no line end, and no word that begins a clause."""
+        """Whether nothing but a connective stands there: no comma, line end, or word that begins a clause or list."""
         gap = self.text(at)
-        return "," not in gap and not self._ends(gap)
+        return "," not in gap and not self._ends(gap) and not gap.rstrip().lower().endswith(self._openers)
 
     def is_alone(self, at: int) -> bool:
         """Whether a part is a statement of its own."""

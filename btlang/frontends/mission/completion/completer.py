@@ -14,15 +14,15 @@ from btlang.frontends.mission.grouping.grouping import group
 from btlang.frontends.mission.reader import lexed
 from btlang.frontends.mission.symbols.includes import ROLE
 from btlang.frontends.mission.symbols.prefixes import SEPARATORS
-from btlang.frontends.mission.token import Token, go_on
+from btlang.frontends.mission.token import CORRELATIVES, Token, go_on
 from btlang.record import Record
 from btlang.text.source import Source
 from btlang.text.spelling import nearest
 from btlang.vocabulary.continuations import Begun, begun, meanings, values_on, ways_on
 from btlang.vocabulary.correct_words import correct_words
 from btlang.vocabulary.entry import Meaning
-from btlang.vocabulary.language_tables import GOES_ON
-from btlang.vocabulary.lexicon import DEFINING, NO_PHRASES, Lexicon
+from btlang.vocabulary.language_tables import GOES_ON, NO_PHRASES
+from btlang.vocabulary.lexicon import DEFINING, Lexicon
 from btlang.vocabulary.pattern import Slot, forms
 from btlang.vocabulary.trie import SLOTS, TrieNode
 from btlang.vocabulary.values import END
@@ -33,12 +33,12 @@ _MOST_CORRECTIONS = 3
 _ALIKE = {
     **dict.fromkeys(("wait", "nothing", "fail"), "command"), "negated": "condition", "unless": "if", "until": "while",
     "if_possible": "within", "if_it_works": "within", "once": "within", "stop_when": "provided", "as_soon_as": "if",
-    "first_time": "whenever",  "retry": "try", "wait_until": "check",
+    "first_time": "whenever",  "retry": "try", "one_of": "try", "wait_until": "check",
     "delay": "every", "in_order": "in_parallel",
     **dict.fromkeys(("set", "increase", "decrease", "remember", "include"), "command"), "each": "every",
 }  # fmt: skip
 """Roles that stand where others stand: the grouping stage is asked for one of them."""
-_LOOK_AHEAD = frozenset(("and", "or"))  # whether these are in their place depends on what follows
+_LOOK_AHEAD = frozenset(("and", "or", "nor"))  # whether these are in their place depends on what follows
 _MAY_FOLLOW = ((), ("command",), ("condition",), ("close",), ("colon",), ("count",))
 _LINE_STARTS = frozenset(("newline", "semi", "indent", "dedent"))
 
@@ -198,6 +198,8 @@ class Completer:
 
     def _may_stand(self, at: int, role: str) -> bool:
         """Whether a token of the role is accepted behind the first `at` tokens, and can be gone on from."""
+        if role in CORRELATIVES:
+            return self._may_stand(at, "try") or self._may_stand(at, "not")
         kind = _ALIKE.get(role, role)
         key = at, kind
         if key not in self._accepted:

@@ -13,7 +13,7 @@ from btlang.frontends.mission.explanations.spelling_rule import is_respelling
 from btlang.frontends.mission.symbols.definitions import Definitions
 from btlang.frontends.mission.symbols.nodes import misread_node
 from btlang.frontends.mission.symbols.prefixes import span_of
-from btlang.frontends.mission.token import Called, Token
+from btlang.frontends.mission.token import CORRELATIVES, QUANTIFIERS, Called, Token
 from btlang.record import Record
 from btlang.text.source import Span
 from btlang.text.spelling import nearest, nearest_start
@@ -252,20 +252,28 @@ def _unknown_phrase(
     written = f" {' '.join(text.words[at:end])} "
     inside = [(name, end - at) for name in names if f" {name} " in written]
     near = dict(inside) | dict(_nearest_phrases(tuple(text.words[at:end]), vocabulary, tuple(names))) | dict(inside)
-    if not near:
-        return diagnostic("BT010", span, kind=kind, words=span.text, help="'btc words' lists what I know.")
+    if not near:  # a value alone, in a list or where the other words are left out: `if Allice or Bob is near`
+        values = [name for type in vocabulary.types.values() if type.kind == "names"
+                  for name in vocabulary.values.names(type.name)]  # fmt: skip
+        value = nearest(text.words[at], values) if text.words[at].isalpha() else []
+        fix = (text.span(at, at + 1), value[0]) if value else None
+        advice = nearest_known(value) if value else "'btc words' lists what I know."
+        return diagnostic("BT010", span, fix=fix, kind=kind, words=span.text, help=advice)
     likely, words = next(iter(near.items()))
     fix = (text.span(at, min(at + words, end)), likely.partition(" {")[0])
     return diagnostic("BT010", span, fix=fix, kind=kind, words=span.text, help=nearest_known(near))
 
 
-_ASKING = frozenset(("if", "unless", "whenever", "while", "until", "check", "wait_until", "condition"))
+_ASKING = frozenset(("if", "unless", "whenever", "while", "until", "check", "wait_until", "condition", *QUANTIFIERS))
+
+
+_BEFORE_ANY = frozenset(("not", "open", "and", "or", "nor", *CORRELATIVES))
 
 
 def _asks(before: list[Token]) -> bool:
     """Whether a condition belongs after these tokens."""
     kinds = (token.kind for token in reversed(before))
-    return next((kind for kind in kinds if kind not in ("not", "open", "and", "or")), "") in _ASKING
+    return next((kind for kind in kinds if kind not in _BEFORE_ANY), "") in _ASKING
 
 
 def nearest_known(words: Iterable[str]) -> str:

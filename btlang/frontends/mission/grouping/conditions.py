@@ -3,20 +3,23 @@
 from __future__ import annotations
 
 from btlang.frontends.mission.grouping.bodies import begin_otherwise, separator
+from btlang.frontends.mission.grouping.lists import after_item
 from btlang.frontends.mission.grouping.problems import waits_for_how_long
 from btlang.frontends.mission.grouping.scan import ENDS, Scan
 from btlang.frontends.mission.grouping.stack import StackEntry
-from btlang.frontends.mission.token import Token
+from btlang.frontends.mission.token import CORRELATIVES, QUANTIFIERS, Token
 
 STARTS_OPERAND = frozenset((
     "command", "condition", "unknown", "wait", "nothing", "fail", "not", "open", "repeat", "try", "retry", "check",
     "wait_until", "wait_for", "wait_up_to", "whenever", "first_time", "in_parallel", "in_order", "each", "node",
+    "one_of", *QUANTIFIERS, *CORRELATIVES,
 ))  # fmt: skip
 """What can only be the start of a command or condition."""
 CONDITION_FORMS = frozenset(("if", "unless", "while", "until", "provided", "as_soon_as", "stop_when"))
 AMOUNTS = frozenset(("count", "for", "up_to", "apart", "within", "every", "delay", "if_possible"))
 """What may stand behind a command, with a condition or without."""
 
+_IN_CONDITION = frozenset(("condition", "not", "nor", "open", "close", "again", *QUANTIFIERS, *CORRELATIVES))
 _CHOOSING = frozenset(("if", "unless", "while", "until"))  # forms that may have an `otherwise`
 
 
@@ -25,6 +28,8 @@ def after_condition(scan: Scan, token: Token) -> None:
     joined = connective_of(scan, token)
     if token.kind == "again":
         scan.next(token, False)
+    elif entry.kind == "condition list":
+        after_item(scan, entry, token)
     elif joined:
         entry.connective(scan.emit(joined, token))
         scan.next(token, True)
@@ -78,7 +83,7 @@ def closes_statement(scan: Scan, at: int) -> bool:
             continue
         if (kind == "close" and depth == 0) or kind in ENDS - {"close"}:
             return at > start
-        if kind not in ("condition", "not", "open", "close", "again"):
+        if kind not in _IN_CONDITION:
             return False
         depth += (kind == "open") - (kind == "close")
         at += 1

@@ -12,10 +12,10 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from btlang.diagnostics.diagnostic import Diagnostic
-from btlang.frontends.mission.grouping import operands, operators, problems
+from btlang.frontends.mission.grouping import lists, operands, operators, problems
 from btlang.frontends.mission.grouping.conditions import CONDITION_FORMS, STARTS_OPERAND, after_condition
 from btlang.frontends.mission.grouping.scan import Scan, Unit
-from btlang.frontends.mission.token import Token
+from btlang.frontends.mission.token import CORRELATIVES, QUANTIFIERS, Token
 from btlang.record import Record
 from btlang.text.source import Source
 from btlang.vocabulary.language_tables import CONNECTIVES
@@ -41,6 +41,8 @@ def group(source: Source, raw: list[Token], conditions: set[str], word: Callable
             _OPERAND.get(token.kind, problems.no_operand)(scan, token)
         elif scan.stack[-1].is_condition:
             after_condition(scan, token)
+        elif scan.stack[-1].kind == "choice":
+            lists.after_choice(scan, token)
         elif scan.stack[-1].kind != "head" or not operands.after_head(scan, token):
             _OPERATOR.get(token.kind, problems.side_by_side)(scan, token)
     scan.units.append(Unit(None, tuple(scan.out)))
@@ -55,6 +57,10 @@ _OPERAND: dict[str, Callable[[Scan, Token], None]] = {
     **dict.fromkeys(("repeat", "try", "if_possible", "retry", "every", "delay", "each"), operands.loop),
     **dict.fromkeys(("whenever", "first_time"), operands.rule),
     "not": operands.negation,
+    **dict.fromkeys(QUANTIFIERS, lists.quantifier),
+    **dict.fromkeys(CORRELATIVES, lists.correlative),
+    "one_of": lists.choice,
+    "nor": lists.stray,
     "open": operands.open_bracket,
     "then": operands.leading_then,
     **dict.fromkeys(("do_that", "following"), operands.do_block),
@@ -71,6 +77,7 @@ _OPERATOR: dict[str, Callable[[Scan, Token], None]] = {
     **dict.fromkeys(CONDITION_FORMS, operators.form_after),
     **dict.fromkeys(STARTS_OPERAND, problems.side_by_side),
     "in_parallel": operators.at_the_same_time,
+    "nor": lists.stray,
     **dict.fromkeys(("newline", "semi", "dedent", "end"), operators.end_statement),
     "repeat": operators.repeat_after,
     "comma": operators.comma,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from btlang.frontends.mission.grouping.bodies import block_follows, separator, set_amount, set_pace
 from btlang.frontends.mission.grouping.conditions import AMOUNTS, CONDITION_FORMS, is_refused
+from btlang.frontends.mission.grouping.lists import lacks_neither, needs_check, stray
 from btlang.frontends.mission.grouping.problems import found_words, no_operand, word_before
 from btlang.frontends.mission.grouping.scan import ENDS, Scan
 from btlang.frontends.mission.grouping.stack import StackEntry
@@ -22,6 +23,9 @@ def operand(scan: Scan, token: Token) -> None:
     if token.kind == "unknown":
         scan.begin_statement(token)
         scan.skip_statement()
+        return
+    if lacks_neither(scan, token):
+        stray(scan, token)
         return
     if entry.is_condition:
         if token.kind != "condition":
@@ -42,9 +46,7 @@ def operand(scan: Scan, token: Token) -> None:
 def negation(scan: Scan, token: Token) -> None:
     if not scan.stack[-1].is_condition:
         if scan.condition_at(scan.at + 1):
-            last = scan.raw[scan.at + 1]
-            span = scan.span(token, last if last.kind == "condition" else token)
-            scan.fail("BT028", span, word_before(scan, token, "check"), words=span.text)
+            needs_check(scan, token)
             return
         scan.stack.append(StackEntry("condition"))  # for the message: what follows `not` is no condition
     scan.emit("NOT", token)

@@ -6,7 +6,8 @@ from btlang.frontends.mission.token import Token
 
 
 class StackEntry:
-    """One open thing. `kind` is "top", "block", "bracket", "head", "body", "condition" or "condition bracket".
+    """One open thing. `kind` is "top", "block", "bracket", "head", "body", "choice", "condition",
+    "condition bracket" or "condition list".
 
     The owners are the nearest open forms of the same bracket that a count, an `until` (or `while`, `for`) or an
     `otherwise` would belong to; `after` says what follows the end of a condition, of a head how its verbs are written.
@@ -14,7 +15,8 @@ class StackEntry:
     group is "", "open" or "ended", the latest one `begins` at that place of what was made, and the `latest` that has
     ended at that; `separator` is the token between them. The latest operand begins at `operand`. `joints` are the words
     "and" of the chain that is not over. `is_group`: it holds statements; `is_condition`: operands in it are conditions.
-    `commands` is where those of a group begin that no rule follows; `mixed`: rules stand among them.
+    `commands` is where those of a group begin that no rule follows; `mixed`: rules stand among them. A list
+    `begins` at a raw token and has so many `items` so far.
     """
 
     __slots__ = (
@@ -26,6 +28,7 @@ class StackEntry:
         "else_owner",
         "is_condition",
         "is_group",
+        "items",
         "joints",
         "kind",
         "last",
@@ -43,7 +46,7 @@ class StackEntry:
     ) -> None:
         self.kind = kind
         self.is_group = kind in ("top", "block", "bracket")
-        self.is_condition = kind in ("condition", "condition bracket")
+        self.is_condition = kind in ("condition", "condition bracket", "condition list")
         self.opener = opener
         self.after = after
         self.count_owner: StackEntry | None = outer.count_owner if outer else None
@@ -53,7 +56,7 @@ class StackEntry:
         self.last: Token | None = None
         self.joints: list[Token] = []
         self.statement = ""
-        self.begins = self.operand = 0
+        self.begins = self.operand = self.items = 0
         self.latest: int | None = None
         self.commands: int | None = None
         self.mixed = False
@@ -84,6 +87,10 @@ class StackEntry:
         """A stop before a word that goes on: no comma before it looks any further."""
         self._settle("")
         self.last = token
+
+    def settle(self) -> None:
+        """The commas before this place look no further."""
+        self._settle("")
 
     def close_chain(self) -> None:
         """The chain of operands ends here: what no connective told the commas, they mean `then` (or `and`)."""

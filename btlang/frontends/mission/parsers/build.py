@@ -10,6 +10,7 @@ from btlang.tree.ast import (
     Apart,
     Assign,
     Ast,
+    AtLeast,
     Chain,
     Check,
     Compared,
@@ -111,6 +112,19 @@ class Builder:
             span = statement.span
             return self.form("as_soon_as", statement.condition, statement.body, None, span.start, span.end)
         return statement
+
+    def quantified(self, opener: Token, inner: Ast, end: int) -> Ast:
+        """COND_OF items COND_CLOSE; a list of values has been one of them."""
+        span = Span(self.source, opener.start, end)
+        assert isinstance(inner, Chain)
+        items = inner.items
+        match opener.role:
+            case "neither":
+                return Chain("all", tuple(Not(item, item.span) for item in items), True, span)
+            case "at_least_of":
+                return AtLeast(int(_amount(opener)), items, span)
+        chain = Chain("all" if opener.role in ("all_of", "not_both") else "any", items, True, span)
+        return Not(chain, span) if opener.role in ("none_of", "not_both") else chain
 
     def negation(self, token: Token, condition: Ast) -> Ast:
         return Not(condition, Span(self.source, token.start, condition.span.end))

@@ -98,6 +98,10 @@ class _ToAst:
     def negation(self, children: list[Any]) -> Ast:
         return self.build.negation(children[0], children[1])
 
+    def quantified(self, children: list[Any]) -> Ast:
+        opener, inner, closer = children
+        return self.build.quantified(opener, inner, closer.end)
+
     def form(self, children: list[Any]) -> Ast:
         opener, condition, _do, body, *rest = children
         otherwise = rest[1] if len(rest) == 3 else None

@@ -17,7 +17,7 @@ PRECEDENCE = {
     "IF_WORKS": 2, "OR_ELSE": 3, "WIDE_AND": 4, "THEN": 5, "AFTER": 6, "OR": 7, "AND": 8,
     "COND_OR_ELSE": 3, "COND_WIDE_AND": 4, "COND_OR": 7, "COND_AND": 8, "NOT": 9,
 }  # fmt: skip
-_OPENERS = frozenset(("OPEN", "COND_OPEN", "FORM", "LOOP", "TEST", "AFTER_FORM", "IF_WORKS"))
+_OPENERS = frozenset(("OPEN", "COND_OPEN", "COND_OF", "FORM", "LOOP", "TEST", "AFTER_FORM", "IF_WORKS"))
 _SECTIONS = frozenset(("DO", "ELSE", "STOP"))
 
 
@@ -157,6 +157,8 @@ def _closed(level: _Level, closer: Token, build: Builder) -> Ast:
     match shape:
         case ("OPEN", "CLOSE") | ("COND_OPEN", "COND_CLOSE"):
             return build.group(parts[0], opener.start, end)
+        case ("COND_OF", "COND_CLOSE"):
+            return build.quantified(opener, parts[0], end)
         case ("FORM", "END", "DO"):
             return build.form(opener.role, parts[0], parts[1], None, opener.start, end)
         case ("FORM", "END", "DO", "ELSE"):

@@ -4,12 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator
 
-from btlang.frontends.mission.token import Called, Header, Listed, Token
+from btlang.frontends.mission.token import CORRELATIVES, QUANTIFIERS, Called, Header, Listed, Token
 from btlang.vocabulary.entry import Entry
 
 
 def condition_names(tokens: list[Token], included: Iterable[str]) -> set[str]:
-    """A name is a condition where its body holds only conditions, `not`, `and`, `or` and condition names.
+    """A name is a condition where its body holds only conditions, condition names, and words that join or deny them.
 
     `included` are those of included missions.
     """
@@ -55,7 +55,9 @@ def _bodies(tokens: list[Token]) -> Iterator[tuple[str, list[Token]]]:
         yield token.value.name, body
 
 
-_IN_CONDITIONS = frozenset(("condition", "not", "and", "or", "comma", "open", "close"))
+_IN_CONDITIONS = frozenset(
+    ("condition", "not", "and", "or", "nor", "comma", "open", "close", *QUANTIFIERS, *CORRELATIVES)
+)
 
 
 def _names_in_condition(body: list[Token]) -> set[str] | None:

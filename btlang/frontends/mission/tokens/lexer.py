@@ -13,15 +13,7 @@ from btlang.frontends.mission.symbols.nodes import Unreadable, read_node, unread
 from btlang.frontends.mission.symbols.prefixes import SEPARATORS, Prefix, span_of
 from btlang.frontends.mission.token import Called, Listed, Token, begins_condition, go_on
 from btlang.frontends.mission.tokens.condition_names import called, condition_names
-from btlang.frontends.mission.tokens.partial_commands import (
-    doing,
-    enlist,
-    left_out,
-    may_be_doing,
-    said_before,
-    with_verb,
-    words_of,
-)
+from btlang.frontends.mission.tokens.partial_commands import PartialCommands, may_be_doing, with_verb
 from btlang.text.source import Source, Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, split
 from btlang.vocabulary.entry import Entry, Meaning
@@ -29,15 +21,26 @@ from btlang.vocabulary.language_tables import CONNECTIVES, NOT_ALONE
 from btlang.vocabulary.lexicon import NODE_ROLES, Lexicon
 from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.references import keys_in, renamed
-from btlang.vocabulary.trie import SLOTS, Match, SlotValue, longest
+from btlang.vocabulary.trie import SLOTS, Match, SlotValue, TrieNode, longest
 from btlang.vocabulary.values import key_of
 
+TYPE_CHECKING = False
 _ROLES = {"if_it_works": ("if_possible", "if_works"), "in_parallel": ("in_parallel", "meanwhile")}
 """What a word is inside a statement, and where it goes on with the one before."""
 _NOT_READ = frozenset((*SEPARATORS, INCLUDE, *NOT_ALONE))
 _BEGINS = frozenset(("newline", "semi", "indent", "dedent", "open", "define", "colon"))
 """Behind these a statement begins."""
+_NEGATED = ("negated", "negated_twice")
+_CONDITIONS = ("condition", "negated")
+_JOINING = ("and", "or")
 _MARKS = {",": "comma", ";": "semi", ":": "colon", "(": "open", ")": "close"}
+
+
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+    Origin: TypeAlias = tuple[Token, int, Match, TrieNode]
+    """A condition that was read as a whole: the latest part of it, its first word, and where it was found."""
 
 
 class Lexer:
@@ -70,7 +73,7 @@ class Lexer:
         self._meanings_of = CONNECTIVES.keys() if self.names.meanings else ()
         self._found = {} if has_values else self.names.phrases.fixed
         self.tokens: list[Token] = []
-        self._said: dict[int, list[int]] = {}  # the words of commands that leave some out, by where these begin
+        self._partial = PartialCommands(self.text, self.vocabulary, self.names.definitions.trie, self.context, self)
         self._doing_endings = tuple(self.vocabulary.doing)
         self._lines()
         self.conditions = condition_names(self.tokens, self.names.included_conditions())
@@ -125,6 +128,7 @@ class Lexer:
         words, starts, ends, tokens = text.words, text.starts, text.ends, self.tokens
         found = self._found
         headers, prefixes, others = self.names.definitions.headers, self.names.prefixes, self.names.others
+        origin: Origin | None = None
         while at < last:
             word = words[at]
             if at >= self._bounds[0]:
@@ -158,25 +162,30 @@ class Lexer:
                     at = end
                     continue
                 match = None
+            root = trie
             if names and (word in names or SLOTS in names):
                 named = longest(names, text, at, context, trie)
                 if named is not None and (match is None or named.last >= match.last):
-                    match = named
+                    match, root = named, names
+            shared = None
+            if origin is not None and tokens[-1].kind in _JOINING and (match is None or match.meaning.role == "not"):
+                shared = self._with_words_before(origin, match, at)
+                match = shared or match
             role = match.meaning.role if match is not None else ""
             if match is not None and role == "ordinal" and (not tokens or tokens[-1].kind in _BEGINS):
                 at = match.last + (words[match.last] == ",")
                 continue
-            if match is not None and role == "keep" and self._doing(match.last) is not None:
+            if match is not None and role == "keep" and self._partial.doing(match.last) is not None:
                 tokens.append(Token("repeat", starts[at], ends[match.last - 1], role="doing"))
                 at = match.last
                 continue
             if word.endswith(self._doing_endings) and may_be_doing(tokens):
-                end = self._add_doing(at, match)
+                end = self._partial.add_doing(at, match)
                 if end:
                     at = end
                     continue
             if match is None or role in _NOT_READ:
-                end = self._add_left_out(at)
+                end = self._partial.add_left_out(at)
                 if end:
                     at = end
                     continue
@@ -194,10 +203,14 @@ class Lexer:
                 if at in text.going_on:
                     go_on(tokens)
                 if role == "command" and at in text.articles:
-                    self._whole_command(match, at)
-                if role == "negated":
+                    self.problems += self._partial.whole_command(match, at)
+                if role in _NEGATED:
                     tokens.append(Token("not", starts[at], starts[at]))
+                    if not shared:
+                        self._check_negation(match, at)
                 tokens.append(self._phrase(match, at))
+                if role in _CONDITIONS:
+                    origin = (tokens[-1], *origin[1:]) if shared and origin else (tokens[-1], at, match, root)
                 if role in self._meanings_of:
                     tokens[-1].role = self.names.meanings.get(" ".join(words[at : match.last]), tokens[-1].role)
                 if role in _ROLES:
@@ -205,62 +218,16 @@ class Lexer:
                 self._note(match)
                 at = match.last
 
+    def token_of(self, match: Match, at: int) -> Token:
+        """The token of a phrase, which says what pronouns stand for from here on."""
+        token = self._phrase(match, at)
+        self._note(match)
+        return token
+
     def _note(self, match: Match) -> None:
         """What pronouns stand for from here on."""
         for value in match.values:
             self.context.latest[value.type] = value.text if not value.more else value.more[-1]
-
-    def _doing(self, at: int) -> Match | None:
-        tries = self.vocabulary.trie, self.names.definitions.trie
-        return doing(self.text, at, self.vocabulary.doing, tries, self.context)
-
-    def _add_doing(self, at: int, other: Match | None) -> int:
-        """A command in the form of its verb, unless another phrase is as long. Returns where to go on, 0 if none is."""
-        match, before = self._doing(at), self.tokens[-1]
-        if match is None or (other is not None and other.last >= match.last):
-            return 0
-        end = match.last
-        if before.kind == "if":
-            failing = longest(self.vocabulary.trie, self.text, end, self.context)
-            if failing is None or failing.meaning.role != "fails":
-                return 0
-            end = failing.last
-        before.kind = {"if": "if_doing", "while": "while_doing"}.get(before.kind, before.kind)
-        token = self._phrase(match, at)
-        token.role = "doing"
-        self.tokens.append(token)
-        self._note(match)
-        return end
-
-    def _left_out(self, at: int) -> tuple[Match, list[int]] | None:
-        said = said_before(self.tokens)
-        if said is None:
-            return None
-        tries = self.vocabulary.trie, self.names.definitions.trie
-        return left_out(self.text, self._said.get(said.start) or words_of(self.text, said), at, tries, self.context)
-
-    def _add_left_out(self, at: int) -> int:
-        """A command whose first words are those of the one before it. Returns where to go on, 0 if there is none."""
-        read = self._left_out(at)
-        if read is None:
-            return 0
-        token = self._phrase(read[0], at)
-        self._said[token.start] = read[1]
-        enlist(self.tokens, token)
-        self._note(read[0])
-        return read[0].last
-
-    def _whole_command(self, match: Match, at: int) -> None:
-        """BT050 where a command that has an article could be the rest of one: `go to the hall, then the dock`."""
-        read = self._left_out(at)
-        if read is not None and read[0].last >= match.last:
-            words = self.text.words
-            span = Span(self.text.source, self.text.articles[at][0], self.text.ends[match.last - 1])
-            front = " ".join(words[place] for place in read[1] if place < at)
-            bare = self.text.span(at, match.last).text
-            other = f"{front} {span.text}"
-            problem = diagnostic("BT050", span, taken=bare, other=other, fixed=bare)
-            self.problems.append(problem.replace(readings=((span, bare), (span, other))))
 
     def _why(self, at: int, end: int, match: Match | None) -> Diagnostic:
         """What is wrong with words that are no phrase, or one that stands where it cannot."""
@@ -276,6 +243,34 @@ class Lexer:
         if match.meaning.role == INCLUDE:
             return misplaced(self.text.span(at, end), self.vocabulary)
         return unknown.misread_head(self.text, at, match.meaning.role, self.vocabulary)
+
+    def _with_words_before(self, origin: Origin, match: Match | None, at: int) -> Match | None:
+        """Words behind `and` or `or` that are no condition, read with those of the one before them in front."""
+        before = self.tokens[-2 if self.tokens[-2].kind != "comma" else -3]
+        if before is not origin[0]:
+            return None
+        if match is not None:  # `not`
+            roots = (self.vocabulary.trie, self.names.definitions.trie)
+            following = (longest(root, self.text, match.last, self.context) for root in roots)
+            if any(own is not None and own.meaning.role in ("name", *_CONDITIONS) for own in following):
+                return None
+        from btlang.frontends.mission.tokens.shared_words import continued  # most missions have none
+
+        found = continued(*origin[1:], self.text, at, self.vocabulary, self.context)
+        if found is not None and found[1] is not None:
+            self.problems.append(found[1])
+        return found[0] if found is not None else None
+
+    def _check_negation(self, match: Match, at: int) -> None:
+        """BT151 for a second negation, and for the negation of a list that is the subject."""
+        subject = match.values[0] if match.values else None
+        is_list = subject is not None and subject.first == at and subject.more
+        if is_list or match.meaning.role == "negated_twice":
+            from btlang.frontends.mission.explanations import negations  # most missions have none
+
+            told = negations.negated_list if is_list else negations.negated_twice
+            before = self.tokens[-2] if len(self.tokens) > 1 else None
+            self.problems.append(told(self.text, at, match.last, self.vocabulary, before))
 
     def _politeness(self, match: Match, at: int) -> int:
         """Politeness is left out with the comma beside it: `Robot, go home, please`. Returns where to go on."""
@@ -293,7 +288,7 @@ class Lexer:
         if values and values[-1].first == match.last:  # the article was the value: `print a`
             end = text.articles[match.last][1]
         if meaning.entry is not None:
-            kind = "condition" if meaning.role == "negated" else meaning.role
+            kind = "condition" if meaning.role in _NEGATED else meaning.role
             return Token(kind, start, end, self._called(meaning.entry, match, at))
         if values:
             return Token(meaning.role, start, end, values[0].text)

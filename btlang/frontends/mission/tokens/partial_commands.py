@@ -8,10 +8,25 @@ from __future__ import annotations
 from bisect import bisect_left
 from collections.abc import Iterator, Mapping, Sequence
 
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.token import Token
+from btlang.text.source import Span
 from btlang.text.words import END_OF_TEXT, Words
+from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import Match, TrieNode, longest
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Protocol
+
+    class Reader(Protocol):
+        """Who reads the text: the tokens so far, and the token of a phrase."""
+
+        tokens: list[Token]
+
+        def token_of(self, match: Match, at: int) -> Token: ...
+
 
 BEFORE_DOING = frozenset(("before", "after", "while"))
 """The kinds of tokens behind which a command may have the form of its verb: `after waving`."""
@@ -21,6 +36,66 @@ _COMMANDS = frozenset(("command", "name"))
 _DOING = frozenset(("command", "name", "wait", "wait_until", "wait_for", "wait_up_to"))
 _ENDS = frozenset(("newline", "semi", "indent", "dedent", "define"))
 _MOST_WORDS = 60
+
+
+class PartialCommands:
+    """Those of one text, which is read by `reader`; the functions return the word at which to go on, 0 for none."""
+
+    def __init__(
+        self, text: Words, vocabulary: Lexicon, names: TrieNode, context: ReadingContext, reader: Reader
+    ) -> None:
+        self._text, self._vocabulary, self._context, self._reader = text, vocabulary, context, reader
+        self._tries = vocabulary.trie, names
+        self._said: dict[int, list[int]] = {}  # the words of commands that leave some out, by where these begin
+
+    def doing(self, at: int) -> Match | None:
+        """The command whose verb has the form that stands there: `going to the lab`."""
+        return doing(self._text, at, self._vocabulary.doing, self._tries, self._context)
+
+    def add_doing(self, at: int, other: Match | None) -> int:
+        """Such a command, unless another phrase is as long."""
+        match, before = self.doing(at), self._reader.tokens[-1]
+        if match is None or (other is not None and other.last >= match.last):
+            return 0
+        end = match.last
+        if before.kind == "if":
+            failing = longest(self._vocabulary.trie, self._text, end, self._context)
+            if failing is None or failing.meaning.role != "fails":
+                return 0
+            end = failing.last
+        before.kind = {"if": "if_doing", "while": "while_doing"}.get(before.kind, before.kind)
+        token = self._reader.token_of(match, at)
+        token.role = "doing"
+        self._reader.tokens.append(token)
+        return end
+
+    def add_left_out(self, at: int) -> int:
+        """A command whose first words are those of the one before it."""
+        read = self._left_out(at)
+        if read is None:
+            return 0
+        token = self._reader.token_of(read[0], at)
+        self._said[token.start] = read[1]
+        enlist(self._reader.tokens, token)
+        return read[0].last
+
+    def whole_command(self, match: Match, at: int) -> Iterator[Diagnostic]:
+        """BT050 where a command that has an article could be the rest of one: `go to the hall, then the dock`."""
+        read = self._left_out(at)
+        if read is not None and read[0].last >= match.last:
+            words, text = self._text.words, self._text
+            span = Span(text.source, text.articles[at][0], text.ends[match.last - 1])
+            front = " ".join(words[place] for place in read[1] if place < at)
+            bare, other = text.span(at, match.last).text, f"{front} {span.text}"
+            problem = diagnostic("BT050", span, taken=bare, other=other, fixed=bare)
+            yield problem.replace(readings=((span, bare), (span, other)))
+
+    def _left_out(self, at: int) -> tuple[Match, list[int]] | None:
+        said = said_before(self._reader.tokens)
+        if said is None:
+            return None
+        words = self._said.get(said.start) or words_of(self._text, said)
+        return left_out(self._text, words, at, self._tries, self._context)
 
 
 def said_before(tokens: Sequence[Token]) -> Token | None:
