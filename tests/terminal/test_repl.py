@@ -125,14 +125,14 @@ def test_a_killed_session_is_offered_again(repl: Callable[..., Terminal], tmp_pa
 
 def test_a_choice_between_two_readings(repl: Callable[..., Terminal]) -> None:
     user = repl()
-    user.type("go to the lab and say there")
+    user.type("wait 1 s and say there")
     screen = user.wait_for("Enter runs it as it")
     assert "Two readings. 1 writes: and meanwhile" in screen
     assert "2 writes: then" in screen
     user.press("2")
-    user.wait_for("go to the lab then say there")
+    user.wait_for("wait 1 s then say there")
     user.press("Enter")
-    user.wait_for('says "there"')
+    user.wait_for("The mission succeeded")
 
 
 def test_ctrl_c_stops_the_robot_and_not_the_repl(repl: Callable[..., Terminal]) -> None:
