@@ -117,6 +117,7 @@ _ALL = (
     Code("BT067", "There's no command before '{words}' that it could go on with.",
          "Put a command before it, or start with what to do."),
     Code("BT068", "'{words}' is checked only once, when the mission gets here.", "{advice}", "warning", "asked once"),
+    Code("BT069", "'{words}' {problem}.", "Write for example: {example}"),
     Code("BT070", "This world file can't be used: {reason}."),
     Code("BT071", "This robot file can't be used: {reason}."),
     Code("BT072", "The robot '{robot}' has no {parts}, which '{words}' needs.", "Leave it out, or choose another robot with --robot."),
