@@ -4,7 +4,7 @@ BT00x reading, BT01x words, BT02x and BT03x how a sentence is put together, BT04
 BT05x what is allowed but probably not meant, BT06x keyword files,
 BT07x worlds, BT08x the Python behind the words and what else has to be installed, BT09x the codes themselves,
 BT10x ROS 2, BT11x missions as ROS 2 nodes, BT12x trees in XML, BT13x trees that were not written as missions,
-BT14x nodes said by their ids.
+BT14x nodes said by their ids, BT16x times of day.
 
 BT05x and others that are warnings have a `name`, by which a mission silences them: `# allow: two readings`.
 Each code has a page in `pages/`, which `btc explain` prints.
@@ -117,7 +117,6 @@ _ALL = (
     Code("BT067", "There's no command before '{words}' that it could go on with.",
          "Put a command before it, or start with what to do."),
     Code("BT068", "'{words}' is checked only once, when the mission gets here.", "{advice}", "warning", "asked once"),
-    Code("BT069", "'{words}' {problem}.", "Write for example: {example}"),
     Code("BT070", "This world file can't be used: {reason}."),
     Code("BT071", "This robot file can't be used: {reason}."),
     Code("BT072", "The robot '{robot}' has no {parts}, which '{words}' needs.", "Leave it out, or choose another robot with --robot."),
@@ -151,6 +150,7 @@ _ALL = (
     Code("BT134", "{target} can't express the node '{id}': {reason}."),
     Code("BT141", "I can't read on at '{words}': {wanted} is needed.", "Write for example: do \"OpenGripper\" with width 0.05"),
     Code("BT142", "English can't express this tree: {reason}."),
+    Code("BT160", "'{words}' {problem}.", "Write for example: {example}"),
 )  # fmt: skip
 
 CODES = {entry.code: entry for entry in _ALL}

@@ -96,7 +96,7 @@ def traced_engine(
 
     The time of day is that of the robot, where it knows.
     """
-    robot = services.get("robot")
+    robot: Any = services.get("robot")
     if hasattr(robot, "time_of_day"):
         bus.clock.day = lambda: float(robot.time_of_day)
 

@@ -150,7 +150,7 @@ CASES = {
         done=("GoTo door", "Say Good morning!", *["Say We open at five past nine."] * 4, "..."),
         said=("Good morning!", *["We open at five past nine."] * 4, "Coffee break!"),
         at="kitchen",
-        seconds=(360, 375),
+        seconds=(360, 380),
     ),
     "oily_floor": Case(
         world="oily_floor",

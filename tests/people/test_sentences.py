@@ -16,7 +16,7 @@ from tests.people.notation import FOLDER, Sample, compiled, parsed, samples, wri
 
 SILENT = {"patrol.txt:7", "search.txt:95"}
 """Read otherwise than people mean, in silence."""
-LEAST = 111
+LEAST = 134
 """So many are right; it only grows."""
 SAMPLES = samples()
 

@@ -15,7 +15,7 @@ _HALF_WITH_DOTS = re.compile(r"\s*([ap])\.\s?m\b", re.IGNORECASE)
 
 
 def explain_time(text: Words, at: int, wanted: bool, vocabulary: Lexicon) -> Diagnostic | None:
-    """BT069 for words like a time of day where none is read; None for others. `wanted`: one must stand there."""
+    """BT160 for words like a time of day where none is read; None for others. `wanted`: one must stand there."""
     values, words, source = vocabulary.values, text.words, text.source
     time, number = values.time_of_day(text, at), values.number(text, at)
     if time is not None:
@@ -54,4 +54,4 @@ def explain_time(text: Words, at: int, wanted: bool, vocabulary: Lexicon) -> Dia
 
 
 def _problem(span: Span, problem: str, example: str, fix: tuple[Span, str] | None = None) -> Diagnostic:
-    return diagnostic("BT069", span, fix=fix, words=span.text, problem=problem, example=example)
+    return diagnostic("BT160", span, fix=fix, words=span.text, problem=problem, example=example)

@@ -37,7 +37,7 @@ def explain_unknown(
     definitions: Definitions,
     before: list[Token],
 ) -> Diagnostic:
-    """The diagnostic (BT010 to BT014, BT019, BT038, BT069) for words `at` to `end`, which nothing known matches.
+    """The diagnostic (BT010 to BT014, BT019, BT038, BT160) for words `at` to `end`, which nothing known matches.
 
     `context` is that of the lexer, with its pronouns.
     """
