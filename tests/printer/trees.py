@@ -98,8 +98,7 @@ _leaves: Trees = st.one_of(
     valued,
     st.builds(ast.Fail, _span),
     st.builds(ast.Nothing, _span),
-    st.builds(ast.Wait, _seconds, _span),
-    st.builds(ast.WaitTime, _times, _span),
+    st.one_of(st.builds(ast.Wait, _seconds, _span), st.builds(ast.WaitTime, _times, _span)),
     st.builds(ast.Check, conditions, _span),
     st.builds(ast.WaitUntil, conditions, _pause, _span),
 )
