@@ -147,10 +147,10 @@ CASES = {
         seconds=(32, 34),
     ),
     "opening_hours": Case(
-        done=("GoTo door", "Say Good morning!", *["Say We open at five past nine."] * 4, "..."),
-        said=("Good morning!", *["We open at five past nine."] * 4, "Coffee break!"),
+        done=("GoTo door", "Say Good morning!", *["Say We open at three past nine."] * 4, "..."),
+        said=("Good morning!", *["We open at three past nine."] * 4, "Coffee break!"),
         at="kitchen",
-        seconds=(360, 380),
+        seconds=(250, 265),
     ),
     "oily_floor": Case(
         world="oily_floor",
