@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from math import inf
+
+from btlang.text.time_of_day import DAY, USUAL_START
 
 SOONEST = 0.001
 """Seconds after which a leaf may be ticked again at the earliest, so that none can hold the time of a mission."""
@@ -12,14 +15,21 @@ class Clock:
     """Seconds since the mission began, moved on by the runner (or a test). Never goes back.
 
     What waits says during a tick when it is due (`wake_at`); it says so again at the next tick if it still waits then.
-    `due` is the earliest of these times, inf where nothing waits. The runner sets it back before each tick.
+    `due` is the earliest of these times, inf where nothing waits. The runner sets it back before each tick. `day` gives
+    the seconds since midnight where the mission runs, None where nobody knows.
     """
 
-    __slots__ = ("due", "now")
+    __slots__ = ("day", "due", "now")
 
     def __init__(self, now: float = 0.0) -> None:
         self.now = now
         self.due = inf
+        self.day: Callable[[], float] | None = None
+
+    @property
+    def time_of_day(self) -> float:
+        """Seconds since midnight; where nobody knows, the mission began at 9 o'clock."""
+        return (USUAL_START + self.now) % DAY if self.day is None else self.day()
 
     def advance(self, seconds: float) -> None:
         """Raises ValueError for a negative step."""

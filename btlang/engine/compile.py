@@ -77,6 +77,7 @@ SEMANTICS: dict[str, Callable[[NodeInstance, Sequence[Compiled]], Compiled]] = {
     "WaitValueUpdate": updates.wait_value_update,
     "WasEntryUpdated": updates.was_entry_updated,
     "Sleep": timed.sleep,
+    "WaitForTime": timed.wait_for_time,
     "AlwaysSuccess": constants.always_success,
     "AlwaysFailure": constants.always_failure,
     "SetBlackboard": blackboard_nodes.set_blackboard,

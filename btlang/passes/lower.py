@@ -266,9 +266,17 @@ def _within(item: ast.Within, done: list[Lowered], scope: Scope) -> Lowered:
 
 def _for(item: ast.For, done: list[Lowered], scope: Scope) -> Lowered:
     scripts, time = _timed(item.seconds, scope)
-    again = _node("Repeat", [_round(done[0])], item.span, num_cycles="-1")
-    together = _node("Parallel", (_timer(time), again), item.span, success_count="1", failure_count="1")
-    return Lowered(behind(scripts, together))
+    return Lowered(behind(scripts, _again_beside(_timer(time), item, done[0])))
+
+
+def _until_time(item: ast.UntilTime, done: list[Lowered], _scope: Scope) -> Lowered:
+    return Lowered(_again_beside(Node("WaitForTime", (), (("time", item.time),)), item, done[0]))
+
+
+def _again_beside(timer: Node, item: ast.Ast, body: Lowered) -> Node:
+    """The body over and over, until the timer succeeds."""
+    again = _node("Repeat", [_round(body)], item.span, num_cycles="-1")
+    return _node("Parallel", (timer, again), item.span, success_count="1", failure_count="1")
 
 
 def _up_to(item: ast.UpTo, done: list[Lowered], scope: Scope) -> Lowered:
@@ -333,6 +341,10 @@ def _wait_until(item: ast.WaitUntil, done: list[Lowered], scope: Scope) -> Lower
     return Lowered(behind(scripts, _node("RetryUntilSuccessful", [asked], item.span, num_attempts="-1")))
 
 
+def _wait_time(item: ast.WaitTime, _done: list[Lowered], _scope: Scope) -> Lowered:
+    return Lowered(_node("WaitForTime", (), item.span, time=item.time))
+
+
 def _check(_item: ast.Check, done: list[Lowered], _scope: Scope) -> Lowered:
     return done[0]
 
@@ -354,12 +366,8 @@ def _never_ends(node: Node, endless: Sequence[bool], scope: Scope) -> bool:
     return any(endless) if kind.goes_on or kind.takes_time else kind.again == ON_SUCCESS and kind.is_endless(node)
 
 
-def _nothing(item: ast.Nothing, _done: list[Lowered], _scope: Scope) -> Lowered:
-    return Lowered(_node("AlwaysSuccess", (), item.span))
-
-
-def _fail(item: ast.Fail, _done: list[Lowered], _scope: Scope) -> Lowered:
-    return Lowered(_node("AlwaysFailure", (), item.span))
+def _always(node_id: str) -> Callable[[ast.Ast, list[Lowered], Scope], Lowered]:
+    return lambda item, _done, _scope: Lowered(_node(node_id, (), item.span))
 
 
 _LOWER: dict[type[ast.Ast], Callable[[Any, list[Lowered], Scope], Lowered]] = {
@@ -389,8 +397,10 @@ _LOWER: dict[type[ast.Ast], Callable[[Any, list[Lowered], Scope], Lowered]] = {
     ast.Delay: _delay,
     ast.Wait: _wait,
     ast.WaitUntil: _wait_until,
+    ast.WaitTime: _wait_time,
+    ast.UntilTime: _until_time,
     ast.Check: _check,
-    ast.Nothing: _nothing,
-    ast.Fail: _fail,
+    ast.Nothing: _always("AlwaysSuccess"),
+    ast.Fail: _always("AlwaysFailure"),
     ast.Exact: _exact,
 }

@@ -150,6 +150,10 @@ def _timed(*roles: str) -> Callable[[Any, Printer], Iterator[Section]]:
     return sections
 
 
+def _until_time(node: ast.UntilTime, printer: Printer) -> Iterator[Section]:
+    yield (printer.word("repeat"), printer.time_of_day("until_time", node.time)), statements(node.body)
+
+
 def _every(node: ast.Every, printer: Printer) -> Iterator[Section]:
     if node.rounds:
         yield from _paced("repeat", node.rounds, "every", node.seconds, node.body, printer)
@@ -200,6 +204,7 @@ _SECTIONS: dict[type[ast.Ast], Callable[[Any, Printer], Iterator[Section]]] = {
     ast.Repeat: _repeat,
     ast.Retry: _retry,
     ast.For: _timed("repeat", "for"),
+    ast.UntilTime: _until_time,
     ast.Every: _every,
     ast.Apart: _apart,
     ast.Delay: _timed("delay"),

@@ -19,8 +19,8 @@ _BLANK = r"[\s\ufeff]"
 # Outside quotes: blanks, an end of a statement, another mark, a bracket that opens, or anything else; the `.` of a
 # number is part of it.
 _PIECE = re.compile(
-    rf"(?P<blank>{_BLANK}+)|(?P<close>[,;:)]|(?:(?<!\d)\.|\.(?!\d)|[!?])+)|(?P<open>\()"
-    rf"|(?P<other>(?:(?!{_BLANK})[^,;:().!?]|(?<=\d)\.(?=\d))+)"
+    rf"(?P<blank>{_BLANK}+)|(?P<close>[,;)]|(?<!\d):|:(?!\d)|(?:(?<!\d)\.|\.(?!\d)|[!?])+)|(?P<open>\()"
+    rf"|(?P<other>(?:(?!{_BLANK})[^,;:().!?]|(?<=\d)[.:](?=\d))+)"
 )
 _MARGIN = re.compile(rf"{_BLANK}*")
 

@@ -30,6 +30,8 @@ def phrase_of(node: Node, vocabulary: Lexicon) -> str:
         return node.span.text
     if node.id == "Sleep":
         return f"{vocabulary.word('wait')} {seconds(node.port('msec'))}"
+    if node.id == "WaitForTime":
+        return f"{vocabulary.word('wait_time')} {node.port('time')}"
     if node.id in ("AlwaysSuccess", "AlwaysFailure"):
         return vocabulary.word("nothing" if node.id == "AlwaysSuccess" else "fail")
     return leaf_words(node.id, dict(node.ports), vocabulary) or described(node)
@@ -121,7 +123,7 @@ def value_of(text: str, kind: ValueType, vocabulary: Lexicon) -> str:
         return text
     if kind.kind == "quantity":
         return with_unit(text, kind.units[0].words[0])
-    if kind.kind == "number":
+    if kind.kind in ("number", "time"):
         return text
     ways = [f'"{text}"', f"'{text}'"]
     if kind.kind == "names" or not _says_more(text, vocabulary):

@@ -187,6 +187,10 @@ class Printer:
         """The word of a role that has a duration."""
         return self.word(role, duration=self.value(seconds, "duration"))
 
+    def time_of_day(self, role: str, time: str) -> Piece:
+        """The word of a role that has a time of day."""
+        return self.word(role, time_of_day=self.value(time, "time_of_day"))
+
     def rounds(self, number: str) -> Piece:
         """`3 times`; one word for once and for a number without end."""
         single = [word for word, rounds in self.vocabulary.counts.items() if str(rounds) == number]

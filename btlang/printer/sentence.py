@@ -196,6 +196,14 @@ def _wait_until(node: ast.WaitUntil, parts: list[Doc], printer: Printer) -> Doc:
     return Doc((printer.word("wait_until"), printer.condition(parts[0]).pieces, *held), FORM)
 
 
+def _wait_time(node: ast.WaitTime, _parts: list[Doc], printer: Printer) -> Doc:
+    return _leaf(printer.time_of_day("wait_time", node.time).text)
+
+
+def _until_time(node: ast.UntilTime, parts: list[Doc], printer: Printer) -> Doc:
+    return printer.behind(parts[0], printer.time_of_day("until_time", node.time))
+
+
 def _test(role: str) -> Callable[[Any, list[Doc], Printer], Doc]:
     def said(_node: Any, parts: list[Doc], printer: Printer) -> Doc:
         return Doc((printer.word(role), printer.condition(parts[0]).pieces), FORM)
@@ -237,6 +245,8 @@ PRINTERS: dict[type[ast.Ast], Callable[[Any, list[Doc], Printer], Doc]] = {
     ast.Delay: _timed("delay"),
     ast.Wait: _wait,
     ast.WaitUntil: _wait_until,
+    ast.WaitTime: _wait_time,
+    ast.UntilTime: _until_time,
     ast.Check: _test("check"),
     ast.Nothing: _single("nothing"),
     ast.Fail: _single("fail"),

@@ -214,14 +214,16 @@ class MissionDraft:
         commands = [] if body is None else [body]
         if isinstance(body, Chain) and body.operator == "sequence":
             commands = parts(body)
-        groups: list[list[Ast]] = []  # those that share a line
-        last = 0
+        groups: list[list[Ast]] = []  # those that share a line, or a head with the block below it
+        margins = [len(line) - len(line.lstrip()) for line in text.split("\n")]
+        first = last = 0
         for statement in sorted(
             (*commands, *mission.includes, *mission.definitions, *mission.facts), key=lambda part: part.span.start
         ):
             line = source.position(statement.span.start)[0]
-            if line > last:
+            if line > last and not (groups and margins[line - 1] > margins[first - 1]):
                 groups.append([])
+                first = line
             groups[-1].append(statement)
             last = source.position(statement.span.end)[0]
         entries = []

@@ -68,6 +68,10 @@ class Machine(Protocol):
     def time(self) -> float:
         """Total seconds of all steps."""
 
+    @property
+    def time_of_day(self) -> float:
+        """Seconds since midnight where the robot is."""
+
     def step(self, dt: float) -> None:
         """Lets `dt` seconds pass. On a real robot time passes by itself and this only reads the sensors."""
 

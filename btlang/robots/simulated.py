@@ -20,6 +20,7 @@ from btlang.robots.power import Power
 from btlang.robots.robot import CompletedOperation, Hand, OnEvent, RobotError, SensorSilent
 from btlang.robots.world import Place, World, said
 from btlang.run.standstill import Standstill
+from btlang.text.time_of_day import DAY
 from btlang.vocabulary.capabilities import part_of
 
 TYPE_CHECKING = False
@@ -106,6 +107,11 @@ class SimulatedRobot:
         self._base.brake()
         self._joints.freeze()
         self._speech_left = 0.0
+
+    @property
+    def time_of_day(self) -> float:
+        """As the world says, when it began, and all steps since."""
+        return (self.world.clock + self.time) % DAY
 
     @property
     def moving(self) -> bool:

@@ -7,6 +7,7 @@ from itertools import pairwise
 
 from btlang.record import Record
 from btlang.robots.geometry import Point, Pose, Segment
+from btlang.text.time_of_day import USUAL_START
 
 PERSON_RADIUS = 0.25
 OBJECT_RADIUS = 0.05
@@ -82,7 +83,10 @@ class WorldNames(Record):
 
 
 class World(Record):
-    """A world as its file describes it. `walls` are polylines; a dock is also the place "dock"."""
+    """A world as its file describes it. `walls` are polylines; a dock is also the place "dock".
+
+    `clock` is the time of day at its start, in seconds since midnight.
+    """
 
     start: Pose
     battery: float = 100.0
@@ -93,6 +97,7 @@ class World(Record):
     people: tuple[Thing, ...] = ()
     faults: tuple[Fault, ...] = ()
     dock: Place | None = None
+    clock: float = USUAL_START
 
     @property
     def names(self) -> WorldNames:

@@ -19,6 +19,7 @@ from btlang.robots.world import (
     World,
     WorldNames,
 )
+from btlang.text.time_of_day import USUAL_START
 from btlang.text.toml_table import Problem, Table
 from btlang.vocabulary.shipped import DEFAULT_WORLD
 
@@ -67,10 +68,22 @@ def _world(top: Table, radius: float) -> World:
     objects = tuple(_thing(table, OBJECT_RADIUS) for table in top.tables("objects"))
     people = tuple(_thing(table, PERSON_RADIUS) for table in top.tables("people"))
     faults = tuple(_fault(table, [place.name for place in places]) for table in top.tables("faults"))
-    world = top.finish(World(start, battery, walls, boxes, places, objects, people, faults, dock))
+    clock = _clock(top) if top.has("clock") else USUAL_START
+    world = top.finish(World(start, battery, walls, boxes, places, objects, people, faults, dock, clock))
     _check_names(world)
     _check_room(world, radius)
     return world
+
+
+def _clock(top: Table) -> float:
+    from datetime import datetime  # most worlds begin at the usual time
+
+    try:
+        began = datetime.strptime(top.text("clock") if top.is_text("clock") else "", "%Y-%m-%d %H:%M")
+    except ValueError:
+        message = '"clock" must be a date and a time in quotes; write clock = "2026-03-02 08:55"'
+        raise Problem(message, "clock") from None
+    return began.hour * 3600.0 + began.minute * 60.0
 
 
 def _wall(points: Any, index: int) -> tuple[Point, ...]:

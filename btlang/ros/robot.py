@@ -30,6 +30,7 @@ from btlang.ros.services import Services
 from btlang.ros.speech import RosSpeech
 from btlang.ros.subscription_cache import SubscriptionCache
 from btlang.run.standstill import Standstill
+from btlang.text.time_of_day import DAY, local
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -68,6 +69,7 @@ class RosRobot:
         self.time = 0.0
         self.subscriptions = subscriptions = SubscriptionCache(node, now)
         self._node, self._now = node, now
+        self._world_began = world.clock
         self._naps = AWAKE.naps
         self._executor = ExecutorThread(node)
         self._places = Places(world, body)
@@ -115,6 +117,13 @@ class RosRobot:
         self._senses.step()
         if arrived is not None and arrived.failure is None:
             self._emit("arrive", name=arrived.name)
+
+    @property
+    def time_of_day(self) -> float:
+        """That of this computer, in its time zone; in simulated time that of the world, which began at 0."""
+        clock = self._node.get_clock()
+        seconds = float(clock.now().nanoseconds * 1e-9)
+        return (self._world_began + seconds) % DAY if clock.ros_time_is_active else local(seconds)
 
     def stop(self) -> None:
         """Zero velocity, no journey, frozen joints, silence, and the robot's own stop where it has one.

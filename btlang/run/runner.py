@@ -92,7 +92,13 @@ def traced_engine(
     stopwatch: Stopwatch | None = None,
     proxies: Mapping[str, Callable[..., Any]] = {},
 ) -> Engine:
-    """An engine whose status changes go on the bus, and once in a run each condition that is not known."""
+    """An engine whose status changes go on the bus, and once in a run each condition that is not known.
+
+    The time of day is that of the robot, where it knows.
+    """
+    robot: Any = services.get("robot")
+    if hasattr(robot, "time_of_day"):
+        bus.clock.day = lambda: float(robot.time_of_day)
 
     def changed(changes: Changes) -> None:
         bus.emit(StatusesChanged, changes, engine, engine.valued(changes))

@@ -1,9 +1,9 @@
 """Text to words: one pass of one regular expression over the whole text.
 
 A word is kept in lower case; quoted text keeps its case behind a leading `"`; a unit is a word of its own
-("2m" is `2`, `m`);
-each punctuation mark is a word of its own. Articles leave no word, only a note of where they stood, and the mark of a
-list item (`- `, `1. `) leaves nothing. `Orthography` holds what languages differ in.
+("2m" is `2`, `m`), and so is each punctuation mark but the colon of a time of day (`18:30`). Articles leave no word,
+only a note of where they stood, and the mark of a list item (`- `, `1. `) leaves nothing. `Orthography` holds what
+languages differ in.
 """
 
 from __future__ import annotations
@@ -27,7 +27,7 @@ _ITEM = r"(?:(?:[-*\u2022\u2013\u2014]|\d{1,3}[.)])(?=[ \t]))?"  # the mark of a
 _PIECE = re.compile(
     rf"""[^\S\n]*(?:([a-zA-Z]++(?![\w/'{_MARKS_ABOVE}-])  # as below, in half the time
                     |[^\W\d_]+/[^\W\d_]+(?!\w)|[^\W\d](?:[\w{_MARKS_ABOVE}'-]*[\w{_MARKS_ABOVE}])?)  # word
-    |(-?\d+(?:\.\d+)?(?:[eE][+-]?\d+(?!\w))?)                          # number
+    |(\d+:\d+|-?\d+(?:\.\d+)?(?:[eE][+-]?\d+(?!\w))?)                  # number
     |([,:()%°{{}}])                                                    # mark
     |(\n[ \t\r]*{_ITEM})                                               # line
     |("[^"\n]*"|(?<!\w)'[^'\n]*'(?!\w))                                # quote

@@ -1,7 +1,8 @@
 """The syntax tree of a mission, as both parsers give it: what was said, with the exact characters of each part.
 
 Commands: Phrase, Name, Chain, If, IfWorks, While, Provided, StopWhen, Repeat, Retry, Try, Within, For, UpTo, Every,
-Apart, Delay, Wait, WaitUntil, Check, Nothing, Fail, Assign, Remember, ForEach, Exact; Whenever in a sequence.
+UntilTime, Apart, Delay, Wait, WaitUntil, WaitTime, Check, Nothing, Fail, Assign, Remember, ForEach, Exact; Whenever in
+a sequence.
 Conditions: Phrase, Name, Compared, Chain ("all", "any"), AtLeast, Not, Exact. `parts` are fields with subtrees.
 Amounts and values are port texts in base units (seconds); they may refer to values of the mission: `{level}`, in a
 text also `it is {level} percent` (see btlang/vocabulary/references.py).
@@ -253,6 +254,22 @@ class WaitUntil(Ast):
     parts = ("condition",)
 
 
+class WaitTime(Ast):
+    """Waits for a time of day, which is a port text (18:30)."""
+
+    time: str
+    span: Span
+
+
+class UntilTime(Ast):
+    """The body over and over until a time of day."""
+
+    time: str
+    body: Ast
+    span: Span
+    parts = ("body",)
+
+
 class Check(Ast):
     condition: Ast
     span: Span
@@ -408,6 +425,7 @@ _TEXTS: dict[type[Ast], Callable[[Any], Iterable[str]]] = {
     **dict.fromkeys((Within, For, UpTo, Delay, Wait), lambda node: (node.seconds,)),
     **dict.fromkeys((Every, Apart), lambda node: (node.seconds, node.rounds)),
     WaitUntil: lambda node: (node.held,),
+    **dict.fromkeys((WaitTime, UntilTime), lambda node: (node.time,)),
     Assign: lambda node: (node.text,),
     ForEach: lambda node: node.values,
     Repeat: lambda node: (node.rounds,),

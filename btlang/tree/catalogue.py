@@ -31,7 +31,8 @@ class Port(Record):
     """A port: `type` as in C++, "" where it is a template or a text that the node interprets.
 
     `default` is None where the port must be given. `least` and `most` bound the value of a number; None: they depend on
-    the node's children. `unit` is "ms", "Hz" or "rounds", "" for others. `name_3` is its name in version 3.
+    the node's children. `unit` is "ms", "Hz", "rounds" or "time of day", "" for others. `name_3` is its name in
+    version 3.
     """
 
     type: str = ""
@@ -200,6 +201,8 @@ CATALOGUE: dict[str, NodeKind] = {
         NodeKind("UnsetBlackboard", "Action", ports={"key": Port()}),
         NodeKind("Sleep", "Action", ports={"msec": _MILLISECONDS}, takes_time=True, ends=("SUCCESS",),
                  is_common_name=True),
+        NodeKind("WaitForTime", "Action", ports={"time": Port(unit="time of day")}, takes_time=True, ends=("SUCCESS",),
+                 origin=BTLANG, text="Ends when the clock next shows a time of day such as 18:30."),
         NodeKind("AlwaysSuccess", "Action", ends=("SUCCESS",), tags_3=("AlwaysSuccess",)),
         NodeKind("AlwaysFailure", "Action", ends=("FAILURE",), tags_3=("AlwaysFailure",)),
         NodeKind(SUBTREE, "SubTree", ports={"ID": Port()}, any_ports=True, waits=True,

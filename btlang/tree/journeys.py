@@ -8,7 +8,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-_WAITING = (ast.Wait, ast.WaitUntil)
+_WAITING = (ast.Wait, ast.WaitUntil, ast.WaitTime)
 
 
 def takes_its_time(node: ast.Ast) -> bool:

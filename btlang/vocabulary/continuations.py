@@ -96,8 +96,12 @@ def values_on(kind: str, values: Values, written: Sequence[str], start: str) -> 
             yield value_type.example
         elif start.isdecimal() and value_type.kind == "quantity":
             yield from (with_unit(start, unit.words[0]) for unit in value_type.units)
+        elif start.isdecimal() and value_type.kind == "time":
+            yield from (with_unit(start, half) for half in values.halves_of_day)
     elif value_type.kind == "quantity" and values.is_number(written):
         yield from (unit.words[0] for unit in value_type.units if unit.words[0].startswith(start))
+    elif value_type.kind == "time" and (written[0][0].isdecimal() or values.is_number(written)):
+        yield from (half for half in values.halves_of_day if half.startswith(start))
 
 
 def _names_on(tree: WordTree, written: Sequence[str], start: str, names: Sequence[str]) -> Iterator[str]:

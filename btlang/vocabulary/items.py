@@ -122,6 +122,8 @@ def _described(kind: ValueType, vocabulary: Lexicon) -> str:
         return ", ".join(vocabulary.values.names(kind.name)) or "nothing in this world"
     if kind.kind == "text":
         return "one word, or more in quotes"
+    if kind.kind == "time":
+        return f"a time such as {kind.example} or 18:30"
     least = "" if kind.least is None else f" from {kind.least:g} on"
     return ("a whole number" if kind.whole else "a number") + least
 

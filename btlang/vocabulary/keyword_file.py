@@ -238,7 +238,7 @@ def _kind(name: str, has_units: bool, has_names: bool) -> str:
         return "quantity"
     if has_names:
         return "names"
-    return "text" if name == "text" else "number"
+    return {"text": "text", "time_of_day": "time"}.get(name, "number")
 
 
 def _strings(value: object) -> bool:

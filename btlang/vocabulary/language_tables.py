@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator, Mapping
 
 from btlang.vocabulary.entry import COMPARISONS, About
@@ -49,6 +50,7 @@ ROLES = {
     **dict.fromkeys(_NO_SLOT, ""),
     **dict.fromkeys(("every", "delay", "for", "up_to", "apart", "within", "wait", "wait_up_to"), "duration"),
     **dict.fromkeys(("count", "more", "at_least_of"), "count"),
+    **dict.fromkeys(("at", "every_day", "until_time", "wait_time"), "time_of_day"),
 }
 """The roles that words can have, each with the slot that its phrases hold."""
 
@@ -83,6 +85,12 @@ def _rounds(value: object) -> bool:
     return isinstance(value, int) and not isinstance(value, bool) and (value >= 1 or value == -1)
 
 
+def _time(value: object) -> bool:
+    if isinstance(value, str):
+        return re.fullmatch(r"([01]\d|2[0-3]):[0-5]\d", value) is not None
+    return not isinstance(value, bool) and value in (0, 12)
+
+
 def _about(value: object) -> bool:
     return isinstance(value, dict) and value.keys() == set(About.fields) and all(map(_is_text, value.values()))
 
@@ -107,6 +115,7 @@ TABLES: dict[str, tuple[Callable[[object], bool], str]] = {
     "numbers": (_number, "a number"),
     "multipliers": (_number, "a number"),
     "fractions": (_number, "a number"),
+    "times": (_time, 'a time such as "12:00", or the hours to add: 0 or 12'),
 }
 """Each table, whether a value fits it, and what does."""
 
@@ -164,7 +173,7 @@ _LANGUAGE: dict[str, Any] = {
     "quantifiers": [], "halting": [], "asked_once": [],
     "roles": {}, "contractions": {}, "about": {}, "comparisons": {}, "counts": {}, "negations": {}, "doing": {},
     "negative_subjects": {}, "plurals": {},
-    "pronouns": {}, "nodes": {}, "meanings": {}, "numbers": {}, "multipliers": {}, "fractions": {},
+    "pronouns": {}, "nodes": {}, "meanings": {}, "numbers": {}, "multipliers": {}, "fractions": {}, "times": {},
 }  # fmt: skip
 
 

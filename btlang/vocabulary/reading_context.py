@@ -74,7 +74,8 @@ class ReadingContext:
         quantity = self.values.quantity(text, at)
         if quantity is not None:
             return (quantity[1],), format_number(quantity[0]), quantity[2]
-        kinds = [name for sort in ("number", "names", "text") for name, kind in self.types.items() if kind.kind == sort]
+        sorts = ("number", "names", "time", "text")
+        kinds = [name for sort in sorts for name, kind in self.types.items() if kind.kind == sort]
         read = [(kind, self.read(kind, text, at)) for kind in kinds]
         found = [(kind, value) for kind, value in read if value is not None]
         if not found:

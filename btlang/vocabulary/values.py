@@ -39,7 +39,8 @@ def with_unit(number: str, unit: str) -> str:
 class ValueType(Record):
     """A type that a slot may have.
 
-    `kind` is "quantity" (a number with one of `units`), "number" (no unit), "text" or "names" (one of a list).
+    `kind` is "quantity" (a number with one of `units`), "number" (no unit), "text", "time" (of day) or "names" (one of
+    a list).
     """
 
     name: str
@@ -56,7 +57,7 @@ class ValueType(Record):
             return with_unit("5", self.units[0].words[0])
         if self.kind == "names":
             return self.names[0] if self.names else self.name
-        return '"hello"' if self.kind == "text" else "3"
+        return {"text": '"hello"', "time": "6 pm"}.get(self.kind, "3")
 
 
 def format_number(value: float) -> str:
@@ -108,6 +109,9 @@ class Values:
         self._fractions: WordTree = {}
         for phrase, value in language["fractions"].items():
             insert(self._fractions, phrase.split(), value)
+        self._times: WordTree = {}
+        for phrase, value in language["times"].items():
+            insert(self._times, phrase.split(), value)
         self._number_starts = frozenset((*self._numbers, *self._multipliers, *self._fractions))
         self._units: WordTree = {}
         self._names: dict[str, WordTree] = {}
@@ -147,6 +151,8 @@ class Values:
             for kind, value_type in self.types.items():
                 if value_type.kind in ("number", "quantity"):
                     self._openers[kind] = numbers if value_type.kind == "number" else quantities
+                elif value_type.kind == "time":
+                    self._openers[kind] = numbers | self._times.keys()
         return self._openers
 
     def names_tree(self, kind: str) -> WordTree:
@@ -158,6 +164,7 @@ class Values:
         return [
             self._units,
             self._fractions,
+            self._times,
             *({word: {} for word in table} for table in (self._numbers, self._multipliers)),
         ]
 
@@ -185,6 +192,8 @@ class Values:
         value_type = self.types[kind]
         if value_type.kind == "names":
             return END in self._names[kind].get(word, {})
+        if value_type.kind == "time":
+            return isinstance(self._times.get(word, {}).get(END), str)
         return value_type.kind == "text" or (value_type.kind == "number" and word in self._numbers)
 
     def read(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
@@ -203,7 +212,42 @@ class Values:
             if found is None and word[0] == '"':
                 found = self._quoted_name(kind, text, at)
             return found
+        if value_type.kind == "time":
+            return self.time_of_day(text, at)
         return self._text(text, at)
+
+    def time_of_day(self, text: Words, at: int) -> tuple[str, int] | None:
+        """`6 pm`, `7:30 am`, `18:30` or `noon` as a port text of 24 hours (18:30), and where it ends."""
+        word = text.words[at]
+        named = find(self._times, text.words, at)
+        if named is not None and isinstance(named[0], str):
+            return named
+        if ":" in word and word[0].isdecimal():
+            hours, _, minutes = word.partition(":")
+            if len(hours) > 2 or len(minutes) != 2 or int(minutes) > 59:
+                return None
+            number: tuple[float, int] | None = float(hours), at + 1
+        else:
+            minutes, number = "", self.number(text, at)
+        if number is None:
+            return None
+        hour, end = number
+        half = self.half_of_day(text, end)
+        if half is not None:
+            hour, end = (hour % 12 + half[0] if 1 <= hour <= 12 else -1), half[1]
+        if hour not in range(24) or not (minutes or half):
+            return None
+        return f"{int(hour):02}:{int(minutes or 0):02}", end
+
+    def half_of_day(self, text: Words, at: int) -> tuple[int, int] | None:
+        """The hours that a word such as `pm` behind a number adds, and where it ends."""
+        found = find(self._times, text.words, at)
+        return found if found is not None and isinstance(found[0], int) else None
+
+    @property
+    def halves_of_day(self) -> list[str]:
+        """The words for which `half_of_day` looks, where they are one word."""
+        return [word for word, node in self._times.items() if isinstance(node.get(END), int)]
 
     def quantity(self, text: Words, at: int) -> tuple[float, str, int] | None:
         """A number with a unit: its value in the base unit, the name of the type, and where it ends."""
@@ -240,6 +284,8 @@ class Values:
     def _whole_number(self, words: Sequence[str], at: int) -> tuple[float | None, int]:
         word = words[at]
         if word[0].isdecimal() or (word[0] == "-" and word[1:2].isdecimal()):
+            if ":" in word:
+                return None, at
             value = float(word)
             return (value, at + 1) if abs(value) <= _LARGEST else (None, at)
         total: float | None = None

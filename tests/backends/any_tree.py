@@ -23,6 +23,8 @@ _PHRASES = (
     ("Say", (("text", "hello there"),)),
     ("TurnLeft", (("angle", "90"),)),
     ("Sleep", (("msec", "1500"),)),
+    ("WaitForTime", (("time", "18:30"),)),
+    ("WaitForTime", (("time", "9:05"),)),
     ("AlwaysSuccess", ()),
     ("AlwaysSuccess", (("_skipIf", "true"),)),
     ("AlwaysFailure", ()),
@@ -56,6 +58,7 @@ _VALUES = (
     ("GoTo", (("place", "{goal}"),)),
     ("GoToPerson", (("person", "{who}"),)),
     ("Sleep", (("msec", "{count}"),)),
+    ("WaitForTime", (("time", "{goal}"),)),
 )
 _COMPUTED = (
     (("_1 := 'a ' .. count",), "Say", "text"),

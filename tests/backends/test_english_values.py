@@ -72,6 +72,7 @@ def test_missions_with_values(mission: ast.Program) -> None:
         "set counter to 3\nincrease counter by 2\ndecrease counter by 0.5\n",
         "set gap to 0.5 m\nmove forward {gap}\n",
         'set mood to "it\'s fine"\nif {mood} is "it\'s bad", say "{mood}"\n',
+        'set count to 0\n(for each item in 1, {count}: say "{item} of {count}" then nod) 3 times with 2 s in between\n',
         "set goal to lab\nset other goal to {goal}\ngo to {other_goal}\n",
         "set x to 1\nset y to {x}\nincrease y by {x}\nif {x} is below {y}, wave\n",
         "remember battery as start level\nif battery is below {start_level}, dock\n",

@@ -79,3 +79,26 @@ def test_trees_that_are_too_deep_are_refused() -> None:
     for _ in range(10_000):
         root = n("Inverter", root)
     assert refusals(root) == ["Inverter"]
+
+
+class Clockwork:
+    """A robot that knows what time it is."""
+
+    time_of_day = 0.0
+
+
+def test_times_of_day_are_those_of_the_robot() -> None:
+    robot = Clockwork()
+    root = n("Sequence", n("WaitForTime", time="00:01"), n("TimeOfDay", at_least="00:01", below="00:02"))
+    now = [0.0]
+    tree = to_py_trees(Tree(root), WORDS, now=lambda: now[0], services={"robot": robot})
+    for seconds, status in ((0, Status.RUNNING), (59, Status.RUNNING), (61, Status.SUCCESS), (62, Status.RUNNING)):
+        now[0] = robot.time_of_day = seconds
+        tree.tick_once()
+        assert tree.status == status
+
+
+def test_else_they_are_those_of_this_computer() -> None:
+    tree = to_py_trees(Tree(n("TimeOfDay", at_least="00:00")), WORDS)
+    tree.tick_once()
+    assert tree.status == Status.SUCCESS

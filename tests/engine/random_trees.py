@@ -110,6 +110,7 @@ def _used(drawn: tuple[Node, dict[str, str], dict[str, str], bool]) -> Node:
 LEAVES = st.one_of(
     st.tuples(st.sampled_from("FCG"), letters("rrssffkx", 1, 4)).map(lambda leaf: Node(":".join(leaf))),
     st.sampled_from((0, 1000, 2000)).map(lambda msec: n("Sleep", msec=msec)),
+    st.sampled_from(("08:59", "09:00", "09:01", "09:02")).map(lambda time: n("WaitForTime", time=time)),
     ASKED.map(lambda code: n("ScriptCondition", code=code)),
     DONE.map(lambda code: n("Script", code=code)),
     st.sampled_from((("x", 1), ("x", 2), ("q", "1;2"))).map(lambda s: n("SetBlackboard", output_key=s[0], value=s[1])),

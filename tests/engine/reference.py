@@ -39,6 +39,7 @@ class Reference(MoreNodes):
         self.count = self.skipped = self.failures = self.successes = 0
         self.completed.clear()
         self.stop_watch()
+        self.due = None
         self.late = self.stopped = self.catching = self.reacting = self.working = False
         self.armed, self.fired = True, False
         self.status = IDLE
@@ -99,6 +100,18 @@ class Reference(MoreNodes):
         if self.passed() < self.number("msec") / 1000:
             return RUNNING
         self.stop_watch()
+        return SUCCESS
+
+    def WaitForTime(self) -> int:
+        """The mission begins at 9 o'clock."""
+        hours, minutes = self.node.port("time").split(":")
+        if self.due is None:
+            self.due = (int(hours) - 9) * 3600.0 + int(minutes) * 60.0
+            while self.due <= self.clock.now:
+                self.due += 24 * 3600.0
+        if self.clock.now < self.due:
+            return RUNNING
+        self.due = None
         return SUCCESS
 
     # in order

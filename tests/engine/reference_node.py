@@ -43,6 +43,7 @@ class ReferenceNode(ABC):
         self.failures = self.successes = 0
         self.since: float | None = None
         self.kept = 0.0
+        self.due: float | None = None
         self.late = self.started = self.stopped = self.catching = self.reacting = self.working = False
         self.left = False  # whether its parent is halting it
         self.armed, self.fired = True, False

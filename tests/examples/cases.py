@@ -146,6 +146,12 @@ CASES = {
         said=("At ease!",),
         seconds=(32, 34),
     ),
+    "opening_hours": Case(
+        done=("GoTo door", "Say Good morning!", *["Say We open at three past nine."] * 4, "..."),
+        said=("Good morning!", *["We open at three past nine."] * 4, "Coffee break!"),
+        at="kitchen",
+        seconds=(250, 265),
+    ),
     "oily_floor": Case(
         world="oily_floor",
         done=("GoTo far end", "Say I cannot see the way.", "Say Help! My wheels turn, but I do not move."),

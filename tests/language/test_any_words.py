@@ -18,6 +18,7 @@ _WORDS = [
     "repeat everything", 'here "and" means then', "once", "as soon as", "the first time", "but stop when", "only if",
     "if possible", "for up to 5 s", "3 times", "twice", "forever", "every 5 s", "5 s apart", "2 more times",
     "wait until", "wait for", "wait up to 5 s until", "5 s later", "for 5 s", "within 5 s", "repeat", "try", "retry",
+    "at 6 pm", "every day at 6 pm", "until 6 pm", "wait until 6 pm",
     "if", "unless", "while", "until", "whenever", "not", "check", "in parallel",
     "either", "both", "neither", "nor", "not both", "any of", "none of", "at least 2 of", "one of",
 ]  # fmt: skip

@@ -9,7 +9,7 @@ from tests.benchmarks.mutations import checked, cure_of, mutants
 
 def test_mutations() -> None:
     cures: Counter[str] = Counter()
-    for mutant in mutants(300, 3):
+    for mutant in mutants(360, 3):
         result = checked(mutant)
         assert not result.crash, f"{mutant.where}\n{mutant.text}\n{result.crash}"
         if mutant.kind == "misspelt" and result.tree is None:

@@ -84,6 +84,7 @@ defined = (
     ast.Assign("gap_to_wall", "set", "length", "0.5", SPAN),
     ast.Assign("mood", "set", "text", "fine", SPAN),
     ast.Assign("pause", "set", "duration", "2", SPAN),
+    ast.Assign("lunch", "set", "time_of_day", "12:00", SPAN),
     ast.Assign("rounds", "set", _NUMBER, "2", SPAN),
     ast.Remember("level", _entry("Battery"), (), SPAN),
 )
@@ -94,6 +95,7 @@ conditions: Trees = st.recursive(
     max_leaves=4,
 )
 _seconds = st.sampled_from(["5", "0.2", "90", "{pause}"])
+_times = st.sampled_from(["00:00", "18:30", "{lunch}"])
 _pause = st.sampled_from(["", "5", "{pause}"])
 _rounds = st.sampled_from(["-1", "1", "2", "3", "{rounds}"])
 _leaves: Trees = st.one_of(
@@ -102,7 +104,7 @@ _leaves: Trees = st.one_of(
     valued,
     st.builds(ast.Fail, _span),
     st.builds(ast.Nothing, _span),
-    st.builds(ast.Wait, _seconds, _span),
+    st.one_of(st.builds(ast.Wait, _seconds, _span), st.builds(ast.WaitTime, _times, _span)),
     st.builds(ast.Check, conditions, _span),
     st.builds(ast.WaitUntil, conditions, _pause, _span),
 )
@@ -130,6 +132,7 @@ def _forms(inner: Trees) -> Trees:
         st.builds(ast.Apart, _seconds, inner, st.sampled_from(["-1", "1", "3"]), _span),
         st.builds(ast.Try, inner, perhaps, _span),
         *(st.builds(form, _seconds, inner, _span) for form in timed),
+        st.builds(ast.UntilTime, _times, inner, _span),
         st.builds(
             _for_each, st.sampled_from([("item", _NUMBER, ("1", "{count}")), ("item", "text", ("a b", "c"))]), inner
         ),
@@ -159,6 +162,7 @@ def _about(inner: Trees) -> Trees:
         st.builds(ast.Try, inner, st.none(), _span),
         st.builds(ast.Every, _seconds, inner, st.one_of(st.just(""), _rounds), _span),
         st.builds(ast.Apart, _seconds, inner, st.sampled_from(["-1", "2"]), _span),
+        st.builds(ast.UntilTime, _times, inner, _span),
     )
 
 

@@ -108,6 +108,12 @@ def test_a_mission_falls_into_its_statements(path: Path) -> None:
     assert plain(draft.compile_all().tree) == plain(tree)
 
 
+def test_a_block_stays_with_its_head() -> None:
+    text = "  as soon as the path is clear:\n    wave\n    nod\n  at 6 pm:\n    nod\n  wave"
+    entries = [entry.text.split() for entry in MissionDraft().entries_of(text)]
+    assert [(words[0], words[-1]) for words in entries] == [("as", "nod"), ("at", "nod"), ("wave", "wave")]
+
+
 def test_statements_of_a_mission() -> None:
     text = (
         "# About.\n\nPlease wave. Nod!  # both\nrepeat:\n  wave\n  if stuck, nod\notherwise nod\n\n"

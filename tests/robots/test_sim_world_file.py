@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 
 from btlang.robots.geometry import Pose
+from btlang.robots.simulated import SimulatedRobot
 from btlang.robots.world import Place
 from btlang.robots.world_file import DEFAULT_WORLD, WorldError, load_world, world_names
 
@@ -64,6 +65,16 @@ def test_a_place_may_be_added_or_moved():
     assert world.names.places[-2:] == ("Lab", "bay")
 
 
+def test_the_time_of_day(tmp_path):
+    path = tmp_path / "world.toml"
+    path.write_text('clock = "2026-03-02 23:59"\nstart = { x = 1, y = 2 }')
+    robot = SimulatedRobot(load_world(path))
+    assert robot.time_of_day == 23 * 3600 + 59 * 60
+    robot.step(61.5)
+    assert robot.time_of_day == pytest.approx(1.5)
+    assert SimulatedRobot(load_world()).time_of_day == 9 * 3600
+
+
 START = "start = { x = 1, y = 1 }\n"
 
 
@@ -96,6 +107,10 @@ START = "start = { x = 1, y = 1 }\n"
             'the name "A" is given',
         ),
         (START + '[[objects]]\nname = "a"\nx = 3\ny = 3\nradius = 0', 6, '"radius" must be at least 0.01, not 0'),
+        (START + "clock = 9", 2, '"clock" must be a date and a time in quotes; write clock = "2026-03-02 08:55"'),
+        (START + 'clock = "08:55"', 2, '"clock" must be a date and a time'),
+        (START + 'clock = "2026-02-30 08:55"', 2, '"clock" must be a date and a time'),
+        (START + 'clock = "2026-03-02 24:00"', 2, '"clock" must be a date and a time'),
         ("start = { x = 1, y = 1, battery = 120 }", 1, '"battery" must be from 0 to 100, not 120'),
         (START + "walls = [[[0, 1], [4, 1]]]", 1, "the start at (1, 1) is inside a wall or a box; leave 0.2 m"),
         (START + "boxes = [{ x = 1, y = 1, width = 5, height = 5 }]", 1, "the start at (1, 1) is inside"),

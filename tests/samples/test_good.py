@@ -57,6 +57,7 @@ ROWS = {
     # forms.md
     "if and unless": "if", "while and until": "loops", "provided that": "postfix", "repeat": "loops",
     "try and retry": "tries", "Limits, rounds and delays": "timing", "Waiting": "timing",
+    "Times of day": "clock_times",
     "do nothing and fail": "words",
     # rules.md; what breaks the rule of resources is a bad sample
     "Standing rules": "whenever", "Resources": "connectives", "Skipped rounds": "skipped_rounds",

@@ -167,7 +167,15 @@ charge [to {percent}]
         ("go to", ["go to {place}", "go to {person}", "approach {object}"]),
         ("wall in front", ["wall in front  (condition)"]),
         ("after", ["after", "after {duration}"]),
-        ("wait for", ["wait [for] {duration}", "wait for", "wait [for] up to {duration} until/till/for"]),
+        (
+            "wait for",
+            [
+                "wait [for] {duration}",
+                "wait for",
+                "wait [for] up to {duration} until/till/for",
+                "wait until {time_of_day}",
+            ],
+        ),
         ("and at the same time", ["and"]),
         ("is", ["is below {value}", "is"]),
         ("define_strong", ["means"]),

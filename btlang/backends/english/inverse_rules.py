@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     Form: TypeAlias = Callable[[Node, tuple[Candidate, ...], Checked], Iterator[ast.Ast]]
 
 _WHOLE = re.compile(r"\d{1,15}")
+_TIME = re.compile(r"([01]\d|2[0-3]):[0-5]\d", re.ASCII)
 _ROUNDS = re.compile(r"-1|[1-9]\d{0,9}")
 _ENDLESS = "-1"
 
@@ -184,16 +185,17 @@ def _ignoring_failure(_node: Node, children: tuple[Candidate, ...], _checked: Ch
 
 
 def _parallel(node: Node, children: tuple[Candidate, ...], checked: Checked) -> Iterator[ast.Ast]:
-    if len(children) == 2 and children[0].node.id == "Sleep" and children[1].node.id == "Repeat":
+    timer = children[0].node if len(children) == 2 else node
+    if timer.id in ("Sleep", "WaitForTime") and children[1].node.id == "Repeat":
         again = children[1].children
         body = _round(again[0], checked) if len(again) == 1 else None
         if body is not None:
-            timer = children[0].node.port("msec")
-            yield from (ast.For(seconds, body, NOWHERE) for seconds in _seconds(timer, checked))
-    if len(children) == 2 and children[0].node.id == "Sleep" and not children[1].in_lines:
-        body, timer = _round(children[1], checked), children[0].node.port("msec")
+            yield from (ast.For(seconds, body, NOWHERE) for seconds in _seconds(timer.port("msec"), checked))
+            yield from (ast.UntilTime(time, body, NOWHERE) for time in _times(timer.port("time"), checked))
+    if timer.id == "Sleep" and not children[1].in_lines:
+        body = _round(children[1], checked)
         if body is not None:
-            yield from (ast.UpTo(seconds, body, NOWHERE) for seconds in _seconds(timer, checked))
+            yield from (ast.UpTo(seconds, body, NOWHERE) for seconds in _seconds(timer.port("msec"), checked))
     yield from _chain("parallel")(node, children, checked)
 
 
@@ -218,6 +220,17 @@ def _delay(node: Node, children: tuple[Candidate, ...], checked: Checked) -> Ite
 
 def _wait(node: Node, _children: tuple[Candidate, ...], checked: Checked) -> Iterator[ast.Ast]:
     yield from (ast.Wait(seconds, NOWHERE) for seconds in _seconds(node.port("msec"), checked))
+
+
+def _wait_time(node: Node, _children: tuple[Candidate, ...], checked: Checked) -> Iterator[ast.Ast]:
+    yield from (ast.WaitTime(time, NOWHERE) for time in _times(node.port("time"), checked))
+
+
+def _times(port: str, checked: Checked) -> Iterator[str]:
+    """A time of day that can be said."""
+    text = checked.text(port) if port[:1] == "{" else port if _TIME.fullmatch(port) else None
+    if text is not None:
+        yield text
 
 
 def _seconds(msec: str, checked: Checked) -> Iterator[str]:
@@ -257,6 +270,7 @@ INVERSE_RULES: dict[str, Form] = {
     "Timeout": _within,
     "Delay": _delay,
     "Sleep": _wait,
+    "WaitForTime": _wait_time,
     "AlwaysSuccess": _nothing,
     "AlwaysFailure": _fail,
 }

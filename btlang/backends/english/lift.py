@@ -52,6 +52,7 @@ class Lifter:
         self._node_kinds = {model.id: model.kind for model in tree.models}
         self._comments = comments
         self._conditions: set[str] = set()  # the names that stand for conditions
+        self._loops: dict[str, Candidate] = {}
         bodies = {loop.name for loop in known.loops.values()}
         names = [name for name, _ in tree.subtrees if name not in bodies]
         self._checked = Checked(Scope(names, vocabulary.types), known.around(""))
@@ -133,7 +134,9 @@ class Lifter:
         return made
 
     def _loop(self, node: Node, loop: Loop, body: Candidate) -> Candidate:
-        """One that does not mean the node is refused, and then all is said anew."""
+        """One that does not mean the node is refused, and then all is said anew. One may stand twice (ast.Apart)."""
+        if loop.name in self._loops:
+            return self._loops[loop.name]
         kind = self._known.kind(loop.name, loop.key)
         values: list[str] = []
         for one in loop.rounds:
@@ -149,7 +152,8 @@ class Lifter:
             return Candidate(node, made, made)
         self.printer.note(_first_line(body.part), self._comments.trees.get(loop.name, ()))
         self._note([node, *node.children], made)
-        return Candidate(node, made, made, in_lines=body.in_lines)
+        self._loops[loop.name] = Candidate(node, made, made, in_lines=body.in_lines)
+        return self._loops[loop.name]
 
     def _natural_form(
         self, node: Node, ways: list[tuple[Computed, tuple[Candidate, ...]]], condition: ast.Ast | None

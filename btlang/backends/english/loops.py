@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Container
+from collections.abc import Container, Iterator
 
 from btlang.backends.english.code import Computed, computed
 from btlang.record import Record
@@ -27,9 +27,10 @@ def find_loops(tree: Tree, refused: Container[str]) -> dict[int, Loop]:
     bodies = {name: root for name, root in tree.subtrees if name.startswith(_PREFIX) and name not in refused}
     if not bodies:
         return {}
-    uses = Counter(node.port("ID") for node in tree.walk() if node.id == SUBTREE)
+    nodes = list(_said_once(tree))
+    uses = Counter(node.port("ID") for node in nodes if node.id == SUBTREE)
     loops: dict[int, Loop] = {}
-    for node in tree.walk():
+    for node in nodes:
         rounds = [_round(node)] if uses[_used(node)] == 1 else [_round(child) for child in _children(node)]
         found = [one for one in rounds if one is not None and one.node.port("ID") in bodies]
         names = {one.node.port("ID") for one in found}
@@ -38,6 +39,20 @@ def find_loops(tree: Tree, refused: Container[str]) -> dict[int, Loop]:
             if key and name not in {loop.name for loop in loops.values()}:
                 loops[id(node)] = Loop(name, key, bodies[name], tuple(found))
     return loops
+
+
+def _said_once(tree: Tree) -> Iterator[Node]:
+    """All nodes but the further rounds of `A 3 times 10 s apart`, which are the first one again."""
+    stack = [root for _, root in reversed(tree.subtrees)]
+    stack.append(tree.root)
+    while stack:
+        node = stack.pop()
+        yield node
+        children = node.children
+        if len(children) == 2 and [part.id for part in children[1].children] == ["Delay"]:
+            delay = children[1].children[0]
+            children = children[: 1 + (delay.children != children[:1])]
+        stack += reversed(children)
 
 
 def _children(node: Node) -> tuple[Node, ...]:

@@ -30,6 +30,10 @@ if TYPE_CHECKING:
     Value: TypeAlias = tuple[str, str]
 
 
+_TYPES = {"rounds": "count", "time of day": "time_of_day"}
+"""Those of values in ports with such units."""
+
+
 class Around(Record):
     """What is known at a place: the types of values by key, with a vocabulary that knows them, too.
 
@@ -133,8 +137,8 @@ class TypeInference:
                 self._give((node.port("ID"), key), node.port(key), own, texts)
         elif kind is not None:
             for name, port in kind.ports.items():
-                if port.unit == "rounds":
-                    self._need(node.port(name), "count", own)
+                if port.unit in _TYPES:
+                    self._need(node.port(name), _TYPES[port.unit], own)
         for entry in self._vocabulary.entries.get(node.id, ()):
             types = {slot.name: slot.type for slot in entry.slots} | (
                 {MEASURED: entry.measures} if entry.measures else {}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Mapping
 
 from py_trees.common import Status
@@ -12,6 +13,7 @@ from btlang.engine.engine import Engine
 from btlang.engine.leaves.leaf import LeafBinding
 from btlang.engine.nodes.subtree import child_scope
 from btlang.engine.status import FAILURE, RUNNING, SUCCESS
+from btlang.text.time_of_day import local
 from btlang.tree import node as btlang_node
 from btlang.tree.catalogue import SUBTREE
 
@@ -23,14 +25,21 @@ _STATUSES = {RUNNING: Status.RUNNING, SUCCESS: Status.SUCCESS, FAILURE: Status.F
 
 
 class _Clock:
-    """Time as the engine asks for it. Whoever ticks the tree knows nothing of when it is due."""
+    """Time as the engine asks for it. Whoever ticks the tree knows nothing of when it is due.
 
-    def __init__(self, now: Callable[[], float]) -> None:
-        self._now = now
+    The time of day is that of the robot, else of this computer.
+    """
+
+    def __init__(self, now: Callable[[], float], robot: Any) -> None:
+        self._now, self._robot = now, robot
 
     @property
     def now(self) -> float:
         return self._now()
+
+    @property
+    def time_of_day(self) -> float:
+        return float(self._robot.time_of_day) if hasattr(self._robot, "time_of_day") else local(time.time())
 
     def wake_at(self, time: float) -> None:
         """Does nothing."""
@@ -66,7 +75,8 @@ def engine_leaf(
 ) -> EngineLeaf:
     """A leaf with the values of its subtree. Raises EngineError where it cannot be bound so."""
     tree = btlang_node.Tree(btlang_node.Node(id, ports=tuple(ports.items())))
-    return EngineLeaf(name, Engine(tree, bind, clock=_Clock(now), services=services, blackboard=values))  # type: ignore[arg-type]
+    clock: Any = _Clock(now, services.get("robot"))
+    return EngineLeaf(name, Engine(tree, bind, clock=clock, services=services, blackboard=values))
 
 
 def values_of(ports: Mapping[str, str], values: Blackboard) -> Blackboard:

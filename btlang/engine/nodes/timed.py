@@ -10,10 +10,16 @@ from collections.abc import Sequence
 
 from btlang.engine.clock import SOONEST, Clock
 from btlang.engine.instance import NodeInstance
+from btlang.engine.leaves.leaf import ActionFailed
+from btlang.engine.nodes.ports import value_port
+from btlang.engine.script.values import as_text
 from btlang.engine.status import RUNNING, SKIPPED, SUCCESS
+from btlang.text.time_of_day import DAY, seconds_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from typing import Any
+
     from btlang.engine.instance import Compiled
 
 _SLACK = 1e-9  # twenty ticks of 0.05 s are 1 s, whatever floating point makes of their sum
@@ -62,6 +68,44 @@ def sleep(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
         return SUCCESS
 
     return tick, stopwatch.halt
+
+
+def wait_for_time(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
+    """RUNNING until the clock next shows the time, then SUCCESS; where it shows it at the start, that is tomorrow.
+
+    The clock may be set: what is skipped by that has come, and what is set back is waited for.
+    """
+    time = value_port(instance, "time", _time_of_day)
+    clock = instance.state.clock
+    wanted = 0.0
+    due: float | None = None
+
+    def tick() -> int:
+        nonlocal wanted, due
+        if due is None:
+            wanted = time()
+        left = DAY - (round(clock.time_of_day, 3) - wanted) % DAY
+        coming = clock.now + left
+        if due is not None and coming > due + DAY / 2:  # the next one is another one: this one has come
+            due = None
+            return SUCCESS
+        due = coming
+        clock.wake_at(clock.now + max(left, SOONEST))
+        return RUNNING
+
+    def halt(keep: bool) -> None:
+        nonlocal due
+        if not keep:
+            due = None
+
+    return tick, halt
+
+
+def _time_of_day(value: Any) -> float:
+    try:
+        return seconds_of(as_text(value))
+    except ValueError as problem:
+        raise ActionFailed(f"time {problem}") from None
 
 
 def delay(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:

@@ -48,7 +48,7 @@ def _port_text(name: str, written: str, kind: ValueType, vocabulary: Lexicon) ->
     if kind.kind == "text":
         return written
     found = vocabulary.value(kind.name, written)
-    if found is None and kind.kind != "names":
+    if found is None and kind.kind in ("quantity", "number"):
         found = _number(written, kind)
     if found is None:
         raise ActionFailed(f"{name} is '{written}', which isn't a {kind.name}{_instead(written, kind, vocabulary)}")

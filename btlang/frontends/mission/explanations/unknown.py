@@ -10,6 +10,7 @@ from itertools import takewhile
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.explanations.spelling_rule import is_respelling
+from btlang.frontends.mission.explanations.times import explain_time
 from btlang.frontends.mission.symbols.definitions import Definitions
 from btlang.frontends.mission.symbols.nodes import misread_node
 from btlang.frontends.mission.symbols.prefixes import span_of
@@ -37,7 +38,7 @@ def explain_unknown(
     definitions: Definitions,
     before: list[Token],
 ) -> Diagnostic:
-    """The diagnostic (BT010 to BT014, BT019, BT038) for words `at` to `end`, which nothing in the vocabulary matches.
+    """The diagnostic (BT010 to BT014, BT019, BT038, BT160) for words `at` to `end`, which nothing known matches.
 
     `context` is that of the lexer, with its pronouns.
     """
@@ -57,6 +58,9 @@ def explain_unknown(
             start, misfits = phrase, longer
     if misfits:
         return _misfit(text, start, end, misfits, vocabulary, context, definitions)
+    time = explain_time(text, at, False, vocabulary)
+    if time is not None:
+        return time
     number = vocabulary.values.number(text, at)
     for _, kind, child in vocabulary.trie.get(SLOTS, ()):
         if number is not None and text.words[number[1]] in child:  # `0 times`
@@ -139,7 +143,7 @@ def _misfit(
 ) -> Diagnostic:
     at = misfits[0].at
     types = [vocabulary.types[misfit.kind] for misfit in misfits]
-    wanted = " or ".join(f"{_article(kind.name)} {kind.name}" for kind in types)
+    wanted = " or ".join(f"{_article(kind.name)} {kind.name.replace('_', ' ')}" for kind in types)
     head = text.span(first, at).text
     example = f"{head} {_value_example(types[0], vocabulary)}"
     if text.words[at] in _NOT_A_VALUE or _is_connective(text, at, vocabulary):
@@ -148,6 +152,9 @@ def _misfit(
     if mentioned is not None and mentioned[0] is not None:
         return _wrong_type(text.span(at, mentioned[1]), mentioned[0], wanted)
     quantity, number = vocabulary.values.quantity(text, at), vocabulary.values.number(text, at)
+    time = explain_time(text, at, quantity is None and any(kind.kind == "time" for kind in types), vocabulary)
+    if time is not None:
+        return time
     if quantity is not None:
         span = text.span(at, quantity[2])
         if quantity[1] in (kind.name for kind in types):
@@ -264,9 +271,10 @@ def _unknown_phrase(
     return diagnostic("BT010", span, fix=fix, kind=kind, words=span.text, help=nearest_known(near))
 
 
-_ASKING = frozenset(("if", "unless", "whenever", "while", "until", "check", "wait_until", "condition", *QUANTIFIERS))
-
-
+_ASKING = frozenset((
+    "if", "unless", "whenever", "first_time", "as_soon_as", "while", "until", "check", "wait_until", "condition",
+    *QUANTIFIERS,
+))  # fmt: skip
 _BEFORE_ANY = frozenset(("not", "open", "and", "or", "nor", *CORRELATIVES))
 
 

@@ -71,9 +71,9 @@ def paced(count: Token, pace: Token) -> Paced:
 
 
 def set_amount(scan: Scan, opener: Token, amount: Token) -> None:
-    """A count or duration of a repeat or try, before or after its body."""
+    """A count, duration or end of a repeat or try, before or after its body."""
     if amount.kind == "count":
         opener.role = "repeat" if opener.role == "repeat" else "retry"
     else:
-        opener.role = "for"
+        opener.role = amount.kind
     opener.value = amount.value

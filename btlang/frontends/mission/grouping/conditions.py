@@ -10,13 +10,15 @@ from btlang.frontends.mission.grouping.stack import StackEntry
 from btlang.frontends.mission.token import CORRELATIVES, QUANTIFIERS, Token
 
 STARTS_OPERAND = frozenset((
-    "command", "condition", "unknown", "wait", "nothing", "fail", "not", "open", "repeat", "try", "retry", "check",
-    "wait_until", "wait_for", "wait_up_to", "whenever", "first_time", "in_parallel", "in_order", "each", "node",
-    "one_of", *QUANTIFIERS, *CORRELATIVES,
+    "command", "condition", "unknown", "wait", "wait_time", "nothing", "fail", "not", "open", "repeat", "try", "retry",
+    "check", "wait_until", "wait_for", "wait_up_to", "whenever", "first_time", "in_parallel", "in_order", "each",
+    "node", "one_of", *QUANTIFIERS, *CORRELATIVES,
 ))  # fmt: skip
 """What can only be the start of a command or condition."""
 CONDITION_FORMS = frozenset(("if", "unless", "while", "until", "provided", "as_soon_as", "stop_when"))
-AMOUNTS = frozenset(("count", "for", "up_to", "apart", "within", "every", "delay", "if_possible"))
+AMOUNTS = frozenset((
+    "count", "for", "up_to", "apart", "within", "every", "delay", "at", "every_day", "until_time", "if_possible",
+))  # fmt: skip
 """What may stand behind a command, with a condition or without."""
 
 _IN_CONDITION = frozenset(("condition", "not", "nor", "open", "close", "again", *QUANTIFIERS, *CORRELATIVES))

@@ -50,11 +50,14 @@ def group(source: Source, raw: list[Token], conditions: set[str], word: Callable
 
 
 _OPERAND: dict[str, Callable[[Scan, Token], None]] = {
-    **dict.fromkeys(("command", "condition", "unknown", "wait", "nothing", "fail"), operands.operand),
+    **dict.fromkeys(("command", "condition", "unknown", "wait", "wait_time", "nothing", "fail"), operands.operand),
     **dict.fromkeys(("if", "unless", "while", "until", "as_soon_as"), operands.form),
     **dict.fromkeys(("check", "wait_until", "wait_for", "wait_up_to"), operands.test),
     **dict.fromkeys(operands.SEPARATORS, operands.joined_block),
-    **dict.fromkeys(("repeat", "try", "if_possible", "retry", "every", "delay", "each"), operands.loop),
+    **dict.fromkeys(
+        ("repeat", "try", "if_possible", "retry", "every", "delay", "at", "every_day", "until_time", "each"),
+        operands.loop,
+    ),
     **dict.fromkeys(("whenever", "first_time"), operands.rule),
     "not": operands.negation,
     **dict.fromkeys(QUANTIFIERS, lists.quantifier),
@@ -73,7 +76,9 @@ _OPERATOR: dict[str, Callable[[Scan, Token], None]] = {
     **dict.fromkeys((*CONNECTIVES, "while_doing"), operators.connective),
     "stop": operators.stop,
     "again": operators.says_nothing,
-    **dict.fromkeys(("within", "if_possible", "every", "delay", "up_to", "apart"), operators.postfix),
+    **dict.fromkeys(
+        ("within", "if_possible", "every", "delay", "at", "every_day", "up_to", "apart"), operators.postfix
+    ),
     **dict.fromkeys(CONDITION_FORMS, operators.form_after),
     **dict.fromkeys(STARTS_OPERAND, problems.side_by_side),
     "in_parallel": operators.at_the_same_time,
@@ -82,8 +87,7 @@ _OPERATOR: dict[str, Callable[[Scan, Token], None]] = {
     "repeat": operators.repeat_after,
     "comma": operators.comma,
     "otherwise": operators.otherwise,
-    "count": operators.amount_of_form,
-    "for": operators.amount_of_form,
+    **dict.fromkeys(("count", "for", "until_time"), operators.amount_of_form),
     "close": operators.close_bracket,
     "colon": operators.colon,
 }

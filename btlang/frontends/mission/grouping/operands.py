@@ -92,7 +92,7 @@ def test(scan: Scan, token: Token) -> None:
 
 
 def loop(scan: Scan, token: Token) -> None:
-    """repeat, try, if possible, retry, every 5 s, after 5 s."""
+    """repeat, try, if possible, retry, every 5 s, after 5 s, at 6 pm, every day at 6 pm, until 6 pm."""
     if is_refused(scan, token):
         return
     following = scan.raw[scan.at + 1]
@@ -107,7 +107,7 @@ def loop(scan: Scan, token: Token) -> None:
     if token.kind == "if_possible":
         body.else_owner = body
     elif token.kind in ("repeat", "try", "retry"):
-        if following.kind == "count" or (following.kind == "for" and token.kind == "repeat"):
+        if following.kind == "count" or (following.kind in ("for", "until_time") and token.kind == "repeat"):
             set_amount(scan, opener, following)
             scan.next(following, True)
             pace = scan.raw[scan.at]

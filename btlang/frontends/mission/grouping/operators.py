@@ -47,7 +47,8 @@ def _widening(scan: Scan, token: Token) -> None:
 def comma(scan: Scan, token: Token) -> None:
     following = scan.raw[scan.at + 1]
     entry = scan.stack[-1]
-    owner = entry.count_owner if following.kind == "count" else entry.stop_owner if following.kind == "for" else None
+    is_end = following.kind in ("for", "until_time")
+    owner = entry.count_owner if following.kind == "count" else entry.stop_owner if is_end else None
     if following.kind == "otherwise" or owner is not None:
         scan.at += 1
     elif following.kind in CONNECTIVES or following.kind == "while_doing":
@@ -61,7 +62,7 @@ def comma(scan: Scan, token: Token) -> None:
     elif following.kind == "if_works":
         scan.at += 1
         if_works(scan, following)
-    elif following.kind in ("count", "for", "within", "if_possible", "provided"):
+    elif following.kind in ("count", "for", "until_time", "within", "if_possible", "provided"):
         fix = (scan.span(token), "") if is_alone(scan) else None
         advice = "Remove it." if fix else both_readings(scan, following)
         scan.fail("BT032", scan.span(token), fix, place=f"before '{scan.words(following)}'", advice=advice)
@@ -143,7 +144,7 @@ def otherwise(scan: Scan, token: Token) -> None:
 
 
 def amount_of_form(scan: Scan, token: Token) -> None:
-    """A count or `for 5 s`: closes the form that waits for one, else belongs to the command before it."""
+    """A count, `for 5 s` or `until 6 pm`: closes the form that waits for one, else belongs to the command before it."""
     entry = scan.stack[-1]
     owner = entry.count_owner if token.kind == "count" else entry.stop_owner
     if owner is None or owner.opener is None:

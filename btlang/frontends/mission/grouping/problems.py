@@ -8,7 +8,7 @@ from btlang.frontends.mission.token import Token
 from btlang.text.source import Span
 from btlang.vocabulary.language_tables import CONNECTIVES, GOES_ON
 
-_COMMANDS = frozenset(("command", "wait", "nothing", "fail", "open"))
+_COMMANDS = frozenset(("command", "wait", "wait_time", "nothing", "fail", "open"))
 _FOUND = {
     "newline": "the line ends",
     "stop": "the sentence ends",

@@ -32,8 +32,10 @@ from btlang.tree.ast import (
     Retry,
     StopWhen,
     Try,
+    UntilTime,
     UpTo,
     Wait,
+    WaitTime,
     WaitUntil,
     Whenever,
     While,
@@ -71,6 +73,8 @@ class Builder:
             return _called(value.entry, value.arguments, span)
         if token.role == "wait":
             return Wait(_amount(token), span)
+        if token.role == "wait_time":
+            return WaitTime(_amount(token), span)
         if token.role:
             return Nothing(span) if token.role == "nothing" else Fail(span)
         return self._stated(value, token.kind == "CONDITION", span)
@@ -134,7 +138,7 @@ class Builder:
         span = Span(self.source, body.span.start, token.end)
         if isinstance(token.value, Paced):
             return self._paced(token.role, token.value, body, span)
-        return self._counted(token.role, _amount(token), body, span)
+        return self._counted(token, body, span)
 
     def loop(self, opener: Token, body: Ast, otherwise: Ast | None, end: int, tried_end: int) -> Ast:
         """LOOP body [ELSE otherwise] END; `tried_end` is where the part before `otherwise` ends."""
@@ -151,7 +155,7 @@ class Builder:
         if isinstance(value, Paced):
             tried = self._paced(kind, value, body, tried_span)
         else:
-            tried = self._counted(kind, _amount(opener), body, tried_span)
+            tried = self._counted(opener, body, tried_span)
         return tried if otherwise is None else Try(tried, otherwise, span)
 
     def fronted(self, kind: str, head: Ast, body: Ast, start: int, end: int) -> Ast:
@@ -165,7 +169,8 @@ class Builder:
             return Retry(pace.rounds, body, pace.seconds, span)
         return (Every if kind == "every" else Apart)(pace.seconds, body, pace.rounds, span)
 
-    def _counted(self, kind: str, amount: str, body: Ast, span: Span) -> Ast:
+    def _counted(self, token: Token, body: Ast, span: Span) -> Ast:
+        kind, amount = token.role, _amount(token)
         if kind in ("repeat", "count"):
             return Repeat(amount or "-1", body, span)
         if kind == "retry":
@@ -174,6 +179,12 @@ class Builder:
             return Try(body, None, span)
         if kind == "every":
             return Every(amount, body, "", span)
+        if kind in ("at", "every_day"):
+            waiting = WaitTime(amount, self.span(token.start, token.end))
+            once = self.chain("sequence", (waiting, body), span.start, span.end)
+            return once if kind == "at" else Repeat("-1", once, span)
+        if kind == "until_time":
+            return UntilTime(amount, body, span)
         timed = {"for": For, "up_to": UpTo, "within": Within, "delay": Delay}[kind]
         return timed(amount, body, span)
 

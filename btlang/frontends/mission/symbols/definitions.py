@@ -22,7 +22,8 @@ from btlang.vocabulary.values import END, key_of
 
 # A line that starts with one of these compares; it defines nothing.
 _STARTS_NO_NAME = frozenset((
-    "if", "unless", "while", "until", "whenever", "otherwise", "then", "check", "wait_until",
+    "if", "unless", "while", "until", "whenever", "first_time", "as_soon_as", "otherwise", "then", "check",
+    "wait_until", "at", "every_day", "until_time",
 ))  # fmt: skip
 _NOT_IN_A_NAME = frozenset((*CONNECTIVES, "if", "unless", "while", "until", "otherwise", "provided"))
 

@@ -192,7 +192,7 @@ class Lexer:
                 end = self._unknown_end(at, last)
                 if role == INCLUDE:
                     end += words[end][0] == '"'
-                if self._explain:
+                if self._explain and not self._is_told(starts[at], ends[end - 1]):
                     self.problems.append(self._why(at, end, match if role not in NOT_ALONE else None))
                 tokens.append(Token("unknown", starts[at], ends[end - 1]))
                 at = end
@@ -228,6 +228,11 @@ class Lexer:
         """What pronouns stand for from here on."""
         for value in match.values:
             self.context.latest[value.type] = value.text if not value.more else value.more[-1]
+
+    def _is_told(self, start: int, end: int) -> bool:
+        """Whether the latest problem is about these characters already."""
+        latest = self.problems[-1].span if self.problems else None
+        return latest is not None and latest.source is self.text.source and latest.start <= start and end <= latest.end
 
     def _why(self, at: int, end: int, match: Match | None) -> Diagnostic:
         """What is wrong with words that are no phrase, or one that stands where it cannot."""

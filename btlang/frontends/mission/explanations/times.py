@@ -1,0 +1,57 @@
+"""Why words are no time of day, or why one cannot stand there."""
+
+from __future__ import annotations
+
+import re
+
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.text.source import Span
+from btlang.text.words import Words
+from btlang.vocabulary.lexicon import Lexicon
+
+_USUAL = "6:30 pm, or 18:30"
+_BESIDE_MARK = re.compile(r"(?<=\d)\s*[:.]\s*(?=\d)")
+_HALF_WITH_DOTS = re.compile(r"\s*([ap])\.\s?m\b", re.IGNORECASE)
+
+
+def explain_time(text: Words, at: int, wanted: bool, vocabulary: Lexicon) -> Diagnostic | None:
+    """BT160 for words like a time of day where none is read; None for others. `wanted`: one must stand there."""
+    values, words, source = vocabulary.values, text.words, text.source
+    time, number = values.time_of_day(text, at), values.number(text, at)
+    if time is not None:
+        if words[at].isalpha() and number is None:
+            return None  # `noon` is also a plain word
+        span = text.span(at, time[1])
+        example = f"{vocabulary.word('at')} {span.text}, wave"
+        return _problem(span, "is a time of day, and none can stand here", example)
+    if ":" in words[at] and words[at][0].isdecimal():
+        half = values.half_of_day(text, at + 1)
+        return _problem(text.span(at, half[1] if half else at + 1), "isn't a time of day", _USUAL)
+    if number is None:
+        return None
+    end = number[1]
+    span, half = text.span(at, end), values.half_of_day(text, end)
+    if half is not None:
+        return _problem(text.span(at, half[1]), "isn't a time of day", "1 pm, or 13:00")
+    if not wanted:
+        return None
+    last = end + 2 if words[end] == ":" and words[end + 1].isdecimal() else end
+    half = values.half_of_day(text, last)
+    whole = text.span(at, half[1] if half else last)
+    joined = _BESIDE_MARK.sub(":", whole.text)
+    if vocabulary.value("time_of_day", joined) is not None:
+        return _problem(whole, "isn't a time of day: it needs a ':' without blanks", joined, (whole, joined))
+    dotted = _HALF_WITH_DOTS.match(source.text, span.end)
+    if dotted is not None:
+        whole, joined = Span(source, span.start, dotted.end()), f"{span.text} {dotted[1].lower()}m"
+        return _problem(whole, "isn't a time of day: it has dots", joined)
+    hour = span.text
+    if not hour.isdecimal() or len(hour) > 2:
+        return _problem(span, "isn't a time of day", _USUAL)
+    halves = values.halves_of_day if 1 <= int(hour) <= 12 else []
+    ways = ", or ".join((*(f"{hour} {half}" for half in halves), f"{hour}:00" if int(hour) < 24 else _USUAL))
+    return _problem(span, "isn't a time of day: it needs am, pm or a ':'", ways)
+
+
+def _problem(span: Span, problem: str, example: str, fix: tuple[Span, str] | None = None) -> Diagnostic:
+    return diagnostic("BT160", span, fix=fix, words=span.text, problem=problem, example=example)
