@@ -5,34 +5,24 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.diagnostics.errors import MissionError
 from btlang.passes.compilation import Compilation
+from btlang.passes.lower_time import TIMED
+from btlang.passes.lowered import Lowered, new_node, new_round
 from btlang.passes.scope import Scope
-from btlang.passes.scripts import assignment, behind, comparison, prepared, script
-from btlang.record import Record
+from btlang.passes.scripts import assignment, behind, comparison, prepared
 from btlang.text.source import Span
 from btlang.tree import ast
-from btlang.tree.catalogue import CATALOGUE, MOST_NODES, ON_FAILURE, ON_SUCCESS, SUBTREE
+from btlang.tree.catalogue import CATALOGUE, ON_FAILURE, ON_SUCCESS, SUBTREE
 from btlang.tree.model import NodeModel
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import fold
 from btlang.vocabulary.entry import MEASURED
-from btlang.vocabulary.references import keys_in
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-_LARGE = MOST_NODES // 10  # nodes
 _CHAINS = {"sequence": "Sequence", "all": "Sequence", "fallback": "Fallback", "any": "Fallback", "parallel": "Parallel"}
-
-
-class Lowered(Record):
-    """A node, whether it can end SKIPPED, and whether it is `endless`: it runs until it fails or is stopped."""
-
-    node: Node
-    can_skip: bool = False
-    endless: bool = False
 
 
 def lower_names(compilation: Compilation) -> Iterator[Diagnostic]:
@@ -63,19 +53,6 @@ def lower(root: ast.Ast, scope: Scope) -> Lowered:
 def lower_one(item: ast.Ast, done: list[Lowered], scope: Scope) -> Lowered:
     """What one piece of syntax makes of its lowered parts."""
     return _LOWER[type(item)](item, done, scope)
-
-
-def _node(node_id: str, children: Sequence[Node], span: Span, **ports: str) -> Node:
-    return Node(node_id, tuple(children), tuple(ports.items()), span=span)
-
-
-def _round(body: Lowered) -> Node:
-    """A skipped round counts as a round."""
-    if not body.can_skip:
-        return body.node
-    span = body.node.span
-    assert span is not None
-    return _node("Sequence", (body.node, _node("AlwaysSuccess", (), span)), span)
 
 
 def _negated(negated: bool, condition: Node) -> Node:
@@ -128,7 +105,7 @@ def _for_each(item: ast.ForEach, done: list[Lowered], scope: Scope) -> Lowered:
     for text in item.values:
         scripts, ports = prepared([(item.key, text)], scope, {item.key: item.kind})
         rounds.append(behind(scripts, Node(SUBTREE, (), (("ID", name), *ports, *shared), span=item.span)))
-    node = rounds[0] if len(rounds) == 1 else _node("Sequence", rounds, item.span)
+    node = rounds[0] if len(rounds) == 1 else new_node("Sequence", rounds, item.span)
     return Lowered(node, done[0].can_skip, done[0].endless)
 
 
@@ -138,7 +115,7 @@ def _chain(item: ast.Chain, done: list[Lowered], scope: Scope) -> Lowered:
     if item.operator == "parallel":
         return _parallel(item, done)
     children, endless = [part.node for part in done], [part.endless for part in done]
-    node = _node(_CHAINS[item.operator], children, item.span)
+    node = new_node(_CHAINS[item.operator], children, item.span)
     never_ends = any(endless) if item.operator == "sequence" else all(endless)
     return Lowered(node, all(part.can_skip for part in done), never_ends)
 
@@ -147,12 +124,12 @@ def _parallel(item: ast.Chain, done: list[Lowered]) -> Lowered:
     """Parts that never end last as long as the others."""
     ending = sum(not part.endless for part in done)
     ports = {"success_count": str(ending), "failure_count": "1"} if 0 < ending < len(done) else {}
-    return Lowered(_node("Parallel", [_round(part) for part in done], item.span, **ports), False, ending == 0)
+    return Lowered(new_node("Parallel", [new_round(part) for part in done], item.span, **ports), False, ending == 0)
 
 
 def _at_least(item: ast.AtLeast, done: list[Lowered], _scope: Scope) -> Lowered:
     ports = {"success_count": str(item.number), "failure_count": str(len(done) - item.number + 1)}
-    return Lowered(_node("Parallel", [part.node for part in done], item.span, **ports))
+    return Lowered(new_node("Parallel", [part.node for part in done], item.span, **ports))
 
 
 def _ruled(item: ast.Chain, done: list[Lowered], scope: Scope) -> Lowered:
@@ -175,174 +152,65 @@ def _whenever(item: ast.Whenever, done: list[Lowered], _scope: Scope) -> Lowered
     """A rule alone watches for ever."""
     ports = {"once": "true"} if item.once else {}
     children = done[0].node, done[1].node, _for_ever(item.span)
-    return Lowered(_node("Whenever", children, item.span, **ports), False, True)
+    return Lowered(new_node("Whenever", children, item.span, **ports), False, True)
 
 
 def _for_ever(span: Span) -> Node:
-    return _node("KeepRunningUntilFailure", (_node("AlwaysSuccess", (), span),), span)
+    return new_node("KeepRunningUntilFailure", (new_node("AlwaysSuccess", (), span),), span)
 
 
 def _not(item: ast.Not, done: list[Lowered], _scope: Scope) -> Lowered:
-    return Lowered(_node("Inverter", [done[0].node], item.span))
+    return Lowered(new_node("Inverter", [done[0].node], item.span))
 
 
 def _if(item: ast.If, done: list[Lowered], _scope: Scope) -> Lowered:
     condition = _negated(item.negated, done[0].node)
     if item.otherwise is None:
-        skipped = _node("AlwaysSuccess", (), item.span, _skipIf="true")
-        return Lowered(_node("IfThenElse", (condition, done[1].node, skipped), item.span), True)
+        skipped = new_node("AlwaysSuccess", (), item.span, _skipIf="true")
+        return Lowered(new_node("IfThenElse", (condition, done[1].node, skipped), item.span), True)
     branches = done[1], done[2]
     children = (condition, *(branch.node for branch in branches))
-    return Lowered(_node("IfThenElse", children, item.span), any(branch.can_skip for branch in branches))
+    return Lowered(new_node("IfThenElse", children, item.span), any(branch.can_skip for branch in branches))
 
 
 def _while(item: ast.While, done: list[Lowered], _scope: Scope) -> Lowered:
     condition = _negated(item.negated, done[0].node)
-    again = _node("Repeat", [_round(done[1])], item.span, num_cycles="-1")
-    otherwise = done[2] if item.otherwise is not None else Lowered(_node("AlwaysSuccess", (), item.span))
-    return Lowered(_node("WhileDoElse", (condition, again, otherwise.node), item.span), otherwise.can_skip)
+    again = new_node("Repeat", [new_round(done[1])], item.span, num_cycles="-1")
+    otherwise = done[2] if item.otherwise is not None else Lowered(new_node("AlwaysSuccess", (), item.span))
+    return Lowered(new_node("WhileDoElse", (condition, again, otherwise.node), item.span), otherwise.can_skip)
 
 
 def _if_works(item: ast.IfWorks, done: list[Lowered], _scope: Scope) -> Lowered:
-    skipped = _node("AlwaysSuccess", (), item.span, _skipIf="true")
+    skipped = new_node("AlwaysSuccess", (), item.span, _skipIf="true")
     branches = done[1], done[2] if item.otherwise is not None else Lowered(skipped, True)
     parts = done[0], *branches
-    return Lowered(_node("IfThenElse", [part.node for part in parts], item.span), any(part.can_skip for part in parts))
+    return Lowered(
+        new_node("IfThenElse", [part.node for part in parts], item.span), any(part.can_skip for part in parts)
+    )
 
 
 def _stop_when(item: ast.StopWhen, done: list[Lowered], _scope: Scope) -> Lowered:
-    stopped = _node("AlwaysSuccess", (), item.span)
+    stopped = new_node("AlwaysSuccess", (), item.span)
     children = (_negated(True, done[0].node), done[1].node, stopped)
-    return Lowered(_node("WhileDoElse", children, item.span), done[1].can_skip)
+    return Lowered(new_node("WhileDoElse", children, item.span), done[1].can_skip)
 
 
 def _provided(item: ast.Provided, done: list[Lowered], _scope: Scope) -> Lowered:
-    return Lowered(_node("ReactiveSequence", [part.node for part in done], item.span), False, done[1].endless)
+    return Lowered(new_node("ReactiveSequence", [part.node for part in done], item.span), False, done[1].endless)
 
 
 def _repeat(item: ast.Repeat, done: list[Lowered], _scope: Scope) -> Lowered:
     endless = item.rounds == "-1" or done[0].endless
-    return Lowered(_node("Repeat", [_round(done[0])], item.span, num_cycles=item.rounds), False, endless)
-
-
-def _retry(item: ast.Retry, done: list[Lowered], scope: Scope) -> Lowered:
-    body = _round(done[0])
-    scripts: list[Node] = []
-    if item.pause:
-        scripts, time = _timed(item.pause, scope)
-        pause = _node("Sequence", (_timer(time), _node("AlwaysFailure", (), item.span)), item.span)
-        body = _node("Fallback", (body, pause), item.span)
-    node = _node("RetryUntilSuccessful", [body], item.span, num_attempts=item.attempts)
-    return Lowered(behind(scripts, node))
+    return Lowered(new_node("Repeat", [new_round(done[0])], item.span, num_cycles=item.rounds), False, endless)
 
 
 def _try(item: ast.Try, done: list[Lowered], _scope: Scope) -> Lowered:
     if item.otherwise is None:
-        return Lowered(_node("ForceSuccess", [done[0].node], item.span), done[0].can_skip)
+        return Lowered(new_node("ForceSuccess", [done[0].node], item.span), done[0].can_skip)
     tried, otherwise = done[0].node, [done[1].node]
     if isinstance(item.otherwise, ast.Chain) and item.otherwise.operator == "fallback" and not item.otherwise.bracketed:
         otherwise = list(done[1].node.children)  # equal nodes without brackets are one
-    return Lowered(_node("Fallback", [tried, *otherwise], item.span), all(part.can_skip for part in done))
-
-
-def _timed(seconds: str, scope: Scope) -> tuple[list[Node], str]:
-    """A time as whole milliseconds of a port; one that is only known when it runs is computed before."""
-    [key] = list(keys_in(seconds)) or [""]
-    if not key:
-        return [], str(round(float(seconds) * 1000))
-    made = scope.new_key()
-    return [script(f"{made} := {key} * 1000")], f"{{{made}}}"
-
-
-def _timer(milliseconds: str) -> Node:
-    """The Sleep inside `for` and `every`: no sentence of its own, so that no log tells of it as a command."""
-    return Node("Sleep", (), (("msec", milliseconds),))
-
-
-def _within(item: ast.Within, done: list[Lowered], scope: Scope) -> Lowered:
-    scripts, limit = _timed(item.seconds, scope)
-    return Lowered(behind(scripts, _node("Timeout", [_round(done[0])], item.span, msec=limit)))
-
-
-def _for(item: ast.For, done: list[Lowered], scope: Scope) -> Lowered:
-    scripts, time = _timed(item.seconds, scope)
-    return Lowered(behind(scripts, _again_beside(_timer(time), item, done[0])))
-
-
-def _until_time(item: ast.UntilTime, done: list[Lowered], _scope: Scope) -> Lowered:
-    return Lowered(_again_beside(Node("WaitForTime", (), (("time", item.time),)), item, done[0]))
-
-
-def _again_beside(timer: Node, item: ast.Ast, body: Lowered) -> Node:
-    """The body over and over, until the timer succeeds."""
-    again = _node("Repeat", [_round(body)], item.span, num_cycles="-1")
-    return _node("Parallel", (timer, again), item.span, success_count="1", failure_count="1")
-
-
-def _up_to(item: ast.UpTo, done: list[Lowered], scope: Scope) -> Lowered:
-    scripts, time = _timed(item.seconds, scope)
-    children = _timer(time), _round(done[0])
-    return Lowered(behind(scripts, _node("Parallel", children, item.span, success_count="1", failure_count="1")))
-
-
-def _every(item: ast.Every, done: list[Lowered], scope: Scope) -> Lowered:
-    scripts, time = _timed(item.seconds, scope)
-    together = _node("Parallel", (_round(done[0]), _timer(time)), item.span)
-    node = _node("Repeat", [together], item.span, num_cycles=item.rounds or "-1")
-    return Lowered(behind(scripts, node), False, item.rounds in ("", "-1"))
-
-
-def _apart(item: ast.Apart, done: list[Lowered], scope: Scope) -> Lowered:
-    """The first round, then the others with a delay before each; BT042 where what is said twice is too large."""
-    body = _round(done[0])
-    if item.rounds == "1":
-        return Lowered(body, False, done[0].endless)
-    if _is_large(body):
-        raise MissionError([diagnostic("BT042", item.span, limit=f"{MOST_NODES:,}")])
-    scripts, time = _timed(item.seconds, scope)
-    if item.rounds[:1] == "{":
-        rest = scope.new_key()
-        scripts.append(script(f"{rest} := {item.rounds[1:-1]} - 1"))
-        rounds = f"{{{rest}}}"
-    else:
-        rounds = item.rounds if item.rounds == "-1" else str(int(item.rounds) - 1)
-    others = _node("Repeat", [_node("Delay", [body], item.span, delay_msec=time)], item.span, num_cycles=rounds)
-    node = _node("Sequence", (body, others), item.span)
-    return Lowered(behind(scripts, node), False, rounds == "-1" or done[0].endless)
-
-
-def _is_large(root: Node) -> bool:
-    """Whether a node and all below it are too many to be said twice."""
-    found, stack = 0, [root]
-    while stack and found < _LARGE:
-        node = stack.pop()
-        found += 1
-        stack += node.children
-    return found >= _LARGE
-
-
-def _delay(item: ast.Delay, done: list[Lowered], scope: Scope) -> Lowered:
-    scripts, time = _timed(item.seconds, scope)
-    node = _node("Delay", [done[0].node], item.span, delay_msec=time)
-    return Lowered(behind(scripts, node), done[0].can_skip and not scripts, done[0].endless)
-
-
-def _wait(item: ast.Wait, _done: list[Lowered], scope: Scope) -> Lowered:
-    scripts, time = _timed(item.seconds, scope)
-    return Lowered(behind(scripts, _node("Sleep", (), item.span, msec=time)))
-
-
-def _wait_until(item: ast.WaitUntil, done: list[Lowered], scope: Scope) -> Lowered:
-    scripts: list[Node] = []
-    asked = done[0].node
-    if item.held:
-        scripts, time = _timed(item.held, scope)
-        asked = _node("ReactiveSequence", (asked, _timer(time)), item.span)
-    return Lowered(behind(scripts, _node("RetryUntilSuccessful", [asked], item.span, num_attempts="-1")))
-
-
-def _wait_time(item: ast.WaitTime, _done: list[Lowered], _scope: Scope) -> Lowered:
-    return Lowered(_node("WaitForTime", (), item.span, time=item.time))
+    return Lowered(new_node("Fallback", [tried, *otherwise], item.span), all(part.can_skip for part in done))
 
 
 def _check(_item: ast.Check, done: list[Lowered], _scope: Scope) -> Lowered:
@@ -367,7 +235,7 @@ def _never_ends(node: Node, endless: Sequence[bool], scope: Scope) -> bool:
 
 
 def _always(node_id: str) -> Callable[[ast.Ast, list[Lowered], Scope], Lowered]:
-    return lambda item, _done, _scope: Lowered(_node(node_id, (), item.span))
+    return lambda item, _done, _scope: Lowered(new_node(node_id, (), item.span))
 
 
 _LOWER: dict[type[ast.Ast], Callable[[Any, list[Lowered], Scope], Lowered]] = {
@@ -387,18 +255,8 @@ _LOWER: dict[type[ast.Ast], Callable[[Any, list[Lowered], Scope], Lowered]] = {
     ast.IfWorks: _if_works,
     ast.StopWhen: _stop_when,
     ast.Repeat: _repeat,
-    ast.Retry: _retry,
     ast.Try: _try,
-    ast.Within: _within,
-    ast.For: _for,
-    ast.UpTo: _up_to,
-    ast.Every: _every,
-    ast.Apart: _apart,
-    ast.Delay: _delay,
-    ast.Wait: _wait,
-    ast.WaitUntil: _wait_until,
-    ast.WaitTime: _wait_time,
-    ast.UntilTime: _until_time,
+    **TIMED,
     ast.Check: _check,
     ast.Nothing: _always("AlwaysSuccess"),
     ast.Fail: _always("AlwaysFailure"),

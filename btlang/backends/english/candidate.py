@@ -9,7 +9,8 @@ import re
 from collections.abc import Mapping
 
 from btlang.backends.english.type_inference import Around
-from btlang.passes.lower import Lowered, lower_one
+from btlang.passes.lower import lower_one
+from btlang.passes.lowered import Lowered
 from btlang.passes.scope import Scope
 from btlang.record import Record
 from btlang.tree import ast

@@ -41,8 +41,11 @@ def no_operand(scan: Scan, token: Token) -> None:
 
 
 def nothing_there(scan: Scan, token: Token, before: Token | None) -> None:
+    entry = scan.stack[-1]
     if token.kind == "close" and before is not None and before.kind == "open":
         scan.fail("BT025", scan.span(before, token))
+    elif token.kind == "close" and entry.kind == "bracket" and not entry.statement and entry.opener is not None:
+        scan.fail("BT025", scan.span(entry.opener, token))  # `( ; )`
     elif before is not None and before.kind == "define":
         words = scan.words(before)
         scan.fail("BT020", scan.span(before), wanted="command", word=words, found="nothing does")

@@ -1,0 +1,147 @@
+"""Forms of time as nodes: waiting, limits, delays, and rounds with a time of their own."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+
+from btlang.diagnostics.diagnostic import diagnostic
+from btlang.diagnostics.errors import MissionError
+from btlang.passes.lowered import Lowered, new_node, new_round
+from btlang.passes.scope import Scope
+from btlang.passes.scripts import behind, script
+from btlang.tree import ast
+from btlang.tree.catalogue import MOST_NODES
+from btlang.tree.node import Node
+from btlang.vocabulary.references import keys_in
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+_LARGE = MOST_NODES // 10  # nodes
+
+
+def _retry(item: ast.Retry, done: list[Lowered], scope: Scope) -> Lowered:
+    body = new_round(done[0])
+    scripts: list[Node] = []
+    if item.pause:
+        scripts, time = _timed(item.pause, scope)
+        pause = new_node("Sequence", (_timer(time), new_node("AlwaysFailure", (), item.span)), item.span)
+        body = new_node("Fallback", (body, pause), item.span)
+    node = new_node("RetryUntilSuccessful", [body], item.span, num_attempts=item.attempts)
+    return Lowered(behind(scripts, node))
+
+
+def _timed(seconds: str, scope: Scope) -> tuple[list[Node], str]:
+    """A time as whole milliseconds of a port; one that is only known when it runs is computed before."""
+    [key] = list(keys_in(seconds)) or [""]
+    if not key:
+        return [], str(round(float(seconds) * 1000))
+    made = scope.new_key()
+    return [script(f"{made} := {key} * 1000")], f"{{{made}}}"
+
+
+def _timer(milliseconds: str) -> Node:
+    """The Sleep inside `for` and `every`: no sentence of its own, so that no log tells of it as a command."""
+    return Node("Sleep", (), (("msec", milliseconds),))
+
+
+def _within(item: ast.Within, done: list[Lowered], scope: Scope) -> Lowered:
+    scripts, limit = _timed(item.seconds, scope)
+    return Lowered(behind(scripts, new_node("Timeout", [new_round(done[0])], item.span, msec=limit)))
+
+
+def _for(item: ast.For, done: list[Lowered], scope: Scope) -> Lowered:
+    scripts, time = _timed(item.seconds, scope)
+    return Lowered(behind(scripts, _again_beside(_timer(time), item, done[0])))
+
+
+def _until_time(item: ast.UntilTime, done: list[Lowered], _scope: Scope) -> Lowered:
+    return Lowered(_again_beside(Node("WaitForTime", (), (("time", item.time),)), item, done[0]))
+
+
+def _again_beside(timer: Node, item: ast.Ast, body: Lowered) -> Node:
+    """The body over and over, until the timer succeeds."""
+    again = new_node("Repeat", [new_round(body)], item.span, num_cycles="-1")
+    return new_node("Parallel", (timer, again), item.span, success_count="1", failure_count="1")
+
+
+def _up_to(item: ast.UpTo, done: list[Lowered], scope: Scope) -> Lowered:
+    scripts, time = _timed(item.seconds, scope)
+    children = _timer(time), new_round(done[0])
+    return Lowered(behind(scripts, new_node("Parallel", children, item.span, success_count="1", failure_count="1")))
+
+
+def _every(item: ast.Every, done: list[Lowered], scope: Scope) -> Lowered:
+    scripts, time = _timed(item.seconds, scope)
+    together = new_node("Parallel", (new_round(done[0]), _timer(time)), item.span)
+    node = new_node("Repeat", [together], item.span, num_cycles=item.rounds or "-1")
+    return Lowered(behind(scripts, node), False, item.rounds in ("", "-1"))
+
+
+def _apart(item: ast.Apart, done: list[Lowered], scope: Scope) -> Lowered:
+    """The first round, then the others with a delay before each; BT042 where what is said twice is too large."""
+    body = new_round(done[0])
+    if item.rounds == "1":
+        return Lowered(body, False, done[0].endless)
+    if _is_large(body):
+        raise MissionError([diagnostic("BT042", item.span, limit=f"{MOST_NODES:,}")])
+    scripts, time = _timed(item.seconds, scope)
+    if item.rounds[:1] == "{":
+        rest = scope.new_key()
+        scripts.append(script(f"{rest} := {item.rounds[1:-1]} - 1"))
+        rounds = f"{{{rest}}}"
+    else:
+        rounds = item.rounds if item.rounds == "-1" else str(int(item.rounds) - 1)
+    others = new_node("Repeat", [new_node("Delay", [body], item.span, delay_msec=time)], item.span, num_cycles=rounds)
+    node = new_node("Sequence", (body, others), item.span)
+    return Lowered(behind(scripts, node), False, rounds == "-1" or done[0].endless)
+
+
+def _is_large(root: Node) -> bool:
+    """Whether a node and all below it are too many to be said twice."""
+    found, stack = 0, [root]
+    while stack and found < _LARGE:
+        node = stack.pop()
+        found += 1
+        stack += node.children
+    return found >= _LARGE
+
+
+def _delay(item: ast.Delay, done: list[Lowered], scope: Scope) -> Lowered:
+    scripts, time = _timed(item.seconds, scope)
+    node = new_node("Delay", [done[0].node], item.span, delay_msec=time)
+    return Lowered(behind(scripts, node), done[0].can_skip and not scripts, done[0].endless)
+
+
+def _wait(item: ast.Wait, _done: list[Lowered], scope: Scope) -> Lowered:
+    scripts, time = _timed(item.seconds, scope)
+    return Lowered(behind(scripts, new_node("Sleep", (), item.span, msec=time)))
+
+
+def _wait_until(item: ast.WaitUntil, done: list[Lowered], scope: Scope) -> Lowered:
+    scripts: list[Node] = []
+    asked = done[0].node
+    if item.held:
+        scripts, time = _timed(item.held, scope)
+        asked = new_node("ReactiveSequence", (asked, _timer(time)), item.span)
+    return Lowered(behind(scripts, new_node("RetryUntilSuccessful", [asked], item.span, num_attempts="-1")))
+
+
+def _wait_time(item: ast.WaitTime, _done: list[Lowered], _scope: Scope) -> Lowered:
+    return Lowered(new_node("WaitForTime", (), item.span, time=item.time))
+
+
+TIMED: dict[type[ast.Ast], Callable[[Any, list[Lowered], Scope], Lowered]] = {
+    ast.Retry: _retry,
+    ast.Within: _within,
+    ast.For: _for,
+    ast.UpTo: _up_to,
+    ast.Every: _every,
+    ast.Apart: _apart,
+    ast.Delay: _delay,
+    ast.Wait: _wait,
+    ast.WaitUntil: _wait_until,
+    ast.WaitTime: _wait_time,
+    ast.UntilTime: _until_time,
+}
