@@ -2,17 +2,20 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
-from btlang.text.source import NOWHERE
+from btlang.text.source import NOWHERE, Span
 from btlang.tree.catalogue import CATALOGUE, SUBTREE
 from btlang.tree.node import Node
+from btlang.vocabulary.lexicon import Lexicon
 
 Holders = Mapping[str, Node]
 """Resource -> a leaf (or name) that holds it."""
 
+_JOINS = re.compile(r'[^\n;."()]*')
 _NONE: Holders = {}  # one for all
 
 
@@ -26,7 +29,7 @@ def check_resources(compilation: Compilation) -> list[Diagnostic]:
     def combine(node: Node, children: Sequence[Holders], named: dict[str, Holders]) -> Holders:
         if children:
             if node.id in at_once:
-                problems.extend(_conflicts(children))
+                problems.extend(_conflicts(children, vocabulary))
             return _joined(children)
         resources = named.get(node.port("ID"), ()) if node.id == SUBTREE else needs.get(node.id)
         return dict.fromkeys(resources, node) if resources else _NONE
@@ -47,26 +50,48 @@ def _joined(holders: Sequence[Holders]) -> Holders:
     return joined
 
 
-def _conflicts(parts: Sequence[Holders]) -> list[Diagnostic]:
+def _conflicts(parts: Sequence[Holders], vocabulary: Lexicon) -> list[Diagnostic]:
     """Each resource that two of the parts hold, once."""
     held: dict[str, Node] = {}
     found: list[Diagnostic] = []
     told: set[str] = set()
     for part in parts:
         both = sorted(held.keys() & part.keys() - told)
-        found += [_conflict(resource, held[resource], part[resource]) for resource in both]
+        found += [_conflict(resource, held[resource], part[resource], vocabulary) for resource in both]
         told.update(both)
         held = {**part, **held}
     return found
 
 
-def _conflict(resource: str, first: Node, second: Node) -> Diagnostic:
+def _conflict(resource: str, first: Node, second: Node, vocabulary: Lexicon) -> Diagnostic:
     one, other = (node.id if node.span is None else node.span.text for node in (first, second))
     notes = ((first.span, f"this needs the {resource} too"),) if first.span is not None else ()
-    fixed = f"{one} then {other}"
+    fixed = f"{one} {vocabulary.word('then')} {other}"
+    fix = None
     if one[:1] == "<":
         fixed = f"<Sequence> {one} {other} </Sequence>"
     elif first.span is None or one[:1] == '"':  # of JSON
         fixed = f"{first.id} and {second.id} as children of a Sequence"
-    span = second.span or NOWHERE
-    return diagnostic("BT041", span, notes, resource=resource, first=one, second=other, fixed=fixed)
+    elif second.span is not None:
+        fix = _one_after_the_other(first.span, second.span, vocabulary)
+        fixed = _sentence_with(*fix) if fix is not None else fixed
+    problem = diagnostic(
+        "BT041", second.span or NOWHERE, notes, fix, resource=resource, first=one, second=other, fixed=fixed
+    )
+    return problem.replace(readings=() if fix is None else (fix,))  # type: ignore[no-any-return]
+
+
+def _one_after_the_other(first: Span, second: Span, vocabulary: Lexicon) -> tuple[Span, str] | None:
+    """The word `and` that joins them, which may stand behind a later part of the list, as `then`."""
+    source, text = first.source, first.source.text
+    if second.source is not source or not _JOINS.fullmatch(text[first.end : second.start]):
+        return None
+    joint = re.compile(rf"[^\n;.\"]*?\b({re.escape(vocabulary.word('and'))})\b", re.IGNORECASE).match(text, first.end)
+    return None if joint is None else (Span(source, *joint.span(1)), vocabulary.word("then"))
+
+
+def _sentence_with(span: Span, words: str) -> str:
+    text = span.source.text
+    start = max(text.rfind("\n", 0, span.start), text.rfind(". ", 0, span.start), text.rfind(";", 0, span.start)) + 1
+    end = min((at for at in (text.find(mark, span.end) for mark in "\n.;") if at >= 0), default=len(text))
+    return f"{text[start : span.start]}{words}{text[span.end : end]}".strip()
