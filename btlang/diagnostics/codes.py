@@ -155,6 +155,8 @@ _ALL = (
     Code("BT142", "English can't express this tree: {reason}."),
     Code("BT150", "'{words}' doesn't fit here: {reason}.", "Write for example: {example}"),
     Code("BT151", "'{words}' can be read in two ways.", "Write what you mean: {one}\nOr: {other}"),
+    Code("BT155", "'{words}' forbids something, but a mission only says what the robot does.",
+         "Write for example: {example}"),
     Code("BT160", "'{words}' {problem}.", "Write for example: {example}"),
 )  # fmt: skip
 

@@ -39,8 +39,8 @@ _NO_SLOT = (
     "if", "unless", "while", "until", "whenever", "first_time", "as_soon_as", "once", "provided", "stop_when", "not",
     "either", "both", "neither", "nor", "not_both", "any_of", "all_of", "none_of", "one_of",
     "do_that", "repeat_that", "again", "start_over", "everything", "here", "ordinal", "following", "keep", "fails",
-    "repeat", "try", "retry", "if_possible", "wait_until", "wait_for", "check", "nothing", "fail", "in_parallel",
-    "in_order",
+    "repeat", "try", "retry", "if_possible", "wait_until", "wait_for", "check", "nothing", "never", "fail",
+    "in_parallel", "in_order",
     "define_strong", "define", "fact", "facing",
     "set", "set_to", "increase", "decrease", "by", "remember", "remember_as", "each", "each_in", "include",
     "do", "test", "called", "with", "newline", "character", "main_name",
@@ -57,8 +57,8 @@ ROLES = {
 COMPARING = {**dict.fromkeys(COMPARISONS, "value"), "between": "low high"}
 """The ways to compare a quantity, each with the slots that its phrases hold."""
 
-EXPLAINED = (*ROLES, "compare", "politeness")
-"""What the table `about` tells of."""
+EXPLAINED = (*(role for role in ROLES if role != "never"), "compare", "politeness")
+"""What the table `about` tells of: all that can be said."""
 
 SWITCHES = frozenset(("decimal_comma",))
 

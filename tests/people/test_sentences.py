@@ -9,6 +9,8 @@ from __future__ import annotations
 
 from functools import cache
 
+import pytest
+
 from btlang.diagnostics.errors import MissionError
 from btlang.tree.node import Node
 from tests.conftest import matches_golden
@@ -56,6 +58,18 @@ def test_what_becomes_of_each() -> None:
 
 def test_what_must_be_refused_is() -> None:
     assert [sample.place for sample in SAMPLES if outcome(sample) == "read"] == []
+
+
+def test_what_is_offered_instead_can_be_pasted() -> None:
+    """The tree of the sample is that of the sentence which the message offers, but for prohibitions."""
+    for sample in SAMPLES:
+        for offered in sample.proposals:
+            compiled(offered)
+            if outcome(sample) == "other, warned" or sample.place == "waiter.txt:98":  # a part of it is offered
+                continue
+            with pytest.raises(MissionError) as raised:
+                compiled(sample.text)
+            assert offered.lower().rstrip(".") in str(raised.value).lower(), sample.place
 
 
 def test_none_is_read_otherwise_in_silence() -> None:

@@ -249,7 +249,9 @@ def _openings(vocabulary: Lexicon) -> list[tuple[str, TrieNode]]:
     """The words, up to the first slot, of the first phrase of each role and entry, and where they lead in the trie."""
     found: dict[str, TrieNode] = {}
     entries = [entry.phrases[0] for entries in vocabulary.entries.values() for entry in entries if entry.phrases]
-    roles = [phrases[0] for role, phrases in vocabulary.roles.items() if role not in (*NO_PHRASES, "politeness")]
+    roles = [
+        phrases[0] for role, phrases in vocabulary.roles.items() if role not in (*NO_PHRASES, "politeness", "never")
+    ]
     for pattern in (*entries, *roles, *vocabulary.counts):
         node, words = vocabulary.trie, []
         for part in forms(pattern, vocabulary.articles)[-1]:

@@ -60,6 +60,7 @@ _OPERAND: dict[str, Callable[[Scan, Token], None]] = {
     ),
     **dict.fromkeys(("whenever", "first_time"), operands.rule),
     "not": operands.negation,
+    "never": problems.prohibition,
     **dict.fromkeys(QUANTIFIERS, lists.quantifier),
     **dict.fromkeys(CORRELATIVES, lists.correlative),
     "one_of": lists.choice,

@@ -9,6 +9,7 @@ from btlang.text.source import Span
 from btlang.vocabulary.language_tables import CONNECTIVES, GOES_ON
 
 _COMMANDS = frozenset(("command", "wait", "wait_time", "nothing", "fail", "open"))
+_FORBIDS = frozenset(("if", "until", "while", "as_soon_as", "provided"))
 _FOUND = {
     "newline": "the line ends",
     "stop": "the sentence ends",
@@ -96,6 +97,31 @@ def otherwise_of_another(scan: Scan, otherwise: Token) -> None:
     taken, other = f"({kept}) {word} {rest}", f"{head}({done} {then} {kept}) {word} {rest}"
     problem = diagnostic("BT050", span, taken=taken, other=other, fixed=f"{kept} {word} {rest}")
     scan.problems.append(problem.replace(readings=((span, f"{text[form.start : first]}{taken}"), (span, other))))
+
+
+def prohibition(scan: Scan, token: Token) -> None:
+    """`don't A if C`, `if C, don't A`: offers what does A only where C is not so."""
+    rest = scan.raw[scan.at + 1 :]
+    end = next(at for at, each in enumerate(rest) if each.kind in ENDS)
+    form = next((at for at, each in enumerate(rest[:end]) if each.kind in _FORBIDS), end)
+    opener = scan.stack[-1].opener
+    condition = _between(scan, rest[form:end])
+    if not condition and scan.stack[-1].kind == "body" and opener is not None and opener.role == "if":
+        condition = scan.source.text[opener.end : token.start].strip(" ,")
+    what = _between(scan, [token, *rest[:form]]) or "wave"
+    example, others = f"{scan.word('unless')} {condition or '...'}, {what}", ""
+    if form < end and rest[form].kind == "until":
+        example = f"{scan.word('wait_until')} {condition}"
+    elif condition:
+        failing = f"{scan.word('whenever')} {condition}, {scan.word('fail')}"
+        others = f"Or: {what} {scan.word('stop_when')} {condition}. Or: {failing}"
+    span = scan.span(token, rest[end - 1] if end else token)
+    scan.fail("BT155", span, words=scan.words(token), example=example, help=others)
+
+
+def _between(scan: Scan, tokens: list[Token]) -> str:
+    """The text behind the first of some tokens, to the end of the last."""
+    return scan.source.text[tokens[0].end : tokens[-1].end].strip(" ,") if tokens else ""
 
 
 def is_alone(scan: Scan) -> bool:
