@@ -45,10 +45,29 @@ CASES = {
         seconds=(20, 60),
         cells=4,
     ),
+    "coffee_round": Case(
+        done=("GoTo lab", "GoTo kitchen", "Say No coffee today.", "GoTo lobby"),
+        said=("No coffee today.",),
+        at="lobby",
+        seconds=(40, 50),
+    ),
     "dance": Case(
         done=("Say Music, please!", *_SWING, "..."),
         said=("Music, please!", "Thank you, thank you!"),
         seconds=(20, 40),
+    ),
+    "evening_rounds": Case(
+        done=(*["GoTo kitchen", "GoTo lab"] * 3, "GoTo kitchen", "GoTo lobby", "TurnAround", "Say Good night.", "Nod"),
+        said=("Good night.",),
+        at="lobby",
+        seconds=(120, 145),
+    ),
+    "fetch_and_carry": Case(
+        done=(*["Say Excuse me, please."] * 2, "..."),
+        said=(*["Excuse me, please."] * 3, "Coming!"),
+        at="Alice",
+        put={"bottle": "Alice"},
+        seconds=(40, 50),
     ),
     "find_someone": Case(
         done=("GoTo kitchen", "GoTo lab", "GoTo office", "Say Hello! Nice to see you.", "Wave", "..."),
@@ -68,6 +87,21 @@ CASES = {
         seconds=(40, 50),
     ),
     "hello": Case(done=("Say hello", "Wave"), said=("hello",), seconds=(1, 10)),
+    "hide_and_seek": Case(
+        done=(
+            "Say Three, two, one. I am coming!", "LookAround", "GoTo lobby", "GoTo office", "Say I see you, Bob!",
+            *["Nod"] * 3,
+        ),
+        said=("Three, two, one. I am coming!", "I see you, Bob!"),
+        at="office",
+        seconds=(30, 36),
+    ),
+    "inspection_tour": Case(
+        done=("GoTo lab", "LookLeft", "LookRight", "GoTo hall", "LookLeft", "LookRight", "Say All is well.") * 2,
+        said=("All is well.",) * 2,
+        at="hall",
+        seconds=(40, 50),
+    ),
     "locked_lab": Case(
         world="locked_lab",
         done=(
@@ -86,6 +120,22 @@ CASES = {
         done=(*["MoveForward 0.75"] * 6, "TurnRight", "MoveForward 0.75", "TurnRight", "..."),
         said=("I can go no further.",),
         cells=6,
+    ),
+    "lost_property": Case(
+        done=("GoTo office", "PickUp book", "GoToPerson Bob", "PutDown book", "Say Is this your book, Bob?", "..."),
+        said=("Is this your book, Bob?",),
+        at="lobby",
+        put={"book": "Bob"},
+        seconds=(50, 62),
+    ),
+    "morning_exercises": Case(
+        done=(
+            "GoTo hall", "Say And up!", "RaiseBothArms", "LowerBothArms", *["TurnLeft", "TurnRight"] * 2, *["Nod"] * 2,
+            "Say Well done!",
+        ),
+        said=("And up!", "Well done!"),
+        at="hall",
+        seconds=(22, 32),
     ),
     "morning_round": Case(
         parts=("greetings",),
@@ -146,18 +196,18 @@ CASES = {
         said=("At ease!",),
         seconds=(32, 34),
     ),
-    "opening_hours": Case(
-        done=("GoTo door", "Say Good morning!", *["Say We open at three past nine."] * 4, "..."),
-        said=("Good morning!", *["We open at three past nine."] * 4, "Coffee break!"),
-        at="kitchen",
-        seconds=(250, 265),
-    ),
     "oily_floor": Case(
         world="oily_floor",
         done=("GoTo far end", "Say I cannot see the way.", "Say Help! My wheels turn, but I do not move."),
         failed=("Dock", "GoTo far end"),
         said=("I cannot see the way.", "Help! My wheels turn, but I do not move."),
         met=("fault slip", "fault silent scanner", "stuck"),
+    ),
+    "opening_hours": Case(
+        done=("GoTo door", "Say Good morning!", *["Say We open at three past nine."] * 4, "..."),
+        said=("Good morning!", *["We open at three past nine."] * 4, "Coffee break!"),
+        at="kitchen",
+        seconds=(250, 265),
     ),
     "parcels": Case(
         world="warehouse",
@@ -172,6 +222,12 @@ CASES = {
         put={"small parcel": "packing table", "big parcel": "packing table"},
     ),
     "patrol": Case(done=(*_ROUND, *_ROUND, "Say All is quiet."), said=("All is quiet.",), at="lobby", cells=20),
+    "quiet_patrol": Case(
+        done=("GoTo hall", "GoTo lab", "Say It is a long night.", "..."),
+        said=("It is a long night.",),
+        at="lobby",
+        seconds=(45, 55),
+    ),
     "roaming": Case(
         world="walled_room",
         options=("--for", "60s"),
@@ -198,11 +254,23 @@ CASES = {
         at="lobby",
         put={"red ball": "hall", "book": "hall", "bottle": "hall"},
     ),
+    "wait_for_visitors": Case(
+        done=("GoTo door", "Say Nobody came today.", "ShakeHead", "GoTo lobby"),
+        said=("Nobody came today.",),
+        at="lobby",
+        seconds=(33, 40),
+    ),
     "waiting": Case(
         code=1,
         done=("GoTo door", "Say Nobody came."),
         said=("Nobody came.",),
         at="door",
         error='otherwise say "Nobody came." then fail',
+    ),
+    "wake_up_call": Case(
+        done=("GoToPerson Carol", *["Say Good morning, Carol!"] * 3, "Wave Carol"),
+        said=("Good morning, Carol!",) * 3,
+        at="Carol",
+        seconds=(225, 240),
     ),
 }  # fmt: skip

@@ -10,6 +10,7 @@ from collections.abc import Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
+from btlang.passes.lint.endings import SKIPPED, SUCCESS, Ends, ends_of
 from btlang.record import Record
 from btlang.tree.catalogue import CATALOGUE, ON_FAILURE, ON_SUCCESS, SUBTREE
 from btlang.tree.node import Node
@@ -33,6 +34,12 @@ def cut_off(compilation: Compilation) -> list[Diagnostic]:
     """The first such action of each form; each action for its innermost form only."""
     entries = compilation.vocabulary.entries
     found: list[Diagnostic] = []
+    ends: dict[int, Ends] = {}
+
+    def end(node: Node, children: Sequence[Ends], named: dict[str, Ends]) -> Ends:
+        ends[id(node)] = ends_of(node, children, named)
+        return ends[id(node)]
+
     whole = {id for id in compilation.ids if any(entry.uninterruptible for entry in entries.get(id, ()))}
 
     def combine(node: Node, children: Sequence[Found], named: dict[str, Found]) -> Found:
@@ -43,12 +50,19 @@ def cut_off(compilation: Compilation) -> list[Diagnostic]:
             return inner and Exposed(inner.leaf, node)
         exposed = next(filter(None, children), None)
         when = _when(node) if exposed is not None else ""
+        if (
+            when == _TIME and exposed is not None and len(children) > 1
+        ):  # only if another part can succeed: `A, meanwhile B every 5 s` can't
+            others = (other for other, own in zip(node.children, children, strict=True) if own is not exposed)
+            if not any(ends[id(other)] & (SUCCESS | SKIPPED) for other in others):
+                return exposed
         if exposed is None or not when:
             return exposed
         found.extend(_told(exposed, when, compilation))
         return None
 
     if whole:
+        compilation.fold(end)
         compilation.fold(combine)
     return found
 
@@ -59,12 +73,13 @@ def _when(node: Node) -> str:
     if kind is None or not (kind.interrupts or kind.enough):
         return ""
     if kind.enough:
-        return "when the time is over" if node.port(kind.enough) == "1" else ""
+        return _TIME if node.port(kind.enough) == "1" else ""
     if kind.asks_first:
         return "as soon as the condition changes"
-    return _WHEN.get(kind.goes_on, "when the time is over")
+    return _WHEN.get(kind.goes_on, _TIME)
 
 
+_TIME = "when the time is over"
 _WHEN = {ON_SUCCESS: "as soon as the condition is false", ON_FAILURE: "as soon as the condition is true"}
 
 
