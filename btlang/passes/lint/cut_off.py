@@ -53,6 +53,8 @@ def cut_off(compilation: Compilation) -> list[Diagnostic]:
         if (
             when == _TIME and exposed is not None and len(children) > 1
         ):  # only if another part can succeed: `A, meanwhile B every 5 s` can't
+            if not ends:
+                compilation.fold(end)
             others = (other for other, own in zip(node.children, children, strict=True) if own is not exposed)
             if not any(ends[id(other)] & (SUCCESS | SKIPPED) for other in others):
                 return exposed
@@ -62,7 +64,6 @@ def cut_off(compilation: Compilation) -> list[Diagnostic]:
         return None
 
     if whole:
-        compilation.fold(end)
         compilation.fold(combine)
     return found
 

@@ -11,24 +11,27 @@ from btlang.passes.lint.other_reading import in_order, is_list
 from btlang.text.source import Span
 from btlang.tree import ast
 from btlang.tree.journeys import takes_its_time
+from btlang.vocabulary.lexicon import Lexicon
 
 
 def while_it_travels(compilation: Compilation) -> Iterator[Diagnostic]:
     """Of the word alone: `and also`, `meanwhile` and brackets say what is meant."""
-    vocabulary = compilation.vocabulary
-    joint, also, then = vocabulary.word("and"), vocabulary.word("meanwhile"), vocabulary.word("then")
     for body in ast.bodies(compilation.mission):
         for node in compilation.syntax(body):
-            if type(node) is not ast.Chain or node.operator != "parallel" or is_list(node):
-                continue
-            for left, right in pairwise(in_order(node.items)):
-                source, start, end = left.span.source, left.span.end, right.span.start
-                gap = source.text[start:end]
-                if takes_its_time(left) and gap.strip(" \t,").lower() == joint and "\n" not in source.text[start:end]:
-                    at = start + gap.lower().index(joint)
-                    word = Span(source, at, at + len(joint))
-                    span = Span(source, left.span.start, right.span.end)
-                    readings = tuple((word, other) for other in (also, then))
-                    both, after = (f"{left.span.text} {other} {right.span.text}" for other in (also, then))
-                    problem = diagnostic("BT069", span, joint=joint, both=both, after=after)
-                    yield problem.replace(readings=readings)
+            if type(node) is ast.Chain and node.operator == "parallel" and not is_list(node):
+                for left, right in pairwise(in_order(node.items)):
+                    if takes_its_time(left):
+                        yield from _told(left.span, right.span, compilation.vocabulary)
+
+
+def _told(left: Span, right: Span, vocabulary: Lexicon) -> Iterator[Diagnostic]:
+    source, joint = left.source, vocabulary.word("and")
+    gap = source.text[left.end : right.start]
+    if gap.strip(" \t,").lower() != joint or "\n" in gap:
+        return
+    at = left.end + gap.lower().index(joint)
+    word = Span(source, at, at + len(joint))
+    also, then = vocabulary.word("meanwhile"), vocabulary.word("then")
+    both, after = (f"{left.text} {other} {right.text}" for other in (also, then))
+    problem = diagnostic("BT069", Span(source, left.start, right.end), joint=joint, both=both, after=after)
+    yield problem.replace(readings=((word, also), (word, then)))

@@ -74,7 +74,8 @@ class Lexer:
         self._found = {} if has_values else self.names.phrases.fixed
         self.tokens: list[Token] = []
         self._partial = PartialCommands(self.text, self.vocabulary, self.names.definitions.trie, self.context, self)
-        self._doing_endings = tuple(self.vocabulary.doing)
+        endings = tuple(self.vocabulary.doing)
+        self._verb_forms = {word for word in self.text.distinct if word.endswith(endings)}
         self._lines()
         self.conditions = condition_names(self.tokens, self.names.included_conditions())
         """The defined names that stand for conditions."""
@@ -126,7 +127,7 @@ class Lexer:
     def _line(self, at: int, last: int) -> None:
         text, names, trie, context = self.text, self.names.definitions.trie, self.vocabulary.trie, self.context
         words, starts, ends, tokens = text.words, text.starts, text.ends, self.tokens
-        found = self._found
+        found, verb_forms = self._found, self._verb_forms
         headers, prefixes, others = self.names.definitions.headers, self.names.prefixes, self.names.others
         origin: Origin | None = None
         while at < last:
@@ -172,15 +173,8 @@ class Lexer:
                 shared = self._with_words_before(origin, match, at)
                 match = shared or match
             role = match.meaning.role if match is not None else ""
-            if match is not None and role == "ordinal" and (not tokens or tokens[-1].kind in _BEGINS):
-                at = match.last + (words[match.last] == ",")
-                continue
-            if match is not None and role == "keep" and self._partial.doing(match.last) is not None:
-                tokens.append(Token("repeat", starts[at], ends[match.last - 1], role="doing"))
-                at = match.last
-                continue
-            if word.endswith(self._doing_endings) and may_be_doing(tokens):
-                end = self._partial.add_doing(at, match)
+            if role in NOT_ALONE or word in verb_forms:
+                end = self._in_its_place(match, role, at)
                 if end:
                     at = end
                     continue
@@ -215,8 +209,19 @@ class Lexer:
                     tokens[-1].role = self.names.meanings.get(" ".join(words[at : match.last]), tokens[-1].role)
                 if role in _ROLES:
                     tokens[-1].kind = _ROLES[role][len(tokens) > 1 and tokens[-2].kind == "stop"]
-                self._note(match)
+                if match.values:
+                    self._note(match)
                 at = match.last
+
+    def _in_its_place(self, match: Match | None, role: str, at: int) -> int:
+        """Words that say something in one place only, and forms of verbs. Returns where to go on, 0 for any other."""
+        text, tokens = self.text, self.tokens
+        if match is not None and role == "ordinal" and (not tokens or tokens[-1].kind in _BEGINS):
+            return match.last + (text.words[match.last] == ",")
+        if match is not None and role == "keep" and self._partial.doing(match.last) is not None:
+            tokens.append(Token("repeat", text.starts[at], text.ends[match.last - 1], role="doing"))
+            return match.last
+        return self._partial.add_doing(at, match) if at and may_be_doing(tokens) else 0
 
     def token_of(self, match: Match, at: int) -> Token:
         """The token of a phrase, which says what pronouns stand for from here on."""
@@ -240,7 +245,7 @@ class Lexer:
 
         if match is None:
             text = self.text
-            if text.words[at].endswith(self._doing_endings) and may_be_doing(self.tokens):
+            if text.words[at] in self._verb_forms and may_be_doing(self.tokens):
                 text = with_verb(text, at, self.vocabulary.doing, self.vocabulary.trie)
             return unknown.explain_unknown(
                 text, at, end, self.vocabulary, self.context, self.names.definitions, self.tokens
