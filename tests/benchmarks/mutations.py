@@ -16,7 +16,7 @@ import random
 import re
 import traceback
 from collections import Counter
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Sequence
 from functools import cache
 from pathlib import Path
 from typing import NamedTuple
@@ -107,12 +107,13 @@ def checked(mutant: Mutant) -> Result:
     return first
 
 
-def mutants(count: int, seed: int) -> Iterator[Mutant]:
-    """So many mutants, the same for the same seed."""
+def mutants(count: int, seed: int, kinds: Sequence[str] = ()) -> Iterator[Mutant]:
+    """So many mutants, of all kinds or of some, the same for the same seed."""
+    kinds = kinds or list(KINDS)
     choose = random.Random(seed)
     made = 0
     while made < count:
-        kind = list(KINDS)[made % len(KINDS)]
+        kind = kinds[made % len(kinds)]
         mission = choose.choice(pool())
         code = re.sub(r"#[^\n]*", lambda comment: " " * len(comment[0]), mission.text)
         change = KINDS[kind](code, choose)

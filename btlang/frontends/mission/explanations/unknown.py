@@ -240,10 +240,12 @@ def _unknown_phrase(
     start = Span(text.source, before[-1].start, before[-1].end) if before else span
     if before and before[-1].kind == "command" and _ends_in_a_bare_text(before[-1]) and start.text[-1].isalnum():
         verb, _, word = start.text.rpartition(" ")
+        is_thing = at - 1 in text.articles  # `show the visitors around`: no words to say
         quoted = f'{verb} "{word} {span.text}"'
         advice = f"A text of more than one word needs quotes: {quoted}"
         whole = Span(text.source, start.start, span.end)
-        return diagnostic("BT010", span, fix=(whole, quoted), kind="word", words=span.text, help=advice)
+        fix = None if is_thing else (whole, quoted)
+        return diagnostic("BT010", span, fix=fix, kind="word", words=span.text, help=advice)
     kind = "condition" if _asks(before) else "command"
     meant = longest(vocabulary.trie, text, at + 1, vocabulary.context) if end > at + 1 else None
     is_node = text.words[at] in (phrase for role in NODE_ROLES for phrase in vocabulary.roles[role])
