@@ -98,7 +98,7 @@ def unknown_value(span: Span, key: str, known: Iterable[str]) -> Diagnostic:
 
 
 _NOT_OFFERED = NOT_ALONE | {
-    *NODE_ROLES, "called", "with", "newline", "character", "main_name", "needs_world", "needs_words",
+    *NODE_ROLES, "never", "called", "with", "newline", "character", "main_name", "needs_world", "needs_words",
 }  # fmt: skip
 """Roles that say nothing alone or are for texts that programs write: what is like their words was hardly meant so."""
 

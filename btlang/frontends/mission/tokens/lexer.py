@@ -28,8 +28,8 @@ TYPE_CHECKING = False
 _ROLES = {"if_it_works": ("if_possible", "if_works"), "in_parallel": ("in_parallel", "meanwhile")}
 """What a word is inside a statement, and where it goes on with the one before."""
 _NOT_READ = frozenset((*SEPARATORS, INCLUDE, *NOT_ALONE))
-_BEGINS = frozenset(("newline", "semi", "indent", "dedent", "open", "define", "colon"))
-"""Behind these a statement begins."""
+_BEGINS = frozenset(("newline", "semi", "indent", "dedent", "open", "define", "colon", "comma", "then"))
+"""Behind these a statement, or an item of a list, begins."""
 _NEGATED = ("negated", "negated_twice")
 _CONDITIONS = ("condition", "negated")
 _JOINING = ("and", "or")
