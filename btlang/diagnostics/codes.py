@@ -4,7 +4,7 @@ BT00x reading, BT01x words, BT02x and BT03x how a sentence is put together, BT04
 BT05x what is allowed but probably not meant, BT06x keyword files,
 BT07x worlds, BT08x the Python behind the words and what else has to be installed, BT09x the codes themselves,
 BT10x ROS 2, BT11x missions as ROS 2 nodes, BT12x trees in XML, BT13x trees that were not written as missions,
-BT14x nodes said by their ids, BT15x lists of conditions and commands.
+BT14x nodes said by their ids, BT15x lists, and words that stand for names.
 
 BT05x and others that are warnings have a `name`, by which a mission silences them: `# allow: two readings`.
 Each code has a page in `pages/`, which `btc explain` prints.
@@ -154,6 +154,7 @@ _ALL = (
     Code("BT142", "English can't express this tree: {reason}."),
     Code("BT150", "'{words}' doesn't fit here: {reason}.", "Write for example: {example}"),
     Code("BT151", "'{words}' can be read in two ways.", "Write what you mean: {one}\nOr: {other}"),
+    Code("BT152", "'{words}' doesn't fit here: {reason}.", "{advice}"),
 )  # fmt: skip
 
 CODES = {entry.code: entry for entry in _ALL}

@@ -71,6 +71,9 @@ class ReadingContext:
         reference = self._reference(text, at)
         if reference is not None and self.known and reference[0] in self.known:
             return self.known[reference[0]].kinds, f"{{{reference[0]}}}", reference[1]
+        chosen = self.values.choice(text, at)
+        if chosen is not None:
+            return chosen[0][:1], "", chosen[1]
         quantity = self.values.quantity(text, at)
         if quantity is not None:
             return (quantity[1],), format_number(quantity[0]), quantity[2]

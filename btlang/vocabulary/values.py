@@ -19,6 +19,7 @@ if TYPE_CHECKING:
 
 _LARGEST = 1e12  # beyond it no quantity of a robot makes sense, and sums stay exact
 _MOST_NUMBER_WORDS = 12
+ALL = "all"  # of the names of a type
 END = "\0"  # key of a word tree's value; no word of a text is this one
 WordTree = dict[str, "Any"]
 
@@ -111,23 +112,38 @@ class Values:
         self._number_starts = frozenset((*self._numbers, *self._multipliers, *self._fractions))
         self._units: WordTree = {}
         self._names: dict[str, WordTree] = {}
+        self._listed: dict[str, dict[str, None]] = {}
         for kind in types.values():
             for unit in kind.units:
                 for word in unit.words:
                     insert(self._units, word.split(), (kind.name, unit))
             if kind.kind == "names":
                 self._names[kind.name] = {}
+        self._nouns: WordTree = {}
+        self._choices: WordTree = {}
+        for name in self._names:
+            for noun in language["nouns"].get(name, (name,)):
+                insert(self._nouns, noun.split(), name)
+                for words in language["roles"].get("all_names", ()):
+                    insert(self._choices, [*words.split(), *noun.split()], (name, ALL))
+            for noun in language["everyone"].get(name, ()):
+                insert(self._choices, noun.split(), (name, ALL))
+        self._exceptions: WordTree = {}
+        for phrase in language["roles"].get("except", ()):
+            insert(self._exceptions, phrase.split(), True)
         self._openers: dict[str, frozenset[str]] | None = None
 
     def add_name(self, kind: str, words: str, name: str) -> None:
         """Lets the words stand for a name of a type."""
         insert(self._names[kind], words.lower().split(), name)
+        self._listed.setdefault(kind, {})[name] = None
         self._openers = None
 
     def with_names(self, names: Mapping[str, Iterable[tuple[str, str]]]) -> Values:
         """The same with further names of types, each with its words."""
         made = Values.__new__(Values)  # what `copy` does, which takes long to import
         made.__dict__.update(self.__dict__)
+        made._listed = {**self._listed, **{kind: dict(self._listed.get(kind, ())) for kind in names}}
         made._names = {**self._names, **{kind: loads(dumps(self._names[kind])) for kind in names}}
         for kind, pairs in names.items():
             for words, name in pairs:
@@ -143,7 +159,9 @@ class Values:
         if self._openers is None:
             numbers = self._number_starts
             quantities = numbers | self._joiner | self._units.keys()
-            self._openers = {kind: frozenset((*tree, *self.pronouns)) for kind, tree in self._names.items()}
+            self._openers = {
+                kind: frozenset((*tree, *self.pronouns, *self._choices)) for kind, tree in self._names.items()
+            }
             for kind, value_type in self.types.items():
                 if value_type.kind in ("number", "quantity"):
                     self._openers[kind] = numbers if value_type.kind == "number" else quantities
@@ -179,6 +197,23 @@ class Values:
                 else:
                     stack.append(child)
         return sorted(found)
+
+    def listed(self, kind: str) -> tuple[str, ...]:
+        """The same names in the order of the files and facts that bring them."""
+        return tuple(self._listed.get(kind, ()))
+
+    def noun(self, text: Words, at: int) -> tuple[str, int] | None:
+        """The type that a noun such as `places` is for, and where it ends."""
+        return find(self._nouns, text.words, at)
+
+    def choice(self, text: Words, at: int) -> tuple[tuple[str, str], int] | None:
+        """Of words such as `every place` the type and which of its names they are for, and where they end."""
+        return find(self._choices, text.words, at) if text.words[at] in self._choices else None
+
+    def exception(self, text: Words, at: int) -> int:
+        """Where a word such as `except` ends, 0 where there is none."""
+        found = find(self._exceptions, text.words, at)
+        return found[1] if found is not None else 0
 
     def takes_word(self, kind: str, word: str) -> bool:
         """Whether the one word is a value of the type."""

@@ -62,6 +62,8 @@ def _language(tables: dict[str, Any]) -> dict[str, Any]:
             made[key] = list(map(invented, value))
         elif key in ("roles", "comparisons"):
             made[key] = {name: list(map(_pattern, patterns)) for name, patterns in value.items()}
+        elif key in ("nouns", "everyone"):
+            made[key] = {kind: list(map(invented, words)) for kind, words in value.items()}
         elif key == "nodes":
             made[key] = {node_id: _pattern(words) for node_id, words in value.items()}
         elif key in ("negations", "negative_subjects", "plurals", "doing"):

@@ -9,7 +9,8 @@ from btlang.frontends.mission.token import Assigned, Each, Remembered, Token
 from btlang.text.words import Words
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import Known, ReadingContext
-from btlang.vocabulary.trie import Match, SlotValue, longest, reaches_beyond
+from btlang.vocabulary.trie import Match, SlotValue, all_names, longest, reaches_beyond
+from btlang.vocabulary.values import ALL
 
 
 def read_statement(
@@ -82,13 +83,21 @@ def _each(
     inner = ReadingContext(vocabulary.values, others)
     first = inner.any(text, prefix.value)
     kinds = (prefix.key,) if prefix.key in vocabulary.types else first[0] if first is not None else ()
-    lists = [(kind, _listed(kind, text, prefix.value, vocabulary, inner)) for kind in kinds]
-    if not lists or not any(found for _, found in lists):
-        return None
-    kind, found = max(lists, key=lambda one: len(one[1]))
-    made = Each(prefix.key, kind, tuple(port_text(value) for value in found))
+    chosen = ((prefix.kind, ALL), prefix.last) if prefix.kind else inner.values.choice(text, prefix.value)
+    if chosen is not None and chosen[0][1] == ALL:
+        kind = chosen[0][0]
+        every = all_names(vocabulary.trie, kind, text, prefix.value, chosen[1], inner)
+        values = port_text(every), *every.more
+        last = every.last
+    else:
+        lists = [(kind, _listed(kind, text, prefix.value, vocabulary, inner)) for kind in kinds]
+        if not lists or not any(found for _, found in lists):
+            return None
+        kind, found = max(lists, key=lambda one: len(one[1]))
+        values = tuple(port_text(value) for value in found)
+        last = found[-1].last
+    made = Each(prefix.key, kind, values)
     context.latest[kind] = f"{{{prefix.key}}}"
-    last = found[-1].last
     return Token("each", text.starts[at], text.ends[last - 1], made), last
 
 

@@ -317,6 +317,10 @@ class Lexer:
     def _port_text(self, value: SlotValue) -> str:
         """The text of a value; the names in braces in it become keys (BT043 where nothing has such a name)."""
         text = value.text
+        if not text and self.context.types[value.type].kind == "names":
+            from btlang.frontends.mission.explanations import nameless  # most missions have names
+
+            self.problems.append(nameless.explained(self.text, value, self.context))
         if "{" not in text or self.context.types[value.type].kind != "text":
             return text
         text = renamed(text, lambda name: key_of(self.vocabulary.orthography.words(name)))
