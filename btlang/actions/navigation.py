@@ -3,14 +3,27 @@
 from __future__ import annotations
 
 from btlang.actions.motion import Steps
+from btlang.actions.points import where
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.capabilities import Navigation
+from btlang.robots.geometry import Pose
 from btlang.robots.robot import Operation
 
 
-def go_to(robot: Navigation, place: str) -> Steps:
-    """Drives to a place and faces as the place says."""
-    yield from travel(robot, place)
+def go_to(
+    robot: Navigation,
+    place: str | None = None,
+    x: float | None = None,
+    y: float | None = None,
+    facing: float | None = None,
+) -> Steps:
+    """Drives to a place and faces as the place says, or to a point."""
+    if place is not None:
+        yield from travel(robot, place)
+        return
+    point = where(robot, place, x, y)
+    heading = robot.pose.heading + robot.pose.bearing_to(point) if facing is None else facing
+    yield from accomplish(robot.navigate_to_pose(Pose(*point, heading)))
 
 
 def go_to_person(robot: Navigation, person: str) -> Steps:

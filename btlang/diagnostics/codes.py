@@ -155,6 +155,7 @@ _ALL = (
     Code("BT150", "'{words}' doesn't fit here: {reason}.", "Write for example: {example}"),
     Code("BT151", "'{words}' can be read in two ways.", "Write what you mean: {one}\nOr: {other}"),
     Code("BT152", "'{words}' doesn't fit here: {reason}.", "{advice}"),
+    Code("BT153", "A point such as '{words}' doesn't fit here: a place with a name is needed.", "Name it in a line of its own: {fact}"),
 )  # fmt: skip
 
 CODES = {entry.code: entry for entry in _ALL}

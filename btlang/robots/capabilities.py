@@ -147,6 +147,9 @@ class Navigation(Base, Protocol):
         Raises RobotError for an unknown name. Any other problem is the operation's `failure`.
         """
 
+    def navigate_to_pose(self, pose: Pose) -> Operation:
+        """Starts to a point of the map, and faces as the pose does. Problems are the operation's `failure`."""
+
 
 class Sensors(Machine, Protocol):
     """The scanner and the bumper."""

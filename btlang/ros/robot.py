@@ -230,8 +230,15 @@ class RosRobot:
     def navigate_to(self, name: str) -> Operation:
         """Sends NavigateToPose. Raises RobotError for an unknown name, and where nobody knows where the robot is."""
         known = self._places.known(name)
+        return self._set_out(known, lambda: self._places.goal(known, self.pose))
+
+    def navigate_to_pose(self, pose: Pose) -> Operation:
+        """Sends NavigateToPose. Raises RobotError where nobody knows where the robot is."""
+        return self._set_out(f"({pose.x:.2f}, {pose.y:.2f})", lambda: pose)
+
+    def _set_out(self, known: str, goal_of: Callable[[], Pose]) -> Operation:
         self._check_stop()  # a goal that is sent may be driven to, whatever becomes of its cancel
-        goal = self._places.goal(known, self.pose)
+        goal = goal_of()
         self.prepare_navigation()
         assert self._navigation is not None
         if self._base.driving:

@@ -23,6 +23,8 @@ class SlotSpec(Record):
 
 COMPARISONS = ("below", "above", "at_least", "at_most", "equal")
 """The ports of a condition that compares a quantity; each holds the value to compare with."""
+POINT = ("x", "y", "facing")
+"""The ports of a point in the place of a place: metres, and degrees where it says them."""
 MEASURED = "value"
 """The port of such a condition that may name the blackboard key to write what was measured to."""
 
@@ -66,6 +68,12 @@ class Entry(Record, uncompared=("span",)):
             if slot.name == name:
                 return slot
         raise KeyError(name)
+
+    @property
+    def point_ports(self) -> frozenset[str]:
+        """The ports that take a point in the place of a place; none where the function takes only names."""
+        ports = frozenset(slot.name for slot in self.slots if slot.name in POINT)
+        return ports if ports.issuperset(POINT[:2]) else frozenset()
 
     @property
     def file(self) -> str:

@@ -14,12 +14,12 @@ from btlang.text.toml import parse_toml
 from btlang.text.toml_positions import positions
 from btlang.tree.catalogue import CATALOGUE
 from btlang.vocabulary.capabilities import resources_of
-from btlang.vocabulary.entry import COMPARISONS, MEASURED, Entry, SlotSpec
+from btlang.vocabulary.entry import COMPARISONS, MEASURED, POINT, Entry, SlotSpec
 from btlang.vocabulary.language_tables import SWITCHES, TABLES, WORD_LISTS, problems
 from btlang.vocabulary.pattern import PatternError, Slot, forms
 from btlang.vocabulary.ros_binding import RosBinding
 from btlang.vocabulary.ros_table import read_ros, unknown_slots
-from btlang.vocabulary.values import Unit, ValueType
+from btlang.vocabulary.values import PLACE, Unit, ValueType
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -176,6 +176,8 @@ class _Reader:
             for part in parts:
                 if isinstance(part, Slot) and part.name not in found:
                     found[part.name] = self.slot(part.name, table.get(part.name, {}), near)
+        if any(slot.type == PLACE for slot in found.values()):
+            found |= {name: self.slot(name, table[name], near) for name in POINT if name in table and name not in found}
         for name in [name for name in table if name not in found]:
             self.wrong(f"no phrase of '{near}' has a slot {{{name}}}", near)
         return tuple(found.values())

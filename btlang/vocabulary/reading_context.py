@@ -71,7 +71,7 @@ class ReadingContext:
         reference = self._reference(text, at)
         if reference is not None and self.known and reference[0] in self.known:
             return self.known[reference[0]].kinds, f"{{{reference[0]}}}", reference[1]
-        chosen = self.values.choice(text, at)
+        chosen = self.choice(text, at)
         if chosen is not None:
             return chosen[0][:1], "", chosen[1]
         quantity = self.values.quantity(text, at)
@@ -86,6 +86,10 @@ class ReadingContext:
             found.pop()  # figures are a text only where one is wanted
         best, end = max((value for _, value in found), key=lambda value: value[1])
         return tuple(kind for kind, (other, last) in found if last == end and other.lower() == best.lower()), best, end
+
+    def choice(self, text: Words, at: int) -> tuple[tuple[str, str], int] | None:
+        """See `Values.choice`."""
+        return self.values.choice(text, at)
 
     def named(self, text: Words, at: int) -> tuple[Known | None, int] | None:
         """The value that the mission names at a place, None for an unknown one in braces, and where its name ends."""

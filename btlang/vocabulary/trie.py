@@ -121,7 +121,7 @@ def longest(
                         continue  # as nearly always, without reading
                     value = context.read(kind, text, i)
                     if value is None:
-                        chosen = context.values.choice(text, i)
+                        chosen = context.choice(text, i)
                         if chosen is not None and chosen[0] == (kind, ALL):
                             every = all_names(root, kind, text, i, chosen[1], context, name)
                             paths.append((child, every.last, (*found, every)))

@@ -12,6 +12,7 @@ from marshal import dumps, loads  # a copy of a trie, at a tenth of the time tha
 from btlang.record import Record
 from btlang.text.source import Source
 from btlang.text.words import Orthography, Words, split
+from btlang.vocabulary.entry import POINT
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -19,6 +20,9 @@ if TYPE_CHECKING:
 
 _LARGEST = 1e12  # beyond it no quantity of a robot makes sense, and sums stay exact
 _MOST_NUMBER_WORDS = 12
+_FARTHEST = 1e6  # metres, as in a world file
+PLACE = "place"
+"""The type of which a point is a value, too."""
 ALL = "all"  # of the names of a type
 END = "\0"  # key of a word tree's value; no word of a text is this one
 WordTree = dict[str, "Any"]
@@ -119,6 +123,7 @@ class Values:
                     insert(self._units, word.split(), (kind.name, unit))
             if kind.kind == "names":
                 self._names[kind.name] = {}
+        self._facing = [phrase.split() for phrase in language["roles"].get("facing", ())]
         self._nouns: WordTree = {}
         self._choices: WordTree = {}
         for name in self._names:
@@ -162,6 +167,8 @@ class Values:
             self._openers = {
                 kind: frozenset((*tree, *self.pronouns, *self._choices)) for kind, tree in self._names.items()
             }
+            if PLACE in self._openers:
+                self._openers[PLACE] |= {"("}
             for kind, value_type in self.types.items():
                 if value_type.kind in ("number", "quantity"):
                     self._openers[kind] = numbers if value_type.kind == "number" else quantities
@@ -234,6 +241,8 @@ class Values:
             return self._plain_number(value_type, text, at)
         if value_type.kind == "names":
             word = text.words[at]
+            if word == "(" and kind == PLACE:
+                return self._point_text(text, at)
             found = find(self._names[kind], text.words, at)
             if found is None and word[0] == '"':
                 found = self._quoted_name(kind, text, at)
@@ -290,6 +299,46 @@ class Values:
                     total = (total or 0) + self._numbers[piece]
             at += 1
 
+    def point(self, text: Words, at: int) -> tuple[float, float, float | None, int] | None:
+        """`(x, y)` in metres, with or without a direction in degrees that it faces, and where it ends."""
+        numbers: list[float] = []
+        for mark in ("(", ","):
+            number = self._metres(text, at + 1) if text.words[at] == mark else None
+            if number is None or abs(number[0]) > _FARTHEST:
+                return None
+            numbers.append(number[0])
+            at = number[1]
+        if text.words[at] != ")":
+            return None
+        at += 1
+        for words in self._facing:
+            last = at + len(words)
+            angle = self.quantity(text, last) if text.words[at:last] == words else None
+            if angle is not None and angle[1] == "angle":
+                return numbers[0], numbers[1], angle[0], angle[2]
+        return numbers[0], numbers[1], None, at
+
+    def point_text(self, x: str, y: str, facing: str | None) -> str:
+        """A point as it is written."""
+        where = f"({x}, {y})"
+        if facing is None:
+            return where
+        return f"{where} {' '.join(self._facing[0])} {with_unit(facing, self.types['angle'].units[0].words[0])}"
+
+    def _metres(self, text: Words, at: int) -> tuple[float, int] | None:
+        quantity = self.quantity(text, at)
+        if quantity is not None:
+            return (quantity[0], quantity[2]) if quantity[1] == "length" else None
+        return self.number(text, at)
+
+    def _point_text(self, text: Words, at: int) -> tuple[str, int] | None:
+        point = self.point(text, at)
+        if point is None:
+            return None
+        x, y, facing, end = point
+        angle = None if facing is None else format_number(facing)
+        return self.point_text(format_number(x), format_number(y), angle), end
+
     def _plain_number(self, value_type: ValueType, text: Words, at: int) -> tuple[str, int] | None:
         number = self.number(text, at)
         if number is None or find(self._units, text.words, number[1]):
@@ -324,6 +373,13 @@ def key_of(words: Iterable[str]) -> str:
     """
     key = re.sub(r"\W", "_", "_".join(words))
     return key if key != "name" else "name_"
+
+
+def point_ports(text: str) -> tuple[tuple[str, str], ...]:
+    """The ports of a point that was read as a value, () for any other value."""
+    if text[:1] != "(":
+        return ()
+    return tuple(zip(POINT, re.findall(r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?", text), strict=False))
 
 
 def _too_small(value: float, value_type: ValueType) -> bool:

@@ -2,9 +2,10 @@
 
 import pytest
 
-from btlang.actions import gestures, manipulation, navigation, power, sensing, speech
+from btlang.actions import gestures, manipulation, motion, navigation, power, sensing, speech
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.geometry import Pose
+from btlang.robots.robot import RobotError
 from btlang.robots.world import Fault
 from btlang.robots.world_file import load_world
 
@@ -38,6 +39,21 @@ def test_no_way_fails_with_the_reason(bench):
         b.run(navigation.go_to, place="lab")
     with pytest.raises(ActionFailed, match=r"^I don't know where 'moon' is$"):
         b.run(navigation.go_to, place="moon")
+
+
+def test_go_to_a_point_and_face_another_one(bench):
+    b = bench(load_world())
+    b.run(navigation.go_to, x=5.0, y=2.5, facing=90.0)
+    assert b.robot.pose.distance_to((5.0, 2.5)) < 0.1
+    assert b.robot.pose.heading == pytest.approx(90.0, abs=2.0)
+    assert sensing.at_place(b.robot, x=5.0, y=2.5)
+    assert sensing.distance_to_place(b.robot, x=5.0, y=4.5) == pytest.approx(2.0, abs=0.1)
+    b.run(motion.face_place, x=1.0, y=2.5)
+    assert abs(b.robot.pose.bearing_to((1.0, 2.5))) < 3.0
+    with pytest.raises(RobotError, match=r"^neither a place nor a point is given$"):
+        b.run(navigation.go_to, x=1.0)
+    with pytest.raises(ActionFailed, match=r"^there is no free way to \(50.00, 1.00\)$"):
+        b.run(navigation.go_to, x=50.0, y=1.0)
 
 
 def test_a_halted_journey_brakes(bench):
