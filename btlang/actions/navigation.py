@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from btlang.actions.motion import Steps
 from btlang.actions.points import where
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.robots.capabilities import Navigation
+from btlang.robots.capabilities import Base, Navigation
 from btlang.robots.geometry import Pose
 from btlang.robots.robot import Operation
 
@@ -39,6 +41,11 @@ def approach(robot: Navigation, object: str) -> Steps:
 def travel(robot: Navigation, name: str) -> Steps:
     """Drives to anything that has a name; halted, it brakes."""
     yield from accomplish(robot.navigate_to(name))
+
+
+def choose(robot: Base, type: str, how: str, output: Callable[[str], object]) -> None:
+    """Puts the "nearest" or a "random" name of a type out. Fails where there is none."""
+    output(robot.choose(type, how))
 
 
 def accomplish(operation: Operation) -> Steps:

@@ -8,7 +8,7 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.passes.compilation import Compilation
 from btlang.passes.scope import Scope
-from btlang.passes.scripts import assignment, behind, comparison, prepared, script
+from btlang.passes.scripts import assignment, behind, chosen, comparison, prepared, script
 from btlang.record import Record
 from btlang.text.source import Span
 from btlang.tree import ast
@@ -17,7 +17,7 @@ from btlang.tree.model import NodeModel
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import fold
 from btlang.vocabulary.entry import MEASURED
-from btlang.vocabulary.references import keys_in
+from btlang.vocabulary.references import choice_of, keys_in
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -109,6 +109,9 @@ def _compared(item: ast.Compared, _done: list[Lowered], scope: Scope) -> Lowered
 
 
 def _assign(item: ast.Assign, _done: list[Lowered], scope: Scope) -> Lowered:
+    choice = choice_of(item.text)
+    if choice is not None:
+        return Lowered(chosen(choice, item.key).replace(span=item.span))
     scripts, code = assignment(item.key, item.operation, item.text, item.kind, scope)
     return Lowered(behind(scripts, Node("Script", (), (("code", code),), span=item.span)))
 

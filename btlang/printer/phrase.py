@@ -12,6 +12,7 @@ from btlang.tree.node import Node
 from btlang.vocabulary.entry import MEASURED, POINT, Entry
 from btlang.vocabulary.lexicon import DEFINING, Lexicon
 from btlang.vocabulary.pattern import Form, Slot, forms, name_form
+from btlang.vocabulary.references import Choice, choice_of
 from btlang.vocabulary.trie import TrieNode, longest
 from btlang.vocabulary.values import PLACE, ValueType, with_unit
 
@@ -28,6 +29,8 @@ def phrase_of(node: Node, vocabulary: Lexicon) -> str:
     computed = node.id in ("Script", "ScriptCondition") or any(text.startswith("{_") for _, text in node.ports)
     if node.span is not None and (computed or node.port(MEASURED)) and node.span.text[:1] not in MARKUP:
         return node.span.text
+    if node.id == "Choose":
+        return vocabulary.values.choice_words(Choice(node.port("how"), node.port("type"), node.port("output")))
     if node.id == "Sleep":
         return f"{vocabulary.word('wait')} {seconds(node.port('msec'))}"
     if node.id in ("AlwaysSuccess", "AlwaysFailure"):
@@ -128,7 +131,8 @@ def value_of(text: str, kind: ValueType, vocabulary: Lexicon) -> str:
     A text that could be taken for something else is quoted.
     """
     if text.startswith("{") and kind.kind != "text":
-        return text
+        choice = choice_of(text)
+        return vocabulary.values.choice_words(choice) if choice is not None else text
     if kind.kind == "quantity":
         return with_unit(text, kind.units[0].words[0])
     if kind.kind == "number":

@@ -13,6 +13,7 @@ from btlang.record import Record
 from btlang.text.source import Source
 from btlang.text.words import Orthography, Words, split
 from btlang.vocabulary.entry import POINT
+from btlang.vocabulary.references import CHOICES, Choice
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -23,6 +24,8 @@ _MOST_NUMBER_WORDS = 12
 _FARTHEST = 1e6  # metres, as in a world file
 PLACE = "place"
 """The type of which a point is a value, too."""
+WORLD = (PLACE, "person", "object")
+"""The types of which robots know where each name is."""
 ALL = "all"  # of the names of a type
 END = "\0"  # key of a word tree's value; no word of a text is this one
 WordTree = dict[str, "Any"]
@@ -126,11 +129,16 @@ class Values:
         self._facing = [phrase.split() for phrase in language["roles"].get("facing", ())]
         self._nouns: WordTree = {}
         self._choices: WordTree = {}
+        self._chosen: dict[tuple[str, str], str] = {}
         for name in self._names:
             for noun in language["nouns"].get(name, (name,)):
                 insert(self._nouns, noun.split(), name)
-                for words in language["roles"].get("all_names", ()):
-                    insert(self._choices, [*words.split(), *noun.split()], (name, ALL))
+                ways = dict.fromkeys(language["roles"].get("all_names", ()), ALL)
+                if name in WORLD:
+                    ways |= {words: how for how in CHOICES for words in language["roles"].get(how, ())}
+                for words, how in ways.items():
+                    insert(self._choices, [*words.split(), *noun.split()], (name, how))
+                    self._chosen.setdefault((name, how), f"{words} {noun}")
             for noun in language["everyone"].get(name, ()):
                 insert(self._choices, noun.split(), (name, ALL))
         self._exceptions: WordTree = {}
@@ -216,6 +224,10 @@ class Values:
     def choice(self, text: Words, at: int) -> tuple[tuple[str, str], int] | None:
         """Of words such as `every place` the type and which of its names they are for, and where they end."""
         return find(self._choices, text.words, at) if text.words[at] in self._choices else None
+
+    def choice_words(self, choice: Choice) -> str:
+        """The words that stand for a choice: `nearest person`."""
+        return self._chosen.get((choice.type, choice.how), choice.text)
 
     def exception(self, text: Words, at: int) -> int:
         """Where a word such as `except` ends, 0 where there is none."""

@@ -74,6 +74,7 @@ def _each(
 ) -> tuple[Token, int] | None:
     others = {key: known for key, known in (context.known or {}).items() if key != prefix.key}
     inner = ReadingContext(vocabulary.values, others)
+    inner.keys = context.keys
     first = inner.any(text, prefix.value)
     kinds = (prefix.key,) if prefix.key in vocabulary.types else first[0] if first is not None else ()
     chosen = ((prefix.kind, ALL), prefix.last) if prefix.kind else inner.choice(text, prefix.value)

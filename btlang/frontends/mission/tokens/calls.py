@@ -11,7 +11,7 @@ from btlang.text.words import Words
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import ReadingContext
-from btlang.vocabulary.references import keys_in, renamed
+from btlang.vocabulary.references import choice_of, keys_in, renamed
 from btlang.vocabulary.trie import Match, SlotValue
 from btlang.vocabulary.values import PLACE, key_of, point_ports
 
@@ -28,6 +28,7 @@ class Calls:
             self._unknown_value(self._text.span(at, match.last), entry.id)
         if not match.values:
             return Called(entry, ())
+        self._check_choices(entry, match, at)
         lists = [place for place, value in enumerate(match.values) if value.more]
         if not lists:
             return Called(entry, self.arguments(entry, match.values))
@@ -39,6 +40,24 @@ class Calls:
         each = [value.replace(text=text, more=()) for text in (value.text, *value.more)]
         before, behind = match.values[: lists[0]], match.values[lists[0] + 1 :]
         return Listed(entry, tuple(self.arguments(entry, (*before, one, *behind)) for one in each), value.joiner)
+
+    def _check_choices(self, entry: Entry, match: Match, at: int) -> None:
+        """BT152 where what is chosen would replace another value of the phrase, or is to be compared with."""
+        texts = [text for value in match.values for text in (value.text, *value.more) if text[:1] == "{"]
+        choices = [choice for text in texts if (choice := choice_of(text)) is not None]
+        keys = [*(choice.key for choice in choices), *(key for text in texts for key in keys_in(text))]
+        double = next((choice for choice in choices if keys.count(choice.key) > 1 or entry.sort == "value"), None)
+        if double is None:
+            return
+        words = self._vocabulary.values.choice_words(double)
+        set_to = f"{self._vocabulary.word('set')} first {self._vocabulary.word('set_to')} {words}"
+        reason = f"it needs a {double.type} that is chosen before"
+        span = self._text.span(at, match.last)
+        self._problems.append(
+            diagnostic(
+                "BT152", span, words=span.text, reason=reason, advice=f"Write it in two lines, the first: {set_to}"
+            )
+        )
 
     def arguments(self, entry: Entry, values: Iterable[SlotValue]) -> tuple[tuple[str, str], ...]:
         """The values as ports; a point has ports of its own."""

@@ -21,6 +21,7 @@ from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.language_tables import CONNECTIVES, NOT_ALONE
 from btlang.vocabulary.lexicon import NODE_ROLES, Lexicon
 from btlang.vocabulary.reading_context import Known, ReadingContext
+from btlang.vocabulary.references import choice_of
 from btlang.vocabulary.trie import SLOTS, Match, TrieNode, longest
 
 TYPE_CHECKING = False
@@ -68,6 +69,7 @@ class Lexer:
         self.vocabulary = self.names.vocabulary
         self._bounds = [*self.names.bounds, len(self.text.words)]
         self.context = ReadingContext(self.vocabulary.values)
+        self.context.keys = self.names.chosen
         has_values = self.names.known or self.names.bounds  # a name in it may be longer than a phrase
         self._meanings_of = CONNECTIVES.keys() if self.names.meanings else ()
         self._found = {} if has_values else self.names.phrases.fixed
@@ -227,7 +229,9 @@ class Lexer:
     def _note(self, match: Match) -> None:
         """What pronouns stand for from here on."""
         for value in match.values:
-            self.context.latest[value.type] = value.text if not value.more else value.more[-1]
+            latest = value.more[-1] if value.more else value.text
+            choice = choice_of(latest)
+            self.context.latest[value.type] = f"{{{choice.key}}}" if choice is not None else latest
 
     def _why(self, at: int, end: int, match: Match | None) -> Diagnostic:
         """What is wrong with words that are no phrase, or one that stands where it cannot."""
