@@ -9,6 +9,7 @@ import re
 from collections.abc import Callable, Container, Iterator
 
 from btlang.record import Record
+from btlang.vocabulary.entry import POINT
 
 CHOICES = ("nearest", "random")
 _PIECE = r"(?P<mark>\{\{|\}\})|\{(?P<name>[^{}]+)\}|(?P<text>[^{}]+|[{}])"  # compiled when a text needs it
@@ -82,3 +83,10 @@ def renamed(text: str, key: Callable[[str], str]) -> str:
 def plain(text: str) -> str:
     """The port text that stands for exactly this text."""
     return text.replace("{", "{{").replace("}", "}}")
+
+
+def point_ports(text: str) -> tuple[tuple[str, str], ...]:
+    """The ports of a point that was read as a value, () for any other value."""
+    if text[:1] != "(":
+        return ()
+    return tuple(zip(POINT, re.findall(r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?", text), strict=False))

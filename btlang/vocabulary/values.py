@@ -12,7 +12,6 @@ from marshal import dumps, loads  # a copy of a trie, at a tenth of the time tha
 from btlang.record import Record
 from btlang.text.source import Source
 from btlang.text.words import Orthography, Words, split
-from btlang.vocabulary.entry import POINT
 from btlang.vocabulary.references import CHOICES, Choice
 
 TYPE_CHECKING = False
@@ -225,6 +224,10 @@ class Values:
         """Of words such as `every place` the type and which of its names they are for, and where they end."""
         return find(self._choices, text.words, at) if text.words[at] in self._choices else None
 
+    def choices(self, kind: str) -> list[list[str]]:
+        """The words that stand for all names of a type, and for those that are chosen, in the first way to say them."""
+        return [words.split() for (own, _), words in self._chosen.items() if own == kind and self._listed.get(kind)]
+
     def choice_words(self, choice: Choice) -> str:
         """The words that stand for a choice: `nearest person`."""
         return self._chosen.get((choice.type, choice.how), choice.text)
@@ -385,13 +388,6 @@ def key_of(words: Iterable[str]) -> str:
     """
     key = re.sub(r"\W", "_", "_".join(words))
     return key if key != "name" else "name_"
-
-
-def point_ports(text: str) -> tuple[tuple[str, str], ...]:
-    """The ports of a point that was read as a value, () for any other value."""
-    if text[:1] != "(":
-        return ()
-    return tuple(zip(POINT, re.findall(r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?", text), strict=False))
 
 
 def _too_small(value: float, value_type: ValueType) -> bool:

@@ -117,5 +117,8 @@ def _plain(tree: Tree, change: Any) -> list[object]:
 
 def _port(node: Node, name: str, text: str, change: Any) -> tuple[str, str]:
     own = node.id != "SubTree" or name == "ID"
-    changed = text if name in ("_skipIf", "once") else change(text).replace(change("each_"), "each_")
+    made = ("each_", "chosen_")
+    changed = text if name in ("_skipIf", "once", "how", "type") else change(text)
+    for start in made:
+        changed = changed.replace(change(start), start)
     return name if own else change(name), changed

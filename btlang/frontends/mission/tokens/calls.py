@@ -11,9 +11,9 @@ from btlang.text.words import Words
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import ReadingContext
-from btlang.vocabulary.references import choice_of, keys_in, renamed
+from btlang.vocabulary.references import choice_of, keys_in, point_ports, renamed
 from btlang.vocabulary.trie import Match, SlotValue
-from btlang.vocabulary.values import PLACE, key_of, point_ports
+from btlang.vocabulary.values import PLACE, key_of
 
 
 class Calls:
