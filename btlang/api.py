@@ -215,7 +215,7 @@ class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax")):
         """Runs the mission to its end, or Ctrl-C, in a new session, so in a fresh world.
 
         `robot` is the same as for btlang.Session. The other options are those of `Session.prepare`: `speed`, `rate`,
-        `time_limit`, `sinks`. Raises MissionError and ValueError as these do.
+        `time_limit`, `sinks`, `seed`. Raises MissionError and ValueError as these do.
         """
         from btlang.session import Session
 

@@ -89,6 +89,7 @@ def _run(options: argparse.Namespace) -> int:
             speed=options.speed,
             rate=options.rate,
             time_limit=options.time_limit,
+            seed=options.seed,
             log=options.log,
             quiet=options.quiet,
             lines=options.lines,

@@ -101,12 +101,14 @@ class Session:
         sinks: Iterable[Sink] = (),
         values: Blackboard | None = None,
         controls: Controls | None = None,
+        seed: int | None = None,
     ) -> Run:
         """A run that hasn't started yet: for `Run.execute` and `Run.tick`.
 
         `speed` is "real", "max" or a factor of real time. `rate` is in ticks per second of mission time, and the
         mission ends after `time_limit` seconds. `sinks` get events (see btlang.run.events) according to their policy
-        (see btlang.run.bus). `values` are initial blackboard entries. `controls` may be created before the run.
+        (see btlang.run.bus). `values` are initial blackboard entries. `controls` may be created before the run. Random
+        choices of the robot follow from `seed`, by default another one for each run.
 
         Raises MissionError if a command can't run (BT080) or the robot lacks something it needs (BT101), ValueError for
         another speed or rate, RuntimeError during another run.
@@ -118,7 +120,7 @@ class Session:
             raise ValueError(f'speed must be "real", "max" or a number from {SLOWEST} on, not {speed!r}')
         if not RATES[0] <= rate <= RATES[1]:
             raise ValueError(f"rate must be from {RATES[0]:g} to {RATES[1]:g} ticks a second, not {rate!r}")
-        self.current = Run(mission, self.connection, factor, rate, time_limit, sinks, values, controls)
+        self.current = Run(mission, self.connection, factor, rate, time_limit, sinks, values, controls, seed)
         return self.current
 
     def run(self, mission: Runnable, **options: Any) -> Run:
@@ -172,8 +174,11 @@ class Run:
         sinks: Iterable[Sink],
         values: Blackboard | None,
         controls: Controls | None,
+        seed: int | None = None,
     ) -> None:
         self.id = os.urandom(16).hex()  # what `uuid` does, whose import takes 4 ms
+        self.seed = int.from_bytes(os.urandom(4), "big") if seed is None else seed
+        """Of the random choices of the robot."""
         self.mission = mission
         self.controls = Controls() if controls is None else controls
         """Pause, resume, single step and the stops, from any thread."""
@@ -299,6 +304,8 @@ class Run:
     ) -> Engine:
         mission = self.mission
         connection.robot.name_places(Place(fact.name, fact.x, fact.y, fact.facing) for fact in mission.facts)
+        if hasattr(connection.robot, "seed_choices"):
+            connection.robot.seed_choices(self.seed)
         connection.check(mission.tree, mission.vocabulary)
         for sink in sinks:
             self.bus.add(sink)

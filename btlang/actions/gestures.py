@@ -6,8 +6,10 @@ from typing import Protocol
 
 from btlang.actions.joints import take
 from btlang.actions.motion import Steps
+from btlang.actions.points import spot, where
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.capabilities import Base, Joints
+from btlang.robots.geometry import Point
 from btlang.robots.world import said
 
 
@@ -30,9 +32,9 @@ def point_at_object(robot: Aiming, object: str) -> Steps:
     yield from _towards(robot, "right arm pointing", object)
 
 
-def point_at_place(robot: Aiming, place: str) -> Steps:
-    """Stretches the right arm towards a place."""
-    yield from _towards(robot, "right arm pointing", place)
+def point_at_place(robot: Aiming, place: str | None = None, x: float | None = None, y: float | None = None) -> Steps:
+    """Stretches the right arm towards a place or a point."""
+    yield from _towards(robot, "right arm pointing", place or spot(x, y), where(robot, place, x, y))
 
 
 def point_left(robot: Joints) -> Steps:
@@ -100,14 +102,14 @@ def look_at_object(robot: Aiming, object: str) -> Steps:
     yield from _towards(robot, "look at", object)
 
 
-def look_at_place(robot: Aiming, place: str) -> Steps:
-    """Turns the head to a place. Fails if it is behind the robot."""
-    yield from _towards(robot, "look at", place)
+def look_at_place(robot: Aiming, place: str | None = None, x: float | None = None, y: float | None = None) -> Steps:
+    """Turns the head to a place or a point. Fails if it is behind the robot."""
+    yield from _towards(robot, "look at", place or spot(x, y), where(robot, place, x, y))
 
 
-def _towards(robot: Aiming, posture: str, name: str) -> Steps:
-    """Raises ActionFailed where the joint that turns there does not turn so far."""
-    bearing = robot.pose.bearing_to(robot.locate(name))
+def _towards(robot: Aiming, posture: str, name: str, point: Point | None = None) -> Steps:
+    """To the point, by default that of the name. Raises ActionFailed where the joint doesn't turn so far."""
+    bearing = robot.pose.bearing_to(robot.locate(name) if point is None else point)
     joint = robot.body.bearing_joint(posture)
     if joint is not None and not joint.low <= bearing <= joint.high:
         where = "behind the robot" if abs(bearing) > 90.0 else "too far to the side"

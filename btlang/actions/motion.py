@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Generator
 
+from btlang.actions.points import where
 from btlang.actions.watch import BaseWatch, Driving
 from btlang.engine.leaves.leaf import ActionFailed, unheard
 from btlang.robots.geometry import wrap
@@ -57,9 +58,9 @@ def stop(robot: Driving) -> Steps:
         yield
 
 
-def face_place(robot: Driving, place: str) -> Steps:
-    """Turns on the spot towards a place."""
-    yield from turn(robot, robot.pose.bearing_to(robot.locate(place)))
+def face_place(robot: Driving, place: str | None = None, x: float | None = None, y: float | None = None) -> Steps:
+    """Turns on the spot towards a place or a point."""
+    yield from turn(robot, robot.pose.bearing_to(where(robot, place, x, y)))
 
 
 def face_person(robot: Driving, person: str) -> Steps:

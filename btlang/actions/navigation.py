@@ -2,15 +2,30 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from btlang.actions.motion import Steps
+from btlang.actions.points import where
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.robots.capabilities import Navigation
+from btlang.robots.capabilities import Base, Navigation
+from btlang.robots.geometry import Pose
 from btlang.robots.robot import Operation
 
 
-def go_to(robot: Navigation, place: str) -> Steps:
-    """Drives to a place and faces as the place says."""
-    yield from travel(robot, place)
+def go_to(
+    robot: Navigation,
+    place: str | None = None,
+    x: float | None = None,
+    y: float | None = None,
+    facing: float | None = None,
+) -> Steps:
+    """Drives to a place and faces as the place says, or to a point."""
+    if place is not None:
+        yield from travel(robot, place)
+        return
+    point = where(robot, place, x, y)
+    heading = robot.pose.heading + robot.pose.bearing_to(point) if facing is None else facing
+    yield from accomplish(robot.navigate_to_pose(Pose(*point, heading)))
 
 
 def go_to_person(robot: Navigation, person: str) -> Steps:
@@ -26,6 +41,11 @@ def approach(robot: Navigation, object: str) -> Steps:
 def travel(robot: Navigation, name: str) -> Steps:
     """Drives to anything that has a name; halted, it brakes."""
     yield from accomplish(robot.navigate_to(name))
+
+
+def choose(robot: Base, type: str, how: str, output: Callable[[str], object]) -> None:
+    """Puts the "nearest" or a "random" name of a type out. Fails where there is none."""
+    output(robot.choose(type, how))
 
 
 def accomplish(operation: Operation) -> Steps:

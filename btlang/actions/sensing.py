@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from math import inf, radians
 
+from btlang.actions.points import where
 from btlang.robots.capabilities import Base, Docking, Hands, Power, Sensors
 from btlang.robots.robot import RobotError
 
@@ -114,14 +115,14 @@ def charging(robot: Power) -> bool:
     return robot.charging
 
 
-def at_place(robot: Base, place: str) -> bool:
-    """Whether the robot is within half a metre of a place."""
-    return robot.pose.distance_to(robot.locate(place)) <= AT_PLACE
+def at_place(robot: Base, place: str | None = None, x: float | None = None, y: float | None = None) -> bool:
+    """Whether the robot is within half a metre of a place or a point."""
+    return robot.pose.distance_to(where(robot, place, x, y)) <= AT_PLACE
 
 
-def distance_to_place(robot: Base, place: str) -> float:
-    """Metres to a place, as the crow flies."""
-    return robot.pose.distance_to(robot.locate(place))
+def distance_to_place(robot: Base, place: str | None = None, x: float | None = None, y: float | None = None) -> float:
+    """Metres to a place or a point, as the crow flies."""
+    return robot.pose.distance_to(where(robot, place, x, y))
 
 
 def distance_to_person(robot: Base, person: str) -> float:

@@ -58,7 +58,7 @@ def leaf_binding(
     if entry.sort == "condition" and iscoroutinefunction(call):
         raise EngineError("it is asynchronous, but a condition must answer at once", Node(entry.id, span=entry.span))
     if not entry.measures:
-        binding = LeafBinding(call, converters, defaults, thread=entry.thread)
+        binding = LeafBinding(call, converters, defaults, entry.outputs, thread=entry.thread)
         return binding if entry.sort == "action" else binding.replace(refusal="it is not true")
 
     def say(given: Mapping[str, Any], value: str) -> str:

@@ -4,7 +4,7 @@ BT00x reading, BT01x words, BT02x and BT03x how a sentence is put together, BT04
 BT05x what is allowed but probably not meant, BT06x keyword files,
 BT07x worlds, BT08x the Python behind the words and what else has to be installed, BT09x the codes themselves,
 BT10x ROS 2, BT11x missions as ROS 2 nodes, BT12x trees in XML, BT13x trees that were not written as missions,
-BT14x nodes said by their ids, BT15x lists of conditions and commands,
+BT14x nodes said by their ids, BT15x lists, words that stand for names, and what is forbidden,
 BT16x times of day.
 
 BT05x and others that are warnings have a `name`, by which a mission silences them: `# allow: two readings`.
@@ -155,6 +155,8 @@ _ALL = (
     Code("BT142", "English can't express this tree: {reason}."),
     Code("BT150", "'{words}' doesn't fit here: {reason}.", "Write for example: {example}"),
     Code("BT151", "'{words}' can be read in two ways.", "Write what you mean: {one}\nOr: {other}"),
+    Code("BT152", "'{words}' doesn't fit here: {reason}.", "{advice}"),
+    Code("BT153", "A point such as '{words}' doesn't fit here: a place with a name is needed.", "Name it in a line of its own: {fact}"),
     Code("BT155", "'{words}' forbids something, but a mission only says what the robot does.",
          "Write for example: {example}"),
     Code("BT160", "'{words}' {problem}.", "Write for example: {example}"),

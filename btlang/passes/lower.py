@@ -9,7 +9,7 @@ from btlang.passes.compilation import Compilation
 from btlang.passes.lower_time import TIMED
 from btlang.passes.lowered import Lowered, new_node, new_round
 from btlang.passes.scope import Scope
-from btlang.passes.scripts import assignment, behind, comparison, prepared
+from btlang.passes.scripts import assignment, behind, chosen, comparison, prepared
 from btlang.text.source import Span
 from btlang.tree import ast
 from btlang.tree.catalogue import CATALOGUE, ON_FAILURE, ON_SUCCESS, SUBTREE
@@ -17,6 +17,7 @@ from btlang.tree.model import NodeModel
 from btlang.tree.node import Node, Tree
 from btlang.tree.visit import fold
 from btlang.vocabulary.entry import MEASURED
+from btlang.vocabulary.references import choice_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -86,6 +87,9 @@ def _compared(item: ast.Compared, _done: list[Lowered], scope: Scope) -> Lowered
 
 
 def _assign(item: ast.Assign, _done: list[Lowered], scope: Scope) -> Lowered:
+    choice = choice_of(item.text)
+    if choice is not None:
+        return Lowered(chosen(choice, item.key).replace(span=item.span))
     scripts, code = assignment(item.key, item.operation, item.text, item.kind, scope)
     return Lowered(behind(scripts, Node("Script", (), (("code", code),), span=item.span)))
 

@@ -11,7 +11,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from btlang.passes.scope import Scope
 from btlang.tree.catalogue import SEQUENCE
 from btlang.tree.node import Node
-from btlang.vocabulary.references import Reference, pieces
+from btlang.vocabulary.references import Choice, Reference, choice_of, pieces
 
 OPERATORS = {"below": "<", "above": ">", "at_least": ">=", "at_most": "<=", "equal": "=="}
 """What a script writes for each comparison."""
@@ -21,6 +21,11 @@ Ports = tuple[tuple[str, str], ...]
 def script(code: str) -> Node:
     """A Script with no sentence of its own, so that no log tells of it as a command."""
     return Node("Script", (), (("code", code),))
+
+
+def chosen(choice: Choice, key: str) -> Node:
+    """What chooses a name for a key, with no sentence of its own."""
+    return Node("Choose", (), (("type", choice.type), ("how", choice.how), ("output", f"{{{key}}}")))
 
 
 def behind(scripts: Sequence[Node], node: Node) -> Node:
@@ -65,6 +70,9 @@ def _would_change(text: str) -> bool:
 
 
 def _port(text: str, scope: Scope) -> tuple[list[Node], str]:
+    choice = choice_of(text)
+    if choice is not None:
+        return [chosen(choice, choice.key)], f"{{{choice.key}}}"
     parts = pieces(text)
     if len(parts) == 1:
         [part] = parts

@@ -9,11 +9,12 @@ from btlang.text.words import split
 from btlang.tree.catalogue import SUBTREE
 from btlang.tree.dump import described
 from btlang.tree.node import Node
-from btlang.vocabulary.entry import MEASURED, Entry
+from btlang.vocabulary.entry import MEASURED, POINT, Entry
 from btlang.vocabulary.lexicon import DEFINING, Lexicon
 from btlang.vocabulary.pattern import Form, Slot, forms, name_form
+from btlang.vocabulary.references import Choice, choice_of
 from btlang.vocabulary.trie import TrieNode, longest
-from btlang.vocabulary.values import ValueType, with_unit
+from btlang.vocabulary.values import PLACE, ValueType, with_unit
 
 MARKUP = ("<", '"')  # what XML and JSON begin with, and no sentence
 
@@ -28,6 +29,8 @@ def phrase_of(node: Node, vocabulary: Lexicon) -> str:
     computed = node.id in ("Script", "ScriptCondition") or any(text.startswith("{_") for _, text in node.ports)
     if node.span is not None and (computed or node.port(MEASURED)) and node.span.text[:1] not in MARKUP:
         return node.span.text
+    if node.id == "Choose":
+        return vocabulary.values.choice_words(Choice(node.port("how"), node.port("type"), node.port("output")))
     if node.id == "Sleep":
         return f"{vocabulary.word('wait')} {seconds(node.port('msec'))}"
     if node.id == "WaitForTime":
@@ -65,12 +68,22 @@ def leaf_words(
     first = ""
     for entry in vocabulary.entries.get(node_id, ()):
         spoken = {name: text for name, text in ports.items() if _default(entry, name) != text}
+        spoken = _with_point(entry, spoken, vocabulary)
         for form, values in _fitting(entry, spoken):
             words = _filled(form, values, entry, vocabulary)
             if _reads_back(words, entry, spoken, vocabulary, names):
                 return words
             first = first or words
     return first if not exactly else ""
+
+
+def _with_point(entry: Entry, spoken: dict[str, str], vocabulary: Lexicon) -> dict[str, str]:
+    """The ports of a point as one value in the slot of a place."""
+    place = next((slot.name for slot in entry.slots if slot.type == PLACE), None)
+    if place is None or not entry.point_ports or not spoken.keys() >= {"x", "y"} or place in spoken:
+        return spoken
+    rest = {name: text for name, text in spoken.items() if name not in POINT}
+    return rest | {place: vocabulary.values.point_text(spoken["x"], spoken["y"], spoken.get("facing"))}
 
 
 def _default(entry: Entry, slot: str) -> str | None:
@@ -120,7 +133,8 @@ def value_of(text: str, kind: ValueType, vocabulary: Lexicon) -> str:
     A text that could be taken for something else is quoted.
     """
     if text.startswith("{") and kind.kind != "text":
-        return text
+        choice = choice_of(text)
+        return vocabulary.values.choice_words(choice) if choice is not None else text
     if kind.kind == "quantity":
         return with_unit(text, kind.units[0].words[0])
     if kind.kind in ("number", "time"):

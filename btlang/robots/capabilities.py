@@ -50,8 +50,8 @@ class CompletedOperation:
 class Machine(Protocol):
     """What every robot is. Only `stop` and `disable` may be called from other threads.
 
-    `on_event(kind, data)` is called for each event. Kinds: say, print, navigate, arrive, bump, stuck, stop, grasp,
-    release, drop, joint, dock, undock, battery, fault.
+    `on_event(kind, data)` is called for each event. Kinds: say, print, choose, navigate, arrive, bump, stuck, stop,
+    grasp, release, drop, joint, dock, undock, battery, fault.
     """
 
     on_event: OnEvent | None
@@ -138,6 +138,15 @@ class Base(Machine, Protocol):
     def locate(self, name: str) -> Point:
         """Where a place, object or person is. Raises RobotError for an unknown name."""
 
+    def choose(self, kind: str, how: str) -> str:
+        """The "nearest" or a "random" name of the type "place", "object" (not carried) or "person".
+
+        Raises RobotError where there is none.
+        """
+
+    def seed_choices(self, seed: int) -> None:
+        """A run begins, whose random choices follow from the seed."""
+
     def nearby_people(self, within: float) -> list[str]:
         """Names of the people within that many metres, nearest first."""
 
@@ -150,6 +159,9 @@ class Navigation(Base, Protocol):
 
         Raises RobotError for an unknown name. Any other problem is the operation's `failure`.
         """
+
+    def navigate_to_pose(self, pose: Pose) -> Operation:
+        """Starts to a point of the map, and faces as the pose does. Problems are the operation's `failure`."""
 
 
 class Sensors(Machine, Protocol):

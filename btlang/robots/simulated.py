@@ -9,6 +9,7 @@ from typing import Any
 from btlang.robots.base import Base
 from btlang.robots.body import Body
 from btlang.robots.body_file import standard_body
+from btlang.robots.choices import Choices
 from btlang.robots.faults import Faults, describe
 from btlang.robots.geometry import Point, Pose
 from btlang.robots.hands import Hands
@@ -33,7 +34,7 @@ _HANDS: tuple[Hand, Hand] = ("left", "right")
 
 
 class SimulatedRobot:
-    """Implements `btlang.robots.robot.Robot`. Nothing in it is random: the same commands give the same run."""
+    """Implements `btlang.robots.robot.Robot`. The same commands and the same seed give the same run."""
 
     moves_by_itself = False
 
@@ -55,6 +56,7 @@ class SimulatedRobot:
         self._joints = Joints(body)
         self._hands = Hands(self._obstacles, world.names.objects, body)
         self._speech_left = 0.0
+        self._choices = Choices()
         self._latch = Latch()
         self._bumps_told = 0
         self._stuck_told = False
@@ -205,6 +207,17 @@ class SimulatedRobot:
             return self.pose.x, self.pose.y
         thing = self._obstacles.things[known]
         return thing.x, thing.y
+
+    def choose(self, kind: str, how: str) -> str:
+        """A name that is the "nearest" or "random". Raises RobotError where there is none."""
+        names = [name for name in self.world.names.of(kind) if not self._obstacles.is_carried(name)]
+        return self._choices.choose(
+            kind, how, names, lambda name: self.pose.distance_to(self.locate(name)), self.on_event
+        )
+
+    def seed_choices(self, seed: int) -> None:
+        """A run begins, whose random choices follow from the seed."""
+        self._choices.begin(seed)
 
     def nearby_people(self, within: float) -> list[str]:
         """Names of the people within so many metres, nearest first."""

@@ -81,6 +81,10 @@ class WorldNames(Record):
     objects: tuple[str, ...] = ()
     people: tuple[str, ...] = ()
 
+    def of(self, kind: str) -> tuple[str, ...]:
+        """Those of a type: "place", "object" or "person"."""
+        return {"place": self.places, "object": self.objects, "person": self.people}.get(kind, ())
+
 
 class World(Record):
     """A world as its file describes it. `walls` are polylines; a dock is also the place "dock".

@@ -35,6 +35,10 @@ class Places:
                 return known
         raise RobotError(f"I don't know where '{name}' is")
 
+    def free(self, kind: str) -> list[str]:
+        """The names of a type, without objects that the robot carries."""
+        return [name for name in self.world.names.of(kind) if not self._obstacles.is_carried(name)]
+
     def locate(self, name: str, robot: Pose) -> Point:
         """Where it is; what the robot carries is where the robot is. Raises RobotError for an unknown name."""
         known = self.known(name)

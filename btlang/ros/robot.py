@@ -14,6 +14,7 @@ from std_srvs.srv import Trigger
 
 from btlang.robots.body import Body
 from btlang.robots.body_file import standard_body
+from btlang.robots.choices import Choices
 from btlang.robots.geometry import Point, Pose
 from btlang.robots.latch import Latch
 from btlang.robots.robot import CompletedOperation, Hand, OnEvent, Operation, RobotError
@@ -73,6 +74,7 @@ class RosRobot:
         self._naps = AWAKE.naps
         self._executor = ExecutorThread(node)
         self._places = Places(world, body)
+        self._choices = Choices()
         self._latch = Latch()
         self._base = RosBase(
             node, subscriptions, body.radius, (body.driving.top_speed, body.turning.top_speed), self._latch
@@ -239,8 +241,15 @@ class RosRobot:
     def navigate_to(self, name: str) -> Operation:
         """Sends NavigateToPose. Raises RobotError for an unknown name, and where nobody knows where the robot is."""
         known = self._places.known(name)
+        return self._set_out(known, lambda: self._places.goal(known, self.pose))
+
+    def navigate_to_pose(self, pose: Pose) -> Operation:
+        """Sends NavigateToPose. Raises RobotError where nobody knows where the robot is."""
+        return self._set_out(f"({pose.x:.2f}, {pose.y:.2f})", lambda: pose)
+
+    def _set_out(self, known: str, goal_of: Callable[[], Pose]) -> Operation:
         self._check_stop()  # a goal that is sent may be driven to, whatever becomes of its cancel
-        goal = self._places.goal(known, self.pose)
+        goal = goal_of()
         self.prepare_navigation()
         assert self._navigation is not None
         if self._base.driving:
@@ -259,6 +268,18 @@ class RosRobot:
     def locate(self, name: str) -> Point:
         """Where it is by the world file and the mission. Raises RobotError for an unknown name."""
         return self._places.locate(name, self.pose)
+
+    def choose(self, kind: str, how: str) -> str:
+        """A name of the world file or the mission. Raises RobotError where there is none."""
+        pose = self.pose if how == "nearest" else Pose(0.0, 0.0, 0.0)
+        names = self._places.free(kind)
+        return self._choices.choose(
+            kind, how, names, lambda name: pose.distance_to(self._places.locate(name, pose)), self.on_event
+        )
+
+    def seed_choices(self, seed: int) -> None:
+        """A run begins, whose random choices follow from the seed."""
+        self._choices.begin(seed)
 
     def nearby_people(self, within: float) -> list[str]:
         """Names of the people of the world file within so many metres, nearest first."""

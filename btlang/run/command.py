@@ -82,20 +82,22 @@ def run_mission(
     tree_stays: bool = True,
     sinks: Iterable[Sink] = (),
     values: Blackboard | None = None,
+    seed: int | None = None,
 ) -> int:
     """Runs and reports; returns the exit code. Raises MissionError where the log cannot be opened (BT009).
 
     A log that cannot be written to the end does not change the mission: it is said after it, and a mission that
     succeeded has the exit code 2. On a terminal it shows the live view, whose tree stays at the end or not and which
     puts keys that aren't for it into `type_ahead`, if given; elsewhere and where `lines` is true plain lines; and
-    nothing when `quiet`. `sinks` get all events too; `open_session` gives the session to run in, and `values` are as
-    for Session.prepare.
+    nothing when `quiet`. `sinks` get all events too; `open_session` gives the session to run in, `values` and
+    `seed` are as for Session.prepare.
     """
     controls = Controls()
     view = None if quiet or lines else _live_view(mission, controls, type_ahead, tree_stays)
     shown: list[Sink] = [view] if view is not None else [] if quiet else [Lines(mission.label, mission.is_action, show)]
     sinks = [*shown, *sinks]
     options = {"speed": speed, "rate": rate, "time_limit": time_limit, "values": values, "controls": controls}
+    options["seed"] = seed
     try:
         with (
             _interrupted_by_signals() as came,

@@ -136,6 +136,16 @@ class NavigationStarted(Event):
     name: str
 
 
+class Chosen(Event):
+    """The robot has chosen the nearest or a random name of a type; `seed` is that of the run's random choices."""
+
+    tag = "choose"
+    type: str
+    how: str
+    name: str
+    seed: int | None = None
+
+
 class Arrived(Event):
     """The robot has arrived at its goal."""
 
@@ -302,8 +312,8 @@ class PeriodPassed(Event):
 ROBOT_EVENTS: dict[str, type[Event]] = {
     event.tag: event
     for event in (
-        Said, Printed, NavigationStarted, Arrived, Bumped, Stuck, Stopped, Grasped, Released, Dropped, JointsMoved,
-        Docked, Undocked, BatteryEmpty, FaultInjected, Warned, Troubled,
+        Said, Printed, Chosen, NavigationStarted, Arrived, Bumped, Stuck, Stopped, Grasped, Released, Dropped,
+        JointsMoved, Docked, Undocked, BatteryEmpty, FaultInjected, Warned, Troubled,
     )
 }  # fmt: skip
 """What robots report, by the kinds of btlang.robots.robot.Robot.on_event."""

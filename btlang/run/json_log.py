@@ -98,6 +98,7 @@ _NODE = {
 _TYPES: dict[str, dict[str, Any]] = {
     "str": {"type": "string"},
     "int": {"type": "integer"},
+    "int | None": {"type": ["integer", "null"]},
     "float": {"type": "number"},
     "str | None": {"type": ["string", "null"]},
     "bool | None": {"type": ["boolean", "null"]},

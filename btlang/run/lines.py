@@ -7,6 +7,7 @@ from collections.abc import Callable
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED
 from btlang.run.events import (
     Bumped,
+    Chosen,
     Dropped,
     FaultInjected,
     Notice,
@@ -52,6 +53,9 @@ class Lines:
             self._overrun(event)
         elif isinstance(event, Said | Printed):
             self._line(event.t, f"{event.tag}s", f'"{event.text}"')
+        elif isinstance(event, Chosen):
+            seed = f"; seed {event.seed}" if event.seed is not None else ""
+            self._line(event.t, f"{event.tag}s", f"{event.name} ({event.how} {event.type}{seed})")
         elif isinstance(event, Bumped):
             self._line(event.t, "bumps", event.into)
         elif isinstance(event, Dropped):

@@ -23,6 +23,8 @@ class SlotSpec(Record):
 
 COMPARISONS = ("below", "above", "at_least", "at_most", "equal")
 """The ports of a condition that compares a quantity; each holds the value to compare with."""
+POINT = ("x", "y", "facing")
+"""The ports of a point in the place of a place: metres, and degrees where it says them."""
 MEASURED = "value"
 """The port of such a condition that may name the blackboard key to write what was measured to."""
 
@@ -38,7 +40,8 @@ class Entry(Record, uncompared=("span",)):
     `call`, a plain function, works in a thread of its own, beside the tick. `ros` stands in place of `call` on a robot
     that speaks ROS 2. With `replaces` its `call` is what runs, whatever other entries of its id say, on any robot.
     `needs` names capabilities and parts of the robot (btlang.vocabulary.capabilities); what an action takes of them for
-    itself is among its `resources`. An entry without a `sort` has only phrases: those of a known id.
+    itself is among its `resources`. `outputs` are the
+    slots whose ports it writes. An entry without a `sort` has only phrases: those of a known id.
     """
 
     sort: str  # "action", "condition" or ""
@@ -58,6 +61,7 @@ class Entry(Record, uncompared=("span",)):
     ros: RosBinding | None = None
     replaces: bool = False
     needs: tuple[str, ...] = ()
+    outputs: tuple[str, ...] = ()
     span: Span | None = None
 
     def slot(self, name: str) -> SlotSpec:
@@ -66,6 +70,12 @@ class Entry(Record, uncompared=("span",)):
             if slot.name == name:
                 return slot
         raise KeyError(name)
+
+    @property
+    def point_ports(self) -> frozenset[str]:
+        """The ports that take a point in the place of a place; none where the function takes only names."""
+        ports = frozenset(slot.name for slot in self.slots if slot.name in POINT)
+        return ports if ports.issuperset(POINT[:2]) else frozenset()
 
     @property
     def file(self) -> str:

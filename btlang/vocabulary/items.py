@@ -6,10 +6,10 @@ import re
 from collections.abc import Iterator
 
 from btlang.record import Record
-from btlang.vocabulary.entry import COMPARISONS, Entry
+from btlang.vocabulary.entry import COMPARISONS, POINT, Entry
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.pattern import Slot, forms
-from btlang.vocabulary.values import ValueType, with_unit
+from btlang.vocabulary.values import PLACE, ValueType, with_unit
 
 # Commands come first; what packs bring follows, then the words of the language.
 _FIRST = ("motion", "navigation", "manipulation", "gestures", "speech", "sensing", "power")
@@ -80,8 +80,13 @@ def _command(entry: Entry, vocabulary: Lexicon) -> Item:
 def _slots(entry: Entry, vocabulary: Lexicon) -> Iterator[str]:
     always = [{part.name for part in form if isinstance(part, Slot)} for text in entry.phrases for form in forms(text)]
     for slot in entry.slots[: -len(COMPARISONS)] if entry.measures else entry.slots:
+        if slot.name in entry.point_ports:
+            continue  # they are said in the slot of the place
         kind = vocabulary.types[slot.type]
         line = f"{{{slot.name}}}: {_described(kind, vocabulary)}"
+        if kind.name == PLACE and entry.point_ports:
+            facing = "90" if POINT[2] in entry.point_ports else None
+            line += f"; or a point: {vocabulary.values.point_text('2', '3', facing)}"
         if slot.default is not None:
             line += f"; {_default(slot.default, kind)} if left out"
         elif not all(slot.name in names for names in always):

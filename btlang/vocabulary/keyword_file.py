@@ -14,19 +14,19 @@ from btlang.text.toml import parse_toml
 from btlang.text.toml_positions import positions
 from btlang.tree.catalogue import CATALOGUE
 from btlang.vocabulary.capabilities import resources_of
-from btlang.vocabulary.entry import COMPARISONS, MEASURED, Entry, SlotSpec
+from btlang.vocabulary.entry import COMPARISONS, MEASURED, POINT, Entry, SlotSpec
 from btlang.vocabulary.language_tables import SWITCHES, TABLES, WORD_LISTS, problems
 from btlang.vocabulary.pattern import PatternError, Slot, forms
 from btlang.vocabulary.ros_binding import RosBinding
 from btlang.vocabulary.ros_table import read_ros, unknown_slots
-from btlang.vocabulary.values import Unit, ValueType
+from btlang.vocabulary.values import PLACE, Unit, ValueType
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
 _TOP = {"language", "replaces", "action", "condition", "quantity", "type", "phrases", *WORD_LISTS, *SWITCHES, *TABLES}
-_ENTRY = {"phrase", "id", "call", "ros", "slots", "resources", "needs", "topic", "help", "example"}
+_ENTRY = {"phrase", "id", "call", "ros", "slots", "outputs", "resources", "needs", "topic", "help", "example"}
 _FLAGS = ("instant", "uninterruptible", "thread")
 _MORE = {"action": set(_FLAGS), "condition": set[str](), "quantity": {"type"}}
 """The keys that an entry of one sort has beside those of all."""
@@ -76,10 +76,10 @@ class _Reader:
         phrases = table.get("phrase", [])
         phrases = [phrases] if isinstance(phrases, str) else phrases
         name = table.get("id", "")
-        if not _strings(phrases) or not phrases:
+        if not _strings(phrases) or "phrase" not in table or not (phrases or table.get("slots")):
             self.wrong(f'[[{sort}]] needs phrase = "...", or a list of them', str(name) or f"[[{sort}]]")
             return None
-        near = phrases[0]
+        near = phrases[0] if phrases else str(name)
         if not isinstance(name, str) or not re.fullmatch(r"[A-Za-z]\w*", name):
             self.wrong(f"the {sort} '{near}' needs id = \"...\", one word that starts with a letter", near)
             return None
@@ -111,7 +111,7 @@ class _Reader:
             sort, name, tuple(phrases), str(call), slots, tuple(resources), topic, help, example, span=self.span(near),
             instant=instant, uninterruptible=uninterruptible, thread=thread,
             ros=self.ros(table["ros"], sort, slots, near) if "ros" in table else None,
-            needs=tuple(needs),
+            needs=tuple(needs), outputs=self.outputs(table.get("outputs", []), slots, near),
         )  # fmt: skip
         return self.quantity(made, table, near) if sort == "quantity" else made
 
@@ -176,9 +176,19 @@ class _Reader:
             for part in parts:
                 if isinstance(part, Slot) and part.name not in found:
                     found[part.name] = self.slot(part.name, table.get(part.name, {}), near)
+        if any(slot.type == PLACE for slot in found.values()):
+            found |= {name: self.slot(name, table[name], near) for name in POINT if name in table and name not in found}
+        if not phrases:  # only said by its id, or by words of the language
+            found = {name: self.slot(name, table[name], near) for name in table}
         for name in [name for name in table if name not in found]:
             self.wrong(f"no phrase of '{near}' has a slot {{{name}}}", near)
         return tuple(found.values())
+
+    def outputs(self, names: object, slots: tuple[SlotSpec, ...], near: str) -> tuple[str, ...]:
+        if isinstance(names, list) and set(names) <= {slot.name for slot in slots}:
+            return tuple(names)
+        self.wrong(f"outputs of '{near}' must be a list of its slots", near)
+        return ()
 
     def slot(self, name: str, table: Any, near: str) -> SlotSpec:
         table = {"type": table} if isinstance(table, str) else table

@@ -6,18 +6,20 @@ from collections.abc import Mapping, Sequence
 
 from btlang.record import Record
 from btlang.text.words import Words
+from btlang.vocabulary.references import CHOICES, Choice
 from btlang.vocabulary.values import Values, find, format_number, key_of
 
 
 class Known(Record):
     """A value that the mission names itself: its key on the blackboard, and the types that it can be used as.
 
-    Without types it can be used as any: nothing has told yet.
+    Without types it can be used as any: nothing has told yet. One `is_chosen` by the robot gives way to others.
     """
 
     key: str
     words: tuple[str, ...]
     kinds: tuple[str, ...] = ()
+    is_chosen: bool = False
 
 
 class ReadingContext:
@@ -25,16 +27,18 @@ class ReadingContext:
 
     `known` are the values that it names, by key; None where any name in braces is one. `latest` are the values that
     pronouns stand for, by type; whoever reads a text sets them, on a context of its own. `lacked` tells that a pronoun
-    stood for nothing: behind other values it might stand for one.
+    stood for nothing: behind other values it might stand for one. `keys` are those for what is chosen, by type, where
+    they aren't the names of the types.
     """
 
-    __slots__ = ("_most_words", "joiners", "known", "lacked", "latest", "pronouns", "types", "values")
+    __slots__ = ("_most_words", "joiners", "keys", "known", "lacked", "latest", "pronouns", "types", "values")
 
     def __init__(self, values: Values, known: Mapping[str, Known] | None = None) -> None:
         self.values = values
         self.types, self.joiners, self.pronouns = values.types, values.joiners, values.pronouns
         self.latest: dict[str, str] = {}
         self.lacked = False
+        self.keys: Mapping[str, str] = {}
         self.known: Mapping[str, Known] | None = {}
         self._most_words = 0
         self.set_known(known or {})
@@ -64,13 +68,17 @@ class ReadingContext:
         found = self.values.read(kind, text, at)
         if found is None and text.words[at] in self.pronouns and self.types[kind].kind == "names":
             return self._referred(kind, text.words[at], at)
-        return found
+        return found or self._chosen(kind, text, at)
 
     def any(self, text: Words, at: int) -> tuple[tuple[str, ...], str, int] | None:
         """A value of any type: the types that it can be, its port text, and where it ends."""
         reference = self._reference(text, at)
         if reference is not None and self.known and reference[0] in self.known:
             return self.known[reference[0]].kinds, f"{{{reference[0]}}}", reference[1]
+        chosen = self.choice(text, at)
+        if chosen is not None:
+            kind, end = chosen[0][0], chosen[1]
+            return (kind,), (self._chosen(kind, text, at) or ("", end))[0], end
         quantity = self.values.quantity(text, at)
         if quantity is not None:
             return (quantity[1],), format_number(quantity[0]), quantity[2]
@@ -84,6 +92,10 @@ class ReadingContext:
             found.pop()  # figures are a text only where one is wanted
         best, end = max((value for _, value in found), key=lambda value: value[1])
         return tuple(kind for kind, (other, last) in found if last == end and other.lower() == best.lower()), best, end
+
+    def choice(self, text: Words, at: int) -> tuple[tuple[str, str], int] | None:
+        """See `Values.choice`."""
+        return self.values.choice(text, at)
 
     def named(self, text: Words, at: int) -> tuple[Known | None, int] | None:
         """The value that the mission names at a place, None for an unknown one in braces, and where its name ends."""
@@ -136,6 +148,14 @@ class ReadingContext:
         while words[end][0].isalnum() or words[end][0] == "_":
             end += 1
         return (key_of(words[at + 1 : end]), end + 1) if end > at + 1 and words[end] == "}" else None
+
+    def _chosen(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
+        """The nearest or a random one of the type, to be put into a key; without a text where there is none."""
+        chosen = self.choice(text, at)
+        if chosen is None or chosen[0][0] != kind or chosen[0][1] not in CHOICES:
+            return None
+        choice = Choice(chosen[0][1], kind, self.keys.get(kind, kind))
+        return choice.text if self.values.listed(kind) or self.known is None else "", chosen[1]
 
     def _referred(self, kind: str, word: str, at: int) -> tuple[str, int] | None:
         """What a pronoun stands for."""

@@ -6,10 +6,12 @@ In a text `{{` and `}}` are the characters themselves.
 from __future__ import annotations
 
 import re
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Container, Iterator
 
 from btlang.record import Record
+from btlang.vocabulary.entry import POINT
 
+CHOICES = ("nearest", "random")
 _PIECE = r"(?P<mark>\{\{|\}\})|\{(?P<name>[^{}]+)\}|(?P<text>[^{}]+|[{}])"  # compiled when a text needs it
 
 
@@ -17,6 +19,36 @@ class Reference(Record):
     """A value of the mission, by its key on the blackboard."""
 
     key: str
+
+
+class Choice(Record):
+    """A value that is chosen when its command starts: the "nearest" or a "random" name of a type, put into a key.
+
+    Its port text is one reference with a blank in it, which no key has: `{nearest person person}`.
+    """
+
+    how: str
+    type: str
+    key: str
+
+    @property
+    def text(self) -> str:
+        """The port text."""
+        return f"{{{self.how} {self.type} {self.key}}}"
+
+
+def free_key(kind: str, taken: Container[str]) -> str:
+    """The key for what is chosen of a type: its name, or another one where the mission uses that itself."""
+    key = kind
+    while key in taken:
+        key = f"chosen_{key}"
+    return key
+
+
+def choice_of(text: str) -> Choice | None:
+    """The choice that a port text stands for."""
+    parts = text[1:-1].split(" ") if text[:1] == "{" and text[-1:] == "}" and " " in text else ()
+    return Choice(*parts) if len(parts) == 3 and parts[0] in CHOICES else None
 
 
 def pieces(text: str) -> list[str | Reference]:
@@ -37,9 +69,10 @@ def pieces(text: str) -> list[str | Reference]:
 
 
 def keys_in(text: str) -> Iterator[str]:
-    """The keys that a port text refers to, in their order."""
+    """The keys that a port text refers to, in their order; what is chosen needs none."""
     if "{" in text:
-        yield from (piece.key for piece in pieces(text) if isinstance(piece, Reference))
+        if choice_of(text) is None:
+            yield from (piece.key for piece in pieces(text) if isinstance(piece, Reference))
 
 
 def renamed(text: str, key: Callable[[str], str]) -> str:
@@ -50,3 +83,10 @@ def renamed(text: str, key: Callable[[str], str]) -> str:
 def plain(text: str) -> str:
     """The port text that stands for exactly this text."""
     return text.replace("{", "{{").replace("}", "}}")
+
+
+def point_ports(text: str) -> tuple[tuple[str, str], ...]:
+    """The ports of a point that was read as a value, () for any other value."""
+    if text[:1] != "(":
+        return ()
+    return tuple(zip(POINT, re.findall(r"-?\d+(?:\.\d+)?(?:e[+-]?\d+)?", text), strict=False))

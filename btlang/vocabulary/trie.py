@@ -12,7 +12,7 @@ from btlang.text.words import Words
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.pattern import Form, Slot
 from btlang.vocabulary.reading_context import ReadingContext
-from btlang.vocabulary.values import END, Values, ValueType
+from btlang.vocabulary.values import ALL, END, Values, ValueType
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -27,7 +27,7 @@ class SlotValue(Record):
     """The value that was read in a slot: its port text and the words `first` to `last` (exclusive).
 
     Of a list (`the lab, the hall and the dock`) `more` holds the further values; `joiner` is "and", "or", "nor", or ""
-    where there are only commas.
+    where there are only commas. `every place` is a list, too; its text is "" where there are no such names.
     """
 
     name: str
@@ -121,6 +121,10 @@ def longest(
                         continue  # as nearly always, without reading
                     value = context.read(kind, text, i)
                     if value is None:
+                        chosen = context.choice(text, i)
+                        if chosen is not None and chosen[0] == (kind, ALL):
+                            every = all_names(root, kind, text, i, chosen[1], context, name)
+                            paths.append((child, every.last, (*found, every)))
                         continue
                     one = SlotValue(name, kind, value[0], i, value[1])
                     paths.append((child, value[1], (*found, one)))
@@ -134,6 +138,29 @@ def longest(
             break
         node, i, found = paths.pop()
     return Match(best, best_last, best_values) if best is not None else None
+
+
+def all_names(
+    root: TrieNode, kind: str, text: Words, first: int, at: int, context: ReadingContext, name: str = "value"
+) -> SlotValue:
+    """All names of a type, but those behind `except` at a word, as a list; without a text where none is left."""
+    left_out: tuple[str, ...] = ()
+    last = context.values.exception(text, at)
+    if last and longest(root, text, at, context, lists=False) is None:  # `except if` is another word
+        value = context.read(kind, text, last)
+        if value is None:
+            return SlotValue(name, kind, "", first, _end_of_unknown(root, text, last, context))
+        one = SlotValue(name, kind, value[0], last, value[1])
+        listed = _listed(root, text, one, context, None, is_subject=False) or one
+        left_out, at = (listed.text, *listed.more), listed.last
+    names = [one for one in context.values.listed(kind) if one not in left_out]
+    return SlotValue(name, kind, names[0] if names else "", first, at, tuple(names[1:]), "and" if names[1:] else "")
+
+
+def _end_of_unknown(root: TrieNode, text: Words, at: int, context: ReadingContext) -> int:
+    while text.words[at] not in _MARKS and longest(root, text, at, context, lists=False) is None:
+        at += 1
+    return at
 
 
 def _may_go_on(node: TrieNode, text: Words) -> bool:

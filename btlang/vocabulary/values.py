@@ -12,6 +12,7 @@ from marshal import dumps, loads  # a copy of a trie, at a tenth of the time tha
 from btlang.record import Record
 from btlang.text.source import Source
 from btlang.text.words import Orthography, Words, split
+from btlang.vocabulary.references import CHOICES, Choice
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -19,6 +20,12 @@ if TYPE_CHECKING:
 
 _LARGEST = 1e12  # beyond it no quantity of a robot makes sense, and sums stay exact
 _MOST_NUMBER_WORDS = 12
+_FARTHEST = 1e6  # metres, as in a world file
+PLACE = "place"
+"""The type of which a point is a value, too."""
+WORLD = (PLACE, "person", "object")
+"""The types of which robots know where each name is."""
+ALL = "all"  # of the names of a type
 END = "\0"  # key of a word tree's value; no word of a text is this one
 WordTree = dict[str, "Any"]
 
@@ -115,23 +122,44 @@ class Values:
         self._number_starts = frozenset((*self._numbers, *self._multipliers, *self._fractions))
         self._units: WordTree = {}
         self._names: dict[str, WordTree] = {}
+        self._listed: dict[str, dict[str, None]] = {}
         for kind in types.values():
             for unit in kind.units:
                 for word in unit.words:
                     insert(self._units, word.split(), (kind.name, unit))
             if kind.kind == "names":
                 self._names[kind.name] = {}
+        self._facing = [phrase.split() for phrase in language["roles"].get("facing", ())]
+        self._nouns: WordTree = {}
+        self._choices: WordTree = {}
+        self._chosen: dict[tuple[str, str], str] = {}
+        for name in self._names:
+            for noun in language["nouns"].get(name, (name,)):
+                insert(self._nouns, noun.split(), name)
+                ways = dict.fromkeys(language["roles"].get("all_names", ()), ALL)
+                if name in WORLD:
+                    ways |= {words: how for how in CHOICES for words in language["roles"].get(how, ())}
+                for words, how in ways.items():
+                    insert(self._choices, [*words.split(), *noun.split()], (name, how))
+                    self._chosen.setdefault((name, how), f"{words} {noun}")
+            for noun in language["everyone"].get(name, ()):
+                insert(self._choices, noun.split(), (name, ALL))
+        self._exceptions: WordTree = {}
+        for phrase in language["roles"].get("except", ()):
+            insert(self._exceptions, phrase.split(), True)
         self._openers: dict[str, frozenset[str]] | None = None
 
     def add_name(self, kind: str, words: str, name: str) -> None:
         """Lets the words stand for a name of a type."""
         insert(self._names[kind], words.lower().split(), name)
+        self._listed.setdefault(kind, {})[name] = None
         self._openers = None
 
     def with_names(self, names: Mapping[str, Iterable[tuple[str, str]]]) -> Values:
         """The same with further names of types, each with its words."""
         made = Values.__new__(Values)  # what `copy` does, which takes long to import
         made.__dict__.update(self.__dict__)
+        made._listed = {**self._listed, **{kind: dict(self._listed.get(kind, ())) for kind in names}}
         made._names = {**self._names, **{kind: loads(dumps(self._names[kind])) for kind in names}}
         for kind, pairs in names.items():
             for words, name in pairs:
@@ -147,7 +175,11 @@ class Values:
         if self._openers is None:
             numbers = self._number_starts
             quantities = numbers | self._joiner | self._units.keys()
-            self._openers = {kind: frozenset((*tree, *self.pronouns)) for kind, tree in self._names.items()}
+            self._openers = {
+                kind: frozenset((*tree, *self.pronouns, *self._choices)) for kind, tree in self._names.items()
+            }
+            if PLACE in self._openers:
+                self._openers[PLACE] |= {"("}
             for kind, value_type in self.types.items():
                 if value_type.kind in ("number", "quantity"):
                     self._openers[kind] = numbers if value_type.kind == "number" else quantities
@@ -187,6 +219,31 @@ class Values:
                     stack.append(child)
         return sorted(found)
 
+    def listed(self, kind: str) -> tuple[str, ...]:
+        """The same names in the order of the files and facts that bring them."""
+        return tuple(self._listed.get(kind, ()))
+
+    def noun(self, text: Words, at: int) -> tuple[str, int] | None:
+        """The type that a noun such as `places` is for, and where it ends."""
+        return find(self._nouns, text.words, at)
+
+    def choice(self, text: Words, at: int) -> tuple[tuple[str, str], int] | None:
+        """Of words such as `every place` the type and which of its names they are for, and where they end."""
+        return find(self._choices, text.words, at) if text.words[at] in self._choices else None
+
+    def choices(self, kind: str) -> list[list[str]]:
+        """The words that stand for all names of a type, and for those that are chosen, in the first way to say them."""
+        return [words.split() for (own, _), words in self._chosen.items() if own == kind and self._listed.get(kind)]
+
+    def choice_words(self, choice: Choice) -> str:
+        """The words that stand for a choice: `nearest person`."""
+        return self._chosen.get((choice.type, choice.how), choice.text)
+
+    def exception(self, text: Words, at: int) -> int:
+        """Where a word such as `except` ends, 0 where there is none."""
+        found = find(self._exceptions, text.words, at)
+        return found[1] if found is not None else 0
+
     def takes_word(self, kind: str, word: str) -> bool:
         """Whether the one word is a value of the type."""
         value_type = self.types[kind]
@@ -208,6 +265,8 @@ class Values:
             return self._plain_number(value_type, text, at)
         if value_type.kind == "names":
             word = text.words[at]
+            if word == "(" and kind == PLACE:
+                return self._point_text(text, at)
             found = find(self._names[kind], text.words, at)
             if found is None and word[0] == '"':
                 found = self._quoted_name(kind, text, at)
@@ -300,6 +359,46 @@ class Values:
                 else:
                     total = (total or 0) + self._numbers[piece]
             at += 1
+
+    def point(self, text: Words, at: int) -> tuple[float, float, float | None, int] | None:
+        """`(x, y)` in metres, with or without a direction in degrees that it faces, and where it ends."""
+        numbers: list[float] = []
+        for mark in ("(", ","):
+            number = self._metres(text, at + 1) if text.words[at] == mark else None
+            if number is None or abs(number[0]) > _FARTHEST:
+                return None
+            numbers.append(number[0])
+            at = number[1]
+        if text.words[at] != ")":
+            return None
+        at += 1
+        for words in self._facing:
+            last = at + len(words)
+            angle = self.quantity(text, last) if text.words[at:last] == words else None
+            if angle is not None and angle[1] == "angle":
+                return numbers[0], numbers[1], angle[0], angle[2]
+        return numbers[0], numbers[1], None, at
+
+    def point_text(self, x: str, y: str, facing: str | None) -> str:
+        """A point as it is written."""
+        where = f"({x}, {y})"
+        if facing is None:
+            return where
+        return f"{where} {' '.join(self._facing[0])} {with_unit(facing, self.types['angle'].units[0].words[0])}"
+
+    def _metres(self, text: Words, at: int) -> tuple[float, int] | None:
+        quantity = self.quantity(text, at)
+        if quantity is not None:
+            return (quantity[0], quantity[2]) if quantity[1] == "length" else None
+        return self.number(text, at)
+
+    def _point_text(self, text: Words, at: int) -> tuple[str, int] | None:
+        point = self.point(text, at)
+        if point is None:
+            return None
+        x, y, facing, end = point
+        angle = None if facing is None else format_number(facing)
+        return self.point_text(format_number(x), format_number(y), angle), end
 
     def _plain_number(self, value_type: ValueType, text: Words, at: int) -> tuple[str, int] | None:
         number = self.number(text, at)

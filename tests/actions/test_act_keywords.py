@@ -37,7 +37,7 @@ def test_entries(entry):
         assert optional or slot in said_always
     assert call.__doc__
     assert entry.help.endswith(".")
-    assert meaning(entry.example)[0] == entry.id
+    assert not entry.phrases or meaning(entry.example)[0] == entry.id
     if entry.sort == "condition":
         assert not isgeneratorfunction(call)
         assert not entry.resources

@@ -2,9 +2,10 @@
 
 import pytest
 
-from btlang.actions import gestures, manipulation, navigation, power, sensing, speech
+from btlang.actions import gestures, manipulation, motion, navigation, power, sensing, speech
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.geometry import Pose
+from btlang.robots.robot import RobotError
 from btlang.robots.world import Fault
 from btlang.robots.world_file import load_world
 
@@ -38,6 +39,56 @@ def test_no_way_fails_with_the_reason(bench):
         b.run(navigation.go_to, place="lab")
     with pytest.raises(ActionFailed, match=r"^I don't know where 'moon' is$"):
         b.run(navigation.go_to, place="moon")
+
+
+def test_go_to_a_point_and_face_another_one(bench):
+    b = bench(load_world())
+    b.run(navigation.go_to, x=5.0, y=2.5, facing=90.0)
+    assert b.robot.pose.distance_to((5.0, 2.5)) < 0.1
+    assert b.robot.pose.heading == pytest.approx(90.0, abs=2.0)
+    assert sensing.at_place(b.robot, x=5.0, y=2.5)
+    assert sensing.distance_to_place(b.robot, x=5.0, y=4.5) == pytest.approx(2.0, abs=0.1)
+    b.run(motion.face_place, x=1.0, y=2.5)
+    assert abs(b.robot.pose.bearing_to((1.0, 2.5))) < 3.0
+    with pytest.raises(RobotError, match=r"^neither a place nor a point is given$"):
+        b.run(navigation.go_to, x=1.0)
+    with pytest.raises(ActionFailed, match=r"^there is no free way to \(50.00, 1.00\)$"):
+        b.run(navigation.go_to, x=50.0, y=1.0)
+
+
+def test_the_nearest_is_chosen_and_not_what_the_hand_holds(bench):
+    b = bench(load_world())
+    found = []
+    b.run(navigation.choose, type="person", how="nearest", output=found.append)
+    b.run(navigation.choose, type="object", how="nearest", output=found.append)
+    nearest = min(load_world().names.people, key=lambda name: b.robot.pose.distance_to(b.robot.locate(name)))
+    assert found[0] == nearest
+    b.run(manipulation.pick_up, object=found[1])
+    b.run(navigation.choose, type="object", how="nearest", output=found.append)
+    assert found[2] != found[1]
+    assert ("choose", {"type": "object", "how": "nearest", "name": found[1]}) in b.events
+
+
+def test_random_choices_follow_from_the_seed(bench):
+    def chosen(seed):
+        b = bench(load_world())
+        b.robot.seed_choices(seed)
+        return [b.robot.choose("place", "random") for _ in range(20)]
+
+    assert chosen(1) == chosen(1)
+    assert chosen(1) != chosen(2)
+    assert set(chosen(1)) <= set(load_world().names.places)
+
+
+@pytest.mark.parametrize(("kind", "how", "reason"), [
+    ("person", "nearest", "there's no person to choose"),
+    ("ship", "random", "there's no ship to choose"),
+    ("place", "dearest", "it can choose the nearest or a random place, not by 'dearest'"),
+])  # fmt: skip
+def test_what_cannot_be_chosen(bench, kind, how, reason):
+    b = bench(load_world().replace(people=()))
+    with pytest.raises(RobotError, match=f"^{reason}$"):
+        b.robot.choose(kind, how)
 
 
 def test_a_halted_journey_brakes(bench):

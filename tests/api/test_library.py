@@ -15,7 +15,7 @@ import btlang
 from btlang.engine.status import FAILURE, RUNNING, SKIPPED, SUCCESS
 from btlang.robots.robot import RobotError
 from btlang.robots.world_problem import read_world
-from btlang.run.events import Event, Printed
+from btlang.run.events import Chosen, Event, Printed
 from tests.trial import Trial
 
 
@@ -207,3 +207,19 @@ def test_a_thousand_trees_are_small() -> None:
     environment = {**os.environ, "PYTHONPATH": str(Path(btlang.__file__).parents[1])}
     done = subprocess.run([sys.executable, "-c", program], env=environment, capture_output=True, text=True, check=True)
     assert int(done.stdout) < 100
+
+
+def test_a_seed_repeats_the_random_choices_of_a_run() -> None:
+    mission = btlang.parse_tree("repeat 12 times: set goal to a random place then print {goal}")
+
+    def chosen(seed: int | None) -> list[tuple[str, int]]:
+        with btlang.Session() as session:
+            run = session.run(mission, speed="max", seed=seed)
+            events = [event for event in run.events() if isinstance(event, Chosen)]
+        assert all(event.seed == run.seed for event in events)
+        return [(event.name, run.seed) for event in events]
+
+    first = chosen(None)
+    assert len(first) == 12
+    assert chosen(first[0][1]) == first
+    assert chosen(7) != chosen(8)

@@ -161,3 +161,9 @@ def test_every_option_tells_what_it_is() -> None:
     kinds = {option.kind for text in ("", "wave ", "go to ", "if ") for option in completions(text, shipped())}
     assert kinds == {"command", "condition", "connective", "value"}
     assert offered("")["move forward"].help.startswith("Drives")
+
+
+def test_words_that_stand_for_names_are_offered_once_they_are_begun() -> None:
+    assert {"nearest person", "nearest object"} <= offered("look at the nea").keys()
+    assert "place" in offered("go to a random ")
+    assert "every person" in offered("wave at ev")

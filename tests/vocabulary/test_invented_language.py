@@ -62,6 +62,8 @@ def _language(tables: dict[str, Any]) -> dict[str, Any]:
             made[key] = list(map(invented, value))
         elif key in ("roles", "comparisons"):
             made[key] = {name: list(map(_pattern, patterns)) for name, patterns in value.items()}
+        elif key in ("nouns", "everyone"):
+            made[key] = {kind: list(map(invented, words)) for kind, words in value.items()}
         elif key == "nodes":
             made[key] = {node_id: _pattern(words) for node_id, words in value.items()}
         elif key in ("negations", "negative_subjects", "plurals", "doing"):
@@ -115,5 +117,8 @@ def _plain(tree: Tree, change: Any) -> list[object]:
 
 def _port(node: Node, name: str, text: str, change: Any) -> tuple[str, str]:
     own = node.id != "SubTree" or name == "ID"
-    changed = text if name in ("_skipIf", "once") else change(text).replace(change("each_"), "each_")
+    made = ("each_", "chosen_")
+    changed = text if name in ("_skipIf", "once", "how", "type") else change(text)
+    for start in made:
+        changed = changed.replace(change(start), start)
     return name if own else change(name), changed

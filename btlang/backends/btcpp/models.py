@@ -108,7 +108,8 @@ class Uses:
 
     def _entry_ports(self, entry: Entry) -> Iterator[PortModel]:
         for slot in entry.slots:
-            yield PortModel(slot.name, "input", self._type(slot.type), slot.default)
+            direction = "output" if slot.name in entry.outputs else "input"
+            yield PortModel(slot.name, direction, self._type(slot.type), slot.default)
         if entry.measures:
             kind = self._type(entry.measures)
             yield from (PortModel(name, "input", kind) for name in COMPARISONS)

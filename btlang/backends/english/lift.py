@@ -11,7 +11,7 @@ from btlang.backends.english.inverse_rules import INVERSE_RULES
 from btlang.backends.english.loops import Loop
 from btlang.backends.english.names import Names
 from btlang.backends.english.type_inference import Around
-from btlang.backends.english.values import assigned, can_say, compared, remembered, texts_of
+from btlang.backends.english.values import assigned, can_say, chosen, compared, remembered, texts_of
 from btlang.passes.lowered import Lowered
 from btlang.passes.scope import Scope
 from btlang.printer.phrase import leaf_words
@@ -178,6 +178,8 @@ class Lifter:
             return
         if node.id == "Script":
             yield from assigned(node, self._checked)
+        if node.id == "Choose":
+            yield from chosen(node, self._checked)
         yield from remembered(node, self._vocabulary.entries.get(node.id, ()), self._checked)
         if condition is not None:
             if not isinstance(condition, ast.Exact):

@@ -21,7 +21,8 @@ from btlang.vocabulary.entry import MEASURED
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.pattern import Slot, name_form
 from btlang.vocabulary.reading_context import Known
-from btlang.vocabulary.references import Reference, pieces
+from btlang.vocabulary.references import Reference, choice_of, free_key, pieces
+from btlang.vocabulary.values import WORLD
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -61,6 +62,7 @@ class TypeInference:
         self, vocabulary: Lexicon, names: Container[str], loops: Mapping[int, Loop], refused: Container[str]
     ) -> None:
         self._vocabulary, self._names, self._loops, self._refused = vocabulary, names, loops, refused
+        self._set: set[str] = set()  # keys that are given values
         self._groups: dict[Value, list[Value]] = {}  # those of one type, by each of them that was joined to no other
         self._joined: dict[Value, Value] = {}
         self._given: list[tuple[Value, Value]] = []  # what is given another value
@@ -78,7 +80,10 @@ class TypeInference:
             values |= {key: (owner, key) for key, owner in owners.items()}
             kinds = {key: kind for key, value in values.items() if (kind := self.kind(value)) is not None}
             known = {key: Known(key, tuple(key.split("_")), (kind,)) for key, kind in kinds.items()}
-            self._around[place] = Around(owners, kinds, self._vocabulary.with_known(known))
+            vocabulary = self._vocabulary.with_known(known)
+            taken = self._set | {key for owner, key in self._groups if owner}
+            vocabulary.context.keys = {kind: free_key(kind, taken) for kind in WORLD}
+            self._around[place] = Around(owners, kinds, vocabulary)
         return self._around[place]
 
     def kind(self, value: Value) -> str | None:
@@ -123,6 +128,7 @@ class TypeInference:
             self._need(texts[key], "duration", own)
         if node.id == "Script" and (given := given_by(node.port("code"), texts)) is not None:
             value = self._value(given.key, own)
+            self._set.add(given.key)
             self._sort(value, given.is_number)
             self._give(value, given.text, own, {}, given.is_number)
             if given.operation == "time":
@@ -135,10 +141,14 @@ class TypeInference:
         elif node.id == SUBTREE and node.port("ID") in self._names:
             for key in parameters(node.port("ID")):
                 self._give((node.port("ID"), key), node.port(key), own, texts)
+        elif node.id == "Choose":
+            self._need(node.port("output"), node.port("type"), own)
+            self._set.add(node.port("output")[1:-1])
         elif kind is not None:
             for name, port in kind.ports.items():
                 if port.unit in _TYPES:
                     self._need(node.port(name), _TYPES[port.unit], own)
+        self._set.add(node.port(MEASURED)[1:-1])
         for entry in self._vocabulary.entries.get(node.id, ()):
             types = {slot.name: slot.type for slot in entry.slots} | (
                 {MEASURED: entry.measures} if entry.measures else {}
@@ -175,7 +185,7 @@ class TypeInference:
             self._texts.setdefault(value, []).append(text)
 
     def _mention(self, text: str, own: Mapping[str, str]) -> None:
-        for piece in pieces(text):
+        for piece in pieces(text) if choice_of(text) is None else ():
             if isinstance(piece, Reference) and piece.key[0] != "_":
                 self._value(piece.key, own)
 

@@ -12,7 +12,8 @@ from btlang.tree import ast
 from btlang.tree.node import Node
 from btlang.vocabulary.entry import MEASURED, Entry
 from btlang.vocabulary.pattern import Form, Slot, forms
-from btlang.vocabulary.references import keys_in
+from btlang.vocabulary.references import Choice, keys_in
+from btlang.vocabulary.values import WORLD
 
 
 def assigned(node: Node, checked: Checked) -> Iterator[ast.Ast]:
@@ -22,6 +23,14 @@ def assigned(node: Node, checked: Checked) -> Iterator[ast.Ast]:
         kind = checked.around.kinds.get(given.key)
         if kind is not None and can_say(given.text, kind, checked):
             yield ast.Assign(given.key, given.operation, kind, given.text, NOWHERE)
+
+
+def chosen(node: Node, checked: Checked) -> Iterator[ast.Ast]:
+    """A name that is chosen for a key of the mission's own."""
+    key, kind = node.port("output")[1:-1], node.port("type")
+    if key in checked.around.kinds and kind in WORLD:
+        choice = Choice(node.port("how"), kind, checked.around.vocabulary.context.keys[kind])
+        yield ast.Assign(key, "set", kind, choice.text, NOWHERE)
 
 
 def compared(node: Node, checked: Checked) -> Iterator[ast.Ast]:

@@ -24,7 +24,7 @@ from btlang.vocabulary.lexicon import NODE_ROLES, Lexicon
 from btlang.vocabulary.pattern import Slot, forms
 from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.trie import SLOTS, TrieNode, longest
-from btlang.vocabulary.values import ValueType, with_unit
+from btlang.vocabulary.values import PLACE, ValueType, with_unit
 
 _NOT_A_VALUE = frozenset((END_OF_TEXT, END_OF_STATEMENT, ",", ":", "(", ")"))
 
@@ -146,6 +146,9 @@ def _misfit(
     wanted = " or ".join(f"{_article(kind.name)} {kind.name.replace('_', ' ')}" for kind in types)
     head = text.span(first, at).text
     example = f"{head} {_value_example(types[0], vocabulary)}"
+    if text.words[at] == "(" and end > at and any(kind.name == PLACE for kind in types):
+        point = vocabulary.values.point_text("3", "4", "90")
+        return diagnostic("BT036", text.span(at, end), example=f"{head} {point}")
     if text.words[at] in _NOT_A_VALUE or _is_connective(text, at, vocabulary):
         return diagnostic("BT012", text.span(first, at), words=head, wanted=wanted, example=example)
     mentioned = context.named(text, at)

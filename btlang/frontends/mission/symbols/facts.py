@@ -8,8 +8,7 @@ from btlang.tree.ast import Fact
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.trie import longest
 
-_FARTHEST = 1e6  # metres, as in a world file
-_OPEN, _COMMA, _CLOSE = "(", ",", ")"
+_OPEN, _COMMA = "(", ","
 
 
 class Facts:
@@ -50,38 +49,11 @@ def _fact(text: Words, start: int, is_at: int, at: int, last: int, vocabulary: L
     """None where it is not put together as a fact is."""
     if start == is_at or not all(word[0].isalnum() for word in text.words[start:is_at]):
         return None
-    numbers: list[float] = []
-    for mark in (_OPEN, _COMMA):
-        number = _metres(text, at + 1, vocabulary) if text.words[at] == mark else None
-        if number is None:
-            return None
-        numbers.append(number[0])
-        at = number[1]
-    if text.words[at] != _CLOSE:
-        return None
-    at += 1
-    facing: float | None = None
-    for phrase in vocabulary.roles["facing"]:
-        words = phrase.split()
-        if text.words[at : at + len(words)] == words:
-            angle = vocabulary.values.quantity(text, at + len(words))
-            if angle is None or angle[1] != "angle":
-                return None
-            facing, at = angle[0], angle[2]
-            break
-    if at != last:
-        return None
-    if not all(abs(number) <= _FARTHEST for number in numbers):
+    point = vocabulary.values.point(text, at)
+    if point is None or point[3] != last:
         return None
     name = " ".join(text.words[start:is_at])
-    return Fact(name, numbers[0], numbers[1], facing, text.span(start, last))
-
-
-def _metres(text: Words, at: int, vocabulary: Lexicon) -> tuple[float, int] | None:
-    quantity = vocabulary.values.quantity(text, at)
-    if quantity is not None:
-        return (quantity[0], quantity[2]) if quantity[1] == "length" else None
-    return vocabulary.values.number(text, at)
+    return Fact(name, *point[:3], text.span(start, last))
 
 
 def _after_politeness(text: Words, at: int, last: int, vocabulary: Lexicon) -> int:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Container, Mapping
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.symbols.continuations import find_continuations, named_at
@@ -19,6 +19,7 @@ from btlang.text.words import Words
 from btlang.tree.ast import Include, all_definitions, all_facts
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import Known
+from btlang.vocabulary.references import CHOICES, free_key
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -79,6 +80,13 @@ class Names:
         self.others = {*self.prefixes, *self.ends, *self.definitions.headers}
         self.bounds: list[int] = []
         self.known = {key: one for named in (shared or {}, *(p.known for p in parts)) for key, one in named.items()}
+        parameters = {key for header in self.definitions.headers.values() for key, _ in header.parameters}
+        taken = parameters | {prefix.key for prefix in self.prefixes.values()}
+        self.known = {key: one for key, one in self.known.items() if not (one.is_chosen and key in taken)}
+        taken |= {key for key, one in self.known.items() if not one.is_chosen}
+        self.chosen = _chosen(text, vocabulary, taken)
+        """The keys for what the robot chooses, by type."""
+        self.known |= {key: Known(key, tuple(key.split("_")), (kind,), True) for kind, key in self.chosen.items()}
         if self.known or self.prefixes or any(header.parameters for header in self.definitions.headers.values()):
             self._name_values(text)
 
@@ -97,3 +105,13 @@ class Names:
     def included_conditions(self) -> set[str]:
         """The names of included missions that stand for conditions."""
         return {name for part in self.included.values() for name in part.conditions}
+
+
+def _chosen(text: Words, vocabulary: Lexicon, taken: Container[str]) -> dict[str, str]:
+    """A free key for each type of which the text lets the robot choose: the name of the type, or another one."""
+    words = [phrase.split()[0] for how in CHOICES for phrase in vocabulary.roles[how]]
+    if text.distinct.isdisjoint(words):
+        return {}
+    found = [vocabulary.values.choice(text, at) for at, word in enumerate(text.words) if word in words]
+    kinds = dict.fromkeys(one[0][0] for one in found if one is not None and one[0][1] in CHOICES)
+    return {kind: free_key(kind, taken) for kind in kinds}

@@ -23,7 +23,7 @@ class Prefix(Record):
     """The prefix of a statement about a value: its name, the word at which the value stands, and the word behind it.
 
     `value` is -1 where none is given. Of `remember ... as name` the value stands before the name and ends before the
-    word `value_end`, and `last` is behind the name.
+    word `value_end`, and `last` is behind the name. `for each person:` goes through all names of a type, its `kind`.
     """
 
     role: str
@@ -32,6 +32,7 @@ class Prefix(Record):
     value: int
     last: int
     value_end: int = -1
+    kind: str = ""
 
 
 def find_prefixes(text: Words, vocabulary: Lexicon) -> dict[int, Prefix]:
@@ -62,6 +63,10 @@ def _prefix(text: Words, role: str, at: int, vocabulary: Lexicon) -> Prefix | No
         last = _end_of_name(text, separator[1], vocabulary)
         words = _name(text, separator[1], last, vocabulary)
         return Prefix(role, key_of(words), words, at, last, separator[0]) if words else None
+    if separator is None and role == "each":
+        noun = vocabulary.values.noun(text, at)
+        words = tuple(text.words[at : noun[1]]) if noun is not None else ()
+        return Prefix(role, key_of(words), words, at, noun[1], kind=noun[0]) if noun is not None else None
     if separator is None:
         if role not in ("increase", "decrease"):
             return None

@@ -2,14 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
-
 from btlang.frontends.mission.symbols.prefixes import Prefix
 from btlang.frontends.mission.token import Assigned, Each, Remembered, Token
+from btlang.frontends.mission.tokens.calls import Calls
 from btlang.text.words import Words
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import Known, ReadingContext
-from btlang.vocabulary.trie import Match, SlotValue, longest, reaches_beyond
+from btlang.vocabulary.trie import SlotValue, all_names, longest, reaches_beyond
+from btlang.vocabulary.values import ALL
 
 
 def read_statement(
@@ -18,22 +18,20 @@ def read_statement(
     at: int,
     vocabulary: Lexicon,
     context: ReadingContext,
-    port_text: Callable[[SlotValue], str],
+    calls: Calls,
 ) -> tuple[Token, int] | None:
-    """The token of a statement that starts at a word, and where it ends; None where its value cannot be read.
-
-    `port_text` gives the port text of a value.
-    """
+    """The token of a statement that starts at a word, and where it ends; None where its value cannot be read."""
     if prefix.role == "each":
-        return _each(prefix, text, at, vocabulary, context, port_text)
+        return _each(prefix, text, at, vocabulary, context, calls)
     known = context.known.get(prefix.key) if context.known else None
     if known is None:
         return None
     start = text.starts[at]
     if prefix.role in ("set", "remember"):  # `set level to the battery` remembers, too
         quantity = longest(vocabulary.quantities, text, prefix.value, context)
-        if quantity is not None and quantity.meaning.entry is not None and quantity.last >= prefix.value_end:
-            made = Remembered(prefix.key, quantity.meaning.entry, _arguments(quantity, port_text))
+        entry = quantity.meaning.entry if quantity is not None else None
+        if quantity is not None and entry is not None and quantity.last >= prefix.value_end:
+            made = Remembered(prefix.key, entry, calls.arguments(entry, quantity.values))
             end = max(prefix.last, quantity.last)
             return Token("command", start, text.ends[end - 1], made), end
     found = _value(prefix, known, text, vocabulary, context)
@@ -41,12 +39,8 @@ def read_statement(
         return None
     operation = "set" if prefix.role == "remember" else prefix.role
     end = max(prefix.last, found.last)
-    made_of = Assigned(prefix.key, operation, found.type, port_text(found))
+    made_of = Assigned(prefix.key, operation, found.type, calls.port_text(found))
     return Token("command", start, text.ends[end - 1], made_of), end
-
-
-def _arguments(match: Match, port_text: Callable[[SlotValue], str]) -> tuple[tuple[str, str], ...]:
-    return tuple((value.name, port_text(value)) for value in match.values)
 
 
 def _value(prefix: Prefix, known: Known, text: Words, vocabulary: Lexicon, context: ReadingContext) -> SlotValue | None:
@@ -76,19 +70,28 @@ def _each(
     at: int,
     vocabulary: Lexicon,
     context: ReadingContext,
-    port_text: Callable[[SlotValue], str],
+    calls: Calls,
 ) -> tuple[Token, int] | None:
     others = {key: known for key, known in (context.known or {}).items() if key != prefix.key}
     inner = ReadingContext(vocabulary.values, others)
+    inner.keys = context.keys
     first = inner.any(text, prefix.value)
     kinds = (prefix.key,) if prefix.key in vocabulary.types else first[0] if first is not None else ()
-    lists = [(kind, _listed(kind, text, prefix.value, vocabulary, inner)) for kind in kinds]
-    if not lists or not any(found for _, found in lists):
-        return None
-    kind, found = max(lists, key=lambda one: len(one[1]))
-    made = Each(prefix.key, kind, tuple(port_text(value) for value in found))
+    chosen = ((prefix.kind, ALL), prefix.last) if prefix.kind else inner.choice(text, prefix.value)
+    if chosen is not None and chosen[0][1] == ALL:
+        kind = chosen[0][0]
+        every = all_names(vocabulary.trie, kind, text, prefix.value, chosen[1], inner)
+        values = calls.port_text(every), *every.more
+        last = every.last
+    else:
+        lists = [(kind, _listed(kind, text, prefix.value, vocabulary, inner)) for kind in kinds]
+        if not lists or not any(found for _, found in lists):
+            return None
+        kind, found = max(lists, key=lambda one: len(one[1]))
+        values = tuple(calls.port_text(value) for value in found)
+        last = found[-1].last
+    made = Each(prefix.key, kind, values)
     context.latest[kind] = f"{{{prefix.key}}}"
-    last = found[-1].last
     return Token("each", text.starts[at], text.ends[last - 1], made), last
 
 

@@ -11,18 +11,18 @@ from btlang.frontends.mission.symbols.includes import misplaced
 from btlang.frontends.mission.symbols.names import Load, Names
 from btlang.frontends.mission.symbols.nodes import Unreadable, read_node, unreadable
 from btlang.frontends.mission.symbols.prefixes import SEPARATORS, Prefix, span_of
-from btlang.frontends.mission.token import Called, Listed, Token, begins_condition, go_on
+from btlang.frontends.mission.token import Token, begins_condition, go_on
+from btlang.frontends.mission.tokens.calls import Calls
 from btlang.frontends.mission.tokens.condition_names import called, condition_names
 from btlang.frontends.mission.tokens.partial_commands import PartialCommands, may_be_doing, with_verb
 from btlang.text.source import Source, Span
 from btlang.text.words import END_OF_STATEMENT, END_OF_TEXT, Words, split
-from btlang.vocabulary.entry import Entry, Meaning
+from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.language_tables import CONNECTIVES, NOT_ALONE
 from btlang.vocabulary.lexicon import NODE_ROLES, Lexicon
 from btlang.vocabulary.reading_context import Known, ReadingContext
-from btlang.vocabulary.references import keys_in, renamed
-from btlang.vocabulary.trie import SLOTS, Match, SlotValue, TrieNode, longest
-from btlang.vocabulary.values import key_of
+from btlang.vocabulary.references import choice_of
+from btlang.vocabulary.trie import SLOTS, Match, TrieNode, longest
 
 TYPE_CHECKING = False
 _ROLES = {"if_it_works": ("if_possible", "if_works"), "in_parallel": ("in_parallel", "meanwhile")}
@@ -69,11 +69,13 @@ class Lexer:
         self.vocabulary = self.names.vocabulary
         self._bounds = [*self.names.bounds, len(self.text.words)]
         self.context = ReadingContext(self.vocabulary.values)
+        self.context.keys = self.names.chosen
         has_values = self.names.known or self.names.bounds  # a name in it may be longer than a phrase
         self._meanings_of = CONNECTIVES.keys() if self.names.meanings else ()
         self._found = {} if has_values else self.names.phrases.fixed
         self.tokens: list[Token] = []
         self._partial = PartialCommands(self.text, self.vocabulary, self.names.definitions.trie, self.context, self)
+        self._calls = Calls(self.text, self.vocabulary, self.context, self.problems)
         endings = tuple(self.vocabulary.doing)
         self._verb_forms = {word for word in self.text.distinct if word.endswith(endings)}
         self._lines()
@@ -232,7 +234,9 @@ class Lexer:
     def _note(self, match: Match) -> None:
         """What pronouns stand for from here on."""
         for value in match.values:
-            self.context.latest[value.type] = value.text if not value.more else value.more[-1]
+            latest = value.more[-1] if value.more else value.text
+            choice = choice_of(latest)
+            self.context.latest[value.type] = f"{{{choice.key}}}" if choice is not None else latest
 
     def _is_told(self, start: int, end: int) -> bool:
         """Whether the latest problem is about these characters already."""
@@ -299,53 +303,16 @@ class Lexer:
             end = text.articles[match.last][1]
         if meaning.entry is not None:
             kind = "condition" if meaning.role in _NEGATED else meaning.role
-            return Token(kind, start, end, self._called(meaning.entry, match, at))
+            return Token(kind, start, end, self._calls.called(meaning.entry, match, at))
         if values:
             return Token(meaning.role, start, end, values[0].text)
         return Token(meaning.role, start, end, str(meaning.value) if meaning.role == "count" else None, meaning.between)
-
-    def _called(self, entry: Entry, match: Match, at: int) -> Called | Listed:
-        """The entry with its arguments, or with several of them where one slot holds a list."""
-        if entry.sort == "value" and not (self.context.known and entry.id in self.context.known):
-            self._unknown_value(self.text.span(at, match.last), entry.id)
-        if not match.values:
-            return Called(entry, ())
-        arguments = tuple([(value.name, self._port_text(value)) for value in match.values])
-        lists = [place for place, value in enumerate(match.values) if value.more]
-        if not lists:
-            return Called(entry, arguments)
-        if len(lists) > 1:
-            self.problems.append(
-                diagnostic("BT034", self.text.span(at, match.last), words=self.text.span(at, match.last).text)
-            )
-        place = lists[0]
-        value = match.values[place]
-        texts = (value.text, *value.more)
-        every = tuple((*arguments[:place], (value.name, text), *arguments[place + 1 :]) for text in texts)
-        return Listed(entry, every, value.joiner)
-
-    def _port_text(self, value: SlotValue) -> str:
-        """The text of a value; the names in braces in it become keys (BT043 where nothing has such a name)."""
-        text = value.text
-        if "{" not in text or self.context.types[value.type].kind != "text":
-            return text
-        text = renamed(text, lambda name: key_of(self.vocabulary.orthography.words(name)))
-        known = self.context.known or {}
-        for key in keys_in(text):
-            if key not in known:
-                self._unknown_value(self.text.span(value.first, value.last), key)
-        return text
-
-    def _unknown_value(self, span: Span, key: str) -> None:
-        from btlang.frontends.mission.explanations.unknown import unknown_value
-
-        self.problems.append(unknown_value(span, key, self.context.known or ()))
 
     def _statement(self, prefix: Prefix, at: int) -> int:
         """A statement about a value of the mission. Returns where to go on."""
         from btlang.frontends.mission.tokens.assignments import read_statement  # most missions have none
 
-        read = read_statement(prefix, self.text, at, self.vocabulary, self.context, self._port_text)
+        read = read_statement(prefix, self.text, at, self.vocabulary, self.context, self._calls)
         if read is None:
             span = span_of(self.text, at)
             if self._explain and (
@@ -383,6 +350,8 @@ class Lexer:
         context.latest = dict.fromkeys(context.types, "")
         while True:
             at += 1
+            if at < last and text.words[at] == "(" and context.values.number(text, at + 1):
+                return text.words.index(")", at) + 1 if ")" in text.words[at:last] else at  # meant as a point
             if at >= last or text.words[at] in _MARKS:
                 return at
             match = longest(self.vocabulary.trie, text, at, context)

@@ -1,0 +1,45 @@
+"""What is said where a name is missing: of `every place except the hall` (BT152), and of points (BT153)."""
+
+from __future__ import annotations
+
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.text.spelling import nearest
+from btlang.text.words import Words
+from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.reading_context import ReadingContext
+from btlang.vocabulary.trie import SlotValue
+from btlang.vocabulary.values import ALL
+
+_MOST_SHOWN = 5
+
+
+def explained(text: Words, value: SlotValue, vocabulary: Lexicon, context: ReadingContext) -> Diagnostic:
+    """The first reason: a point, no names, an unknown one behind `except`, all left out, or one is needed."""
+    if value.text:
+        span = text.span(value.first, value.last)
+        return diagnostic("BT153", span, words=span.text, fact=f"spot {vocabulary.roles['fact'][0]} {value.text}")
+    kind, names = value.type, context.values.listed(value.type)
+    span = text.span(value.first, value.last)
+    if not names:
+        reason = f"this world has no {kind} with a name"
+        return _told(text, value, reason, "Name one in the world file, or choose another world with --world.")
+    chosen = context.choice(text, value.first) or context.values.noun(text, value.first)
+    at = chosen[1] if chosen is not None else value.last
+    after = context.values.exception(text, at)
+    if after and context.read(kind, text, after) is None:
+        unknown = text.span(after, max(value.last, after + 1)).text
+        near = nearest(unknown.lower(), names) or names[:_MOST_SHOWN]
+        return diagnostic(
+            "BT152", span, words=span.text, reason=f"there's no {kind} called '{unknown}'",
+            advice=f"Known: {', '.join(near)}",
+        )  # fmt: skip
+    if after:
+        return _told(text, value, f"it leaves out every {kind} that there is", "Leave out fewer.")
+    words = " ".join(text.words[value.first : at])
+    reason = f"one {kind} is needed" if chosen is not None and ALL in chosen[0] else f"'{words}' isn't a {kind}"
+    return _told(text, value, reason, f"Write for example: {names[0]}")
+
+
+def _told(text: Words, value: SlotValue, reason: str, advice: str) -> Diagnostic:
+    span = text.span(value.first, value.last)
+    return diagnostic("BT152", span, words=span.text, reason=reason, advice=advice)

@@ -1,0 +1,92 @@
+"""What a phrase with values says: its entry with arguments, one for each port."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.frontends.mission.token import Called, Listed
+from btlang.text.source import Span
+from btlang.text.words import Words
+from btlang.vocabulary.entry import Entry
+from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.reading_context import ReadingContext
+from btlang.vocabulary.references import choice_of, keys_in, point_ports, renamed
+from btlang.vocabulary.trie import Match, SlotValue
+from btlang.vocabulary.values import PLACE, key_of
+
+
+class Calls:
+    """Makes calls of the phrases of one text; what is wrong with their values becomes `problems`."""
+
+    def __init__(self, text: Words, vocabulary: Lexicon, context: ReadingContext, problems: list[Diagnostic]) -> None:
+        self._text, self._vocabulary, self._context, self._problems = text, vocabulary, context, problems
+
+    def called(self, entry: Entry, match: Match, at: int) -> Called | Listed:
+        """The entry with its arguments, or with several of them where one slot holds a list."""
+        if entry.sort == "value" and not (self._context.known and entry.id in self._context.known):
+            self._unknown_value(self._text.span(at, match.last), entry.id)
+        if not match.values:
+            return Called(entry, ())
+        self._check_choices(entry, match, at)
+        lists = [place for place, value in enumerate(match.values) if value.more]
+        if not lists:
+            return Called(entry, self.arguments(entry, match.values))
+        if len(lists) > 1:
+            self._problems.append(
+                diagnostic("BT034", self._text.span(at, match.last), words=self._text.span(at, match.last).text)
+            )
+        value = match.values[lists[0]]
+        each = [value.replace(text=text, more=()) for text in (value.text, *value.more)]
+        before, behind = match.values[: lists[0]], match.values[lists[0] + 1 :]
+        return Listed(entry, tuple(self.arguments(entry, (*before, one, *behind)) for one in each), value.joiner)
+
+    def _check_choices(self, entry: Entry, match: Match, at: int) -> None:
+        """BT152 where what is chosen would replace another value of the phrase, or is to be compared with."""
+        texts = [text for value in match.values for text in (value.text, *value.more) if text[:1] == "{"]
+        choices = [choice for text in texts if (choice := choice_of(text)) is not None]
+        keys = [*(choice.key for choice in choices), *(key for text in texts for key in keys_in(text))]
+        double = next((choice for choice in choices if keys.count(choice.key) > 1 or entry.sort == "value"), None)
+        if double is None:
+            return
+        words = self._vocabulary.values.choice_words(double)
+        set_to = f"{self._vocabulary.word('set')} first {self._vocabulary.word('set_to')} {words}"
+        reason = f"it needs a {double.type} that is chosen before"
+        span = self._text.span(at, match.last)
+        self._problems.append(
+            diagnostic(
+                "BT152", span, words=span.text, reason=reason, advice=f"Write it in two lines, the first: {set_to}"
+            )
+        )
+
+    def arguments(self, entry: Entry, values: Iterable[SlotValue]) -> tuple[tuple[str, str], ...]:
+        """The values as ports; a point has ports of its own."""
+        found: list[tuple[str, str]] = []
+        for value in values:
+            ports = point_ports(value.text) if value.type == PLACE else ()
+            if ports and entry.point_ports.issuperset(name for name, _ in ports):
+                found += ports
+            else:
+                found.append((value.name, self.port_text(value)))
+        return tuple(found)
+
+    def port_text(self, value: SlotValue) -> str:
+        """The text of a value; the names in braces in it become keys (BT043 where nothing has such a name)."""
+        text = value.text
+        if self._context.types[value.type].kind == "names" and text[:1] in ("", "("):
+            from btlang.frontends.mission.explanations import nameless  # most values have names
+
+            self._problems.append(nameless.explained(self._text, value, self._vocabulary, self._context))
+        if "{" not in text or self._context.types[value.type].kind != "text":
+            return text
+        text = renamed(text, lambda name: key_of(self._vocabulary.orthography.words(name)))
+        known = self._context.known or {}
+        for key in keys_in(text):
+            if key not in known:
+                self._unknown_value(self._text.span(value.first, value.last), key)
+        return text
+
+    def _unknown_value(self, span: Span, key: str) -> None:
+        from btlang.frontends.mission.explanations.unknown import unknown_value
+
+        self._problems.append(unknown_value(span, key, self._context.known or ()))
