@@ -15,7 +15,7 @@ from collections.abc import Callable, Iterable, Iterator
 from btlang.record import Record
 from btlang.text.source import Span
 from btlang.vocabulary.entry import Entry
-from btlang.vocabulary.references import keys_in
+from btlang.vocabulary.references import choice_of, keys_in
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -414,6 +414,13 @@ def keys_of(node: Ast) -> list[str]:
         return []
     keys = [key for text in texts_of(node) if "{" in text for key in keys_in(text)]
     return [node.key, *keys] if isinstance(node, (Compared, Remember, Assign)) else keys
+
+
+def chosen_keys(node: Ast) -> list[str]:
+    """The keys into which the robot puts what it chooses for a node itself."""
+    texts_of = _TEXTS.get(type(node))
+    choices = [choice_of(text) for text in texts_of(node)] if texts_of is not None else []
+    return [choice.key for choice in choices if choice is not None]
 
 
 def _of_arguments(node: Phrase | Name | Compared | Remember) -> list[str]:

@@ -74,19 +74,21 @@ class Names:
         """`before` with what in this mission could not be read: `loops`, and values with which something is wrong."""
         given: set[str] = set()
         used: set[str] = set()
+        chosen: set[str] = set()
         local = {loop.key for loop in self.loops.values()} | {key for name in self.names for key in parameters(name)}
         stack: list[tuple[ast.Ast, frozenset[str]]] = [(mission, frozenset())]
         while stack:
             item, bound = stack.pop()
             if isinstance(item, ast.Remember) or (isinstance(item, ast.Assign) and item.operation == "set"):
                 given.add(item.key)
+            chosen.update(ast.chosen_keys(item))
             used.update(key for key in ast.keys_of(item) if key not in bound)
             if isinstance(item, ast.ForEach):
                 bound |= {item.key}
             elif isinstance(item, ast.Definition):
                 bound |= dict(item.parameters).keys()
             stack += [(part, bound) for part in ast.parts(item)]
-        wrong = (used - given) | (given & local)
+        wrong = (used - given - chosen) | (given & local)
         return Refused(before.names | loops | self._unsayable, before.keys | wrong)
 
 
