@@ -6,7 +6,7 @@ from collections.abc import Iterable, Iterator, Mapping
 
 from btlang.tree import ast
 from btlang.tree.node import Node
-from btlang.vocabulary.values import ValueType
+from btlang.vocabulary.value_type import ValueType
 
 
 class Scope:

@@ -14,7 +14,7 @@ from btlang.printer.printer import THEN, WHOLE, Doc, Printer
 from btlang.tree import ast
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.pattern import Form, Slot, forms
-from btlang.vocabulary.values import format_number
+from btlang.vocabulary.value_type import format_number
 
 
 def compared(node: ast.Compared, _parts: list[Doc], printer: Printer) -> Doc:

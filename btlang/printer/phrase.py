@@ -14,7 +14,7 @@ from btlang.vocabulary.lexicon import DEFINING, Lexicon
 from btlang.vocabulary.pattern import Form, Slot, forms, name_form
 from btlang.vocabulary.references import Choice, choice_of
 from btlang.vocabulary.trie import TrieNode, longest
-from btlang.vocabulary.values import PLACE, ValueType, with_unit
+from btlang.vocabulary.value_type import PLACE, ValueType, with_unit
 
 MARKUP = ("<", '"')  # what XML and JSON begin with, and no sentence
 

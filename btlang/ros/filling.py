@@ -11,7 +11,7 @@ from btlang.ros.times import duration
 from btlang.ros.word import Word, type_name
 from btlang.vocabulary.ros_binding import Fields
 from btlang.vocabulary.ros_table import SLOT, slots_of
-from btlang.vocabulary.values import format_number
+from btlang.vocabulary.value_type import format_number
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

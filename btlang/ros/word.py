@@ -20,7 +20,7 @@ if TYPE_CHECKING:
     from btlang.vocabulary.entry import Entry
     from btlang.vocabulary.lexicon import Lexicon
     from btlang.vocabulary.ros_binding import RosBinding
-    from btlang.vocabulary.values import ValueType
+    from btlang.vocabulary.value_type import ValueType
 
     Locate: TypeAlias = Callable[[str], tuple[float, float, float | None]]
 

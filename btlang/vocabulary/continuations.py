@@ -10,7 +10,8 @@ from btlang.text.words import Words
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import SLOTS, TrieNode
-from btlang.vocabulary.values import END, Values, WordTree, with_unit
+from btlang.vocabulary.value_type import with_unit
+from btlang.vocabulary.values import END, Values, WordTree
 
 _MOST = 200  # ways to go on from one place; nobody reads more
 

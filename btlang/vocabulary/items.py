@@ -9,7 +9,7 @@ from btlang.record import Record
 from btlang.vocabulary.entry import COMPARISONS, POINT, Entry
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.pattern import Slot, forms
-from btlang.vocabulary.values import PLACE, ValueType, with_unit
+from btlang.vocabulary.value_type import PLACE, ValueType, with_unit
 
 # Commands come first; what packs bring follows, then the words of the language.
 _FIRST = ("motion", "navigation", "manipulation", "gestures", "speech", "sensing", "power")

@@ -19,7 +19,7 @@ from btlang.vocabulary.language_tables import SWITCHES, TABLES, WORD_LISTS, prob
 from btlang.vocabulary.pattern import PatternError, Slot, forms
 from btlang.vocabulary.ros_binding import RosBinding
 from btlang.vocabulary.ros_table import read_ros, unknown_slots
-from btlang.vocabulary.values import PLACE, Unit, ValueType
+from btlang.vocabulary.value_type import PLACE, Unit, ValueType
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

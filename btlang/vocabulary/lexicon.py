@@ -18,7 +18,8 @@ from btlang.vocabulary.language_tables import GOES_ON, NO_PHRASES, about_roles, 
 from btlang.vocabulary.pattern import Form, PatternError, Slot, forms, replaced, variants
 from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.trie import SLOTS, TrieNode, add, collisions
-from btlang.vocabulary.values import END, Values, ValueType
+from btlang.vocabulary.value_type import ValueType
+from btlang.vocabulary.values import END, Values
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

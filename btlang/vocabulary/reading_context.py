@@ -7,7 +7,8 @@ from collections.abc import Mapping, Sequence
 from btlang.record import Record
 from btlang.text.words import Words
 from btlang.vocabulary.references import CHOICES, Choice
-from btlang.vocabulary.values import Values, find, format_number, key_of
+from btlang.vocabulary.value_type import format_number
+from btlang.vocabulary.values import Values, find, key_of
 
 
 class Known(Record):

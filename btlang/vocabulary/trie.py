@@ -12,7 +12,8 @@ from btlang.text.words import Words
 from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.pattern import Form, Slot
 from btlang.vocabulary.reading_context import ReadingContext
-from btlang.vocabulary.values import ALL, END, Values, ValueType
+from btlang.vocabulary.value_type import ValueType
+from btlang.vocabulary.values import ALL, END, Values
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

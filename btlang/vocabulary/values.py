@@ -9,10 +9,10 @@ import re
 from collections.abc import Iterable, Mapping, Sequence
 from marshal import dumps, loads  # a copy of a trie, at a tenth of the time that importing `copy` takes
 
-from btlang.record import Record
 from btlang.text.source import Source
 from btlang.text.words import Orthography, Words, split
 from btlang.vocabulary.references import CHOICES, Choice
+from btlang.vocabulary.value_type import PLACE, WORLD, ValueType, format_number, with_unit
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -21,56 +21,9 @@ if TYPE_CHECKING:
 _LARGEST = 1e12  # beyond it no quantity of a robot makes sense, and sums stay exact
 _MOST_NUMBER_WORDS = 12
 _FARTHEST = 1e6  # metres, as in a world file
-PLACE = "place"
-"""The type of which a point is a value, too."""
-WORLD = (PLACE, "person", "object")
-"""The types of which robots know where each name is."""
 ALL = "all"  # of the names of a type
 END = "\0"  # key of a word tree's value; no word of a text is this one
 WordTree = dict[str, "Any"]
-
-
-class Unit(Record):
-    """`numerator / denominator` of the base unit; the first word is the one printed."""
-
-    words: tuple[str, ...]
-    numerator: float
-    denominator: float
-
-
-def with_unit(number: str, unit: str) -> str:
-    """A number and a word of a unit as they are written: `2 m`, `20%`."""
-    return f"{number} {unit}" if unit[0].isalpha() else number + unit
-
-
-class ValueType(Record):
-    """A type that a slot may have.
-
-    `kind` is "quantity" (a number with one of `units`), "number" (no unit), "text", "time" (of day) or "names" (one of
-    a list).
-    """
-
-    name: str
-    kind: str
-    units: tuple[Unit, ...] = ()
-    whole: bool = False
-    least: float | None = None
-    names: tuple[str, ...] = ()
-
-    @property
-    def example(self) -> str:
-        """A value as a user would write it."""
-        if self.kind == "quantity":
-            return with_unit("5", self.units[0].words[0])
-        if self.kind == "names":
-            return self.names[0] if self.names else self.name
-        return {"text": '"hello"', "time": "6 pm"}.get(self.kind, "3")
-
-
-def format_number(value: float) -> str:
-    """The shortest text that reads back as the number: 2, 0.5, 1e-07."""
-    whole = int(value)
-    return str(whole) if whole == value and abs(value) < 1e15 else repr(value)
 
 
 def insert(tree: WordTree, words: Sequence[str], value: object) -> None:

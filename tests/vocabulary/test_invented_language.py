@@ -26,7 +26,7 @@ from btlang.vocabulary.keyword_file import KeywordFile, read_keyword_file
 from btlang.vocabulary.language_tables import WORD_LISTS
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.shipped import ENGLISH, keyword_files, shipped
-from btlang.vocabulary.values import Unit, ValueType
+from btlang.vocabulary.value_type import Unit, ValueType
 
 GOOD = Path(__file__).parents[1] / "samples" / "good"
 # What a mission includes is in English; ids and ports of nodes, and the attribute `name`, are so in every language.

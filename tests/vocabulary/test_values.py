@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from btlang.api import world_vocabulary
-from btlang.vocabulary.values import format_number
+from btlang.vocabulary.value_type import format_number
 
 VOCABULARY = world_vocabulary()
 

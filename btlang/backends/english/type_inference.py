@@ -22,7 +22,7 @@ from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.pattern import Slot, name_form
 from btlang.vocabulary.reading_context import Known
 from btlang.vocabulary.references import Reference, choice_of, free_key, pieces
-from btlang.vocabulary.values import WORLD
+from btlang.vocabulary.value_type import WORLD
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

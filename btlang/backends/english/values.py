@@ -13,7 +13,7 @@ from btlang.tree.node import Node
 from btlang.vocabulary.entry import MEASURED, Entry
 from btlang.vocabulary.pattern import Form, Slot, forms
 from btlang.vocabulary.references import Choice, keys_in
-from btlang.vocabulary.values import WORLD
+from btlang.vocabulary.value_type import WORLD
 
 
 def assigned(node: Node, checked: Checked) -> Iterator[ast.Ast]:

@@ -9,7 +9,7 @@ from btlang.ros.clients import Clients
 from btlang.ros.leaves.actions import goal_leaf
 from btlang.ros.serving.names import RUN_PHRASE, SILENCE
 from btlang.ros.word import Word
-from btlang.vocabulary.values import format_number
+from btlang.vocabulary.value_type import format_number
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:

@@ -11,7 +11,7 @@ from btlang.text.spelling import nearest
 from btlang.tree.node import Node
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
-from btlang.vocabulary.values import ValueType, format_number
+from btlang.vocabulary.value_type import ValueType, format_number
 
 _FEW = 8  # names that a reason lists
 

@@ -24,7 +24,7 @@ from btlang.vocabulary.lexicon import NODE_ROLES, Lexicon
 from btlang.vocabulary.pattern import Slot, forms
 from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.trie import SLOTS, TrieNode, longest
-from btlang.vocabulary.values import PLACE, ValueType, with_unit
+from btlang.vocabulary.value_type import PLACE, ValueType, with_unit
 
 _NOT_A_VALUE = frozenset((END_OF_TEXT, END_OF_STATEMENT, ",", ":", "(", ")"))
 

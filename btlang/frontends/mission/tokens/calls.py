@@ -13,7 +13,8 @@ from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.references import choice_of, keys_in, point_ports, renamed
 from btlang.vocabulary.trie import Match, SlotValue
-from btlang.vocabulary.values import PLACE, key_of
+from btlang.vocabulary.value_type import PLACE
+from btlang.vocabulary.values import key_of
 
 
 class Calls:

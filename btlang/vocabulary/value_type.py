@@ -1,0 +1,53 @@
+"""Types of values, and how numbers are written."""
+
+from __future__ import annotations
+
+from btlang.record import Record
+
+PLACE = "place"
+"""The type of which a point is a value, too."""
+WORLD = (PLACE, "person", "object")
+"""The types of which robots know where each name is."""
+
+
+class Unit(Record):
+    """`numerator / denominator` of the base unit; the first word is the one printed."""
+
+    words: tuple[str, ...]
+    numerator: float
+    denominator: float
+
+
+def with_unit(number: str, unit: str) -> str:
+    """A number and a word of a unit as they are written: `2 m`, `20%`."""
+    return f"{number} {unit}" if unit[0].isalpha() else number + unit
+
+
+class ValueType(Record):
+    """A type that a slot may have.
+
+    `kind` is "quantity" (a number with one of `units`), "number" (no unit), "text", "time" (of day) or "names" (one of
+    a list).
+    """
+
+    name: str
+    kind: str
+    units: tuple[Unit, ...] = ()
+    whole: bool = False
+    least: float | None = None
+    names: tuple[str, ...] = ()
+
+    @property
+    def example(self) -> str:
+        """A value as a user would write it."""
+        if self.kind == "quantity":
+            return with_unit("5", self.units[0].words[0])
+        if self.kind == "names":
+            return self.names[0] if self.names else self.name
+        return {"text": '"hello"', "time": "6 pm"}.get(self.kind, "3")
+
+
+def format_number(value: float) -> str:
+    """The shortest text that reads back as the number: 2, 0.5, 1e-07."""
+    whole = int(value)
+    return str(whole) if whole == value and abs(value) < 1e15 else repr(value)
