@@ -157,7 +157,6 @@ def _draw_tree(mission: Mission, path: str, apart: bool) -> None:
 
 
 def _compile(options: argparse.Namespace) -> int:
-    from btlang.backends.files import write_file
     from btlang.backends.targets import TARGETS, target_of
 
     name = options.to or (target_of(options.out) if options.out is not None else "")
@@ -167,9 +166,15 @@ def _compile(options: argparse.Namespace) -> int:
         options.refuse(f"{name} isn't text; write it to a file with -o FILE")
     if options.dialect is not None and "dialect" not in TARGETS[name].options:
         options.refuse(f"--dialect is for xml, not for {name}")
-    made = _mission(options).to(name, dialect=options.dialect)
-    if options.out is not None:
-        write_file(options.out, made)
+    return _put(_mission(options).to(name, dialect=options.dialect), options.out)
+
+
+def _put(made: str | bytes, path: str | None) -> int:
+    """Into the file, or else to standard output."""
+    if path is not None:
+        from btlang.backends.files import write_file
+
+        write_file(path, made)
     elif isinstance(made, bytes):
         sys.stdout.buffer.write(made)
     else:
@@ -187,6 +192,12 @@ def _words(options: argparse.Namespace) -> int:
     else:
         show("\n".join(overview(vocabulary, listing_width())))
     return SUCCESS
+
+
+def _grammar(options: argparse.Namespace) -> int:
+    from btlang.backends.grammar.targets import GRAMMARS
+
+    return _put(GRAMMARS[options.to](world_vocabulary(options.keywords, options.world, options.language)), options.out)
 
 
 def _examples(options: argparse.Namespace) -> int:
@@ -264,8 +275,8 @@ def _format_one(source: Source, options: argparse.Namespace) -> bool:
     return False
 
 
-def _node(options: argparse.Namespace) -> int:
-    code: int = import_module(_NODES[options.verb]).serve(options)
+def _serve(options: argparse.Namespace) -> int:
+    code: int = import_module(_SERVERS[options.verb]).serve(options)
     return code
 
 
@@ -316,12 +327,13 @@ def _version(options: argparse.Namespace) -> int:
     return SUCCESS
 
 
-_NODES = {
+_SERVERS = {
+    "mcp": "btlang.mcp_server",
     "sim-ros": "btlang.ros.simulator.command",
     "ros-node": "btlang.ros.mission.command",
     "serve-actions": "btlang.ros.serving.command",
 }
-"""The verbs that are nodes of ROS 2, each with the module whose `serve` it is."""
+"""The verbs that serve other programs, each with the module whose `serve` it is."""
 
 _VERBS: dict[str, Callable[[argparse.Namespace], int]] = {
     "repl": _repl,
@@ -330,10 +342,11 @@ _VERBS: dict[str, Callable[[argparse.Namespace], int]] = {
     "tree": _show_tree,
     "compile": _compile,
     "words": _words,
+    "grammar": _grammar,
     "examples": _examples,
     "explain": _explain,
     "format": _format,
-    **dict.fromkeys(_NODES, _node),
+    **dict.fromkeys(_SERVERS, _serve),
     "completion": _completion,
     "help": _help,
     "version": _version,

@@ -119,7 +119,8 @@ class _VocabularyRules:
         if wanted == "forever":
             return choice(Text(word) for word, rounds in self._vocabulary.counts.items() if rounds < 0)
         if head == "subtree":
-            return joined((Text(self._vocabulary.nodes[SUBTREE]), Text(f' "{rest}"')))
+            words = self._vocabulary.nodes.get(SUBTREE)
+            return Text(f'{words} "{rest}"') if words else NOTHING
         if wanted == "at-fact w1":
             return self._with_value("place", Text("w1"))
         return self._shared(f"word-{_kebab(wanted)}", self._role(head, rest))
