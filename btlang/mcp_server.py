@@ -32,13 +32,13 @@ _PATIENCE = 20.0  # seconds of real time that a simulation may take
 _MOST_LINES = 500  # of what happened
 _NAME = "<mission>"
 _INSTRUCTIONS = """\
-btlang compiles missions for robots, written in plain English, into behavior trees. Search the words with `words`, write a
-mission, check it with `check`, apply the `fix` of each message, see with `explain` how each sentence is understood, and
-run it with `simulate`."""
+btlang compiles missions for robots, written in plain English, into behavior trees. Search the words with `words`, write
+a mission, check it with `check`, apply the `fix` of each message, see with `explain` how each sentence is understood,
+and run it with `simulate`."""
 
 
 def serve(options: argparse.Namespace) -> int:
-    """Serves until standard input ends. Raises MissionError where the package `mcp` is missing (BT082), or for files."""
+    """Serves until standard input ends. Raises MissionError, also where the package `mcp` is missing (BT082)."""
     if find_spec("mcp") is None:
         raise MissionError([diagnostic("BT082", NOWHERE)])
     from mcp.server import MCPServer
@@ -91,7 +91,7 @@ class Tools:
 
     @_answering
     def simulate(self, text: str, seconds: float = 600.0, ticks: int = 12_000) -> dict[str, object]:
-        """Runs a mission on the simulated robot as fast as possible, at most so long: seconds of the mission, and ticks.
+        """Runs a mission on the simulated robot as fast as possible, for at most so many seconds and ticks.
 
         Returns what happened, the status at the end, what stopped it if it didn't end by itself, and why it failed.
         """

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 import os
+import re
 import sys
 from collections.abc import Awaitable, Callable
 from pathlib import Path
@@ -71,9 +72,21 @@ def test_a_model_writes_checks_mends_and_simulates_a_mission() -> None:
     served(script)
 
 
+def test_the_configuration_of_the_page_starts_a_server() -> None:
+    page = (ROOT / "docs" / "language_models.md").read_text(encoding="utf-8")
+    (shown,) = re.findall(r"^```json\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)
+    (server,) = json.loads(shown)["mcpServers"].values()
+    assert (server["command"], server["args"][0]) == ("btc", "mcp")
+
+    async def script(ask: Ask, client: Any) -> None:
+        assert "middle" in str(await ask("words", search="place"))
+
+    served(script, *server["args"][1:])
+
+
 def test_it_serves_the_words_of_the_command_line() -> None:
     async def script(ask: Ask, client: Any) -> None:
-        assert (await ask("check", text="ve a la cocina"))["ok"] is ("cocina" in str(await ask("words", search="place")))
+        assert not (await ask("check", text="wave"))["ok"]
         assert (await ask("check", text="saluda"))["ok"]
 
     served(script, "--language", "es")
@@ -107,7 +120,10 @@ def test_why_a_mission_failed_is_told() -> None:
         ('include "README.md"\nwave', "BT001"),
         ('words "examples/words.toml"\nwave', "BT049"),
         ('world "/etc/passwd"\nwave', "BT049"),
-        ('<root BTCPP_format="4"><include path="/etc/passwd"/><BehaviorTree ID="A"><Wave/></BehaviorTree></root>', "BT128"),
+        (
+            '<root BTCPP_format="4"><include path="/etc/passwd"/><BehaviorTree ID="A"><Wave/></BehaviorTree></root>',
+            "BT128",
+        ),
         ("", "BT005"),
         ("wave \0", "BT003"),
         ("wave " * (MOST_BYTES // 5 + 1), "BT001"),

@@ -5,7 +5,8 @@ from __future__ import annotations
 import random
 import re
 from collections import Counter
-from functools import cache
+from collections.abc import Iterator
+from functools import cache, cached_property
 from typing import NamedTuple
 
 _PIECE = re.compile(
@@ -86,7 +87,8 @@ def _characters(written: str) -> str:
 
 
 class Sampler:
-    """Derives sentences. Of alternatives it prefers those that were used least, so that all are used soon.
+    """Derives sentences. Each one uses the rule that was used least so far, and apart from that the alternatives that
+    were used least.
 
     `used` counts the uses of each rule.
     """
@@ -97,36 +99,63 @@ class Sampler:
         self._random = random.Random(seed)
         self._depths = self._least_depths()
         self._taken: Counter[tuple[int, int]] = Counter()
+        self._steps: dict[str, dict[str, int]] = {}
+        self._target = ""
 
     def sentence(self) -> str:
         """One derivation of the rule root."""
-        return self._derived(self.rules["root"], 0)
+        self._target = min(self.rules, key=lambda name: self.used[name])
+        return self._derived(Node("name", "root"), 0, aims=True)
 
-    def _derived(self, node: Node, depth: int) -> str:
+    def _derived(self, node: Node, depth: int, aims: bool) -> str:
+        """A derivation; one that `aims` uses the target where that is nearest."""
         if node.kind == "text":
             return node.text
         if node.kind == "chars":
             return self._random.choice(_characters(node.text))
         if node.kind == "name":
             self.used[node.text] += 1
-            return self._derived(self.rules[node.text], depth + 1)
+            return self._derived(self.rules[node.text], depth + 1, aims and node.text != self._target)
+        aim = min(range(len(node.parts)), key=lambda place: self._distance(node.parts[place])) if aims else -1
         if node.kind == "joined":
-            return "".join(self._derived(part, depth) for part in node.parts)
+            return "".join(self._derived(part, depth, place == aim) for place, part in enumerate(node.parts))
         if node.kind == "choice":
-            return self._derived(self._chosen(node, depth), depth)
-        rounds = int(node.kind == "+") + int(self._random.random() < 0.3)
-        return "".join(self._derived(node.parts[0], depth) for _ in range(rounds))
+            place = aim if aims else self._chosen(node, depth)
+            self._taken[id(node), place] += 1
+            return self._derived(node.parts[place], depth, aims)
+        rounds = max(int(node.kind == "+") + int(self._random.random() < 0.3), int(aims))
+        return "".join(self._derived(node.parts[0], depth, aims and not round) for round in range(rounds))
 
-    def _chosen(self, node: Node, depth: int) -> Node:
+    def _chosen(self, node: Node, depth: int) -> int:
         """The alternative with the fewest uses, among those that are not too deep; of equal ones any."""
         places = list(range(len(node.parts)))
         if depth > _DEEPEST:
             least = min(self._depth(node.parts[place]) for place in places)
             places = [place for place in places if self._depth(node.parts[place]) == least]
         uses = {place: self._taken[id(node), place] + self._random.random() for place in places}
-        place = min(uses, key=lambda each: uses[each])
-        self._taken[id(node), place] += 1
-        return node.parts[place]
+        return min(uses, key=lambda each: uses[each])
+
+    def _distance(self, node: Node) -> float:
+        """Through how many rules it is to the target."""
+        if node.kind == "name":
+            return self._steps_to(self._target).get(node.text, float("inf"))
+        return min(map(self._distance, node.parts), default=float("inf"))
+
+    def _steps_to(self, target: str) -> dict[str, int]:
+        """From each rule that leads there."""
+        if target not in self._steps:
+            steps, latest = {target: 0}, {target}
+            while latest:
+                step = 1 + max(steps.values())
+                latest = {name for name in self.rules if name not in steps and self._names[name] & latest}
+                steps |= dict.fromkeys(latest, step)
+            self._steps[target] = steps
+        return self._steps[target]
+
+    @cached_property
+    def _names(self) -> dict[str, set[str]]:
+        """The rules that each rule uses."""
+        return {name: set(_names_in(node)) for name, node in self.rules.items()}
 
     def _depth(self, node: Node) -> float:
         """How many rules deep the shortest derivation is."""
@@ -144,3 +173,10 @@ class Sampler:
             if found == self._depths:
                 return found
             self._depths = found
+
+
+def _names_in(node: Node) -> Iterator[str]:
+    if node.kind == "name":
+        yield node.text
+    for part in node.parts:
+        yield from _names_in(part)

@@ -1,15 +1,15 @@
 """How the words of a mission go together: the rules of the grammar that are the same for every vocabulary.
 
-The notation is that of `rules.parsed`; `<role>` is every way to say a role of the language, with its value.
-Rules that aren't here are made from the vocabulary by `vocabulary_rules.py`:
+The notation is that of `rules.parsed`. What isn't here is made from the vocabulary by `vocabulary_rules.py`:
 
-- `action` and `fact-free` leaves: `action` is any command of the robot, `steady` one that takes time and may be stopped,
-  `together` two that need different parts of the robot, `doing` one with the verb form that follows `while`;
-- `phrase` is any condition, `denied` one that says that it isn't so;
-- a type of values is a rule of its name: `duration`, `count`, `time-of-day`.
+- `action` is any command of the robot, `steady` one that takes time and may be stopped half-way; `phrase` is any
+  condition, `denied` one that says that it isn't so; `value-number` is a value of the type number, and so on;
+- `<role>` is every way to say a role of the language, with a value in its slot;
+- `<doing>` is a command with the verb form that follows `while`, `<together ...>` two commands that need different
+  parts of the robot, with that word between them; `<say n1>`, `<at-fact w1>` and `<subtree r3>` use these names, and
+  `<each-type ...>` makes such a statement for the names of each type.
 
-What takes more than one command takes a `unit`: a leaf, or anything in brackets. So no sentence has two readings, and no
-rule is ambiguous.
+A form is made of a `unit`: a leaf, or anything in brackets. So no sentence has two readings.
 """
 
 from __future__ import annotations
@@ -44,19 +44,20 @@ CONDITIONS = {
 }
 
 JOINING = {
-    "joined": "listed | then | after | before-command | or | otherwise | and | meanwhile | either | both | one-of | while-doing",
+    "joined": "listed | then | after | before-command | or | otherwise | and | meanwhile | either | both | one-of"
+    " | while-doing",
     "listed": 'action (", " action)+',
     "then": 'unit (", " <then> " " unit)+',
     "after": 'unit ", " <after> " " unit',
     "before-command": 'unit ", " <before> " " unit',
     "or": 'able ", " <or> " " unit',
     "otherwise": 'able ", " <otherwise> " " unit',
-    "and": '<together and>',
-    "meanwhile": '<together meanwhile>',
+    "and": "<together and>",
+    "meanwhile": "<together meanwhile>",
     "either": '<either> " " able " " <or> " " unit',
     "both": '<both> " " <together and>',
     "one-of": '<one_of> " " able ", " able " " <or> " " unit',
-    "while-doing": '<together while doing>',
+    "while-doing": "<together while doing>",
 }
 
 BEFORE = {
@@ -64,13 +65,14 @@ BEFORE = {
     " | delayed | at-time | doing-first | doing-after | keep-doing",
     "if": '<if> " " condition ", " unit (", " <otherwise> " " unit)?',
     "unless": '<unless> " " part ", " unit (", " <otherwise> " " unit)?',
-    "while": '<while> " " condition ", " lasting (", " <otherwise> " " unit)?',
+    "while": '<while> " " condition ", " lasting (", " <otherwise> " " lasting)?',
     "until": '<until> " " part ", " lasting',
     "as-soon-as": '(<as_soon_as> | <once>) " " condition ", " unit',
     "try": '<try> " " able (", " <otherwise> " " unit)?',
     "retry": '(<retry> | <try>) " " able " " <count> (" " <every>)?',
     "repeat-count": '<repeat> (" " lasting " " <count> | " " <count> ": " lasting)',
-    "repeat-condition": '<repeat> (" " lasting " " (<until> | <while>) " " part | " " (<until> | <while>) " " part ": " lasting)',
+    "repeat-condition": '<repeat> " " (lasting " " condition-kept | condition-kept ": " lasting)',
+    "condition-kept": '(<until> | <while>) " " part',
     "repeat-time": '<repeat> " " <for> ": " lasting',
     "delayed": '<delay> ", " unit',
     "at-time": '<at> ", " unit',
@@ -81,8 +83,8 @@ BEFORE = {
 }
 
 BEHIND = {
-    "behind": "if-behind | unless-behind | while-behind | provided | stop-when | once-behind | times | if-possible | within"
-    " | for | up-to | until-time | times-every | times-apart | delayed-behind",
+    "behind": "if-behind | unless-behind | while-behind | provided | stop-when | once-behind | times | if-possible"
+    " | within | for | up-to | until-time | times-every | times-apart | delayed-behind",
     "if-behind": 'unit " " <if> " " part (", " <otherwise> " " unit)?',
     "unless-behind": 'unit " " <unless> " " part',
     "while-behind": 'lasting " " (<while> | <until>) " " part',
@@ -108,8 +110,8 @@ STATEMENTS = {
     "if-that-fails": 'able ". " (<or> | <otherwise>) ", " unit',
     "if-that-works": 'unit ". " (<if_works> | <if_it_works>) ", " unit (". " <otherwise> ", " unit)?',
     "in-any-case": 'unit ". " <in_any_case> ", " unit',
-    "do-that": 'lasting ". " ((<do_that> | <repeat_that>) " " <count> | <do_that> " " <again> | <do_that> " " <more> | <again>)',
-    "meanwhile-next": '<together . meanwhile>',
+    "do-that": 'lasting ". " (<do_that> " " (<count> | <again> | <more>) | <repeat_that> " " <count> | <again>)',
+    "meanwhile-next": "<together . meanwhile>",
     "finally": '<ordinal> ", " unit',
     "last": "forever | retry-forever | every-round | every-day | start-over | failing",
     "forever": '<repeat> " " lasting | lasting " " <forever>',
@@ -123,7 +125,8 @@ STATEMENTS = {
 VALUES = {
     "valued": "number-value | name-value | measured | counted | for-each",
     "number-value": '<set> " n1 " <set_to> " " value-number "; " <if> " n1 " <compare number> ", " unit',
-    "counted": '<set> " n1 " <set_to> " " value-number "; " (<increase> | <decrease>) " n1" (" " <by> " " value-number)? "; " <say n1>',
+    "counted": '<set> " n1 " <set_to> " " value-number "; " changed "; " <say n1>',
+    "changed": '(<increase> | <decrease>) " n1" (" " <by> " " value-number)?',
     "name-value": "<each-type set>",
     "measured": '<remember> " " quantity " " <remember_as> " n2; " <say n2>',
     "for-each": "<each-type each>",
@@ -131,14 +134,19 @@ VALUES = {
 """Values are set where they are used. A letter and a figure is no word of any language."""
 
 DEFINITIONS = {
-    "defined": "definition | quoted-definition | with-parameter | mission-name | condition-definition | fact | exact-node",
+    "defined": "definition | quoted-definition | with-parameter | mission-name | condition-definition | fact"
+    " | exact-node",
     "definition": '"r1 " (<define> | <define_strong>) " " unit "\\nr1"',
     "quoted-definition": '"`r3` " <define_strong> " " unit "\\n" <do> " " <subtree r3>',
     "with-parameter": "<each-type parameter>",
     "mission-name": '<main_name> " `r4`\\n" unit',
     "condition-definition": '"c1 " <define_strong> " " part "\\n" <if> " c1, " unit',
     "fact": '"w1 " <fact> " (" value-number ", " value-number ")" (" " <facing> " " value-angle)? "\\n" <at-fact w1>',
-    "exact-node": '<do> " " exact-action (" " <called> " `n3`")? | <do> " " exact-text | <check> " " <test> " " exact-condition',
+    "exact-node": "exact-command | named-command | command-with-port | exact-check",
+    "exact-command": '<do> " " exact-action',
+    "named-command": '<do> " " exact-action " " <called> " `n3`"',
+    "command-with-port": '<do> " " exact-text',
+    "exact-check": '<check> " " <test> " " exact-condition',
 }
 
 FORMS = {**MISSION, **CONDITIONS, **JOINING, **BEFORE, **BEHIND, **STATEMENTS, **VALUES, **DEFINITIONS}

@@ -8,8 +8,18 @@ from itertools import chain
 
 from btlang.backends.grammar.forms import FORMS
 from btlang.backends.grammar.rules import (
-    NOTHING, Chars, Choice, Joined, Name, Part, Repeated, Rules, Text, choice, joined, parsed, pruned, repeated,
-)  # fmt: skip
+    NOTHING,
+    Chars,
+    Name,
+    Part,
+    Rules,
+    Text,
+    choice,
+    joined,
+    parsed,
+    pruned,
+    repeated,
+)
 from btlang.tree.catalogue import SUBTREE
 from btlang.vocabulary.correct_words import correct_words
 from btlang.vocabulary.entry import Entry
@@ -97,11 +107,11 @@ class _VocabularyRules:
             yield from (way for way, role in variants(form, *tables, {}) if role == "negated" and way not in said)
 
     def _quantities(self) -> Part:
-        found = []
+        found: list[Part] = []
         for entry in chain.from_iterable(self._vocabulary.entries.values()):
             kinds = {slot.name: slot.type for slot in entry.slots}
-            for form in (form for pattern in entry.quantity for form in forms(pattern, self._vocabulary.articles)):
-                found.append(self._said(form, _Leaf("", entry, (), kinds)))
+            said = (form for pattern in entry.quantity for form in forms(pattern, self._vocabulary.articles))
+            found += [self._said(form, _Leaf("", entry, (), kinds)) for form in said]
         return choice(found)
 
     def _words(self, wanted: str) -> Part:
@@ -250,7 +260,9 @@ class _VocabularyRules:
             if values.takes_word("time_of_day", word):
                 yield Text(word)
         for half in values.halves_of_day:
-            yield joined((Chars("[1-9]"), repeated(joined((Text(":"), Chars("[0-5]"), Chars("[0-9]"))), "?"), Text(f" {half}")))
+            yield joined(
+                (Chars("[1-9]"), repeated(joined((Text(":"), Chars("[0-5]"), Chars("[0-9]"))), "?"), Text(f" {half}"))
+            )
 
 
 def _rule_of(kind: str) -> str:
@@ -262,5 +274,3 @@ def _kebab(name: str) -> str:
     """A name as rules have them: `MoveForward` is `move-forward`."""
     apart = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "-", name).lower()
     return re.sub(r"[^a-z0-9]+", "-", apart).strip("-")
-
-
