@@ -18,7 +18,7 @@ from btlang.diagnostics.reading import MOST_BYTES
 from btlang.diagnostics.report import as_data
 from btlang.run.lines import Lines
 from btlang.session import Session
-from btlang.text.source import NOWHERE, Source, Span
+from btlang.text.source import Source, Span
 from btlang.vocabulary.listing import listing, overview
 
 TYPE_CHECKING = False
@@ -40,7 +40,7 @@ and run it with `simulate`."""
 def serve(options: argparse.Namespace) -> int:
     """Serves until standard input ends. Raises MissionError, also where the package `mcp` is missing (BT082)."""
     if find_spec("mcp") is None:
-        raise MissionError([diagnostic("BT082", NOWHERE)])
+        raise MissionError([diagnostic("BT082", Span(Source("", "btc mcp"), 0, 0))])
     from mcp.server import MCPServer
 
     tools = Tools(options.keywords, options.world, options.language)

@@ -6,6 +6,7 @@ import asyncio
 import json
 import os
 import re
+import subprocess
 import sys
 from collections.abc import Awaitable, Callable
 from pathlib import Path
@@ -135,6 +136,15 @@ def test_texts_reach_no_file_and_mistakes_are_data(tool: str, text: str, code: s
     assert not answer["ok"]
     assert code in {message["code"] for message in answer["messages"]}
     assert "root:" not in json.dumps(answer)
+
+
+def test_other_verbs_import_nothing_of_it() -> None:
+    code = (
+        "import sys; from btlang.cli import main; main(['check', '-c', 'wave']);"
+        "print([name for name in sys.modules if name.partition('.')[0] == 'mcp' or 'grammar' in name or 'mcp' in name])"
+    )
+    done = subprocess.run([sys.executable, "-c", code], cwd=ROOT, capture_output=True, text=True, check=True)
+    assert done.stdout == "No problems found.\n[]\n"
 
 
 def test_an_unknown_grammar_is_told() -> None:
