@@ -67,7 +67,7 @@ def _answering(tool: Callable[..., dict[str, object]]) -> Callable[..., dict[str
 class Tools:
     """What a model may ask for. Every answer is data, also where a mission is wrong."""
 
-    def __init__(self, keywords: Sequence[str] = (), world: str | None = None, language: str = "en") -> None:
+    def __init__(self, keywords: Sequence[Any] = (), world: str | None = None, language: str = "en") -> None:
         self._options: dict[str, Any] = {"keywords": tuple(keywords), "world": world, "language": language}
         self._vocabulary = world_vocabulary(keywords, world, language)
 
@@ -100,16 +100,17 @@ class Tools:
         lines: list[str] = []
         rate = 20.0
         limit = min(max(seconds, 0.0), _MOST_SECONDS, min(max(ticks, 1), _MOST_TICKS) / rate)
-        with Session("simulated", world=mission.world) as session:
-            told = Lines(mission.label, mission.is_action, lines.append)
-            run = session.start(mission, speed="max", rate=rate, time_limit=limit, sinks=(told,))
+        session = Session("simulated", world=mission.world)
+        told = Lines(mission.label, mission.is_action, lines.append)
+        run = session.start(mission, speed="max", rate=rate, time_limit=limit, sinks=(told,))
+        outcome = run.wait(_PATIENCE)
+        stopped = "" if outcome is not None else "it took too long to simulate"
+        if outcome is None:
+            run.stop()
             outcome = run.wait(_PATIENCE)
-            stopped = "" if outcome is not None else "it took too long to simulate"
-            if outcome is None:
-                run.stop()
-                outcome = run.wait(_PATIENCE)
-            if outcome is None:
-                return {"ok": False, "messages": [], "stopped": "a command never returns", "lines": lines[:_MOST_LINES]}
+        if outcome is None:  # closing the session would wait for the command
+            return {"ok": False, "stopped": "a command never returns", "lines": lines[:_MOST_LINES], "messages": []}
+        session.close()
         return {
             "ok": outcome.succeeded,
             "status": outcome.status.name,

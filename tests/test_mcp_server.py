@@ -8,12 +8,14 @@ import os
 import re
 import subprocess
 import sys
+import threading
 from collections.abc import Awaitable, Callable
 from pathlib import Path
 from typing import Any
 
 import pytest
 
+from btlang.decorators import action
 from btlang.diagnostics.reading import MOST_BYTES
 from btlang.mcp_server import Tools
 
@@ -106,6 +108,19 @@ def test_a_simulation_that_takes_too_long_is_stopped(monkeypatch: pytest.MonkeyP
     monkeypatch.setattr("btlang.mcp_server._PATIENCE", 0.05)
     answer = Tools().simulate("repeat wave", seconds=1e9, ticks=10**9)
     assert (answer["ok"], answer["stopped"]) == (False, "it took too long to simulate")
+
+
+def test_a_command_that_never_returns_is_left_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+    released = threading.Event()
+
+    @action("meditate")
+    def meditate() -> None:
+        released.wait(30)
+
+    monkeypatch.setattr("btlang.mcp_server._PATIENCE", 0.2)
+    answer = Tools([meditate]).simulate("meditate")
+    released.set()
+    assert (answer["ok"], answer["stopped"]) == (False, "a command never returns")
 
 
 def test_why_a_mission_failed_is_told() -> None:
