@@ -22,8 +22,6 @@ from btlang.text.source import Source
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import TextIO
-
     from btlang.diagnostics.diagnostic import Diagnostic
 
 SUCCESS, FAILED, UNFORMATTED, BAD_INPUT, CRASHED, INTERRUPTED = 0, 1, 1, 2, 70, 130
@@ -109,7 +107,9 @@ def _check(options: argparse.Namespace) -> int:
 def _mend(options: argparse.Namespace) -> None:
     """Writes corrections into the file; of a text, and of standard input, shows what it becomes, and reads that."""
     from btlang.backends.files import replace_text
-    from btlang.diagnostics.mending import certain, mended, one_after_the_other
+    from btlang.diagnostics.mending import mended
+
+    aside = sys.stderr if options.report.is_json else sys.stdout
 
     def problems_of(source: Source) -> Sequence[Diagnostic]:
         try:
@@ -117,24 +117,14 @@ def _mend(options: argparse.Namespace) -> None:
         except MissionError as error:
             return error.diagnostics
 
-    source = _source(options)
-    count = 0
-    for wanted, choose in ((options.fix, certain), (options.then, one_after_the_other)):
-        if wanted:
-            source, made = mended(source, problems_of, choose)
-            count += made
+    source, count = mended(_source(options), problems_of, fix=options.fix, then=options.then)
     if options.text is None and options.file != "-":
         if count:
             replace_text(source.name, source.text)
-            show(f"Corrected {source.name}: {count} change{'s' * (count > 1)}.", stream=_aside(options))
+            show(f"Corrected {source.name}: {count} change{'s' * (count > 1)}.", stream=aside)
     else:
         options.text, options.file = source.text, None
-        show(source.text.rstrip("\n"), stream=_aside(options))
-
-
-def _aside(options: argparse.Namespace) -> TextIO:
-    """Standard output, unless that is for JSON."""
-    return sys.stderr if options.report.is_json else sys.stdout
+        show(source.text.rstrip("\n"), stream=aside)
 
 
 def _show_tree(options: argparse.Namespace) -> int:
@@ -158,7 +148,6 @@ def _draw_tree(mission: Mission, path: str, apart: bool) -> None:
 
 
 def _compile(options: argparse.Namespace) -> int:
-    from btlang.backends.files import write_file
     from btlang.backends.targets import TARGETS, target_of
 
     name = options.to or (target_of(options.out) if options.out is not None else "")
@@ -168,9 +157,15 @@ def _compile(options: argparse.Namespace) -> int:
         options.refuse(f"{name} isn't text; write it to a file with -o FILE")
     if options.dialect is not None and "dialect" not in TARGETS[name].options:
         options.refuse(f"--dialect is for xml, not for {name}")
-    made = _mission(options).to(name, dialect=options.dialect)
-    if options.out is not None:
-        write_file(options.out, made)
+    return _put(_mission(options).to(name, dialect=options.dialect), options.out)
+
+
+def _put(made: str | bytes, path: str | None) -> int:
+    """Into the file, or else to standard output."""
+    if path is not None:
+        from btlang.backends.files import write_file
+
+        write_file(path, made)
     elif isinstance(made, bytes):
         sys.stdout.buffer.write(made)
     else:
@@ -188,6 +183,12 @@ def _words(options: argparse.Namespace) -> int:
     else:
         show("\n".join(overview(vocabulary, listing_width())))
     return SUCCESS
+
+
+def _grammar(options: argparse.Namespace) -> int:
+    from btlang.backends.grammar.targets import GRAMMARS
+
+    return _put(GRAMMARS[options.to](world_vocabulary(options.keywords, options.world, options.language)), options.out)
 
 
 def _examples(options: argparse.Namespace) -> int:
@@ -265,8 +266,8 @@ def _format_one(source: Source, options: argparse.Namespace) -> bool:
     return False
 
 
-def _node(options: argparse.Namespace) -> int:
-    code: int = import_module(_NODES[options.verb]).serve(options)
+def _serve(options: argparse.Namespace) -> int:
+    code: int = import_module(_SERVERS[options.verb]).serve(options)
     return code
 
 
@@ -317,12 +318,13 @@ def _version(options: argparse.Namespace) -> int:
     return SUCCESS
 
 
-_NODES = {
+_SERVERS = {
+    "mcp": "btlang.mcp_server",
     "sim-ros": "btlang.ros.simulator.command",
     "ros-node": "btlang.ros.mission.command",
     "serve-actions": "btlang.ros.serving.command",
 }
-"""The verbs that are nodes of ROS 2, each with the module whose `serve` it is."""
+"""The verbs that serve other programs, each with the module whose `serve` it is."""
 
 _VERBS: dict[str, Callable[[argparse.Namespace], int]] = {
     "repl": _repl,
@@ -331,10 +333,11 @@ _VERBS: dict[str, Callable[[argparse.Namespace], int]] = {
     "tree": _show_tree,
     "compile": _compile,
     "words": _words,
+    "grammar": _grammar,
     "examples": _examples,
     "explain": _explain,
     "format": _format,
-    **dict.fromkeys(_NODES, _node),
+    **dict.fromkeys(_SERVERS, _serve),
     "completion": _completion,
     "help": _help,
     "version": _version,

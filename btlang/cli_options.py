@@ -241,6 +241,14 @@ def _listing_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("search", nargs="*", metavar="SEARCH", help="a topic, or words to search for")
 
 
+def _grammar_options(parser: argparse.ArgumentParser) -> None:
+    from btlang.backends.grammar.targets import GRAMMARS
+
+    _words_options(parser)
+    parser.add_argument("--to", choices=list(GRAMMARS), default="gbnf", help="form of the grammar (default: gbnf)")
+    parser.add_argument("-o", dest="out", metavar="FILE", help="file to write (default: standard output)")
+
+
 def _examples_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--copy", metavar="FOLDER", help="copy them to a folder, with their worlds")
     parser.add_argument("name", nargs="*", metavar="NAME", help="only these examples")
@@ -303,6 +311,8 @@ _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "tree": ("print the behavior tree of a mission", _tree_options),
     "compile": ("write the tree of a mission as XML, English, JSON, a picture ...", _compile_options),
     "words": ("list what missions can say", _listing_options),
+    "grammar": ("write a grammar of missions, for language models", _grammar_options),
+    "mcp": ("let language models write and simulate missions, as an MCP server", _words_options),
     "examples": ("list, print or copy the example missions", _examples_options),
     "explain": ("show how a mission is understood, or explain a message code", _explain_options),
     "format": ("format missions: indentation, spaces, empty lines", _format_options),

@@ -65,6 +65,7 @@ def take_away_what_is_missed(code: str, patch: pytest.MonkeyPatch) -> None:
         patch.setenv("XDG_STATE_HOME", "/dev/null")  # where nothing can be written
         patch.setattr("btlang.vocabulary.listing.overview", _buggy)
     patch.setitem(sys.modules, "matplotlib", None)  # BT081
+    patch.setitem(sys.modules, "mcp", None)  # BT082
     patch.setitem(sys.modules, "btlang_interfaces", None)  # BT110
     if code != "BT101":
         patch.setitem(sys.modules, "rclpy", ModuleType("rclpy") if code == "BT110" else None)  # BT100

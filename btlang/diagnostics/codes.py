@@ -125,6 +125,7 @@ _ALL = (
     Code("BT072", "The robot '{robot}' has no {parts}, which '{words}' needs.", "Leave it out, or choose another robot with --robot."),
     Code("BT080", "The command '{id}' can't run: {reason}."),
     Code("BT081", "Pictures need matplotlib, which isn't installed.", "Install it: pip install 'btlang[pictures]'"),
+    Code("BT082", "btc mcp needs the Python package mcp, which isn't installed.", "Install it: pip install 'btlang[mcp]'"),
     Code("BT090", "There's no message code '{name}'.", "Run 'btc explain' to list them."),
     Code("BT099", "btlang has a bug: {error}.", "{advice}"),
     Code("BT100", "ROS 2 can't be used: {reason}.", "{advice}"),

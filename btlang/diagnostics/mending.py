@@ -27,9 +27,20 @@ def one_after_the_other(problems: Iterable[Diagnostic]) -> list[Change]:
 
 
 def mended(
+    source: Source, problems_of: Callable[[Source], Iterable[Diagnostic]], *, fix: bool, then: bool
+) -> tuple[Source, int]:
+    """The source with all such changes, and their number; included texts stay as they are."""
+    count = 0
+    for wanted, choose in ((fix, certain), (then, one_after_the_other)):
+        if wanted:
+            source, made = _changed(source, problems_of, choose)
+            count += made
+    return source, count
+
+
+def _changed(
     source: Source, problems_of: Callable[[Source], Iterable[Diagnostic]], choose: Callable[..., list[Change]]
 ) -> tuple[Source, int]:
-    """The source with all changes that are chosen, and their number; included texts stay as they are."""
     count = 0
     for _ in range(_ROUNDS):
         changes = [change for change in choose(problems_of(source)) if change[0].source.name == source.name]

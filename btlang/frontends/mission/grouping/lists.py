@@ -157,7 +157,7 @@ def correlative(scan: Scan, token: Token) -> None:
         if not depth and (part.kind == wanted or (isinstance(part.value, Listed) and part.value.joiner == wanted)):
             break
         is_loose = not depth and part.kind not in _PLAIN and not (part.kind == "and" and wanted == "or")
-        if is_loose or (part.kind in ENDS and not (depth and part.kind == "close")):
+        if is_loose or (part.kind in ENDS and not (depth and part.kind in ("close", "semi"))):
             _not_joined(scan, scan.at, wanted)
             return
         depth += (part.kind == "open") - (part.kind == "close")
@@ -197,7 +197,7 @@ def _not_joined(scan: Scan, at: int, wanted: str) -> None:
     opener, text, joint = scan.raw[at], scan.source.text, scan.word(wanted)
     depth, joints = 0, dict[str, Token]()
     end = at + 1
-    while scan.raw[end].kind not in ENDS or (scan.raw[end].kind == "close" and depth):
+    while scan.raw[end].kind not in ENDS or (scan.raw[end].kind in ("close", "semi") and depth):
         token = scan.raw[end]
         if not depth:
             joints.setdefault(token.kind, token)

@@ -1,0 +1,1 @@
+"""What missions of a vocabulary look like, for language models whose output is constrained by a grammar."""

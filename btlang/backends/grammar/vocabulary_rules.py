@@ -1,0 +1,276 @@
+"""The rules of a grammar that a vocabulary makes: its phrases, the words of its roles, its values."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from itertools import chain
+
+from btlang.backends.grammar.forms import FORMS
+from btlang.backends.grammar.rules import (
+    NOTHING,
+    Chars,
+    Name,
+    Part,
+    Rules,
+    Text,
+    choice,
+    joined,
+    parsed,
+    pruned,
+    repeated,
+)
+from btlang.tree.catalogue import SUBTREE
+from btlang.vocabulary.correct_words import correct_words
+from btlang.vocabulary.entry import Entry
+from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.pattern import Form, Slot, forms, variants
+from btlang.vocabulary.value_type import Unit, ValueType, with_unit
+
+_FIGURE = '([1-9] [0-9]? | "0." [1-9])'
+_WHOLE = "[1-9] [0-9]?"
+_TEXT = '"`" [A-Za-z] [A-Za-z0-9 ,.!?]* "`"'
+_CLOCK = '(("1" [0-9] | "2" [0-3]) ":" [0-5] [0-9])'
+_SMALL = 0.01  # of the unit of ports
+_GIVEN = "{%s}"  # a value of the mission in the place of one that is written out
+
+
+def grammar_of(vocabulary: Lexicon) -> Rules:
+    """The grammar of missions with the words of a vocabulary; its first rule is "root"."""
+    return _VocabularyRules(vocabulary).made()
+
+
+class _Leaf:
+    """One phrase of an entry: the rule of its name makes every way to say it."""
+
+    def __init__(self, name: str, entry: Entry, said: tuple[Form, ...], kinds: Mapping[str, str]) -> None:
+        self.name, self.entry, self.forms, self.kinds = name, entry, said, kinds
+
+    @property
+    def is_steady(self) -> bool:
+        """Whether it takes time, and may be stopped half-way."""
+        return not (self.entry.instant or self.entry.uninterruptible)
+
+
+class _VocabularyRules:
+    def __init__(self, vocabulary: Lexicon) -> None:
+        self._vocabulary = vocabulary
+        self._rules: Rules = {}
+        leaves = list(self._leaves())
+        self._actions = [leaf for leaf in leaves if leaf.entry.sort == "action"]
+        self._conditions = [leaf for leaf in leaves if leaf.entry.sort == "condition"]
+
+    def made(self) -> Rules:
+        rules = {name: parsed(written, self._words) for name, written in FORMS.items()}
+        rules["action"] = choice(Name(leaf.name) for leaf in self._actions)
+        rules["steady"] = choice(Name(leaf.name) for leaf in self._actions if leaf.is_steady)
+        rules["phrase"] = choice(Name(leaf.name) for leaf in self._conditions)
+        rules["denied"] = choice(self._said(form, leaf) for leaf in self._conditions for form in self._denied(leaf))
+        rules["quantity"] = self._quantities()
+        for name, leaves in (("exact-action", self._actions), ("exact-condition", self._conditions)):
+            ids = dict.fromkeys(leaf.entry.id for leaf in leaves if not leaf.entry.slots)
+            rules[name] = choice(Text(f'"{node_id}"') for node_id in ids)
+        rules["exact-text"] = choice(
+            parsed(f'"`{leaf.entry.id}` " <with> " {slot.name} " {_rule_of("text")}', self._words)
+            for leaf in self._actions
+            for slot in leaf.entry.slots
+            if slot.type == "text" and slot.name.isalpha()
+        )
+        for leaf in (*self._actions, *self._conditions):
+            rules[leaf.name] = choice(self._said(form, leaf) for form in leaf.forms)
+        for kind in self._vocabulary.types.values():
+            rules[_rule_of(kind.name)] = self._value(kind)
+        return pruned({"root": rules.pop("mission"), **rules, **self._rules})
+
+    def _leaves(self) -> Iterator[_Leaf]:
+        articles = self._vocabulary.articles
+        for entry in chain.from_iterable(self._vocabulary.entries.values()):
+            kinds = {slot.name: slot.type for slot in entry.slots}
+            for number, phrase in enumerate(entry.phrases, 1):
+                yield _Leaf(f"{_kebab(entry.id)}-{number}", entry, forms(phrase, articles), kinds)
+
+    def _said(self, form: Form, leaf: _Leaf, given: Mapping[str, Part] = {}) -> Part:
+        """A way to say a phrase, with the values of its slots; `given` ones stand in the place of others."""
+        return self._row(form, lambda slot: given.get(slot, Name(_rule_of(leaf.kinds.get(slot, slot)))))
+
+    def _row(self, form: Form, value: Callable[[str], Part]) -> Part:
+        parts: list[Part] = []
+        for part in form:
+            parts += [Text(" "), value(part.name) if isinstance(part, Slot) else Text(part)]
+        return joined(parts[1:])
+
+    def _denied(self, leaf: _Leaf) -> Iterator[Form]:
+        """That it is not so, in the verb or the subject."""
+        tables = self._vocabulary.negations, self._vocabulary.negative_subjects
+        said = {form for other in self._conditions for form in other.forms}
+        for form in leaf.forms:
+            yield from (way for way, role in variants(form, *tables, {}) if role == "negated" and way not in said)
+
+    def _quantities(self) -> Part:
+        found: list[Part] = []
+        for entry in chain.from_iterable(self._vocabulary.entries.values()):
+            kinds = {slot.name: slot.type for slot in entry.slots}
+            said = (form for pattern in entry.quantity for form in forms(pattern, self._vocabulary.articles))
+            found += [self._said(form, _Leaf("", entry, (), kinds)) for form in said]
+        return choice(found)
+
+    def _words(self, wanted: str) -> Part:
+        """What a name in angle brackets stands for."""
+        head, _, rest = wanted.partition(" ")
+        special = {
+            "together": self._together, "compare": self._compared, "say": self._saying, "each-type": self._by_type,
+        }  # fmt: skip
+        if head in special:
+            return special[head](rest)
+        if wanted == "doing":
+            return self._shared(wanted, self._doing(self._actions))
+        if wanted == "steady doing":
+            return self._shared("steady-doing", self._doing(leaf for leaf in self._actions if leaf.is_steady))
+        if wanted == "forever":
+            return choice(Text(word) for word, rounds in self._vocabulary.counts.items() if rounds < 0)
+        if head == "subtree":
+            words = self._vocabulary.nodes.get(SUBTREE)
+            return Text(f'{words} "{rest}"') if words else NOTHING
+        if wanted == "at-fact w1":
+            return self._with_value("place", Text("w1"))
+        return self._shared(f"word-{_kebab(wanted)}", self._role(head, rest))
+
+    def _shared(self, name: str, part: Part) -> Part:
+        """The part as a rule that others use."""
+        self._rules[name] = part
+        return Name(name)
+
+    def _role(self, role: str, value: str) -> Part:
+        """Every way to say a role; a `value` stands in its slot."""
+        vocabulary = self._vocabulary
+
+        def in_slot(slot: str) -> Part:
+            return Text(value) if value else Name(_rule_of(slot))
+
+        phrases = [phrase for phrase in vocabulary.roles.get(role, ()) if phrase not in vocabulary.meanings]
+        ways = [self._row(form, in_slot) for phrase in phrases for form in forms(phrase, vocabulary.articles)]
+        if role == "count":
+            ways += [Text(word) for word, rounds in vocabulary.counts.items() if rounds > 0]
+        return choice(ways)
+
+    def _together(self, joint: str) -> Part:
+        """Two commands side by side: no grammar counts the parts of a robot, so they are sorted by those they need."""
+        by_parts: dict[frozenset[str], list[_Leaf]] = {}
+        for leaf in self._actions:
+            by_parts.setdefault(frozenset(leaf.entry.resources), []).append(leaf)
+        found = []
+        for parts, leaves in by_parts.items():
+            number = list(by_parts).index(parts) + 1
+            others = [leaf for leaf in self._actions if parts.isdisjoint(leaf.entry.resources)]
+            name = f"needs-{'-and-'.join(sorted(map(_kebab, parts))) or 'nothing'}"
+            first = self._shared(name, choice(Name(leaf.name) for leaf in leaves))
+            if joint == "while doing":
+                second = self._shared(f"beside-{number}-doing", self._doing(others))
+            else:
+                second = self._shared(f"beside-{number}", choice(Name(leaf.name) for leaf in others))
+            found.append(joined((first, self._joint(joint), second)))
+        return choice(found)
+
+    def _joint(self, joint: str) -> Part:
+        if joint == "while doing":
+            return parsed('" " <while> " "', self._words)
+        if joint.startswith(". "):
+            return parsed(f'". " <{joint[2:]}> ", "', self._words)
+        return parsed(f'" " <{joint}> " "', self._words)
+
+    def _compared(self, kind: str) -> Part:
+        return choice(
+            self._row(form, lambda slot: Name(_rule_of(kind))) for form in self._vocabulary.comparing_forms(kind)
+        )
+
+    def _saying(self, name: str) -> Part:
+        return self._with_value("text", Text(f'"{_GIVEN % name}"'))
+
+    def _with_value(self, kind: str, value: Part) -> Part:
+        """A command with this value in a slot of the type."""
+        return choice(
+            self._said(form, leaf, {slot: value})
+            for leaf in self._actions
+            for form in leaf.forms
+            for slot in [part.name for part in form if isinstance(part, Slot)]
+            if leaf.kinds.get(slot) == kind
+        )
+
+    def _by_type(self, statement: str) -> Part:
+        """`set` and `for each` with the names of each type, in a sentence that uses the value."""
+        types = [kind for kind in self._vocabulary.types.values() if kind.kind == "names"]
+        return choice(self._with_name(kind.name, f"v{number}", statement) for number, kind in enumerate(types, 1))
+
+    def _with_name(self, kind: str, name: str, statement: str) -> Part:
+        if statement == "parameter":
+            name = kind  # a parameter with the name of a type has that type
+        used = self._with_value(kind, Text(_GIVEN % name))
+        value = _rule_of(kind)
+        if statement == "set":
+            head = parsed(f'<set> " {name} " <set_to> " " {value} "; "', self._words)
+        elif statement == "parameter":
+            head = parsed(f'"r2 {{{name}}} " <define_strong> " "', self._words)
+            return joined((head, used, parsed(f'"\\nr2 " {value}', self._words)))
+        else:
+            head = parsed(f'<each> " {name} " <each_in> " " {value} (", " {value})* ": "', self._words)
+        return joined((head, used))
+
+    def _doing(self, leaves: Iterable[_Leaf]) -> Part:
+        """The leaves with the form of their verb that the table `doing` makes and the list of correct words has."""
+        known = correct_words(self._vocabulary.word_list)
+        known -= {str(form[0]) for leaf in self._conditions for form in leaf.forms}  # `if charging`
+        found = []
+        for leaf in leaves:
+            for form in leaf.forms:
+                verb, *rest = form
+                if isinstance(verb, str):
+                    ways = {
+                        verb.removesuffix(bare) + ending
+                        for ending, endings in self._vocabulary.doing.items()
+                        for bare in endings
+                        if verb.endswith(bare)
+                    }
+                    found += [self._said((way, *rest), leaf) for way in sorted(ways & known)]
+        return choice(found)
+
+    def _value(self, kind: ValueType) -> Part:
+        """What a slot of the type takes."""
+        if kind.kind == "names":
+            return choice(map(Text, self._vocabulary.values.names(kind.name)))
+        if kind.kind == "quantity":
+            return choice(
+                joined((self._figure(unit, kind), choice(Text(with_unit("", word)) for word in unit.words)))
+                for unit in kind.units
+            )
+        if kind.kind == "time":
+            return choice((parsed(_CLOCK, self._words), *self._times()))
+        if kind.kind == "text":
+            return parsed(_TEXT, self._words)
+        return parsed(_WHOLE if kind.whole else _FIGURE, self._words)
+
+    def _figure(self, unit: Unit, kind: ValueType) -> Part:
+        """A number that with the unit isn't below the least of its type, or too small to matter."""
+        factor = unit.numerator / unit.denominator
+        is_small = factor < _SMALL or 0.1 * factor < (kind.least or 0)
+        return self._shared("whole" if is_small else "figure", parsed(_WHOLE if is_small else _FIGURE, self._words))
+
+    def _times(self) -> Iterator[Part]:
+        values = self._vocabulary.values
+        for word in sorted(values.openers.get("time_of_day", ())):
+            if values.takes_word("time_of_day", word):
+                yield Text(word)
+        for half in values.halves_of_day:
+            yield joined(
+                (Chars("[1-9]"), repeated(joined((Text(":"), Chars("[0-5]"), Chars("[0-9]"))), "?"), Text(f" {half}"))
+            )
+
+
+def _rule_of(kind: str) -> str:
+    """The rule of the values of a type."""
+    return f"value-{_kebab(kind)}"
+
+
+def _kebab(name: str) -> str:
+    """A name as rules have them: `MoveForward` is `move-forward`."""
+    apart = re.sub(r"(?<=[a-z0-9])(?=[A-Z])", "-", name).lower()
+    return re.sub(r"[^a-z0-9]+", "-", apart).strip("-")

@@ -1,0 +1,197 @@
+"""Grammars for language models: what they make is read by both parsers, and they make every phrase and every form."""
+
+from __future__ import annotations
+
+import json
+import re
+from collections import Counter
+from collections.abc import Iterator
+from functools import cache
+from pathlib import Path
+from typing import Any
+
+import pytest
+from jsonschema import Draft202012Validator
+
+from btlang.api import parse_file, parse_tree, world_vocabulary
+from btlang.backends.grammar.forms import FORMS
+from btlang.backends.grammar.targets import GRAMMARS
+from btlang.cli import main
+from btlang.diagnostics.errors import MissionError
+from btlang.frontends.mission.reader import PARSERS
+from tests.backends.gbnf_sampler import Node, Sampler, read
+from tests.profiles import amount
+
+ROOT = Path(__file__).parents[2]
+WORDS = world_vocabulary()
+UNKNOWABLE = {"BT068": "a condition behind `when` is checked once", "BT069": "`and` on the way mostly means `then`"}
+"""What no grammar knows; few sentences may have it."""
+
+
+@cache
+def gbnf() -> str:
+    return GRAMMARS["gbnf"](WORDS)
+
+
+def phrases() -> list[str]:
+    """The rules of phrases: each ends in the number that the phrase has in its entry."""
+    return [name for name in read(gbnf()) if re.search(r"-\d+$", name) and not name.startswith(("beside-", "word-"))]
+
+
+def codes(text: str, parser: str, language: str = "en") -> list[str]:
+    try:
+        return [problem.code for problem in parse_tree(text, parser=parser, language=language).warnings]
+    except MissionError as error:
+        return [problem.code for problem in error.diagnostics]
+
+
+@pytest.mark.long
+def test_both_parsers_read_what_the_grammar_makes() -> None:
+    count = amount(300, 10_000)
+    sampler = Sampler(gbnf(), seed=20)
+    found: Counter[str] = Counter()
+    for _ in range(count):
+        text = sampler.sentence()
+        first, second = ([*dict.fromkeys(codes(text, parser))] for parser in PARSERS)
+        assert first == second, text
+        assert UNKNOWABLE.keys() >= set(first), text
+        found.update(first)
+    assert sum(found.values()) <= count / 20, found
+    wanted = amount(1, 20)
+    words = [name for name in sampler.rules if name.startswith("word-")]
+    assert not [name for name in (*phrases(), *FORMS, *words) if sampler.used[name] < wanted and name != "mission"]
+
+
+def test_every_phrase_and_every_form_has_a_rule() -> None:
+    entries = [entry for entries in WORDS.entries.values() for entry in entries]
+    assert len(phrases()) == sum(len(entry.phrases) for entry in entries)
+    assert read(gbnf()).keys() >= FORMS.keys() - {"mission"}
+
+
+def test_every_role_that_can_stand_in_one_line_has_a_rule() -> None:
+    elsewhere = {  # blocks, files, the words of other forms, what says nothing
+        "following", "in_parallel", "in_order", "include", "here", "newline", "character", "with",
+        "needs_world", "needs_words", "politeness", "times_of_day",
+    }  # fmt: skip
+    roles = {role.replace("_", "-") for role in WORDS.roles if role not in elsewhere}
+    rules = read(gbnf()).keys()
+    assert not [role for role in sorted(roles) if not any(name.startswith(f"word-{role}") for name in rules)]
+
+
+def test_no_rule_begins_with_itself() -> None:
+    """llama.cpp refuses such a grammar."""
+    rules = read(gbnf())
+    firsts = {name: set(first_names(node)) for name, node in rules.items()}
+    for _ in range(20):  # rules in each other
+        firsts = {name: found.union(*(firsts[other] for other in found)) for name, found in firsts.items()}
+    assert not [name for name, found in firsts.items() if name in found]
+
+
+def first_names(node: Node) -> Iterator[str]:
+    """The rules with which a right-hand side may begin."""
+    if node.kind == "name":
+        yield node.text
+    for part in node.parts:
+        yield from first_names(part)
+        if node.kind == "joined" and part.kind not in "?*":
+            return
+
+
+def test_the_rules_of_the_page_are_real() -> None:
+    page = (ROOT / "docs" / "language_models.md").read_text(encoding="utf-8")
+    (shown,) = re.findall(r"^```gbnf\n(.*?)^```$", page, re.MULTILINE | re.DOTALL)
+    assert set(shown.splitlines()) <= set(gbnf().splitlines())
+
+
+@pytest.mark.parametrize("to", ["gbnf", "ebnf"])
+def test_every_rule_that_is_used_is_there(to: str) -> None:
+    text = re.sub(r"\"(?:\\.|[^\"\\])*\"|'[^']*'|\[[^\]]*\]|#xA", " ", GRAMMARS[to](WORDS))
+    lines = [line.partition("::=") for line in text.splitlines()]
+    defined = {head.strip() for head, _, _ in lines}
+    used = {word for _, _, body in lines for word in re.findall("[a-z][a-z0-9-]*", body)}
+    assert defined - used == {"root"}
+    assert used <= defined
+
+
+def test_words_of_keyword_files_and_worlds_are_in_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "juggling.toml").write_text(
+        '[[action]]\nid = "Juggle"\nphrase = "juggle with {object}"\ncall = "btlang.actions.speech:say"\n'
+    )
+    (tmp_path / "ring.toml").write_text('start = { x = 1, y = 1 }\nplaces = [{ name = "ring", x = 2, y = 1 }]\n')
+    out = tmp_path / "mission.gbnf"
+    options = ["--keywords", str(tmp_path / "juggling.toml"), "--world", str(tmp_path / "ring.toml")]
+    assert main(["grammar", *options, "-o", str(out)]) == 0
+    rules = out.read_text().splitlines()
+    assert 'value-place ::= "ring"' in rules
+    assert not any(line.startswith("juggle") for line in rules)  # there is nothing to juggle with
+    assert main(["grammar", "--keywords", str(tmp_path / "juggling.toml")]) == 0
+    assert 'juggle-1 ::= "juggle with " value-object\n' in capsys.readouterr().out
+
+
+@pytest.mark.long
+def test_missions_in_spanish_are_read() -> None:
+    sampler = Sampler(GRAMMARS["gbnf"](world_vocabulary(language="es")), seed=3)
+    for _ in range(amount(100, 1000)):
+        text = sampler.sentence()
+        assert UNKNOWABLE.keys() >= set(codes(text, "lark", "es")), text
+
+
+@cache
+def schema() -> Any:
+    made = json.loads(GRAMMARS["json-schema"](WORDS))
+    Draft202012Validator.check_schema(made)
+    return Draft202012Validator(made)
+
+
+def bare(document: dict[str, Any]) -> dict[str, Any]:
+    """A tree without what is told about its text."""
+    for tree in document["trees"]:
+        for node in tree["nodes"]:
+            for key in ("phrase", "sentence", "place"):
+                node.pop(key, None)
+    return document
+
+
+@pytest.mark.parametrize("name", ["hello", "patrol", "tea_service", "guard_the_door", "opening_hours", "tidy_up"])
+def test_trees_of_the_examples_fit_the_schema(name: str) -> None:
+    mission = parse_file(str(ROOT / "examples" / f"{name}.txt"))
+    document = bare(json.loads(str(mission.to("json"))))
+    schema().validate(document)
+    assert parse_tree(json.dumps(document)).tree.root == mission.tree.root
+
+
+def one(node: dict[str, Any]) -> dict[str, Any]:
+    return {"format": 1, "trees": [{"name": "", "nodes": [node]}], "models": []}
+
+
+@pytest.mark.parametrize(
+    "node",
+    [
+        {"id": "Fly"},
+        {"id": "GoTo"},
+        {"id": "GoTo", "ports": {"place": "moon"}},
+        {"id": "GoTo", "ports": {"place": "lab", "speed": "1"}},
+        {"id": "MoveForward", "ports": {"distance": "far"}},
+        {"id": "Sleep", "ports": {"msec": "-1"}},
+        {"id": "Sleep", "ports": {}},
+        {"id": "Inverter"},
+        {"id": "Inverter", "children": [1, 2]},
+    ],
+)
+def test_what_cannot_run_does_not_fit_the_schema(node: dict[str, Any]) -> None:
+    assert not schema().is_valid(one(node))
+
+
+@pytest.mark.parametrize(
+    "node",
+    [
+        {"id": "GoTo", "ports": {"place": "lab"}},
+        {"id": "GoTo", "ports": {"place": "{goal}"}},
+        {"id": "MoveForward"},
+        {"id": "Say", "ports": {"text": "hello"}, "name": "first"},
+        {"id": "Sleep", "ports": {"msec": "100", "_skipIf": "true"}},
+    ],
+)
+def test_what_fits_the_schema_is_read(node: dict[str, Any]) -> None:
+    schema().validate(one(node))
+    parse_tree(json.dumps(one(node))).check()
