@@ -7,7 +7,7 @@ The notation is that of `rules.parsed`. What isn't here is made from the vocabul
 - `<role>` is every way to say a role of the language, with a value in its slot;
 - `<doing>` is a command with the verb form that follows `while`, `<together ...>` two commands that need different
   parts of the robot, with that word between them; `<say n1>`, `<at-fact w1>` and `<subtree r3>` use these names, and
-  `<each-type ...>` makes such a statement for the names of each type.
+  `<each-type ...>` makes such a statement for the names of each type, also with `every place` or `a random place`.
 
 A form is made of a `unit`: a leaf, or anything in brackets. So no sentence has two readings.
 """
@@ -123,13 +123,14 @@ STATEMENTS = {
 }
 
 VALUES = {
-    "valued": "number-value | name-value | measured | counted | for-each",
+    "valued": "number-value | name-value | measured | counted | for-each | chosen",
     "number-value": '<set> " n1 " <set_to> " " value-number "; " <if> " n1 " <compare number> ", " unit',
     "counted": '<set> " n1 " <set_to> " " value-number "; " changed "; " <say n1>',
     "changed": '(<increase> | <decrease>) " n1" (" " <by> " " value-number)?',
     "name-value": "<each-type set>",
     "measured": '<remember> " " quantity " " <remember_as> " n2; " <say n2>',
     "for-each": "<each-type each>",
+    "chosen": "<each-type chosen>",
 }
 """Values are set where they are used. A letter and a figure is no word of any language."""
 

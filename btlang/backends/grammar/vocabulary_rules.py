@@ -197,11 +197,15 @@ class _VocabularyRules:
         )
 
     def _by_type(self, statement: str) -> Part:
-        """`set` and `for each` with the names of each type, in a sentence that uses the value."""
+        """Statements with the names of each type: `set`, `for each`, `go to every place`."""
         types = [kind for kind in self._vocabulary.types.values() if kind.kind == "names"]
         return choice(self._with_name(kind.name, f"v{number}", statement) for number, kind in enumerate(types, 1))
 
     def _with_name(self, kind: str, name: str, statement: str) -> Part:
+        if statement == "chosen":
+            return self._with_value(
+                kind, choice(Text(" ".join(words)) for words in self._vocabulary.values.choices(kind))
+            )
         if statement == "parameter":
             name = kind  # a parameter with the name of a type has that type
         used = self._with_value(kind, Text(_GIVEN % name))
