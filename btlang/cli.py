@@ -353,8 +353,7 @@ def _typed(options: argparse.Namespace) -> Source:
 def _mission(options: argparse.Namespace) -> Mission:
     """Compiles what the options name; warnings go to the report."""
     mission = _parsed(_source(options), options)
-    for warning in mission.warnings:
-        options.report.add([warning])
+    options.report.add(mission.warnings)
     return mission
 
 

@@ -307,3 +307,12 @@ def test_certain_corrections_are_written(btc: Screen, tmp_path: Path) -> None:
     assert btc.out == "frobnicate\n"
     assert btc("check", "--fix", "--format", "json", "-c", "go to the lbby") == 0
     assert (btc.out.strip(), btc.err) == ("[]", "go to the lobby\n")
+
+
+def test_equal_warnings_are_shown_once(btc: Screen) -> None:
+    text = "\n".join(["go to the lab and wave", *["go to the hall and wave"] * 12])
+    assert btc("check", "-c", text) == 0
+    assert btc.err.count("BT069:") == 2
+    assert "  And 11 more: lines 3, 4, 5, 6, 7, 8, 9, 10, ...\n" in btc.err
+    assert btc("check", "--format", "json", "-c", text) == 0
+    assert btc.out.count('"BT069"') == 13

@@ -18,6 +18,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+_MOST_LINES = 8  # that are named for equal warnings
 FORMATS = ("text", "json")
 
 
@@ -33,14 +34,20 @@ class Report:
         self._held: list[Diagnostic] = []
 
     def add(self, problems: Iterable[Diagnostic]) -> None:
-        """Tells these diagnostics, with an empty line between them where it is text."""
+        """Shows these diagnostics, with an empty line between them where it is text; equal warnings there only once."""
         problems = list(problems)
         self._held += problems
-        if not self.is_json:
+        if problems and not self.is_json:
             from btlang.diagnostics.render import render  # most missions have nothing to tell of
 
             colour = has_colour(sys.stderr)
-            show("\n\n".join(render(problem, colour) for problem in problems), stream=sys.stderr)
+            equal: dict[object, list[Diagnostic]] = {}
+            for problem in problems:
+                words = problem.span.text.lower()
+                same = id(problem) if problem.is_error else (problem.code, words, problem.message, problem.hint)
+                equal.setdefault(same, []).append(problem)
+            shown = (render(first, colour) + _and_more(others) for first, *others in equal.values())
+            show("\n\n".join(shown), stream=sys.stderr)
 
     def close(self) -> None:
         """Prints the document, `[]` where there was nothing to tell; or, below the text, where more is explained."""
@@ -52,6 +59,16 @@ class Report:
                 show(f"\n{more}", stream=sys.stderr)
         if self.is_json:
             show(as_json(self._held), stream=sys.stdout if self._on_output else sys.stderr)
+
+
+def _and_more(others: list[Diagnostic]) -> str:
+    """A line for warnings that are equal to the one above it."""
+    if not others:
+        return ""
+    lines = [str(other.span.source.position(other.span.start)[0]) for other in others]
+    some = ", ".join(lines[:_MOST_LINES]) + (", ..." if len(lines) > _MOST_LINES else "")
+    where = f"line{'s' * (len(lines) > 1)} {some}"
+    return f"\n  And {len(others)} more: {where}"
 
 
 def as_json(problems: Iterable[Diagnostic]) -> str:

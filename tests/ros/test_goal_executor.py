@@ -268,7 +268,7 @@ def test_a_value_that_is_missing():
     server = Server()
     go, _ = server.begin("GoTo")
     server.tick(0.1)
-    assert go.ended == [(False, "GoTo needs a value for place")]
+    assert go.ended == [(False, "neither a place nor a point is given")]
 
 
 def test_all_that_ships_has_a_name_and_can_be_bound():
