@@ -25,7 +25,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-_TOP = {"language", "replaces", "action", "condition", "quantity", "type", "phrases", *WORD_LISTS, *SWITCHES, *TABLES}
+_OWN = ("shipped", "replaces", "action", "condition", "quantity", "type", "phrases")
+_TOP = {"language", *_OWN, *WORD_LISTS, *SWITCHES, *TABLES}
 _ENTRY = {"phrase", "id", "call", "ros", "slots", "outputs", "resources", "needs", "topic", "help", "example"}
 _FLAGS = ("instant", "uninterruptible", "thread")
 _MORE = {"action": set(_FLAGS), "condition": set[str](), "quantity": {"type"}}
@@ -36,7 +37,8 @@ _TYPE = {"name", "units", "whole", "least", "open", "values"}
 class KeywordFile(Record):
     """What a file declares. `language` holds the tables of a connective file, empty in a pack of phrases.
 
-    `names` are (type, words, name) of the values of enumerated types.
+    `names` are (type, words, name) of the values of enumerated types. Where it is not for the `shipped` words, these
+    are not loaded beside it.
     """
 
     source: Source
@@ -44,6 +46,7 @@ class KeywordFile(Record):
     types: tuple[ValueType, ...]
     names: tuple[tuple[str, str, str], ...]
     language: dict[str, Any]
+    shipped: bool = True
 
 
 class _Reader:
@@ -286,15 +289,17 @@ def read_keyword_file(source: Source) -> KeywordFile:
     entries += reader.phrases(document.get("phrases", {}))
     reader.start = 0
     entries = reader.replacing(document.get("replaces", []), entries)
-    own = ("action", "condition", "quantity", "type", "phrases", "replaces")
-    language = {k: v for k, v in document.items() if k not in own}
+    is_shipped = document.get("shipped", True)
+    if not isinstance(is_shipped, bool):
+        reader.wrong("shipped is true or false", "shipped")
+    language = {k: v for k, v in document.items() if k not in _OWN}
     for key, value in language.items():
         if key in _TOP:
             for reason, near in problems(key, value):
                 reader.wrong(reason, near)
     if reader.problems:
         raise MissionError(reader.problems)
-    return KeywordFile(source, tuple(entries), tuple(types), tuple(names), language)
+    return KeywordFile(source, tuple(entries), tuple(types), tuple(names), language, is_shipped)
 
 
 def _tables(document: dict[str, Any], key: str, reader: _Reader) -> list[dict[str, Any]]:

@@ -69,6 +69,13 @@ def _words(value: object) -> bool:
     return isinstance(value, list) and all(isinstance(item, str) and item for item in value)
 
 
+def _role(value: object) -> bool:
+    """Its phrases, or a table of those that are added to it and taken from it."""
+    if isinstance(value, dict):
+        return bool(value) and value.keys() <= {"add", "remove"} and all(map(_words, value.values()))
+    return _words(value)
+
+
 def _endings(value: object) -> bool:
     return isinstance(value, list) and all(isinstance(item, str) for item in value)
 
@@ -100,7 +107,7 @@ def _is_text(value: object) -> bool:
 
 
 TABLES: dict[str, tuple[Callable[[object], bool], str]] = {
-    "roles": (_words, "a list of phrases"),
+    "roles": (_role, "a list of phrases, or a table with the lists add and remove"),
     "about": (_about, "a table with the texts topic, help and example"),
     "comparisons": (_words, "a list of phrases"),
     "negations": (_words, "a list of words"),
@@ -144,7 +151,7 @@ def problems(table: str, value: Any) -> Iterator[tuple[str, str]]:
         if not fits(item):
             yield f"{key} in [{table}] must be {wanted}", key
         elif table == "roles":
-            yield from _phrase_problems("role", key, item, ROLES)
+            yield from _phrase_problems("role", key, item.get("add", []) if isinstance(item, dict) else item, ROLES)
         elif table == "comparisons":
             yield from _phrase_problems("comparison", key, item, COMPARING)
         elif table == "about" and key not in EXPLAINED:
@@ -180,15 +187,24 @@ _LANGUAGE: dict[str, Any] = {
 
 
 def merged(tables: Iterable[Mapping[str, Any]]) -> dict[str, Any]:
-    """The language tables of all files; a later file replaces single roles and words of an earlier one."""
+    """The language tables of all files; a later file replaces, or changes, single roles and words of an earlier one."""
     found = {key: type(value)(value) for key, value in _LANGUAGE.items()}
     for table in tables:
         for key, value in table.items():
-            if isinstance(value, dict):
+            if key == "roles":
+                found[key] |= {role: _changed(found[key].get(role, []), words) for role, words in value.items()}
+            elif isinstance(value, dict):
                 found[key] |= value
             else:
                 found[key] = value
     return found
+
+
+def _changed(phrases: list[str], words: list[str] | dict[str, list[str]]) -> list[str]:
+    if isinstance(words, list):
+        return words
+    kept = [phrase for phrase in phrases if phrase not in words.get("remove", ())]
+    return [*kept, *(phrase for phrase in words.get("add", ()) if phrase not in kept)]
 
 
 def about_roles(tables: Iterable[Mapping[str, Any]], known: Mapping[str, About]) -> dict[str, About]:
@@ -196,7 +212,10 @@ def about_roles(tables: Iterable[Mapping[str, Any]], known: Mapping[str, About])
     about: dict[str, About] = {role: told.replace(example="") for role, told in known.items()}
     for table in tables:
         told = table.get("about", {})
-        replaced = [role for role in table.get("roles", {}) if role in about and role not in told]
+        others = (
+            role for role, words in table.get("roles", {}).items() if isinstance(words, list) or "remove" in words
+        )
+        replaced = [role for role in others if role in about and role not in told]
         about |= {role: about[role].replace(example="") for role in replaced}
         about |= {role: About(**keys) for role, keys in told.items()}
     return about | {role: About() for role in EXPLAINED if role not in about}

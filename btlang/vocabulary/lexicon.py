@@ -14,7 +14,7 @@ from btlang.text.spelling import nearest
 from btlang.text.words import Orthography, split
 from btlang.vocabulary.cache import recent
 from btlang.vocabulary.entry import COMPARISONS, About, Entry, Meaning, SlotSpec
-from btlang.vocabulary.language_tables import GOES_ON, NO_PHRASES, about_roles, merged
+from btlang.vocabulary.language_tables import GOES_ON, NO_PHRASES, ROLES, about_roles, merged
 from btlang.vocabulary.pattern import Form, PatternError, Slot, forms, replaced, variants
 from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.trie import SLOTS, TrieNode, add, collisions
@@ -202,6 +202,9 @@ class Lexicon:
 
     def _add_roles(self) -> None:
         for role, phrases in self.roles.items():
+            if not phrases and role in ROLES:
+                near = Span(Source(role, "words"), 0, len(role))
+                self._problems.append(diagnostic("BT060", near, reason=f"no word is left of the role '{role}'"))
             for phrase in phrases if role not in NO_PHRASES else ():
                 self._add_words(phrase, Meaning(role, between=self.meanings.get(phrase, "")))
         for words, rounds in self.counts.items():

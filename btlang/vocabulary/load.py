@@ -77,6 +77,14 @@ def _made(paths: Sequence[str], entries: Iterable[Entry], folder: str, english: 
             problems += error.diagnostics
     if problems:
         raise MissionError(problems)
+    if not all(file.shipped for file in files):  # what no phrase says is a part of the language
+        own = {shown_name(path) for path in keyword_files(folder)}
+        files = [
+            file.replace(entries=tuple(entry for entry in file.entries if not (entry.phrases or entry.quantity)))
+            if file.source.name in own
+            else file
+            for file in files
+        ]
     return Lexicon(files, entries, english, folder)
 
 

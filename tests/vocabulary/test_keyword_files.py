@@ -18,6 +18,14 @@ ACTION = '[[action]]\nphrase = "hop"\nid = "Hop"\n'
         ("[roles]\nthen = 5", "then in [roles] must be a list of phrases"),
         ('[roles]\nthen = "then"', "then in [roles] must be a list of phrases"),
         ('[roles]\nthen = ["then [x"]', "'[' without ']'"),
+        (
+            "[roles]\nthen.put = []",
+            "then in [roles] must be a list of phrases, or a table with the lists add and remove",
+        ),
+        ('[roles]\nthen.add = "x"', "then in [roles] must be a list of phrases, or a table"),
+        ('[roles]\nwait.add = ["linger"]', "must contain {duration}"),
+        ('[roles]\nnothing.remove = ["do nothing"]', "no word is left of the role 'nothing'"),
+        ("shipped = 1", "shipped is true or false"),
         ('[roles]\nfoo = ["zork"]', "there is no role 'foo'"),
         ('[roles]\nwait = ["linger"]', "must contain {duration}"),
         ('[roles]\nwait = ["linger [{duration}]"]', "must contain {duration}"),
@@ -86,3 +94,34 @@ def test_a_byte_order_mark_is_fine(tmp_path: Path) -> None:
 def test_what_is_no_word_is_told() -> None:
     with pytest.raises(TypeError, match=r"btlang\.action"):
         parse_tree("wave", keywords=[print])
+
+
+def codes(text: str, pack: str, folder: Path) -> list[str]:
+    """What is wrong with a mission in the words of a pack."""
+    file = folder / "pack.toml"
+    file.write_text(pack, encoding="utf-8")
+    try:
+        parse_tree(text, keywords=[str(file)])
+    except MissionError as error:
+        return [problem.code for problem in error.diagnostics]
+    return []
+
+
+def test_words_are_added_to_a_role_and_taken_from_it(tmp_path: Path) -> None:
+    pack = '[roles]\nthen.add = ["whereupon"]\nmeanwhile.remove = ["in meantime"]\n'
+    assert codes("wave whereupon nod then say hi; wave meanwhile nod", pack, tmp_path) == []
+    assert codes("wave. In the meantime, nod", pack, tmp_path) == ["BT013"]
+
+
+def test_a_pack_without_the_shipped_words(tmp_path: Path) -> None:
+    pack = "shipped = false\n" + ACTION
+    assert codes("hop then wait 2 s, then hop 3 times", pack, tmp_path) == []
+    assert codes("wave", pack, tmp_path) == ["BT010"]
+    assert codes("check the battery is below 20%", pack, tmp_path) == ["BT010"]
+
+
+def test_an_action_phrase_that_holds_the_word_is(tmp_path: Path) -> None:
+    pack = '[[action]]\nphrase = "tell me what is on {text}"\nid = "Tell"\n'
+    assert codes("tell me what is on desk then wave", pack, tmp_path) == []
+    assert codes("tell me is wave; tell me", pack, tmp_path) == []
+    assert codes("tell me what means wave; tell me what", pack, tmp_path) == []

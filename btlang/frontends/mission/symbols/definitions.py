@@ -25,6 +25,7 @@ _STARTS_NO_NAME = frozenset((
     "if", "unless", "while", "until", "whenever", "first_time", "as_soon_as", "otherwise", "then", "check",
     "wait_until", "at", "every_day", "until_time",
 ))  # fmt: skip
+_WEAK = DEFINING[-1]
 _NOT_IN_A_NAME = frozenset((*CONNECTIVES, "if", "unless", "while", "until", "otherwise", "provided"))
 
 
@@ -214,12 +215,20 @@ def _defining_word(phrases: Phrases, first: int, last: int) -> int | None:
                 continue
             if match.meaning.role in _STARTS_NO_NAME and at == first:
                 return None
+            if role == _WEAK and at == first and match.meaning.role == "command" and _says(match, text, at, choices):
+                return None  # `tell me what is on the desk`
             if match.meaning.role in NODE_ROLES:
                 at = _behind_node(text, match, last, vocabulary)
                 continue
             # a command phrase inside a name is no reason against it: `go home is ...`
             at = match.last if match.meaning.role != "command" else max(at + 1, _stop(text, at, match.last, choices))
     return None
+
+
+def _says(match: Match, text: Words, first: int, choices: list[str]) -> bool:
+    """Whether a phrase holds one of some words itself, not in a value."""
+    values = {word for value in match.values for word in range(value.first, value.last)}
+    return any(text.words[at] in choices for at in range(first, match.last) if at not in values)
 
 
 def _behind_node(text: Words, head: Match, last: int, vocabulary: Lexicon) -> int:
