@@ -18,6 +18,7 @@ Tell = Callable[[float], object]
 
 _CLOSE_ENOUGH = 0.004
 _ANGLE_CLOSE_ENOUGH = 0.25
+_SLOWEST, _SLOWEST_TURN = 0.012, 1.0  # near the goal; slower, one that swings round it would take too long
 _STRAIGHTENING = 2.0  # degrees a second for each degree off course
 
 
@@ -79,7 +80,7 @@ def drive_straight(robot: Driving, distance: float, speed: float | None = None, 
     bounds = Progress(distance, _CLOSE_ENOUGH, False, lambda: robot.time)
     driving = robot.body.driving
     limit = min(driving.speed if speed is None else abs(speed), driving.top_speed)
-    approach = Approach(limit, 3.0, driving.slowing)
+    approach = Approach(limit, 3.0, driving.slowing, _SLOWEST)
     try:
         while True:
             pose = robot.pose
@@ -101,7 +102,7 @@ def turn(robot: Driving, angle: float, progress: Tell = unheard) -> Steps:
     """Turns on the spot by `angle` degrees (left positive; more than a whole turn is fine) and brakes."""
     heading, turned, watch = robot.pose.heading, 0.0, BaseWatch(robot)
     turning = robot.body.turning
-    approach = Approach(turning.speed, 4.0, turning.slowing)
+    approach = Approach(turning.speed, 4.0, turning.slowing, _SLOWEST_TURN)
     bounds = Progress(angle, _ANGLE_CLOSE_ENOUGH, True, lambda: robot.time)
     try:
         while True:

@@ -44,13 +44,13 @@ class Progress:
 
 
 class Approach:
-    """How fast to go on, in metres or degrees a second: `gain` is how much of what is left to go in a second.
+    """How fast to go on, in metres or degrees a second, at least `slowest`: `gain` of what is left in each second.
 
     Each overshoot halves the pace: where commands or poses arrive late, the robot would swing round the goal for ever.
     """
 
     def __init__(self, fastest: float, gain: float, slowing: float = inf, slowest: float = 0.0) -> None:
-        self._fastest, self._gain, self._slowing, self._slowest = fastest, gain, slowing, slowest
+        self._fastest, self._gain, self._slowing, self._slowest = fastest, gain, slowing, min(slowest, fastest)
         self._before = 0.0
 
     def velocity(self, left: float) -> float:
@@ -58,5 +58,5 @@ class Approach:
         if left * self._before < 0:
             self._fastest, self._gain = self._fastest / 2, self._gain / 2
         self._before, way = left, abs(left)
-        pace = min(max(self._slowest, self._gain * way), self._fastest, sqrt(2 * self._slowing * way))
-        return copysign(pace, left)
+        pace = min(self._gain * way, self._fastest, sqrt(2 * self._slowing * way))
+        return copysign(max(self._slowest, pace), left)

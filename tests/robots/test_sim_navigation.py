@@ -98,7 +98,7 @@ def test_plans_anew_when_somebody_steps_in_the_way():
 def test_a_blocked_place_is_free_again_later():
     robot = SimulatedRobot(load_world(WORLDS / "locked_lab.toml"))
     assert travel(robot, "lab").failure == "there is no free way to the lab"
-    robot.step(20)
+    robot.step(22)
     assert travel(robot, "lab").failure is None
 
 
