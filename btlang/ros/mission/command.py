@@ -9,6 +9,7 @@ from typing import Any
 from btlang.arguments import node_name
 from btlang.ros.available import require_interfaces, require_ros
 from btlang.ros.command import add_body_options, add_namespace, platform_of
+from btlang.ros.ending import EndingSignals, ending_signals
 from btlang.text.output import show
 
 PACKAGES = ("diagnostic_msgs", "lifecycle_msgs", "std_msgs", "std_srvs")
@@ -48,10 +49,14 @@ def serve(options: argparse.Namespace) -> int:
     """
     if platform_of(options) == "simulated" and options.sim_time:
         options.refuse("--sim-time is for --robot ros and --robot actions")
+    with ending_signals() as came:  # before ROS 2 is imported, where an interrupt may get lost
+        return _serve(options, came)
+
+
+def _serve(options: argparse.Namespace, came: EndingSignals) -> int:
     require_ros()
     require_interfaces()
     require_ros(*PACKAGES)
-    from btlang.ros.ending import ending_signals
     from btlang.ros.mission.node import MissionNode
     from btlang.ros.mission.setup import Setup
     from btlang.ros.node import SpunNode
@@ -64,32 +69,31 @@ def serve(options: argparse.Namespace) -> int:
         options.language,
     )  # fmt: skip
     controls = Controls()
-    with ending_signals() as came:
-        came.on_arrival = controls.wake
-        spun = SpunNode(
-            options.name,
-            namespace=options.namespace,
-            use_sim_time=options.sim_time,
-            make=partial(MissionNode, setup, show),
-        )
-        node: Any = spun.node
+    came.on_arrival = controls.wake
+    spun = SpunNode(
+        options.name,
+        namespace=options.namespace,
+        use_sim_time=options.sim_time,
+        make=partial(MissionNode, setup, show),
+    )
+    node: Any = spun.node
+    try:
+        if options.autostart:
+            node.trigger_configure()
+            if node.error is not None:
+                raise node.error
+            node.trigger_activate()
+        with emergency_signal(node.emergency_stop):
+            spun.start()
+            show(f"btlang ros-node: ready as {node.get_fully_qualified_name()}; Ctrl-C ends it")
+            while not came.numbers:
+                controls.wait(None)
+            node.halt()
+            spun.settle(_ANSWERS)
+    finally:
         try:
-            if options.autostart:
-                node.trigger_configure()
-                if node.error is not None:
-                    raise node.error
-                node.trigger_activate()
-            with emergency_signal(node.emergency_stop):
-                spun.start()
-                show(f"btlang ros-node: ready as {node.get_fully_qualified_name()}; Ctrl-C ends it")
-                while not came.numbers:
-                    controls.wait(None)
-                node.halt()
-                spun.settle(_ANSWERS)
+            node.halt()
+            spun.close()
         finally:
-            try:
-                node.halt()
-                spun.close()
-            finally:
-                node.release()
+            node.release()
     return 128 + came.numbers[0]

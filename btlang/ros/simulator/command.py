@@ -8,10 +8,12 @@ import sys
 from time import monotonic
 
 from btlang.arguments import between, real_speed
+from btlang.robots.body import Body
 from btlang.robots.registry import runs_on
+from btlang.robots.world import World
 from btlang.robots.world_problem import read_world
 from btlang.ros.command import add_body_options, add_namespace
-from btlang.ros.ending import ending_signals
+from btlang.ros.ending import EndingSignals, ending_signals
 from btlang.run.emergency import emergency_signal
 from btlang.run.limits import RATES
 from btlang.text.output import show
@@ -43,24 +45,28 @@ def serve(options: argparse.Namespace) -> int:
     """
     body = runs_on(options.robot, "simulated")[0]
     world = read_world(options.world, body)
+    with ending_signals() as came:  # before ROS 2 is imported, where an interrupt may get lost
+        return _simulate(options, body, world, came)
+
+
+def _simulate(options: argparse.Namespace, body: Body, world: World, came: EndingSignals) -> int:
     speed, rate = 1.0 if options.speed == "real" else options.speed, options.rate
     from btlang.ros.available import require_ros
 
     require_ros(*PACKAGES)
     from btlang.ros.simulator.simulator import Simulator, can_navigate
 
-    with ending_signals() as came:
-        simulator = Simulator(world, namespace=options.namespace, gives_clock=options.clock, show=show, body=body)
-        with simulator, emergency_signal(simulator.robot.stop):
-            came.on_arrival = simulator.wake
+    simulator = Simulator(world, namespace=options.namespace, gives_clock=options.clock, show=show, body=body)
+    with simulator, emergency_signal(simulator.robot.stop):
+        came.on_arrival = simulator.wake
+        simulator.step(1 / rate)
+        if not can_navigate():
+            show("btlang sim-ros: no /navigate_to_pose: the package nav2_msgs is not installed", stream=sys.stderr)
+        where = f"domain {os.environ.get('ROS_DOMAIN_ID') or 0}, namespace /{options.namespace.strip('/')}"
+        show(f"btlang sim-ros: ready at speed {speed:g} ({where}); Ctrl-C ends it")
+        due = monotonic()
+        while not came.numbers:
+            due = max(due + 1 / (rate * speed), monotonic())  # time after a late step is not caught up with
+            simulator.work(due - monotonic())
             simulator.step(1 / rate)
-            if not can_navigate():
-                show("btlang sim-ros: no /navigate_to_pose: the package nav2_msgs is not installed", stream=sys.stderr)
-            where = f"domain {os.environ.get('ROS_DOMAIN_ID') or 0}, namespace /{options.namespace.strip('/')}"
-            show(f"btlang sim-ros: ready at speed {speed:g} ({where}); Ctrl-C ends it")
-            due = monotonic()
-            while not came.numbers:
-                due = max(due + 1 / (rate * speed), monotonic())  # time after a late step is not caught up with
-                simulator.work(due - monotonic())
-                simulator.step(1 / rate)
     return 128 + came.numbers[0]
