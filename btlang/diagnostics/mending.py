@@ -16,12 +16,12 @@ if TYPE_CHECKING:
 _ROUNDS = 20  # a correction may show the next mistake, but no text has that many behind each other
 
 
-def certain(problems: Iterable[Diagnostic]) -> list[Change]:
+def _certain(problems: Iterable[Diagnostic]) -> list[Change]:
     """The corrections that leave no choice."""
     return [problem.fix for problem in problems if problem.fix is not None and not problem.readings]
 
 
-def one_after_the_other(problems: Iterable[Diagnostic]) -> list[Change]:
+def _one_after_the_other(problems: Iterable[Diagnostic]) -> list[Change]:
     """For each `and` on the way (BT069), the reading `then`."""
     return [problem.readings[-1] for problem in problems if problem.code == "BT069"]
 
@@ -31,7 +31,7 @@ def mended(
 ) -> tuple[Source, int]:
     """The source with all such changes, and their number; included texts stay as they are."""
     count = 0
-    for wanted, choose in ((fix, certain), (then, one_after_the_other)):
+    for wanted, choose in ((fix, _certain), (then, _one_after_the_other)):
         if wanted:
             source, made = _changed(source, problems_of, choose)
             count += made

@@ -171,3 +171,26 @@ def names_in(part: Part) -> Iterator[str]:
     elif isinstance(part, Choice | Joined):
         for each in part.parts:
             yield from names_in(each)
+
+
+def written(rules: Rules, pieces_of: Callable[[str], list[str]]) -> str:
+    """One rule on each line; `pieces_of` gives a text as the notation quotes it, in a row."""
+    return "".join(f"{name} ::= {_part_written(part, pieces_of)}\n" for name, part in rules.items())
+
+
+def _part_written(part: Part, pieces_of: Callable[[str], list[str]], inside: bool = False) -> str:
+    """A part, in brackets where it is `inside` another one that binds tighter."""
+    if isinstance(part, Chars):
+        return part.written
+    if isinstance(part, Name):
+        return part.name
+    if isinstance(part, Repeated):
+        return _part_written(part.part, pieces_of, inside=True) + part.mark
+    if isinstance(part, Text):
+        pieces = pieces_of(part.text)
+        text, inside = " ".join(pieces), inside and len(pieces) > 1
+    elif isinstance(part, Joined):
+        text = " ".join(_part_written(each, pieces_of, isinstance(each, Choice)) for each in part.parts)
+    else:
+        text = " | ".join(_part_written(each, pieces_of) for each in part.parts)
+    return f"({text})" if inside else text

@@ -24,7 +24,6 @@ from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.references import choice_of
 from btlang.vocabulary.trie import SLOTS, Match, TrieNode, longest
 
-TYPE_CHECKING = False
 _ROLES = {"if_it_works": ("if_possible", "if_works"), "in_parallel": ("in_parallel", "meanwhile")}
 """What a word is inside a statement, and where it goes on with the one before."""
 _NOT_READ = frozenset((*SEPARATORS, INCLUDE, *NOT_ALONE))
@@ -35,7 +34,7 @@ _CONDITIONS = ("condition", "negated")
 _JOINING = ("and", "or")
 _MARKS = {",": "comma", ";": "semi", ":": "colon", "(": "open", ")": "close"}
 
-
+TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import TypeAlias
 

@@ -175,12 +175,12 @@ def doing(
 ) -> Match | None:
     """The command whose verb has this form: `going to the lab`."""
     found: Match | None = None
+    places = list(_rest(text, at))
     for verb in _verbs(text.words[at], endings):
-        places = list(_rest(text, at))
         match = _match(text, places, {0: verb}, tries, context)
         if match is not None and match.meaning.role in _DOING and (found is None or match.last > found.last):
             found = match
-    return found and _relocated(found, list(_rest(text, at)))
+    return found and _relocated(found, places)
 
 
 def with_verb(text: Words, at: int, endings: Mapping[str, Sequence[str]], trie: TrieNode) -> Words:
@@ -219,7 +219,7 @@ def _match(
         read.words.append(END_OF_TEXT)
         read.starts.append(text.ends[end - 1])
         read.ends.append(text.ends[end - 1])
-    found = [longest(trie, read, 0, context, other) for trie, other in zip(tries, reversed(tries), strict=True)]
+    found = [longest(trie, read, 0, context, names) for trie, names in zip(tries, reversed(tries), strict=True)]
     return max((match for match in found if match is not None), key=lambda match: match.last, default=None)
 
 
