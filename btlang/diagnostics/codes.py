@@ -5,7 +5,7 @@ BT05x what is allowed but probably not meant, BT06x keyword files,
 BT07x worlds, BT08x the Python behind the words and what else has to be installed, BT09x the codes themselves,
 BT10x ROS 2, BT11x missions as ROS 2 nodes, BT12x trees in XML, BT13x trees that were not written as missions,
 BT14x nodes said by their ids, BT15x lists, words that stand for names, and what is forbidden,
-BT16x times of day.
+BT16x times of day, BT17x sentences that people mean in two ways.
 
 BT05x and others that are warnings have a `name`, by which a mission silences them: `# allow: two readings`.
 Each code has a page in `pages/`, which `btc explain` prints.
@@ -158,9 +158,18 @@ _ALL = (
     Code("BT151", "'{words}' can be read in two ways.", "Write what you mean: {one}\nOr: {other}"),
     Code("BT152", "'{words}' doesn't fit here: {reason}.", "{advice}"),
     Code("BT153", "A point such as '{words}' doesn't fit here: a place with a name is needed.", "Name it in a line of its own: {fact}"),
+    Code("BT154", "'{words}' is only a part of a command or condition.", "Write for example: {example}"),
     Code("BT155", "'{words}' forbids something, but a mission only says what the robot does.",
          "Write for example: {example}"),
     Code("BT160", "'{words}' {problem}.", "Write for example: {example}"),
+    Code("BT170", "'{words}' starts again each time it has ended.",
+         "To keep that, write: {again}\nTo do it once, write: {once}", "warning", "starts again"),
+    Code("BT171", "All that follows waits for '{condition}', too.",
+         "To keep that, write: {wait}\nTo do the rest meanwhile, write: {first}", "warning", "waits first"),
+    Code("BT172", "'{words}' repeats {what}.",
+         "To keep that, write: {taken}\nIf not, write: {other}", "warning", "repeated"),
+    Code("BT173", "'{words}' has only rules, so it goes on for ever here, and other commands don't run meanwhile.",
+         "To let it watch beside them, write: {fixed}", "warning", "only rules"),
 )  # fmt: skip
 
 CODES = {entry.code: entry for entry in _ALL}

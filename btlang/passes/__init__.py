@@ -15,6 +15,8 @@ from btlang.passes.lint.asked_once import asked_once
 from btlang.passes.lint.busy import busy_loops
 from btlang.passes.lint.cut_off import cut_off
 from btlang.passes.lint.line_end import line_ends
+from btlang.passes.lint.only_rules import only_rules
+from btlang.passes.lint.starts_again import starts_again
 from btlang.passes.lint.two_readings import two_readings
 from btlang.passes.lint.unreachable import never_runs
 from btlang.passes.lint.unused import unused_names
@@ -39,7 +41,9 @@ PASSES = (
     *CHECKS,
     Pass("two readings", two_readings, needs_text=True),
     Pass("asked once", asked_once, needs_text=True),
+    Pass("starts again", starts_again, needs_text=True),
     Pass("and", while_it_travels, needs_text=True),
+    Pass("only rules", only_rules, needs_text=True),
     Pass("unused", unused_names, needs_text=True),
     Pass("never runs", never_runs),
     Pass("busy loop", busy_loops),

@@ -182,7 +182,8 @@ def _paced(role: str) -> Callable[[Any, list[Doc], Printer], Doc]:
         if not node.rounds:
             return printer.behind(body, printer.duration(role, node.seconds))
         count, pace = paced_rounds(node.rounds, node.seconds, role, printer)
-        return printer.behind(body, count, (pace,), counts=True)
+        words = (pace, (count,)) if role == "every" else (count, (pace,))  # `3 times every 5 s` has two readings
+        return printer.behind(body, *words, counts=True)
 
     return said
 

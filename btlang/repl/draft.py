@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Mapping, Sequence
 from textwrap import indent
 
@@ -140,8 +141,14 @@ class MissionDraft:
     def compile(self, text: str, suggest: bool = True) -> Compiled:
         """Reads an entry together with the definitions above. Raises MissionError.
 
-        With `suggest` False no corrections of what is wrong are tried, which takes time.
+        With `suggest` False no corrections of what is wrong are tried, which takes time. `Do that again` is the latest
+        command once more.
         """
+        rounds = self._rounds_more(text)
+        latest = next((entry.text for entry in reversed(self.entries) if entry.has_command), "")
+        if rounds and latest:
+            head = f"{self.vocabulary.word('repeat')} {rounds} {self.vocabulary.word('count')}:"
+            text = latest if rounds == 1 else f"{head}\n{indent(latest, '  ')}"
         margin = text[: len(text) - len(text.lstrip())].rpartition("\n")[2]
         above = indent(self.context(text), margin)
         whole = f"{text}\n{above}"  # the entry first, so that places in it are those that were typed
@@ -157,6 +164,18 @@ class MissionDraft:
         shown = Tree(tree.root, used_subtrees(tree, [name for name, _ in entry.definitions]))
         own_warnings = [warning for warning in compilation.warnings if warning.span.start < len(text)]
         return Compiled(entry, self._mission(shown, mission, own_warnings))
+
+    def _rounds_more(self, text: str) -> int:
+        """How often an entry such as `Again` or `Repeat that twice` repeats the command before it, else 0."""
+        first = re.match(r"\s*(\w+)", text)
+        if first is None or first[1].lower() not in self.vocabulary.continuing:
+            return 0  # as nearly always, at each key
+        lexer = Lexer(Source(text), self.vocabulary, explain=False)
+        kinds = [token.kind for token in lexer.tokens if token.kind not in ("newline", "semi", "stop")]
+        if " ".join(kinds) not in ("again", "repeat_that", "repeat_that count", "do_that again", "do_that more"):
+            return 0
+        count = str(lexer.tokens[-1].value) if kinds[-1] in ("count", "more") else "1"
+        return int(count) if count.isdigit() else 0
 
     def values(self) -> Blackboard:
         """What entries before have set, without what was computed on the way or belongs to another mission."""

@@ -25,13 +25,14 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-_OWN = ("shipped", "replaces", "action", "condition", "quantity", "type", "phrases")
+_OWN = ("shipped", "replaces", "action", "condition", "quantity", "noun", "type", "phrases")
 _TOP = {"language", *_OWN, *WORD_LISTS, *SWITCHES, *TABLES}
 _ENTRY = {"phrase", "id", "call", "ros", "slots", "outputs", "resources", "needs", "topic", "help", "example"}
 _FLAGS = ("instant", "uninterruptible", "thread")
 _MORE = {"action": set(_FLAGS), "condition": set[str](), "quantity": {"type"}}
 """The keys that an entry of one sort has beside those of all."""
 _TYPE = {"name", "units", "whole", "least", "open", "values"}
+_NOUN = {"type", "phrase", "slots"}
 
 
 class KeywordFile(Record):
@@ -49,6 +50,14 @@ class KeywordFile(Record):
     shipped: bool = True
 
 
+class _Noun(Record):
+    """Words for a value of a type that is described: `person wearing [a] {color} {clothing}`."""
+
+    type: str
+    phrase: str
+    slots: dict[str, Any]
+
+
 class _Reader:
     """Reads one file and collects everything that is wrong with it."""
 
@@ -57,6 +66,7 @@ class _Reader:
         self.problems: list[Diagnostic] = []
         self.start = 0
         """Of the table that is being read."""
+        self.nouns: list[_Noun] = []
 
     def wrong(self, reason: str, near: str = "", code: str = "BT060") -> None:
         self.problems.append(diagnostic(code, self.span(near), reason=reason))
@@ -109,7 +119,10 @@ class _Reader:
         if instant and thread:
             self.wrong(f"'{near}' can't be instant: work in a thread ends in a later tick", near)
         topic, help, example = (str(table.get(key, "")) for key in ("topic", "help", "example"))
-        slots = self.slots(phrases, table.get("slots", {}), near)
+        given = table.get("slots", {})
+        if self.nouns and isinstance(given, dict):
+            phrases, given = self.with_nouns(phrases, given)
+        slots = self.slots(phrases, given, near)
         made = Entry(
             sort, name, tuple(phrases), str(call), slots, tuple(resources), topic, help, example, span=self.span(near),
             instant=instant, uninterruptible=uninterruptible, thread=thread,
@@ -117,6 +130,31 @@ class _Reader:
             needs=tuple(needs), outputs=self.outputs(table.get("outputs", []), slots, near),
         )  # fmt: skip
         return self.quantity(made, table, near) if sort == "quantity" else made
+
+    def noun(self, table: dict[str, Any]) -> None:
+        phrase, kind, slots = table.get("phrase"), table.get("type"), table.get("slots", {})
+        fits = isinstance(phrase, str) and isinstance(kind, str) and isinstance(slots, dict)
+        if not fits or table.keys() - _NOUN:
+            self.wrong('[[noun]] needs type = "person" and phrase = "...", and takes slots', "[[noun]]")
+            return
+        names = _slot_names(str(phrase))
+        if not names or slots.keys() - set(names):
+            self.wrong(f"the noun '{phrase}' needs slots such as {{color}}, and those of its table in it", str(phrase))
+            return
+        self.nouns.append(_Noun(str(kind), str(phrase), slots))
+
+    def with_nouns(self, phrases: list[str], slots: dict[str, Any]) -> tuple[list[str], dict[str, Any]]:
+        """The phrases, and those that have a noun in the place of a slot of its type; their slots become ports too."""
+        more, known = list(phrases), dict(slots)
+        for noun in self.nouns:
+            parts = _slot_names(noun.phrase)
+            for phrase in phrases:
+                names = _slot_names(phrase)
+                typed = [name for name in names if self.slot(name, slots.get(name, {}), phrase).type == noun.type]
+                for name in typed if set(parts).isdisjoint(names) else ():
+                    more.append(phrase.replace(f"{{{name}}}", noun.phrase, 1))
+                    known = {**noun.slots, **known}
+        return more, known
 
     def phrases(self, table: object) -> list[Entry]:
         """The entries that give known ids further phrases: `GoTo = ["ve a {place}"]`."""
@@ -254,6 +292,10 @@ def _kind(name: str, has_units: bool, has_names: bool) -> str:
     return {"text": "text", "time_of_day": "time"}.get(name, "number")
 
 
+def _slot_names(phrase: str) -> list[str]:
+    return list(dict.fromkeys(re.findall(r"\{(\w+)\}", phrase)))
+
+
 def _strings(value: object) -> bool:
     return isinstance(value, list) and all(isinstance(item, str) for item in value)
 
@@ -274,6 +316,8 @@ def read_keyword_file(source: Source) -> KeywordFile:
         reader.wrong(f"'{key}' is not a key of keyword files; the keys are {', '.join(sorted(_TOP))}", key)
     entries, types, names = [], [], []
     places = positions(source.text)
+    for table in _tables(document, "noun", reader):
+        reader.noun(table)
     for sort in ("action", "condition", "quantity"):
         for index, table in enumerate(_tables(document, sort, reader)):
             reader.start = places.get((sort, index), 0)

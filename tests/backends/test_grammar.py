@@ -24,7 +24,12 @@ from tests.profiles import amount
 
 ROOT = Path(__file__).parents[2]
 WORDS = world_vocabulary()
-UNKNOWABLE = {"BT068": "a condition behind `when` is checked once", "BT069": "`and` on the way mostly means `then`"}
+UNKNOWABLE = {
+    "BT068": "a condition behind `when` is checked once",
+    "BT069": "`and` on the way mostly means `then`",
+    "BT171": "what follows `as soon as` waits, too",
+    "BT172": "of several statements `start over` repeats all",
+}
 """What no grammar knows; few sentences may have it."""
 
 

@@ -76,6 +76,22 @@ TWINS = {
         "set nivel to thirty; increase nivel by 2\nremember the battery as energía\n"
         'say "{energía} por ciento" 3 times\ncheck that the energía is over 10%',
     ),
+    "sentences as people write them": (
+        "La primera vez que la batería caiga por debajo del 20 %, di cansado\n"
+        "Primero ve a la cocina, y mientras tanto di hola. Si eso falla, falla.\n"
+        "En cuanto haya alguien cerca, saluda. Hazlo 2 veces más.\n"
+        "Ve al laboratorio, pero detente cuando hayas chocado\n"
+        "asiente 3 veces con 2 s de pausa\n"
+        "A las 6 pm, saluda y luego espera hasta las 18:30\n"
+        "haz lo siguiente:\n  asiente. Otra vez.",
+        "The first time the battery falls below 20%, say cansado\n"
+        "First go to the kitchen, and meanwhile say hola. If that fails, fail.\n"
+        "As soon as someone is near, wave. Do it 2 more times.\n"
+        "Go to the lab, but stop when bumped\n"
+        "nod 3 times with 2 s in between\n"
+        "At 6 pm, wave then wait until 18:30\n"
+        "do the following:\n  nod. Again.",
+    ),
     "everything": (
         "# Ronda de la casa\n"
         "saludo de {alguien} significa saluda a {alguien} y di \"Buenos días\"\n"

@@ -152,3 +152,32 @@ def test_values_of_another_mission_are_forgotten() -> None:
     draft.change(())
     second = draft.compile('set counter to "three"')
     assert ran(draft, second).status == SUCCESS
+
+
+@pytest.mark.parametrize(
+    ("text", "said"),
+    [
+        ("Do that again.", "wave then nod"),
+        ("again", "wave then nod"),
+        ("do it 3 more times", "repeat 3 times:\n  wave then nod"),
+        ("Repeat that twice", "repeat 2 times:\n  wave then nod"),
+    ],
+)
+def test_the_latest_command_once_more(text: str, said: str) -> None:
+    draft = entered("nod", "wave then nod", "hello is nod")
+    again = draft.compile(text)
+    assert again.entry.text == said
+    assert again.mission.tree.root == draft.compile(said).mission.tree.root
+    draft.add(again.entry)
+    assert draft.text == f"nod\nwave then nod\nhello is nod\n{said}\n"
+
+
+@pytest.mark.parametrize("text", ["do that 3 times", "do it until bumped", "if that fails, nod"])
+def test_what_goes_on_with_an_entry_that_has_run_is_refused(text: str) -> None:
+    with pytest.raises(MissionError, match="BT067"):
+        entered("wave").compile(text)
+
+
+def test_there_is_nothing_to_do_again_at_the_start() -> None:
+    with pytest.raises(MissionError, match="BT067"):
+        MissionDraft().compile("again")

@@ -70,10 +70,10 @@ def ticks(screen: str) -> int:
 
 
 def at_rest(seen: Terminal) -> str:
-    """The screen, once it has not changed for half a second."""
+    """The screen, once it has not changed for two seconds: a busy machine may draw nothing for one."""
     before, screen = "", seen.screen()
     while screen != before:
-        time.sleep(0.5)
+        time.sleep(2.0)
         before, screen = screen, seen.screen()
     return screen
 

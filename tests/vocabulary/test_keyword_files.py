@@ -56,6 +56,11 @@ ACTION = '[[action]]\nphrase = "hop"\nid = "Hop"\n'
         (ACTION + 'thread = "yes"', "thread of 'hop' must be true or false"),
         (ACTION + "thread = true\ninstant = true", "'hop' can't be instant"),
         ('[[condition]]\nphrase = "hopped"\nid = "Hopped"\nthread = true', "'thread' is not a key of [[condition]]"),
+        ('[[noun]]\ntype = "person"', '[[noun]] needs type = "person" and phrase'),
+        ('[[noun]]\ntype = "person"\nphrase = "thing"', "the noun 'thing' needs slots such as {color}"),
+        ('[[noun]]\ntype = "person"\nphrase = "{place} man"\nslots = { size = "text" }', "the noun '{place} man'"),
+        ('[[noun]]\ntype = "person"\nphrase = "{place} man"\nfoo = 1', '[[noun]] needs type = "person" and phrase'),
+        ("noun = 5", "noun must be written [[noun]]"),
         ("action = 5", "action must be written [[action]]"),
     ],
 )

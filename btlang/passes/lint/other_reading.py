@@ -6,6 +6,7 @@ the text once more: parts keep what their names and pronouns mean, and a long mi
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property, partial
 from itertools import pairwise
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
     from typing import Any
 
 MIXED, POSTFIX, LIST, OTHERWISE, NEGATED = "mixed", "postfix", "list", "otherwise", "negated"
+AFTER, PACED = "after", "paced"
+_WORD = re.compile(r"\w+")
 
 
 class Readings(Record):
@@ -33,7 +36,7 @@ class Readings(Record):
 
 
 class Attachment(Record):
-    """A place of one of the five kinds. Its readings are made when they are asked for: most are never told."""
+    """A place of one of the kinds above. Its readings are made when they are asked for: most are never told."""
 
     kind: str
     start: int
@@ -50,6 +53,8 @@ def in_chain(chain: ast.Chain, items: Sequence[ast.Ast], is_part: bool, vocabula
     if chain.operator == "any" and _negates_first(items):
         yield Attachment(NEGATED, items[0].span.start, partial(_negated, chain))
     gaps: Gaps | None = None
+    if items is not chain.items:
+        yield from _behind_after(chain, items, is_part, vocabulary)
     for at, (left, right) in enumerate(pairwise(items)):
         if not left.parts and not right.parts:
             continue  # two plain commands, as nearly always
@@ -71,6 +76,36 @@ def in_chain(chain: ast.Chain, items: Sequence[ast.Ast], is_part: bool, vocabula
             yield Attachment(LIST, start, partial(place.list_left, left))
         elif lists and _is_sequence(right) and "(" not in gap:
             yield Attachment(LIST, start, partial(place.list_right, right))
+
+
+def _behind_after(
+    chain: ast.Chain, items: Sequence[ast.Ast], is_part: bool, vocabulary: Lexicon
+) -> Iterator[Attachment]:
+    """`A then B after C`, where C might come before both."""
+    spoken = {id(item): at for at, item in enumerate(chain.items)}
+    gaps = Gaps(items, vocabulary)
+    for at, (before, left, right) in enumerate(zip(items, items[1:], items[2:], strict=False)):
+        is_after = spoken[id(before)] < spoken[id(right)] < spoken[id(left)]
+        if is_after and gaps.is_open(at) and gaps.is_open(at + 1) and "\n" not in right.span.text:
+            place = _Place(chain, gaps, at, is_part)
+            yield Attachment(AFTER, before.span.start, partial(place.after, right))
+
+
+def in_pace(node: ast.Every, vocabulary: Lexicon) -> Iterator[Attachment]:
+    """`A 3 times every 10 s`: the number could be that of each round."""
+    start, body = node.span.start, node.body.span
+    behind = node.span.source.text[body.end : node.span.end]
+    words = {vocabulary.orthography.words(pattern)[0] for pattern in vocabulary.roles["every"]}
+    at = min((match.start() for match in _WORD.finditer(behind) if match[0].lower() in words), default=0)
+    if node.rounds and body.start == start and _WORD.search(behind[:at]):
+        yield Attachment(PACED, start, partial(_repeated, node, Span(body.source, body.end, node.span.end), at))
+
+
+def _repeated(node: ast.Every, behind: Span, at: int) -> Readings:
+    """`A 3 times every 10 s`: every 10 s, A 3 times."""
+    rounds, pace = behind.text[:at].strip(), behind.text[at:]
+    other = node.replace(body=ast.Repeat(node.rounds, node.body, node.span), rounds="")
+    return Readings(node, other, node.span, (behind, f" {pace} {rounds}"))
 
 
 def in_form(node: ast.If | ast.Try) -> Iterator[Attachment]:
@@ -165,6 +200,17 @@ class _Place:
         group = self._joined(self.first, self.at + 1, {self.at + 1: right.items[0]})
         other = right.replace(items=(group, *right.items[1:]))
         return self._readings(self.first, self.at + 1, other, self.at + 1)
+
+    def after(self, right: ast.Ast) -> Readings:
+        """`A then B after C`: (A then B) after C."""
+        last = self.at + 1
+        group, gone = self._joined(self.first, last, {}), {id(item) for item in self.items[self.first : last + 1]}
+        whole = self._joined(self.first, self.last, {})
+        behind = [[item, group] if item is right else [item] for item in ast.parts(whole) if id(item) not in gone]
+        items = tuple(item for pair in behind for item in pair)
+        span = Span(right.span.source, self.items[self.first].span.start, self.items[self.last].span.end)
+        other = ast.Chain("sequence", items, True, span)
+        return Readings(whole, other, balanced(span), (self.gaps.comma(self.at), ","))
 
     def _joined(self, first: int, last: int, changed: dict[int, ast.Ast]) -> ast.Ast:
         """These parts as a chain of their own, some of them changed."""

@@ -4,7 +4,9 @@
 - a form behind a chain: `A then B 3 times`;
 - an `otherwise` that two forms could have: `if C, if D, A otherwise B`;
 - `not` before one of two conditions: `not C or D`;
-- a list beside `and`: `go to the lobby and the lab and wave`.
+- a list beside `and`: `go to the lobby and the lab and wave`;
+- `after` behind two commands: `A then B after C`;
+- a number before a pace: `A 3 times every 10 s`.
 """
 
 from __future__ import annotations
@@ -16,7 +18,7 @@ from collections.abc import Iterator, Sequence
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.passes.compilation import Compilation
 from btlang.passes.lint.gaps import Gaps
-from btlang.passes.lint.other_reading import Attachment, Readings, in_chain, in_form, in_order, is_list
+from btlang.passes.lint.other_reading import Attachment, Readings, in_chain, in_form, in_order, in_pace, is_list
 from btlang.text.source import Source, Span
 from btlang.tree import ast
 
@@ -53,13 +55,15 @@ def _attachments(root: ast.Ast, compilation: Compilation) -> Iterator[Attachment
     while stack:
         node, is_part = stack.pop()
         if isinstance(node, ast.Chain):
-            if any(item.parts for item in node.items) and not is_list(node):
-                items = in_order(node.items)
+            items = in_order(node.items)
+            if (items is not node.items or any(item.parts for item in items)) and not is_list(node):
                 yield from in_chain(node, items, is_part, compilation.vocabulary)
                 stack += reversed(_parts(items, compilation))
             continue
         if isinstance(node, ast.If | ast.Try):
             yield from in_form(node)
+        elif isinstance(node, ast.Every):
+            yield from in_pace(node, compilation.vocabulary)
         stack += [(part, False) for part in reversed(ast.parts(node)) if part.parts]
 
 

@@ -9,6 +9,7 @@ from functools import lru_cache
 from itertools import takewhile
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.frontends.mission.explanations.fragments import explain_fragment, stopped
 from btlang.frontends.mission.explanations.spelling_rule import is_respelling
 from btlang.frontends.mission.explanations.times import explain_time
 from btlang.frontends.mission.symbols.definitions import Definitions
@@ -38,9 +39,9 @@ def explain_unknown(
     definitions: Definitions,
     before: list[Token],
 ) -> Diagnostic:
-    """The diagnostic (BT010 to BT014, BT019, BT038, BT160) for words `at` to `end`, which nothing known matches.
+    """The diagnostic for words `at` to `end`, which nothing known matches.
 
-    `context` is that of the lexer, with its pronouns.
+    It is one of BT010 to BT014, BT019, BT038, BT152, BT154 and BT160. `context` is that of the lexer, with pronouns.
     """
     unnamed = next(
         (i for i in range(at, end) if text.words[i] == "{" and context.named(text, i) == (None, i + 1)), None
@@ -67,7 +68,9 @@ def explain_unknown(
             return _number_misfit(text, at, number, [vocabulary.types[kind]], "", "", kind, vocabulary)
     if number is not None or text.words[at][0] == '"':
         return diagnostic("BT019", text.span(at, end), example='say "hello"')
-    return _unknown_phrase(text, at, end, vocabulary, definitions, before)
+    part = stopped(text, at, vocabulary, roots, context)
+    part = part or explain_fragment(text, at, end, _asks(before), vocabulary, context)
+    return part or _unknown_phrase(text, at, end, vocabulary, definitions, before)
 
 
 def misread_head(text: Words, at: int, role: str, vocabulary: Lexicon) -> Diagnostic:
@@ -187,7 +190,8 @@ def _misfit(
         fix = (span, near[0]) if near else None
         return diagnostic("BT013", span, fix=fix, type=kinds, words=span.text, help=_near_names(near, known))
     if text.words[at][0] != '"':  # `turn leftt` lacks no angle
-        return _unknown_phrase(text, first, max(end, at + 1), vocabulary, definitions, [])
+        part = explain_fragment(text, first, end, False, vocabulary, context)
+        return part or _unknown_phrase(text, first, max(end, at + 1), vocabulary, definitions, [])
     return diagnostic("BT011", span, words=span.text, wanted=f"{wanted} is needed", example=example)
 
 

@@ -6,6 +6,7 @@ from btlang.frontends.mission.grouping.bodies import block_follows, separator, s
 from btlang.frontends.mission.grouping.conditions import AMOUNTS, CONDITION_FORMS, is_refused
 from btlang.frontends.mission.grouping.lists import lacks_neither, needs_check, stray
 from btlang.frontends.mission.grouping.problems import found_words, no_operand, word_before
+from btlang.frontends.mission.grouping.readings import started_over
 from btlang.frontends.mission.grouping.scan import ENDS, Scan
 from btlang.frontends.mission.grouping.stack import StackEntry
 from btlang.frontends.mission.token import Header, Token
@@ -212,6 +213,8 @@ def whole_block(scan: Scan, token: Token) -> None:
     if entry.commands is None or entry.mixed:
         scan.fail("BT059", scan.span(token), words=scan.words(token))
         return
+    if token.kind == "start_over":
+        started_over(scan, token, entry)
     scan.enclose(entry.commands)
     entry.statement = "open"
     scan.next(token, False)

@@ -6,7 +6,8 @@ from collections.abc import Callable
 
 from btlang.frontends.mission.grouping.bodies import begin_otherwise, end_block, paced, separator, set_amount, set_pace
 from btlang.frontends.mission.grouping.conditions import AMOUNTS, CONDITION_FORMS, STARTS_OPERAND, closes_statement
-from btlang.frontends.mission.grouping.problems import both_readings, is_alone, otherwise_of_another, side_by_side
+from btlang.frontends.mission.grouping.problems import both_readings, is_alone, side_by_side
+from btlang.frontends.mission.grouping.readings import otherwise_of_another, repeated, twice_more, waits_first
 from btlang.frontends.mission.grouping.scan import ENDS, Scan, Unit
 from btlang.frontends.mission.grouping.stack import StackEntry
 from btlang.frontends.mission.token import Token
@@ -16,8 +17,20 @@ _JOINTS = {"meanwhile": "AND", "in_parallel": "AND", "while_doing": "AND", "befo
 
 
 def connective(scan: Scan, token: Token) -> None:
+    if token.kind == "and" and [each.kind for each in scan.raw[scan.at + 1 : scan.at + 3]] == ["comma", "then"]:
+        scan.at += 2  # `A and, once there, B`
+        token = scan.raw[scan.at]
     _join(scan, token, _joint(token))
-    if token.kind == "then" and scan.raw[scan.at].kind == "comma":
+    if token.kind not in ("then", "or", "meanwhile"):
+        return
+    _skip_comma(scan)
+    if token.kind == "or" and scan.raw[scan.at].kind == "or":  # `A or, if that fails, B`
+        scan.next(scan.raw[scan.at], True)
+        _skip_comma(scan)
+
+
+def _skip_comma(scan: Scan) -> None:
+    if scan.raw[scan.at].kind == "comma":
         scan.at += 1
 
 
@@ -40,8 +53,7 @@ def _widening(scan: Scan, token: Token) -> None:
     joint = _joint(token)
     widens = joint in ("AND", "OR") and not token.role
     _join(scan, token, f"WIDE_{joint}" if widens else joint)
-    if scan.raw[scan.at].kind == "comma":
-        scan.at += 1
+    _skip_comma(scan)
 
 
 def comma(scan: Scan, token: Token) -> None:
@@ -107,6 +119,11 @@ def in_any_case(scan: Scan, token: Token) -> None:
 
 def about_statement(scan: Scan, token: Token) -> None:
     """`A. Do that 3 times`, `A. Again`, `A. Repeat that twice`: what follows is about the statement before."""
+    following = scan.raw[scan.at + 1]
+    if token.kind == "repeat_that" and following.kind == "count" and str(following.value) not in ("1", "-1"):
+        twice_more(scan, token, following)
+    elif token.kind != "repeat_that":
+        repeated(scan, token)
     scan.take_statement()
     scan.next(token, False)
     amount = scan.raw[scan.at]
@@ -250,6 +267,7 @@ def end_statement(scan: Scan, token: Token) -> None:
         return
     if entry.statement == "open":
         entry.statement = "ended"
+        waits_first(scan, entry)
         entry.latest = entry.begins
     if entry.kind == "top" and scan.header is not None:
         close_definition(scan)

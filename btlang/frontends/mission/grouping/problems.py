@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from btlang.diagnostics.diagnostic import diagnostic
 from btlang.frontends.mission.grouping.scan import ENDS, STARTS_STATEMENT, Scan
 from btlang.frontends.mission.token import Token
 from btlang.text.source import Span
@@ -32,6 +31,8 @@ def no_operand(scan: Scan, token: Token) -> None:
         scan.fail("BT026", scan.span(token))
     elif starts and token.kind == "comma":
         scan.fail("BT032", scan.span(token), (with_blanks(scan, token), ""), place="at the start", advice="Remove it.")
+    elif token.kind in ("do_that", "repeat_that", "again"):
+        scan.fail("BT067", scan.span(token), words=scan.words(token))
     elif starts or token.kind not in ENDS | {*CONNECTIVES, "otherwise", "comma"}:
         scan.fail("BT022", scan.span(token), word=scan.words(token), example="wave")
     elif before is not None and before.kind == "comma" and token.kind in ENDS:
@@ -71,34 +72,6 @@ def waits_for_how_long(scan: Scan, opener: Token, amount: Token) -> None:
     scan.fail("BT058", span, words=span.text, until=until, amount=scan.words(amount), at_most=at_most)
 
 
-def otherwise_of_another(scan: Scan, otherwise: Token) -> None:
-    """BT050 for `if C, A. B. Otherwise D`, which joins B though the `if` could have it too."""
-    entry, out = scan.stack[-1], scan.out
-    if not entry.is_group or entry.latest is None or entry.latest >= len(out):
-        return
-    form = out[entry.latest]
-    before = out[entry.latest : entry.begins]
-    if form.kind != "FORM" or form.role not in ("if", "unless") or any(token.kind == "ELSE" for token in before):
-        return
-    do = next((at for at, token in enumerate(before, entry.latest) if token.kind == "DO"), None)
-    if do is None or entry.begins >= len(out):
-        return  # of a broken statement not all was made
-    body = out[do + 1].start
-    last = next(at for at in range(scan.at, len(scan.raw)) if scan.raw[at].kind in ENDS) - 1
-    end = scan.raw[last].end
-    first, middle = out[entry.begins].start, before[-1].start
-    text = scan.source.text
-    span = Span(scan.source, form.start, end)
-    if "\n" in span.text:
-        return
-    kept, rest = text[first : scan.last_end], text[otherwise.end : end].strip(" ,")
-    head, done = text[form.start : body], text[body:middle].strip(" .;")
-    then, word = scan.word("then"), scan.word("otherwise")
-    taken, other = f"({kept}) {word} {rest}", f"{head}({done} {then} {kept}) {word} {rest}"
-    problem = diagnostic("BT050", span, taken=taken, other=other, fixed=f"{kept} {word} {rest}")
-    scan.problems.append(problem.replace(readings=((span, f"{text[form.start : first]}{taken}"), (span, other))))
-
-
 def prohibition(scan: Scan, token: Token) -> None:
     """`don't A if C`, `if C, don't A`: offers what does A only where C is not so."""
     rest = scan.raw[scan.at + 1 :]
@@ -117,6 +90,15 @@ def prohibition(scan: Scan, token: Token) -> None:
         others = f"Or: {what} {scan.word('stop_when')} {condition}. Or: {failing}"
     span = scan.span(token, rest[end - 1] if end else token)
     scan.fail("BT155", span, words=scan.words(token), example=example, help=others)
+
+
+def without(scan: Scan, token: Token) -> None:
+    """`A without D-ing`: offers to end A early."""
+    entry = scan.stack[-1]
+    start = scan.out[entry.operand].start if entry.operand < len(scan.out) else token.start
+    end = next(at for at in range(scan.at, len(scan.raw)) if scan.raw[at].kind in ENDS)
+    example = f"{scan.source.text[start : scan.last_end]} {scan.word('stop_when')} ..."
+    scan.fail("BT155", scan.span(token, scan.raw[end - 1]), words=scan.words(token), example=example)
 
 
 def _between(scan: Scan, tokens: list[Token]) -> str:

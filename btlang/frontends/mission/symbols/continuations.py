@@ -9,7 +9,7 @@ from btlang.text.words import statements
 from btlang.vocabulary.language_tables import GOES_ON
 from btlang.vocabulary.trie import TrieNode, longest
 
-_OPENS_BLOCK = frozenset(("do_that", "in_parallel"))  # before a colon: a statement of its own
+_OPENS_BLOCK = frozenset(("do_that", "repeat_that", "in_parallel"))  # before a colon: a statement of its own
 
 
 def find_continuations(phrases: Phrases) -> set[int]:

@@ -28,7 +28,7 @@ if TYPE_CHECKING:
         def token_of(self, match: Match, at: int) -> Token: ...
 
 
-BEFORE_DOING = frozenset(("before", "after", "while"))
+BEFORE_DOING = frozenset(("before", "after", "while", "never"))
 """The kinds of tokens behind which a command may have the form of its verb: `after waving`."""
 JOINTS = frozenset(("then", "and", "or", "comma", "otherwise"))
 """Behind these a command may leave out words of the one before it."""

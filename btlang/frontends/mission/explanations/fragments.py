@@ -1,0 +1,127 @@
+"""What is said of words that are a part of a phrase: `turn 90 degrees` (BT012), `the kitchen`, `to the kitchen`."""
+
+from __future__ import annotations
+
+from collections import Counter
+from collections.abc import Iterator, Sequence
+from functools import lru_cache
+
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.frontends.mission.tokens.partial_commands import doing
+from btlang.record import Record
+from btlang.text.source import Span
+from btlang.text.words import Words
+from btlang.vocabulary.entry import Entry
+from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.pattern import Form, forms
+from btlang.vocabulary.reading_context import ReadingContext
+from btlang.vocabulary.trie import TrieNode
+
+_MOST_MISSING, _LONGEST, _MOST_OFFERED = 3, 8, 3
+
+
+class _Gap(Record):
+    """A phrase whose words `missing` were left out: what is before them, and what is behind."""
+
+    before: Form
+    missing: tuple[str, ...]
+    behind: Form
+    entry: Entry
+
+
+def explain_fragment(
+    text: Words, at: int, end: int, is_condition: bool, vocabulary: Lexicon, context: ReadingContext
+) -> Diagnostic | None:
+    """A diagnostic for words `at` to `end` that a phrase has beside others, None where there is no such phrase."""
+    sort = "condition" if is_condition else "action"
+    found = [each for each in _found(text, at, end, vocabulary, context) if each[0].entry.sort == sort]
+    if not found:
+        return None
+    span, whole = text.span(at, end), _with_article(text, at, end)
+    inside = [each for each in found if each[0].before]
+    if inside:
+        place = max(place for _, place in inside)
+        fewest = min(len(gap.missing) for gap, other in inside if other == place)
+        same = [gap for gap, other in inside if other == place and len(gap.missing) == fewest]
+        by_id = {gap.entry.id: " ".join(gap.missing) for gap in reversed(same)}  # the first of each
+        wanted = list(dict.fromkeys(reversed(by_id.values())))[:_MOST_OFFERED]
+        head, rest = text.span(at, place).text, text.source.text[text.ends[place - 1] : span.end].strip()
+        shown = ", ".join(f"'{words}'" for words in wanted[:-1])
+        listed = f"{shown} or '{wanted[-1]}'" if shown else f"'{wanted[-1]}'"
+        examples = (f"{head} {words} {rest}".strip() for words in wanted)
+        return diagnostic("BT012", text.span(at, place), words=head, wanted=listed, example=", or: ".join(examples))
+    ways = Counter(gap.entry.id for gap, _ in found)  # what can be said in most ways is what people say most
+    first = {gap.entry.id: " ".join(gap.missing) for gap, _ in reversed(found)}
+    offered = sorted(first, key=lambda node_id: -ways[node_id])[:_MOST_OFFERED]
+    example = ", or: ".join(f"{first[node_id]} {whole.text}" for node_id in offered)
+    is_value = all(not isinstance(part, str) for part in found[0][0].behind)
+    return diagnostic("BT019" if is_value else "BT154", span, words=span.text, example=example)
+
+
+def stopped(
+    text: Words, at: int, vocabulary: Lexicon, tries: Sequence[TrieNode], context: ReadingContext
+) -> Diagnostic | None:
+    """BT152 for `waving` behind a command such as `stop`, None for other words."""
+    if not at or text.words[at - 1] not in vocabulary.halting:
+        return None
+    match = doing(text, at, vocabulary.doing, tries, context)
+    if match is None:
+        return None
+    span = text.span(at - 1, match.last)
+    reason = "when it is reached, the command before it has ended"
+    advice = f"To end a command early, say so behind it: ... {vocabulary.word('stop_when')} ..."
+    return diagnostic("BT152", span, words=span.text, reason=reason, advice=advice)
+
+
+def _with_article(text: Words, at: int, end: int) -> Span:
+    start = text.articles[at][0] if at in text.articles else text.starts[at]
+    return Span(text.source, start, text.ends[end - 1])
+
+
+def _found(text: Words, at: int, end: int, vocabulary: Lexicon, context: ReadingContext) -> Iterator[tuple[_Gap, int]]:
+    """The phrases that have the words, each with the word before which others were left out."""
+    gaps = _gaps(vocabulary)
+    kinds = (name for name, kind in vocabulary.types.items() if kind.kind != "text")  # any word is a text
+    values = (f"{{{kind}}}" for kind in kinds if context.read(kind, text, at) is not None)
+    for start in (text.words[at], *values):
+        for gap in gaps.get(start, ()):
+            place = _read(gap.before, gap.entry, text, at, context)
+            if place is not None and _read(gap.behind, gap.entry, text, place, context) == end:
+                yield gap, place
+
+
+def _read(parts: Form, entry: Entry, text: Words, at: int, context: ReadingContext) -> int | None:
+    """The word behind these parts of a phrase, None where they aren't there."""
+    for part in parts:
+        if isinstance(part, str):
+            if text.words[at] != part:
+                return None
+            at += 1
+        else:
+            value = context.read(entry.slot(part.name).type, text, at)
+            if value is None:
+                return None
+            at = value[1]
+    return at
+
+
+@lru_cache(maxsize=4)  # a text full of unknown words asks for them at each
+def _gaps(vocabulary: Lexicon) -> dict[str, list[_Gap]]:
+    """All phrases without some of their words, by their first word, or by the type of the slot they begin with."""
+    found: dict[str, list[_Gap]] = {}
+    known = [entry for entries in vocabulary.entries.values() for entry in entries]
+    for entry, form in ((each, form) for each in known for form in _forms(each, vocabulary)):
+        for first in range(len(form)):
+            for last in range(first + 1, min(first + _MOST_MISSING, len(form)) + 1):
+                missing = [part for part in form[first:last] if isinstance(part, str)]
+                rest = form[:first] + form[last:]
+                if len(missing) < last - first or not rest:
+                    break
+                start = rest[0] if isinstance(rest[0], str) else f"{{{entry.slot(rest[0].name).type}}}"
+                found.setdefault(start, []).append(_Gap(form[:first], tuple(missing), form[last:], entry))
+    return found
+
+
+def _forms(entry: Entry, vocabulary: Lexicon) -> Iterator[Form]:
+    for phrase in entry.phrases:
+        yield from (form for form in forms(phrase, vocabulary.articles) if len(form) <= _LONGEST)
