@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator
 from functools import lru_cache
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.frontends.mission.tokens.partial_commands import doing
 from btlang.record import Record
 from btlang.text.source import Span
 from btlang.text.words import Words
@@ -15,7 +14,6 @@ from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.pattern import Form, forms
 from btlang.vocabulary.reading_context import ReadingContext
-from btlang.vocabulary.trie import TrieNode
 
 _MOST_MISSING, _LONGEST, _MOST_OFFERED = 3, 8, 3
 
@@ -58,16 +56,8 @@ def explain_fragment(
     return diagnostic("BT019" if is_value else "BT154", span, words=span.text, example=example)
 
 
-def stopped(
-    text: Words, at: int, vocabulary: Lexicon, tries: Sequence[TrieNode], context: ReadingContext
-) -> Diagnostic | None:
-    """BT152 for `waving` behind a command such as `stop`, None for other words."""
-    if not at or text.words[at - 1] not in vocabulary.halting:
-        return None
-    match = doing(text, at, vocabulary.doing, tries, context)
-    if match is None:
-        return None
-    span = text.span(at - 1, match.last)
+def stopped(span: Span, vocabulary: Lexicon) -> Diagnostic:
+    """BT152 for `stop waving`."""
     reason = "when it is reached, the command before it has ended"
     advice = f"To end a command early, say so behind it: ... {vocabulary.word('stop_when')} ..."
     return diagnostic("BT152", span, words=span.text, reason=reason, advice=advice)

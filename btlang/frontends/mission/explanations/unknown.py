@@ -9,7 +9,7 @@ from functools import lru_cache
 from itertools import takewhile
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.frontends.mission.explanations.fragments import explain_fragment, stopped
+from btlang.frontends.mission.explanations.fragments import explain_fragment
 from btlang.frontends.mission.explanations.spelling_rule import is_respelling
 from btlang.frontends.mission.explanations.times import explain_time
 from btlang.frontends.mission.symbols.definitions import Definitions
@@ -68,8 +68,7 @@ def explain_unknown(
             return _number_misfit(text, at, number, [vocabulary.types[kind]], "", "", kind, vocabulary)
     if number is not None or text.words[at][0] == '"':
         return diagnostic("BT019", text.span(at, end), example='say "hello"')
-    part = stopped(text, at, vocabulary, roots, context)
-    part = part or explain_fragment(text, at, end, _asks(before), vocabulary, context)
+    part = explain_fragment(text, at, end, _asks(before), vocabulary, context)
     return part or _unknown_phrase(text, at, end, vocabulary, definitions, before)
 
 

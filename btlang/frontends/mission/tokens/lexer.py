@@ -244,10 +244,13 @@ class Lexer:
 
     def _why(self, at: int, end: int, match: Match | None) -> Diagnostic:
         """What is wrong with words that are no phrase, or one that stands where it cannot."""
-        from btlang.frontends.mission.explanations import unknown  # most missions have nothing to explain
+        from btlang.frontends.mission.explanations import fragments, unknown  # most missions have nothing to explain
 
         if match is None:
             text = self.text
+            doing = self._partial.doing(at) if text.words[at - 1] in self.vocabulary.halting else None
+            if doing is not None:
+                return fragments.stopped(text.span(at - 1, doing.last), self.vocabulary)
             if text.words[at] in self._verb_forms and may_be_doing(self.tokens):
                 text = with_verb(text, at, self.vocabulary.doing, self.vocabulary.trie)
             return unknown.explain_unknown(
