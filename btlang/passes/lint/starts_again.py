@@ -37,7 +37,8 @@ def _told(node: ast.While, vocabulary: Lexicon) -> Iterator[Diagnostic]:
         return
     behind = text[command.end : node.span.end].strip(" \t,")
     condition = behind.split(maxsplit=len(words))[-1]
-    again = f"{vocabulary.word('repeat')} {command.text} {behind}"
+    said = command.text[0].lower() + command.text[1:]
+    again = f"{vocabulary.word('repeat')} {said} {behind}"
     once = f"{command.text} {vocabulary.word('stop_when' if node.negated else 'provided')} {condition}"
     problem = diagnostic("BT170", node.span, words=command.text, again=again, once=once)
     yield problem.replace(readings=((node.span, again), (node.span, once)))
