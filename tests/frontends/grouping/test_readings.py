@@ -6,6 +6,7 @@ import pytest
 
 from btlang.api import Mission, parse_tree
 from btlang.diagnostics.diagnostic import Diagnostic
+from btlang.diagnostics.errors import MissionError
 
 ASKED = [
     ("as soon as someone is near, wave\ngo to the lab", "BT171"),
@@ -34,6 +35,12 @@ PLAIN = [
     "wave\nnod\nrepeat everything 3 times",
     "repeat 3 times:\n  wave\n  nod\nDo that again",
 ]
+
+
+@pytest.mark.parametrize("text", ["moment\nsomeone\nit", "once someone is near\nwave", "start over\nwave\nagain"])
+def test_broken_statements_have_no_reading(text: str) -> None:
+    with pytest.raises(MissionError):
+        parse_tree(text)
 
 
 def told(mission: Mission) -> list[Diagnostic]:

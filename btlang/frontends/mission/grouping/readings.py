@@ -44,12 +44,15 @@ def waits_first(scan: Scan, entry: StackEntry) -> None:
 
     Where it begins with `then`, that is what people mean.
     """
-    if entry.latest is None or entry.latest != entry.commands or scan.out[entry.latest].role != "as_soon_as":
+    begin, out = entry.latest, scan.out
+    if begin is None or begin != entry.commands or max(begin, entry.begins) >= len(out):  # of broken ones nothing is
         return
-    made, second = scan.out[entry.latest : entry.begins - 1], scan.out[entry.begins].start
+    if out[begin].role != "as_soon_as":
+        return
+    made, second = out[begin : entry.begins - 1], out[entry.begins].start
     do = next((token.start for token in made if token.kind == "DO"), 0)
     before = scan.raw[next(at for at, token in enumerate(scan.raw) if token.start >= second) - 1]
-    if made[0].kind != "FORM" or not do or before.kind in ("then", "comma"):
+    if not made or made[0].kind != "FORM" or not do or before.kind in ("then", "comma"):
         return
     text, word, end = scan.source.text, scan.span(made[0]), made[-1].end
     span, then = Span(scan.source, word.start, end), scan.word("then")
