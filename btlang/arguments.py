@@ -51,6 +51,15 @@ def node_name(text: str) -> str:
     return text
 
 
+def size(text: str) -> int:
+    """Bytes: a number with kB, MB or GB."""
+    units = {"kb": 1_000, "mb": 1_000_000, "gb": 1_000_000_000}
+    number, unit = text[:-2], text[-2:].lower()
+    if unit not in units or not number.strip().isdecimal() or int(number) == 0:
+        raise argparse.ArgumentTypeError(f"expected a size such as 100MB, not '{text}'")
+    return int(number) * units[unit]
+
+
 def between(least: float, most: float) -> Callable[[str], float]:
     """A number from `least` to `most`."""
 

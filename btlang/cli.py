@@ -70,6 +70,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _run(options: argparse.Namespace) -> int:
     from btlang.pictures.command import pictures_of
+    from btlang.recording.command import recorded
     from btlang.robots.world_problem import read_world
     from btlang.ros.command import chosen_robot, print_preflight
     from btlang.run.command import run_mission
@@ -80,7 +81,11 @@ def _run(options: argparse.Namespace) -> int:
     if options.preflight:
         ready = print_preflight(mission.tree, mission.vocabulary, read_world(mission.world, robot.body), robot)
         return SUCCESS if ready else FAILED
-    with pictures_of(mission, options.picture, options.tree_picture, options.quiet) as sinks:
+    text = None if mission.syntax is None else mission.syntax.span.source.text
+    with (
+        pictures_of(mission, options.picture, options.tree_picture, options.quiet) as sinks,
+        recorded(mission, options, text) as recorders,
+    ):
         return run_mission(
             mission,
             partial(Session, robot, world=mission.world),
@@ -91,7 +96,8 @@ def _run(options: argparse.Namespace) -> int:
             log=options.log,
             quiet=options.quiet,
             lines=options.lines,
-            sinks=sinks,
+            sinks=[*sinks, *recorders],
+            scans=options.record_scans if recorders else None,
         )
 
 
@@ -267,7 +273,7 @@ def _format_one(source: Source, options: argparse.Namespace) -> bool:
 
 
 def _serve(options: argparse.Namespace) -> int:
-    code: int = import_module(_SERVERS[options.verb]).serve(options)
+    code: int = import_module(_ELSEWHERE[options.verb]).serve(options)
     return code
 
 
@@ -318,13 +324,15 @@ def _version(options: argparse.Namespace) -> int:
     return SUCCESS
 
 
-_SERVERS = {
+_ELSEWHERE = {
+    "replay": "btlang.recording.command",
+    "why": "btlang.recording.command",
     "mcp": "btlang.mcp_server",
     "sim-ros": "btlang.ros.simulator.command",
     "ros-node": "btlang.ros.mission.command",
     "serve-actions": "btlang.ros.serving.command",
 }
-"""The verbs that serve other programs, each with the module whose `serve` it is."""
+"""The verbs that other modules do, each with the one whose `serve` does it."""
 
 _VERBS: dict[str, Callable[[argparse.Namespace], int]] = {
     "repl": _repl,
@@ -337,7 +345,7 @@ _VERBS: dict[str, Callable[[argparse.Namespace], int]] = {
     "examples": _examples,
     "explain": _explain,
     "format": _format,
-    **dict.fromkeys(_SERVERS, _serve),
+    **dict.fromkeys(_ELSEWHERE, _serve),
     "completion": _completion,
     "help": _help,
     "version": _version,

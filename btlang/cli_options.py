@@ -9,7 +9,7 @@ import sys
 from collections.abc import Callable, Sequence
 from itertools import takewhile
 
-from btlang.arguments import between, duration, picture, speed
+from btlang.arguments import between, duration, picture, size, speed
 from btlang.diagnostics.report import FORMATS
 from btlang.frontends.mission.reader import DEFAULT_PARSER, PARSERS
 from btlang.run.limits import RATES
@@ -120,6 +120,7 @@ def quoted(mission: str) -> str:
 
 
 _DEFAULTS: dict[str, Any] = {
+    "as_mission": False,
     "keywords": [], "world": None, "parser": DEFAULT_PARSER, "include_root": None, "speed": "real", "format": "text",
     "main": "", "robot": "simulated", "over": None, "language": ENGLISH,
 }  # fmt: skip
@@ -216,7 +217,36 @@ def _run_options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--lines", action="store_true", help="print plain lines, even on a terminal")
     parser.add_argument("--quiet", action="store_true", help="print only errors")
+    _recording_options(parser)
     add_robot_options(parser)
+
+
+def _recording_options(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--record", metavar="FILE", help="record the run as MCAP, for replay, why and Foxglove")
+    parser.add_argument(
+        "--record-scans", type=between(0, 100), default=2.0, metavar="HZ", help="scans per second in it (default: 2)"
+    )
+    parser.add_argument(
+        "--record-size", type=size, metavar="SIZE", help="begin another file at this size, such as 100MB"
+    )
+
+
+def _replay_options(parser: argparse.ArgumentParser) -> None:
+    _speed_option(parser)
+    parser.add_argument("--lines", action="store_true", help="print plain lines, even on a terminal")
+    parser.add_argument(
+        "--from", type=duration, dest="start", metavar="DURATION", help="begin at this time, such as 5min"
+    )
+    parser.add_argument("--failure", action="store_true", help="begin at the first failure")
+    parser.add_argument("--as-mission", action="store_true", help="run the mission again; report where it differs")
+    parser.add_argument(
+        "--keywords", action="append", default=[], metavar="FILE", help="a keyword file of the mission to run again"
+    )
+    _recording_file(parser)
+
+
+def _recording_file(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("file", metavar="FILE", help="recording that btc run --record wrote")
 
 
 def _tree_options(parser: argparse.ArgumentParser) -> None:
@@ -307,6 +337,8 @@ def _help_options(parser: argparse.ArgumentParser) -> None:
 _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "repl": ("type a mission line by line, as with `btc` alone", _repl_options),
     "run": ("run a mission on the simulated robot, or a ROS 2 robot", _run_options),
+    "replay": ("show a recorded run as it was", _replay_options),
+    "why": ("tell what happened in a recorded run, and why it failed", _recording_file),
     "check": ("report the mistakes in a mission", _check_options),
     "tree": ("print the behavior tree of a mission", _tree_options),
     "compile": ("write the tree of a mission as XML, English, JSON, a picture ...", _compile_options),

@@ -66,6 +66,9 @@ def take_away_what_is_missed(code: str, patch: pytest.MonkeyPatch) -> None:
         patch.setattr("btlang.vocabulary.listing.overview", _buggy)
     patch.setitem(sys.modules, "matplotlib", None)  # BT081
     patch.setitem(sys.modules, "mcp", None)  # BT082
+    if code == "BT083":
+        patch.setitem(sys.modules, "mcap", None)
+        patch.setitem(sys.modules, "mcap.writer", None)
     patch.setitem(sys.modules, "btlang_interfaces", None)  # BT110
     if code != "BT101":
         patch.setitem(sys.modules, "rclpy", ModuleType("rclpy") if code == "BT110" else None)  # BT100

@@ -14,6 +14,8 @@ import shlex
 import shutil
 import subprocess
 import sys
+import tempfile
+from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
@@ -118,7 +120,18 @@ def folder(tmp_path: Path) -> Path:
     for block in BLOCKS:
         if block.file:
             (tmp_path / block.file).write_text(block.text, encoding="utf-8")
+    (tmp_path / "tea.mcap").write_bytes(recording())
     return tmp_path
+
+
+@cache
+def recording() -> bytes:
+    """Of the run that docs/recording.md records."""
+    with tempfile.TemporaryDirectory() as made:
+        path = Path(made, "tea.mcap")
+        words = ["run", str(ROOT / "examples" / "tea_service.txt"), "--speed", "max", "--quiet", "--record", str(path)]
+        assert main(words) == 0
+        return path.read_bytes()
 
 
 @pytest.mark.parametrize("line", commands())
@@ -154,7 +167,7 @@ def is_reading(line: str) -> bool:
 
 def without_times(text: str) -> str:
     """A run's lines without their times, which a better model of the robot may change."""
-    return re.sub(r" *\b\d+\.\d+\b", " T", text)
+    return re.sub(r" *\b\d+\.\d+\b|\d{4}-\d\d-\d\d \d\d:\d\d:\d\d", " T", text)
 
 
 @pytest.mark.parametrize("block", blocks("python"))

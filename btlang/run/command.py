@@ -11,6 +11,7 @@ from contextlib import AbstractContextManager, contextmanager, nullcontext, supp
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import unwritable
 from btlang.diagnostics.render import render
+from btlang.engine.blackboard import Blackboard
 from btlang.engine.status import FAILURE, SKIPPED
 from btlang.run.controls import Controls
 from btlang.run.emergency import emergency_signal
@@ -18,6 +19,7 @@ from btlang.run.json_log import JsonLog
 from btlang.run.lines import Lines, brief
 from btlang.run.overruns import are_many
 from btlang.run.runner import Outcome
+from btlang.run.sampler import Sampler
 from btlang.run.standstill import Standstill
 from btlang.text.output import can_draw, has_colour, show
 from btlang.tree.node import Node, Tree
@@ -26,7 +28,6 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Protocol, TextIO
 
-    from btlang.engine.blackboard import Blackboard
     from btlang.run.bus import Bus
     from btlang.run.events import Sink
     from btlang.run.live.view import LiveView
@@ -83,19 +84,21 @@ def run_mission(
     sinks: Iterable[Sink] = (),
     values: Blackboard | None = None,
     seed: int | None = None,
+    scans: float | None = None,
 ) -> int:
     """Runs and reports; returns the exit code. Raises MissionError where the log cannot be opened (BT009).
 
     A log that cannot be written to the end does not change the mission: it is said after it, and a mission that
     succeeded has the exit code 2. On a terminal it shows the live view, whose tree stays at the end or not and which
     puts keys that aren't for it into `type_ahead`, if given; elsewhere and where `lines` is true plain lines; and
-    nothing when `quiet`. `sinks` get all events too; `open_session` gives the session to run in, `values` and
-    `seed` are as for Session.prepare.
+    nothing when `quiet`. `sinks` get all events too, with `scans` also samples of the blackboard and so many scans a
+    second; `open_session` gives the session to run in, `values` and `seed` are as for Session.prepare.
     """
     controls = Controls()
-    view = None if quiet or lines else _live_view(mission, controls, type_ahead, tree_stays)
+    view = None if quiet or lines else live_view(mission, controls, type_ahead, tree_stays)
     shown: list[Sink] = [view] if view is not None else [] if quiet else [Lines(mission.label, mission.is_action, show)]
     sinks = [*shown, *sinks]
+    values = Blackboard() if values is None else values
     options = {"speed": speed, "rate": rate, "time_limit": time_limit, "values": values, "controls": controls}
     options["seed"] = seed
     try:
@@ -109,6 +112,8 @@ def run_mission(
             if file is not None:
                 sinks.append(JsonLog(file, mission.label))
             run = session.prepare(mission, sinks=sinks, **options)
+            if scans is not None:
+                run.bus.add(Sampler(run.bus, values, scans))
             outcome = run.execute()
     except BrokenPipeError:
         raise
@@ -122,9 +127,11 @@ def run_mission(
         show(outcome.why(colour=has_colour(sys.stderr)), stream=sys.stderr)
     elif not quiet:
         show(_ending(outcome))
-    lost = [error for error in run.sink_errors if log is not None and isinstance(error, OSError)]
-    if lost:
-        show(render(unwritable(log or "", lost[0]), has_colour(sys.stderr)), sys.stderr)
+    lost = [error for error in run.sink_errors if isinstance(error, OSError)]
+    for failed in [error for error in run.sink_errors if not isinstance(error, OSError)]:
+        show(f"An event sink failed: {failed}", sys.stderr)
+    for full in lost:
+        show(render(unwritable(full.filename or log or "the output", full), has_colour(sys.stderr)), sys.stderr)
     if warn_of_motion(outcome.standstill):
         return STILL_MOVING
     if outcome.stopped in ("interrupted", "emergency stop"):
@@ -161,7 +168,9 @@ def _interrupted_by_signals() -> Iterator[list[int]]:
             signal.signal(number, signal.SIG_DFL)
 
 
-def _live_view(mission: Mission, controls: Controls, type_ahead: list[str] | None, tree_stays: bool) -> LiveView | None:
+def live_view(
+    mission: Mission, controls: Controls, type_ahead: list[str] | None = None, tree_stays: bool = True
+) -> LiveView | None:
     """None where standard output is no terminal in which it can be shown."""
     output = sys.stdout
     if output is None or not can_draw(output):

@@ -309,6 +309,21 @@ class PeriodPassed(Event):
         return 0
 
 
+class Sampled(Event):
+    """What a recording has beside, from time to time: `values` of the blackboard that are new or changed, and a `scan`.
+
+    A scan has metres at even angles, counter-clockwise from straight ahead; inf where nothing is in range. Not in logs.
+    """
+
+    values: Mapping[str, Any]
+    scan: tuple[float, ...] = ()
+
+    @property
+    def count(self) -> int:
+        """It has the number of the next event, too."""
+        return 0
+
+
 ROBOT_EVENTS: dict[str, type[Event]] = {
     event.tag: event
     for event in (

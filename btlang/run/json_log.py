@@ -64,7 +64,7 @@ def as_json(event: Event, label: Callable[[Node], str]) -> dict[str, Any]:
 
 def schema() -> dict[str, Any]:
     """The JSON schema (draft 2020-12) of a line, made from the classes of events."""
-    kinds = [_described(kind) for kind in LOGGED]
+    kinds = [described(kind) for kind in LOGGED]
     common = {name: _types(Event)[name] for name in Event.fields}
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
@@ -76,7 +76,8 @@ def schema() -> dict[str, Any]:
     }
 
 
-def _described(kind: type[Event]) -> dict[str, Any]:
+def described(kind: type[Event]) -> dict[str, Any]:
+    """The JSON schema of one class of events."""
     properties: dict[str, Any] = {"event": {"const": kind.tag}} if kind.tag else {}
     required = list(properties)
     for name, described in _types(kind).items():

@@ -167,3 +167,10 @@ def test_words_that_stand_for_names_are_offered_once_they_are_begun() -> None:
     assert {"nearest person", "nearest object"} <= offered("look at the nea").keys()
     assert "place" in offered("go to a random ")
     assert "every person" in offered("wave at ev")
+
+
+@pytest.mark.parametrize(
+    "text", ["otherwise \n otherwise \n ", "wave\n meanwhile \n otherwise \n o", "again. again. a"]
+)
+def test_a_stop_before_a_word_that_goes_on_is_no_word(text: str) -> None:
+    assert isinstance(completions(text, shipped()), tuple)

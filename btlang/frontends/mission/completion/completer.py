@@ -6,6 +6,7 @@ so that what is offered here and what is accepted there cannot differ.
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Iterable, Iterator
 from functools import lru_cache
 
@@ -128,7 +129,7 @@ class Completer:
         tokens, words = self._tokens, self._words
         if self._is_broken(at):
             return
-        first = self._last if at == len(tokens) else words.starts.index(tokens[at].start)
+        first = self._last if at == len(tokens) else bisect_left(words.starts, tokens[at].start)  # a stop has none
         under_way = begun(self._vocabulary.trie, words, first, self._last, self._context)
         names = begun(self._lexer.names.definitions.trie, words, first, self._last, self._context)
         yield from self._named(names, first, at, start)

@@ -1,0 +1,1 @@
+"""Recordings of runs in MCAP files, and what is made of them later."""

@@ -1,0 +1,155 @@
+"""What of a run is written into which channel: our own events as they are, and what Foxglove has a schema for."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Iterator, Mapping
+
+from btlang.engine.status import FAILURE, NAMES
+from btlang.record import Record
+from btlang.run.events import (
+    LOGGED,
+    Ended,
+    Event,
+    Notice,
+    PeriodPassed,
+    Printed,
+    Said,
+    Sampled,
+    StatusesChanged,
+    Troubled,
+    Warned,
+)
+from btlang.run.json_log import as_json, described
+from btlang.tree.node import Node
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+FRAME = "map"
+"""The frame of poses; that of scans is the robot's."""
+ROBOT_FRAME = "base_link"
+_INFO, _WARNING, _ERROR = 2, 3, 4  # levels of foxglove.Log
+
+
+class Channel(Record):
+    """A topic, and the name and JSON schema of its messages."""
+
+    topic: str
+    schema: str
+    described: Mapping[str, Any]
+
+
+def _object(**properties: Any) -> dict[str, Any]:
+    return {"type": "object", "properties": properties}
+
+
+_NUMBER, _WHOLE, _TEXT = {"type": "number"}, {"type": "integer"}, {"type": "string"}
+_COMMON = {"t": _NUMBER, "number": _WHOLE, "wall": _NUMBER}
+_TIME = _object(sec=_WHOLE, nsec=_WHOLE)
+_AXES = {"x": _NUMBER, "y": _NUMBER, "z": _NUMBER}
+_POSE = _object(position=_object(**_AXES), orientation=_object(**_AXES, w=_NUMBER))
+
+STATUSES = Channel("/btlang/statuses", "btlang.StatusesChanged", _object(
+    **_COMMON, indices={"type": "array", "items": _WHOLE}, codes={"type": "array", "items": _WHOLE},
+    reasons={"type": "object", "additionalProperties": _TEXT}, values={"type": "object"},
+))  # fmt: skip
+"""The changes of a tick: numbers of nodes in preorder, `before * 8 + status` of each, and the reasons by position."""
+STATE = Channel("/robot/state", "btlang.RobotState", _object(
+    **_COMMON, ticks=_WHOLE, overruns=_WHOLE, battery={"type": ["number", "null"]},
+    left={"type": ["string", "null"]}, right={"type": ["string", "null"]}, pose={"type": ["array", "null"]},
+))  # fmt: skip
+VALUES = Channel("/btlang/values", "btlang.Values", _object(**_COMMON, values={"type": "object"}))
+POSE = Channel("/robot/pose", "foxglove.PoseInFrame", _object(timestamp=_TIME, frame_id=_TEXT, pose=_POSE))
+SCAN = Channel("/robot/scan", "foxglove.LaserScan", _object(
+    timestamp=_TIME, frame_id=_TEXT, pose=_POSE, start_angle=_NUMBER, end_angle=_NUMBER,
+    ranges={"type": "array", "items": _NUMBER}, intensities={"type": "array", "items": _NUMBER},
+))  # fmt: skip
+LOG = Channel("/log", "foxglove.Log", _object(
+    timestamp=_TIME, level=_WHOLE, message=_TEXT, name=_TEXT, file=_TEXT, line=_WHOLE,
+))  # fmt: skip
+EVENTS = {
+    kind: Channel(f"/btlang/{kind.tag}", f"btlang.{kind.__name__}", described(kind)) for kind in LOGGED if kind.tag
+}
+"""A channel for each other class of events."""
+CLASSES = {channel.topic: kind for kind, channel in EVENTS.items()}
+
+
+def messages(event: Event, nanoseconds: int, label: Callable[[Node], str]) -> Iterator[tuple[Channel, dict[str, Any]]]:
+    """What is written of an event, at a time since 1970."""
+    if isinstance(event, StatusesChanged):
+        yield STATUSES, _statuses(event)
+    elif isinstance(event, PeriodPassed):
+        yield from _period(event, nanoseconds)
+    elif isinstance(event, Sampled):
+        if event.values:
+            yield VALUES, _common(event) | {"values": event.values}
+        if event.scan:
+            yield SCAN, _scan(event, nanoseconds)
+    elif type(event) in EVENTS:
+        yield EVENTS[type(event)], as_json(event, label)
+        text = _text(event)
+        if text is not None:
+            level, words = text
+            log = {"timestamp": _time(nanoseconds), "level": level, "message": words, "name": event.tag}
+            yield LOG, {**log, "file": "", "line": 0}
+
+
+def _common(event: Event) -> dict[str, Any]:
+    return {"t": event.t, "number": event.number, "wall": event.wall}
+
+
+def _statuses(event: StatusesChanged) -> dict[str, Any]:
+    changes = event.changes
+    reasons = {at: event.nodes.reason(changes.indices[at], fault) for at, fault in changes.faults.items()}
+    written = _common(event) | {"indices": changes.indices, "codes": changes.codes}
+    if reasons:
+        written["reasons"] = {str(at): reason for at, reason in reasons.items() if reason}
+    if event.valued:
+        written["values"] = {str(index): dict(node.ports) for index, node in event.valued.items()}
+    return written
+
+
+def _period(event: PeriodPassed, nanoseconds: int) -> Iterator[tuple[Channel, dict[str, Any]]]:
+    state = event.state
+    pose = None if state is None else state.pose
+    written = _common(event) | {"ticks": event.ticks, "overruns": event.overruns}
+    if state is not None:
+        written |= {"battery": state.battery, "left": state.left, "right": state.right}
+    if pose is None:
+        yield STATE, written
+        return
+    yield STATE, written | {"pose": [pose.x, pose.y, pose.heading]}
+    yield POSE, {"timestamp": _time(nanoseconds), "frame_id": FRAME, "pose": _pose(pose.x, pose.y, pose.heading)}
+
+
+def _scan(event: Sampled, nanoseconds: int) -> dict[str, Any]:
+    step = 2 * math.pi / len(event.scan)
+    ranges = [round(distance, 3) if math.isfinite(distance) else 0.0 for distance in event.scan]  # JSON has no infinity
+    return {
+        "timestamp": _time(nanoseconds), "frame_id": ROBOT_FRAME, "pose": _pose(0.0, 0.0, 0.0),
+        "start_angle": 0.0, "end_angle": 2 * math.pi - step, "ranges": ranges, "intensities": [],
+    }  # fmt: skip
+
+
+def _pose(x: float, y: float, heading: float) -> dict[str, Any]:
+    half = math.radians(heading) / 2
+    orientation = {"x": 0.0, "y": 0.0, "z": math.sin(half), "w": math.cos(half)}
+    return {"position": {"x": x, "y": y, "z": 0.0}, "orientation": orientation}
+
+
+def _time(nanoseconds: int) -> dict[str, int]:
+    return {"sec": nanoseconds // 1_000_000_000, "nsec": nanoseconds % 1_000_000_000}
+
+
+def _text(event: Event) -> tuple[int, str] | None:
+    """The level and the text of an event that is for people."""
+    if isinstance(event, Said | Printed):
+        return _INFO, event.text
+    if isinstance(event, Notice):
+        return (_WARNING if isinstance(event, Warned) else _ERROR if isinstance(event, Troubled) else _INFO), event.text
+    if isinstance(event, Ended):
+        failed = event.outcome == NAMES[FAILURE]
+        return (_ERROR if failed else _INFO), f"{event.outcome}{f': {event.reason}' if event.reason else ''}"
+    return None

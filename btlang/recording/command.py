@@ -1,0 +1,120 @@
+"""What `btc run --record`, `btc replay` and `btc why` do."""
+
+from __future__ import annotations
+
+import math
+import os
+import platform
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager, nullcontext
+
+from btlang.api import Mission
+from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.reading import unwritable
+from btlang.engine.compile import outline
+from btlang.recording.bundle import files_of, recorded_mission
+from btlang.recording.compare import first_difference
+from btlang.recording.reader import RecordedNodes, Recording, read_recording
+from btlang.recording.recorder import Recorder
+from btlang.recording.replay import failures, play
+from btlang.recording.story import Story
+from btlang.run.command import live_view
+from btlang.run.controls import Controls
+from btlang.run.events import Event
+from btlang.run.lines import Lines
+from btlang.session import Session
+from btlang.text.output import show
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    import argparse
+
+    from btlang.run.events import Sink
+
+
+@contextmanager
+def recorded(mission: Mission, options: argparse.Namespace, text: str | None) -> Iterator[list[Sink]]:
+    """The sinks of a run that is recorded, if the options say so, with a seed. Raises MissionError (BT009, BT083)."""
+    if options.record is None:
+        yield []
+        return
+    import btlang
+
+    if options.seed is None:
+        options.seed = int.from_bytes(os.urandom(4), "big")
+    about = {
+        "btlang": btlang.__version__, "python": platform.python_version(), "wall": f"{time.time():.3f}",
+        "mission": os.path.basename(options.file or "") or "a mission", "language": options.language,
+        "robot": options.robot, "over": options.over or "",
+        "seed": str(options.seed), "rate": f"{options.rate:g}", "speed": str(options.speed),
+        "time_limit": "" if options.time_limit is None else f"{options.time_limit:g}",
+    }  # fmt: skip
+    try:
+        files = files_of(mission, text, options.keywords)
+        recorder = Recorder(options.record, mission.label, files, about, options.record_size)
+    except OSError as error:
+        raise MissionError([unwritable(options.record, error)]) from None
+    try:
+        yield [recorder]
+    finally:
+        recorder.close()
+        if not options.quiet and not recorder.is_broken:
+            show(f"Wrote {options.record}.")
+
+
+@contextmanager
+def _opened(options: argparse.Namespace) -> Iterator[tuple[Recording, Mission, RecordedNodes]]:
+    recording = read_recording(options.file)
+    about = recording.about
+    name, language = about.get("mission", "a mission"), about.get("language", "en")
+    with recorded_mission(recording.files, name, language, options.keywords if options.as_mission else None) as mission:
+        yield recording, mission, RecordedNodes(*outline(mission.tree))
+
+
+def serve(options: argparse.Namespace) -> int:
+    """Does the verb `replay` or `why`; returns the exit code."""
+    return _replay(options) if options.verb == "replay" else _why(options)
+
+
+def _replay(options: argparse.Namespace) -> int:
+    """Shows a recorded run as it was, or runs its mission again."""
+    with _opened(options) as (recording, mission, nodes):
+        if options.as_mission:
+            return _run_again(recording, mission, nodes)
+        controls = Controls()
+        lines = Lines(mission.label, mission.is_action, show)
+        view = None if options.lines else live_view(mission, controls)
+        start = -math.inf if options.start is None else options.start
+        if options.failure:
+            start = next(iter(failures(recording.events(nodes))), -math.inf)
+            controls.paused = view is not None and start > -math.inf
+        speed = {"real": 1.0, "max": math.inf}.get(options.speed, options.speed)
+        with nullcontext() if view is None else view:
+            try:
+                play(recording.events(nodes), [lines if view is None else view], controls, speed, start)
+            except KeyboardInterrupt:
+                return 130
+    return 0
+
+
+def _why(options: argparse.Namespace) -> int:
+    """Tells what happened in a recorded run."""
+    with _opened(options) as (recording, mission, nodes):
+        story = Story(mission, nodes, recording.about).take(recording.events(nodes))
+        show("\n".join(story.lines()))
+    return 0
+
+
+def _run_again(recording: Recording, mission: Mission, nodes: RecordedNodes) -> int:
+    """Runs the mission of a recording on the simulated robot, and shows where it goes otherwise."""
+    about, events = recording.about, list[Event]()
+    with Session("simulated", world=mission.world) as session:
+        session.run(
+            mission, speed="max", rate=float(about.get("rate", 20)), seed=int(about.get("seed", 0)),
+            time_limit=float(about["time_limit"]) if about.get("time_limit") else None, sinks=[events.append],
+        )  # fmt: skip
+    difference = first_difference(recording.events(nodes), events, nodes.node, mission.label)
+    show(difference or "The run was the same.", sys.stderr if difference else None)
+    return 1 if difference else 0

@@ -1,0 +1,43 @@
+"""Where two runs of one tree differ first."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator
+from itertools import zip_longest
+
+from btlang.engine.status import NAMES
+from btlang.run.events import Event, StatusesChanged
+from btlang.tree.node import Node
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import TypeAlias
+
+    Step: TypeAlias = tuple[float, int, int, str]
+    """When, the number of a node, its new status, and why it failed."""
+
+
+def steps(events: Iterable[Event]) -> Iterator[Step]:
+    """All changes of statuses."""
+    for event in events:
+        if isinstance(event, StatusesChanged):
+            for index, status, _, reason in event.without_paths():
+                yield event.t, index, status, reason
+
+
+def first_difference(
+    one: Iterable[Event], other: Iterable[Event], node: Callable[[int], Node], label: Callable[[Node], str]
+) -> str:
+    """The first change of status in which two runs differ, in words; "" where there is none. Times don't count."""
+    for first, second in zip_longest(steps(one), steps(other)):
+        if first is None or second is None or first[1:] != second[1:]:
+            told = [_told(step, node, label) for step in (first, second)]
+            return f"before: {told[0]}\nnow:    {told[1]}"
+    return ""
+
+
+def _told(step: Step | None, node: Callable[[int], Node], label: Callable[[Node], str]) -> str:
+    if step is None:
+        return "nothing more"
+    t, index, status, reason = step
+    return f"at {t:.2f} s  {label(node(index))}: {NAMES[status]}{f' ({reason})' if reason else ''}"

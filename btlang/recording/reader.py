@@ -1,0 +1,169 @@
+"""Reads recordings, also those that end in the middle of a record."""
+
+from __future__ import annotations
+
+import json
+import struct
+from collections.abc import Iterator, Mapping, Sequence
+from functools import cached_property
+
+from btlang.diagnostics.diagnostic import diagnostic
+from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.reading import reason_of
+from btlang.engine.status_trace import Changes
+from btlang.record import Record
+from btlang.recording.channels import CLASSES, STATE, STATUSES, VALUES
+from btlang.recording.recorder import ABOUT
+from btlang.robots.geometry import Pose
+from btlang.run.events import Event, PeriodPassed, Sampled, StatusesChanged
+from btlang.run.robot_state import RobotState
+from btlang.text.source import NOWHERE, Span
+from btlang.tree.node import Node
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+    from btlang.engine.instance import Fault, NodeInstance
+
+MOST_BYTES = 64_000_000
+"""Of one record: a broken length would fill the memory."""
+
+
+class RecordedNodes:
+    """The nodes of a recorded run by their numbers; see btlang.run.events.Nodes."""
+
+    def __init__(self, nodes: Sequence[Node], parents: Sequence[int]) -> None:
+        self._nodes, self._parents = nodes, parents
+        self._reasons: dict[int, str] = {}
+
+    @property
+    def size(self) -> int:
+        """The number of nodes."""
+        return len(self._nodes)
+
+    @cached_property
+    def _places(self) -> list[int]:
+        """Which child of its parent each node is."""
+        counts = [0] * len(self._nodes)
+        places = []
+        for parent in self._parents:
+            places.append(counts[parent] if parent >= 0 else 0)
+            if parent >= 0:
+                counts[parent] += 1
+        return places
+
+    def path(self, index: int) -> str:
+        """As that of an engine: `/0/1` is the second child of the root's first one."""
+        steps: list[str] = []
+        while self._parents[index] >= 0:
+            steps.append(str(self._places[index]))
+            index = self._parents[index]
+        return "/" + "/".join(reversed(steps))
+
+    def node(self, index: int) -> Node:
+        """The node with a number."""
+        return self._nodes[index]
+
+    def parent(self, index: int) -> int:
+        """The number of the node above, -1 for the root."""
+        return self._parents[index]
+
+    def span(self, index: int) -> Span | None:
+        """The sentence of a node, or of the nearest one above it that has one."""
+        span = None
+        while span is None and index >= 0:
+            span, index = self._nodes[index].span, self._parents[index]
+        return span
+
+    def filled(self, index: int) -> Node:
+        """The same: what its ports held is with the changes."""
+        return self._nodes[index]
+
+    def reason(self, index: int, fault: Fault | NodeInstance | None) -> str:
+        """Why a node failed, as it was written."""
+        return fault if isinstance(fault, str) else ""
+
+
+class Recording(Record):
+    """`about` and `files` are those of the Recorder, `entries` the messages: topic and data."""
+
+    about: Mapping[str, str]
+    files: Mapping[str, bytes]
+    entries: tuple[tuple[str, Mapping[str, Any]], ...]
+
+    def events(self, nodes: RecordedNodes) -> Iterator[Event]:
+        """What happened, as the classes of events."""
+        run = self.about.get("run", "")
+        for topic, data in self.entries:
+            event = _event(topic, data, run, nodes)
+            if event is not None:
+                yield event
+
+
+def read_recording(path: str) -> Recording:
+    """Raises MissionError if it isn't a recording of btlang (BT084), or can't be read (BT001)."""
+    try:
+        from mcap.exceptions import McapError
+        from mcap.records import Attachment, Channel, Message, Metadata
+        from mcap.stream_reader import StreamReader
+    except ImportError:
+        raise MissionError([diagnostic("BT083", NOWHERE)]) from None
+    about: dict[str, str] = {}
+    files: dict[str, bytes] = {}
+    topics: dict[int, str] = {}
+    entries: list[tuple[str, Mapping[str, Any]]] = []
+    try:
+        with open(path, "rb") as file:
+            try:
+                for record in StreamReader(file, emit_chunks=True, record_size_limit=MOST_BYTES).records:
+                    if isinstance(record, Message):
+                        entries.append((topics[record.channel_id], json.loads(record.data)))
+                    elif isinstance(record, Channel):
+                        topics[record.id] = record.topic
+                    elif isinstance(record, Metadata) and record.name == ABOUT:
+                        about = dict(record.metadata)
+                    elif isinstance(record, Attachment):
+                        files[record.name] = record.data
+            except (McapError, struct.error, EOFError, ValueError, KeyError, IndexError, OverflowError):
+                pass  # it ends here: the process was killed, or the disk was full
+    except OSError as error:
+        raise MissionError([diagnostic("BT001", NOWHERE, file=path, reason=reason_of(error))]) from None
+    if not about:
+        raise MissionError([diagnostic("BT084", NOWHERE, file=path)])
+    return Recording(about, files, tuple(entries))
+
+
+def _event(topic: str, data: Mapping[str, Any], run: str, nodes: RecordedNodes) -> Event | None:
+    if topic == STATUSES.topic:
+        common = data["t"], run, data["number"], data["wall"]
+        valued = {int(index): _with_ports(nodes, int(index), ports) for index, ports in data.get("values", {}).items()}
+        return StatusesChanged(*common, _changes(data), nodes, valued)
+    if topic == STATE.topic:
+        common = data["t"], run, data["number"], data["wall"]
+        pose = Pose(*data["pose"]) if data.get("pose") else None
+        known = "battery" in data
+        state = RobotState(pose, data["battery"], data["left"], data["right"]) if known else None
+        return PeriodPassed(*common, data["ticks"], data["overruns"], state, None)
+    if topic == VALUES.topic:
+        return Sampled(data["t"], run, data["number"], data["wall"], data["values"])
+    kind = CLASSES.get(topic)
+    if kind is None:
+        return None
+    given = {name: data[name] for name in kind.fields if name in data}
+    if "node" in kind.fields and "id" in data:
+        given["node"] = Node(data["id"], (), tuple(data.get("ports", {}).items()))
+    missing = [name for name in kind.fields if name not in given and name not in kind.field_defaults]
+    return kind(**{**dict.fromkeys(missing), **given})
+
+
+def _changes(data: Mapping[str, Any]) -> Changes:
+    changes = Changes()
+    changes.indices, changes.codes = data["indices"], data["codes"]
+    changes.faults = {int(at): reason for at, reason in data.get("reasons", {}).items()}
+    return changes
+
+
+def _with_ports(nodes: RecordedNodes, index: int, ports: Mapping[str, str]) -> Node:
+    node: Node = nodes.node(index).replace(ports=tuple(ports.items()))
+    return node

@@ -1,0 +1,102 @@
+"""Tells a recorded run in words: what was done, what failed and what had been tried, and who stopped it."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Iterator, Mapping
+
+from btlang.api import Mission
+from btlang.engine.engine import Failure
+from btlang.engine.status import FAILURE, IDLE, NAMES, RUNNING, SKIPPED
+from btlang.recording.reader import RecordedNodes
+from btlang.run.events import Chosen, Ended, Event, FaultInjected, Notice, StatusesChanged
+from btlang.run.failure_history import FailureHistory
+from btlang.run.lines import is_asked_wait
+from btlang.run.report import failure_report
+from btlang.text.escaping import one_line
+from btlang.tree.node import Node
+
+_ENDINGS = {FAILURE: "failed", IDLE: "was halted", SKIPPED: "was skipped"}
+
+
+class Story:
+    """Follows the events of a run; `lines` tells it."""
+
+    def __init__(self, mission: Mission, nodes: RecordedNodes, about: Mapping[str, str]) -> None:
+        self._mission, self._nodes, self._about = mission, nodes, about
+        self._history = FailureHistory(nodes)  # type: ignore[arg-type]  # which asks for nodes and parents only
+        self._began: dict[int, tuple[float, Node]] = {}
+        self._done: list[str] = []
+        self._ended: Ended | None = None
+        self._latest = 0.0
+
+    def take(self, events: Iterable[Event]) -> Story:
+        """All that happened."""
+        for event in events:
+            self._latest = max(self._latest, event.t)
+            self._history(event)
+            if isinstance(event, StatusesChanged):
+                for change in event:
+                    node = event.valued.get(change.index, change.node)
+                    if self._is_said(node) or is_asked_wait(change.node):
+                        self._changed(change.index, change.status, change.t, node, change.reason)
+            elif isinstance(event, Chosen):
+                self._note(event.t, f"It chooses {event.name}, the {event.how} {event.type}.")
+            elif isinstance(event, FaultInjected | Notice):
+                self._note(event.t, f"{event.tag}: {event.text}")
+            elif isinstance(event, Ended):
+                self._ended = event
+        return self
+
+    def lines(self) -> Iterator[str]:
+        """The story, from the beginning."""
+        about = self._about
+        when = time.strftime("%Y-%m-%d %H:%M:%S", time.localtime(float(about.get("wall", 0))))
+        yield one_line(
+            f"{about.get('mission') or 'A mission'}, {when}, on the robot {about.get('robot', 'simulated')}:"
+        )
+        yield from self._done
+        for began, node in self._began.values():
+            yield self._line(began, f"{self._mission.label(node)}: not over when the recording ended")
+        yield from self._ending()
+
+    def _ending(self) -> Iterator[str]:
+        ended = self._ended
+        if ended is None:
+            yield f"The recording ends after {self._latest:.1f} s, before the mission did."
+            return
+        who = {"interrupted": "It was interrupted", "emergency stop": "An emergency stop ended it"}
+        if ended.stopped:
+            yield f"{who.get(ended.stopped, f'It was stopped ({ended.stopped})')} after {ended.seconds:.1f} s."
+        elif ended.outcome == NAMES[FAILURE]:
+            yield failure_report(self._failure(ended), self._history, self._mission.label)
+        else:
+            skipped = ended.outcome == NAMES[SKIPPED]
+            yield f"{'There was nothing to do' if skipped else 'The mission succeeded'} after {ended.seconds:.1f} s."
+        if ended.still is not True and ended.motion:
+            yield one_line(f"{ended.motion}.")
+
+    def _failure(self, ended: Ended) -> Failure:
+        index = next(at for at in range(self._nodes.size) if self._nodes.path(at) == ended.path)
+        return Failure(index, self._nodes.node(index), ended.path, ended.reason, None, self._nodes.span(index))
+
+    def _is_said(self, node: Node) -> bool:
+        """Whether it is a command that somebody has said."""
+        entry = self._mission.vocabulary.entry(node.id)
+        return entry is not None and self._mission.is_action(node) and bool(entry.phrases)
+
+    def _changed(self, index: int, status: int, t: float, node: Node, reason: str) -> None:
+        if status == RUNNING:
+            self._began[index] = t, node
+            return
+        began = self._began.pop(index, (t, node))[0]
+        ending = _ENDINGS.get(status, "")
+        words = self._mission.label(node) + (f": {ending}" if ending else "") + (f" ({reason})" if reason else "")
+        self._note(began, words)
+
+    def _note(self, t: float, text: str) -> None:
+        self._done.append(self._line(t, text))
+
+    @staticmethod
+    def _line(t: float, text: str) -> str:
+        return one_line(f"{t:8.1f} s  {text}")

@@ -1,0 +1,131 @@
+"""`btc replay` and `btc why`: a recorded run as it was, as a story, and once more."""
+
+from __future__ import annotations
+
+import re
+import threading
+import time
+from pathlib import Path
+
+import pytest
+
+from btlang.cli import main
+from btlang.recording.replay import failures, play
+from btlang.run.controls import Controls
+from btlang.run.events import Event, PeriodPassed
+from tests.conftest import matches_golden
+from tests.recording.runs import recorded, replayed
+
+HERE = Path(__file__).parent
+FAILING = """
+try to grasp the book up to 2 times, otherwise nod
+set n to 3
+say "{n} left"
+go to a random place
+pick up the cup
+grasp the book
+"""
+
+
+def run(text: str, path: Path, *options: str) -> int:
+    return main(["run", "-c", text, "--speed", "max", "--seed", "7", "--record", str(path), *options])
+
+
+def printed(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str]:
+    code = main(list(words))
+    return code, capsys.readouterr().out
+
+
+def test_the_lines_of_a_replay_are_those_of_the_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    run(FAILING, tmp_path / "run.mcap", "--lines")
+    lines = [line for line in capsys.readouterr().out.splitlines() if line.startswith("  ")]
+    assert printed(capsys, "replay", str(tmp_path / "run.mcap"), "--lines", "--speed", "max")[1].splitlines() == lines
+
+
+def test_why_tells_the_story(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    run(FAILING, tmp_path / "run.mcap", "--quiet")
+    capsys.readouterr()
+    code, story = printed(capsys, "why", str(tmp_path / "run.mcap"))
+    assert code == 0
+    matches_golden(re.sub(r"\d{4}-\d\d-\d\d \d\d:\d\d:\d\d", "(when)", story), HERE / "why.out")
+
+
+def test_why_says_that_a_run_was_stopped_or_its_recording_cut(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    path = tmp_path / "run.mcap"
+    run("go to the lab then go to the kitchen", path, "--quiet", "--for", "3s")
+    assert "It was stopped (time limit) after 3.0 s." in printed(capsys, "why", str(path))[1]
+    path.write_bytes(path.read_bytes()[: path.stat().st_size // 2])
+    story = printed(capsys, "why", str(path))[1]
+    assert "go to lab: not over when the recording ended" in story
+    assert re.search(r"The recording ends after 1\.\d s, before the mission did\.", story)
+
+
+def test_the_mission_runs_again(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    path = tmp_path / "run.mcap"
+    run(FAILING, path, "--quiet")
+    capsys.readouterr()
+    assert printed(capsys, "replay", str(path), "--as-mission") == (0, "The run was the same.\n")
+
+
+def test_where_it_goes_otherwise_is_shown(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    """Another seed chooses another place."""
+    path = tmp_path / "run.mcap"
+    run("go to a random place then nod", path, "--quiet")
+    path.write_bytes(path.read_bytes().replace(b"\x04\0\0\0seed\x01\0\0\x007", b"\x04\0\0\0seed\x01\0\0\x009"))
+    assert main(["replay", str(path), "--as-mission"]) == 0  # statuses alone are the same
+    run("go to a random place; if you are in the living room, nod, otherwise wave", path, "--quiet")
+    path.write_bytes(path.read_bytes().replace(b"\x04\0\0\0seed\x01\0\0\x007", b"\x04\0\0\0seed\x01\0\0\x002"))
+    capsys.readouterr()
+    codes = [main(["replay", str(path), "--as-mission"])]
+    told = capsys.readouterr()
+    assert codes == [1]
+    assert told.err.startswith("before: at ")
+    assert "\nnow:    at " in told.err
+
+
+def test_a_recording_runs_no_code_that_came_with_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    words = tmp_path / "words.toml"
+    words.write_text('[[action]]\nphrase = "hop"\nid = "Hop"\ncall = "hop_code:hop"\n', encoding="utf-8")
+    (tmp_path / "hop_code.py").write_text("from pathlib import Path\ndef hop():\n    pass\n", encoding="utf-8")
+    path = tmp_path / "run.mcap"
+    assert run("hop", path, "--quiet", "--keywords", str(words)) == 0
+    marker = tmp_path / "ran"
+    (tmp_path / "hop_code.py").write_text(f"open({str(marker)!r}, 'w')\ndef hop():\n    pass\n", encoding="utf-8")
+    capsys.readouterr()
+    assert "hop" in printed(capsys, "why", str(path))[1]
+    assert main(["replay", str(path), "--as-mission"]) == 2
+    assert not marker.exists()
+    assert main(["replay", str(path), "--as-mission", "--keywords", str(words)]) == 0
+
+
+def test_pace_pause_step_and_stop(tmp_path: Path) -> None:
+    mission, _ = recorded("wait 1 s", tmp_path / "run.mcap")
+    events, controls, seen = replayed(mission, tmp_path / "run.mcap"), Controls(), list[Event]()
+    began = time.monotonic()
+    assert play(events, [seen.append], controls, 4.0)
+    assert time.monotonic() - began == pytest.approx(events[-1].t / 4, rel=0.3)
+    assert seen == events
+    seen.clear()
+    controls.pause()
+    thread = threading.Thread(target=play, args=(events, [seen.append], controls, 1.0))
+    thread.start()
+    for _ in range(3):
+        time.sleep(0.1)
+        controls.step()
+    time.sleep(0.1)
+    assert sum(isinstance(event, PeriodPassed) for event in seen) == 4
+    controls.stop()
+    thread.join(5)
+    assert not thread.is_alive()
+    assert len(seen) < len(events)
+
+
+def test_it_begins_where_one_wants(tmp_path: Path) -> None:
+    mission, _ = recorded("wait 5 s then try to grasp the book then wait 5 s", tmp_path / "run.mcap")
+    events = replayed(mission, tmp_path / "run.mcap")
+    assert failures(events) == [pytest.approx(5.0, abs=0.1)]
+    began = time.monotonic()
+    play(events, [], Controls(), 20.0, start=9.0)
+    assert time.monotonic() - began < 0.3
