@@ -327,6 +327,7 @@ def _version(options: argparse.Namespace) -> int:
 _ELSEWHERE = {
     "replay": "btlang.recording.command",
     "why": "btlang.recording.command",
+    "diff": "btlang.recording.command",
     "mcp": "btlang.mcp_server",
     "sim-ros": "btlang.ros.simulator.command",
     "ros-node": "btlang.ros.mission.command",

@@ -245,6 +245,13 @@ def _replay_options(parser: argparse.ArgumentParser) -> None:
     _recording_file(parser)
 
 
+def _diff_options(parser: argparse.ArgumentParser) -> None:
+    _words_options(parser)
+    parser.add_argument("--markdown", action="store_true", help="print a list in Markdown, such as for a pull request")
+    parser.add_argument("old", metavar="OLD", help="mission, tree in XML or JSON, or recording")
+    parser.add_argument("new", metavar="NEW", help="what to compare with it")
+
+
 def _recording_file(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("file", metavar="FILE", help="recording that btc run --record wrote")
 
@@ -339,6 +346,7 @@ _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "run": ("run a mission on the simulated robot, or a ROS 2 robot", _run_options),
     "replay": ("show a recorded run as it was", _replay_options),
     "why": ("tell what happened in a recorded run, and why it failed", _recording_file),
+    "diff": ("tell what differs between two missions, trees or recorded runs", _diff_options),
     "check": ("report the mistakes in a mission", _check_options),
     "tree": ("print the behavior tree of a mission", _tree_options),
     "compile": ("write the tree of a mission as XML, English, JSON, a picture ...", _compile_options),

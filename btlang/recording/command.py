@@ -1,4 +1,4 @@
-"""What `btc run --record`, `btc replay` and `btc why` do."""
+"""What `btc run --record`, `btc replay` and `btc why` do; the verbs of recordings."""
 
 from __future__ import annotations
 
@@ -13,10 +13,11 @@ from contextlib import contextmanager, nullcontext
 from btlang.api import Mission
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import unwritable
-from btlang.engine.compile import outline
-from btlang.recording.bundle import files_of, recorded_mission
+from btlang.recording.bundle import files_of
 from btlang.recording.compare import first_difference
-from btlang.recording.reader import RecordedNodes, Recording, read_recording
+from btlang.recording.diff import diff
+from btlang.recording.open import opened
+from btlang.recording.reader import RecordedNodes, Recording
 from btlang.recording.recorder import Recorder
 from btlang.recording.replay import failures, play
 from btlang.recording.story import Story
@@ -64,23 +65,14 @@ def recorded(mission: Mission, options: argparse.Namespace, text: str | None) ->
             show(f"Wrote {options.record}.")
 
 
-@contextmanager
-def _opened(options: argparse.Namespace) -> Iterator[tuple[Recording, Mission, RecordedNodes]]:
-    recording = read_recording(options.file)
-    about = recording.about
-    name, language = about.get("mission", "a mission"), about.get("language", "en")
-    with recorded_mission(recording.files, name, language, options.keywords if options.as_mission else None) as mission:
-        yield recording, mission, RecordedNodes(*outline(mission.tree))
-
-
 def serve(options: argparse.Namespace) -> int:
-    """Does the verb `replay` or `why`; returns the exit code."""
-    return _replay(options) if options.verb == "replay" else _why(options)
+    """Does the verb `replay`, `why` or `diff`; returns the exit code."""
+    return {"replay": _replay, "why": _why, "diff": diff}[options.verb](options)
 
 
 def _replay(options: argparse.Namespace) -> int:
     """Shows a recorded run as it was, or runs its mission again."""
-    with _opened(options) as (recording, mission, nodes):
+    with opened(options.file, options.keywords if options.as_mission else None) as (recording, mission, nodes):
         if options.as_mission:
             return _run_again(recording, mission, nodes)
         controls = Controls()
@@ -101,7 +93,7 @@ def _replay(options: argparse.Namespace) -> int:
 
 def _why(options: argparse.Namespace) -> int:
     """Tells what happened in a recorded run."""
-    with _opened(options) as (recording, mission, nodes):
+    with opened(options.file, options.keywords if options.as_mission else None) as (recording, mission, nodes):
         story = Story(mission, nodes, recording.about).take(recording.events(nodes))
         show("\n".join(story.lines()))
     return 0

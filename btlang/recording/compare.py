@@ -1,8 +1,10 @@
-"""Where two runs of one tree differ first."""
+"""Where two runs of one tree differ first, and what only one of two runs has."""
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Iterable, Iterator
+from difflib import SequenceMatcher
 from itertools import zip_longest
 
 from btlang.engine.status import NAMES
@@ -41,3 +43,19 @@ def _told(step: Step | None, node: Callable[[int], Node], label: Callable[[Node]
         return "nothing more"
     t, index, status, reason = step
     return f"at {t:.2f} s  {label(node(index))}: {NAMES[status]}{f' ({reason})' if reason else ''}"
+
+
+def run_differences(one: Iterable[str], other: Iterable[str]) -> Iterator[str]:
+    """What the stories of two runs have of their own, whenever it was: `-` the first one, `+` the second."""
+    lines = [[_parted(line) for text in story for line in text.splitlines()] for story in (one, other)]
+    done = [[words for _, words in story] for story in lines]
+    for tag, first, last, begin, end in SequenceMatcher(a=done[0], b=done[1], autojunk=False).get_opcodes():
+        if tag != "equal":
+            yield from (f"- {time}{words}" for time, words in lines[0][first:last])
+            yield from (f"+ {time}{words}" for time, words in lines[1][begin:end])
+
+
+def _parted(line: str) -> tuple[str, str]:
+    """The time at the start of a line of a story, and the rest."""
+    match = re.match(r" *[\d.]+ s  ", line)
+    return (match[0].strip() + "  ", line[match.end() :]) if match else ("", re.sub(r" after [\d.]+ s", "", line))
