@@ -21,7 +21,7 @@ def show(text: Any = "", stream: TextIO | None = None, *, end: str = "\n") -> No
     """
     stream = sys.stdout if stream is None else stream
     if isinstance(text, str) or not can_draw(stream):
-        print(printable(str(text)), file=stream, end=end, flush=True)
+        print(printable(str(text)) + end, file=stream, end="", flush=True)  # in one piece: threads print side by side
         return
     from btlang.text.drawing import lines
 
