@@ -9,7 +9,7 @@ import sys
 from collections.abc import Callable, Sequence
 from itertools import takewhile
 
-from btlang.arguments import between, duration, picture, size, speed
+from btlang.arguments import between, duration, picture, speed
 from btlang.diagnostics.report import FORMATS
 from btlang.frontends.mission.reader import DEFAULT_PARSER, PARSERS
 from btlang.run.limits import RATES
@@ -192,6 +192,7 @@ def _repl_options(parser: argparse.ArgumentParser) -> None:
 
 
 def _run_options(parser: argparse.ArgumentParser) -> None:
+    from btlang.recording.options import add_recording_options
     from btlang.ros.command import add_robot_options
 
     _mission_options(parser)
@@ -217,32 +218,21 @@ def _run_options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--lines", action="store_true", help="print plain lines, even on a terminal")
     parser.add_argument("--quiet", action="store_true", help="print only errors")
-    _recording_options(parser)
+    add_recording_options(parser)
     add_robot_options(parser)
 
 
-def _recording_options(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--record", metavar="FILE", help="record the run as MCAP, for replay, why and Foxglove")
-    parser.add_argument(
-        "--record-scans", type=between(0, 100), default=2.0, metavar="HZ", help="scans per second in it (default: 2)"
-    )
-    parser.add_argument(
-        "--record-size", type=size, metavar="SIZE", help="begin another file at this size, such as 100MB"
-    )
-
-
 def _replay_options(parser: argparse.ArgumentParser) -> None:
+    from btlang.recording.options import add_replay_options
+
     _speed_option(parser)
-    parser.add_argument("--lines", action="store_true", help="print plain lines, even on a terminal")
-    parser.add_argument(
-        "--from", type=duration, dest="start", metavar="DURATION", help="begin at this time, such as 5min"
-    )
-    parser.add_argument("--failure", action="store_true", help="begin at the first failure")
-    parser.add_argument("--as-mission", action="store_true", help="run the mission again; report where it differs")
-    parser.add_argument(
-        "--keywords", action="append", default=[], metavar="FILE", help="a keyword file of the mission to run again"
-    )
-    _recording_file(parser)
+    add_replay_options(parser)
+
+
+def _why_options(parser: argparse.ArgumentParser) -> None:
+    from btlang.recording.options import add_recording_file
+
+    add_recording_file(parser)
 
 
 def _diff_options(parser: argparse.ArgumentParser) -> None:
@@ -250,10 +240,6 @@ def _diff_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--markdown", action="store_true", help="print a list in Markdown, such as for a pull request")
     parser.add_argument("old", metavar="OLD", help="mission, tree in XML or JSON, or recording")
     parser.add_argument("new", metavar="NEW", help="what to compare with it")
-
-
-def _recording_file(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("file", metavar="FILE", help="recording that btc run --record wrote")
 
 
 def _tree_options(parser: argparse.ArgumentParser) -> None:
@@ -345,7 +331,7 @@ _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "repl": ("type a mission line by line, as with `btc` alone", _repl_options),
     "run": ("run a mission on the simulated robot, or a ROS 2 robot", _run_options),
     "replay": ("show a recorded run as it was", _replay_options),
-    "why": ("tell what happened in a recorded run, and why it failed", _recording_file),
+    "why": ("tell what happened in a recorded run, and why it failed", _why_options),
     "diff": ("tell what differs between two missions, trees or recorded runs", _diff_options),
     "check": ("report the mistakes in a mission", _check_options),
     "tree": ("print the behavior tree of a mission", _tree_options),

@@ -1,0 +1,37 @@
+"""The options of the verbs of recordings, apart from what these do: most commands need no more."""
+
+from __future__ import annotations
+
+import argparse
+
+from btlang.arguments import between, duration, size
+
+
+def add_recording_options(parser: argparse.ArgumentParser) -> None:
+    """Those of `btc run`."""
+    parser.add_argument("--record", metavar="FILE", help="record the run as MCAP, for replay, why and Foxglove")
+    parser.add_argument(
+        "--record-scans", type=between(0, 100), default=2.0, metavar="HZ", help="scans per second in it (default: 2)"
+    )
+    parser.add_argument(
+        "--record-size", type=size, metavar="SIZE", help="begin another file at this size, such as 100MB"
+    )
+
+
+def add_replay_options(parser: argparse.ArgumentParser) -> None:
+    """Those of `btc replay`, but for its speed."""
+    parser.add_argument("--lines", action="store_true", help="print plain lines, even on a terminal")
+    parser.add_argument(
+        "--from", type=duration, dest="start", metavar="DURATION", help="begin at this time, such as 5min"
+    )
+    parser.add_argument("--failure", action="store_true", help="begin at the first failure")
+    parser.add_argument("--as-mission", action="store_true", help="run the mission again; report where it differs")
+    parser.add_argument(
+        "--keywords", action="append", default=[], metavar="FILE", help="a keyword file of the mission to run again"
+    )
+    add_recording_file(parser)
+
+
+def add_recording_file(parser: argparse.ArgumentParser) -> None:
+    """The recording that a verb reads."""
+    parser.add_argument("file", metavar="FILE", help="recording that btc run --record wrote")
