@@ -136,8 +136,8 @@ def recording() -> bytes:
 
 @pytest.mark.parametrize("line", commands())
 def test_commands_run(line: str, folder: Path) -> None:
-    real_time = line.startswith("btc run") and "--speed" not in line
-    done = btc(line.replace("btc run", "btc run --speed max") if real_time else line, folder)
+    real_time = line.startswith(("btc run", 'btc "')) and "--speed" not in line
+    done = btc(f"{line.partition('  #')[0]} --speed max" if real_time else line, folder)
     assert done.returncode == 0, done.stdout
 
 

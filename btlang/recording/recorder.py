@@ -71,7 +71,8 @@ class Recorder:
             self._writer.add_metadata(ABOUT, self._about)
         at = self._began + int(event.t * 1e9)  # mission time, so that it is played at its pace
         for channel, data in messages(event, at, self._label):
-            self._writer.add_message(self._id(channel), at, _encode(data).encode(), int(event.wall * 1e9))
+            text = data if isinstance(data, str) else _encode(data)
+            self._writer.add_message(self._id(channel), at, text.encode(), int(event.wall * 1e9))
         if not isinstance(event, PeriodPassed | Ended):
             return  # what belongs to one tick goes into the file together
         self._file.flush()

@@ -11,6 +11,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections import Counter
 from pathlib import Path
 
 import jsonschema
@@ -73,13 +74,20 @@ def test_values_and_scans_are_sampled(tmp_path: Path, capsys: pytest.CaptureFixt
 
 def test_messages_fit_their_schemas_and_foxglove_knows_those_that_it_can(tmp_path: Path) -> None:
     recorded(ROUND, tmp_path / "run.mcap")
-    names = set()
+    names: Counter[str] = Counter()
     with (tmp_path / "run.mcap").open("rb") as file:
         for schema, _, message in make_reader(file).iter_messages():
             assert schema is not None
-            names.add(schema.name)
-            jsonschema.validate(json.loads(message.data), json.loads(schema.data))
-    assert names >= {"foxglove.PoseInFrame", "foxglove.Log", "btlang.StatusesChanged", "btlang.Said", "btlang.Ended"}
+            names[schema.name] += 1
+            if names[schema.name] <= 20:
+                jsonschema.validate(json.loads(message.data), json.loads(schema.data))
+    assert names.keys() >= {
+        "foxglove.PoseInFrame",
+        "foxglove.Log",
+        "btlang.StatusesChanged",
+        "btlang.Said",
+        "btlang.Ended",
+    }
 
 
 _LEAVES = st.sampled_from(
