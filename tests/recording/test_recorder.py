@@ -114,6 +114,7 @@ def test_replay_equals_the_run_status_by_status(text: str) -> None:
         assert changes(replayed(mission, path)) == changes(events)
 
 
+@pytest.mark.long
 def test_a_run_that_is_killed_leaves_all_but_its_last_moment(tmp_path: Path) -> None:
     for number in range(amount(2, 50)):
         path = tmp_path / f"{number}.mcap"
