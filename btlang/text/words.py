@@ -219,6 +219,8 @@ def split(source: Source, orthography: Orthography) -> Words:
 
 def _indent(margin: str) -> tuple[int, bool]:
     """The columns of the blanks at the start of a line, and whether the mark of a list item follows them."""
+    if not margin:
+        return 0, False
     blank = margin.rstrip("-*\u2022\u2013\u2014.)0123456789")
     return len(blank.replace("\r", "").expandtabs(4)), len(blank) < len(margin)
 

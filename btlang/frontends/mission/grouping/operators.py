@@ -267,7 +267,8 @@ def end_statement(scan: Scan, token: Token) -> None:
         return
     if entry.statement == "open":
         entry.statement = "ended"
-        waits_first(scan, entry)
+        if entry.latest == entry.commands:  # the second one
+            waits_first(scan, entry)
         entry.latest = entry.begins
     if entry.kind == "top" and scan.header is not None:
         close_definition(scan)

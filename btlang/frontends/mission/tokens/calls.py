@@ -16,6 +16,8 @@ from btlang.vocabulary.trie import Match, SlotValue
 from btlang.vocabulary.value_type import PLACE
 from btlang.vocabulary.values import key_of
 
+_ODD = ("", "{", "(")  # how texts begin that are no plain values: of unknown names, references, choices and points
+
 
 class Calls:
     """Makes calls of the phrases of one text; what is wrong with their values becomes `problems`."""
@@ -27,8 +29,9 @@ class Calls:
         """The entry with its arguments, or with several of them where one slot holds a list."""
         if entry.sort == "value" and not (self._context.known and entry.id in self._context.known):
             self._unknown_value(self._text.span(at, match.last), entry.id)
-        if not match.values:
-            return Called(entry, ())
+        values = match.values
+        if all(not value.more and value.text[:1] not in _ODD and "{" not in value.text for value in values):
+            return Called(entry, tuple([(value.name, value.text) for value in values]))  # as nearly always
         self._check_choices(entry, match, at)
         lists = [place for place, value in enumerate(match.values) if value.more]
         if not lists:
