@@ -70,7 +70,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
 
 def _run(options: argparse.Namespace) -> int:
     from btlang.pictures.command import pictures_of
-    from btlang.recording.command import recorded
+    from btlang.recording.options import recording
     from btlang.robots.world_problem import read_world
     from btlang.ros.command import chosen_robot, print_preflight
     from btlang.run.command import run_mission
@@ -81,10 +81,9 @@ def _run(options: argparse.Namespace) -> int:
     if options.preflight:
         ready = print_preflight(mission.tree, mission.vocabulary, read_world(mission.world, robot.body), robot)
         return SUCCESS if ready else FAILED
-    text = None if mission.syntax is None else mission.syntax.span.source.text
     with (
         pictures_of(mission, options.picture, options.tree_picture, options.quiet) as sinks,
-        recorded(mission, options, text) as recorders,
+        recording(mission, options) as recorders,
     ):
         return run_mission(
             mission,

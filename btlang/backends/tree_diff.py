@@ -96,7 +96,7 @@ class _Diff:
             yield f"'{self._say_old(one)}' is now '{self._say_new(other)}'"
             return
         before, after = dict(one.ports), dict(other.ports)
-        words = " and ".join(f"'{self._say_new(child)}'" for child in other.children[:1])
+        words = f"'{self._say_new(other.children[0])}'"
         for port in dict.fromkeys((*before, *after)):
             if before.get(port) != after.get(port):
                 texts = [_value(other, port, ports.get(port, "none")) for ports in (before, after)]

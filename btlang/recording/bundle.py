@@ -18,11 +18,11 @@ _WORLD, _WORDS, _INCLUDED = "world.toml", "words", "included"
 _ENDINGS = (".txt", ".toml", ".xml", ".json")
 
 
-def files_of(mission: Mission, text: str | None, keywords: Sequence[str]) -> dict[str, bytes]:
-    """The tree, the `text` of the mission with what it includes, its world and its keyword files, by their names."""
+def files_of(mission: Mission, keywords: Sequence[str]) -> dict[str, bytes]:
+    """The tree, the text of the mission with what it includes, its world and its keyword files, by their names."""
     files = {TREE: str(mission.to("json")).encode()}
-    if text is not None:
-        files[MISSION] = text.encode()
+    if mission.syntax is not None:
+        files[MISSION] = mission.syntax.span.source.text.encode()
     for include in _includes(mission):
         files[f"{_INCLUDED}/{include.path}"] = include.mission.span.source.text.encode()
     for number, path in enumerate(path for path in keywords if os.path.isfile(path)):

@@ -36,11 +36,8 @@ if TYPE_CHECKING:
 
 
 @contextmanager
-def recorded(mission: Mission, options: argparse.Namespace, text: str | None) -> Iterator[list[Sink]]:
-    """The sinks of a run that is recorded, if the options say so, with a seed. Raises MissionError (BT009, BT083)."""
-    if options.record is None:
-        yield []
-        return
+def recorded(mission: Mission, options: argparse.Namespace) -> Iterator[list[Sink]]:
+    """The sinks of a run that is recorded, as the options say, with a seed. Raises MissionError (BT009, BT083)."""
     import btlang
 
     if options.seed is None:
@@ -53,7 +50,7 @@ def recorded(mission: Mission, options: argparse.Namespace, text: str | None) ->
         "time_limit": "" if options.time_limit is None else f"{options.time_limit:g}",
     }  # fmt: skip
     try:
-        files = files_of(mission, text, options.keywords)
+        files = files_of(mission, options.keywords)
         recorder = Recorder(options.record, mission.label, files, about, options.record_size)
     except OSError as error:
         raise MissionError([unwritable(options.record, error)]) from None

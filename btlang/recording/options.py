@@ -3,8 +3,23 @@
 from __future__ import annotations
 
 import argparse
+from contextlib import AbstractContextManager, nullcontext
 
 from btlang.arguments import between, duration, size
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.api import Mission
+    from btlang.run.events import Sink
+
+
+def recording(mission: Mission, options: argparse.Namespace) -> AbstractContextManager[list[Sink]]:
+    """The sinks that record a run, none where the options ask for no recording."""
+    if options.record is None:
+        return nullcontext([])
+    from btlang.recording.command import recorded
+
+    return recorded(mission, options)
 
 
 def add_recording_options(parser: argparse.ArgumentParser) -> None:

@@ -83,7 +83,7 @@ class Story:
     def _is_said(self, node: Node) -> bool:
         """Whether it is a command that somebody has said."""
         entry = self._mission.vocabulary.entry(node.id)
-        return entry is not None and self._mission.is_action(node) and bool(entry.phrases)
+        return entry is not None and entry.sort == "action" and bool(entry.phrases)
 
     def _changed(self, index: int, status: int, t: float, node: Node, reason: str) -> None:
         if status == RUNNING:

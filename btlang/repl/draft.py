@@ -145,8 +145,8 @@ class MissionDraft:
         command once more.
         """
         rounds = self._rounds_more(text)
-        latest = next((entry.text for entry in reversed(self.entries) if entry.has_command), "")
-        if rounds and latest:
+        latest = next((entry.text for entry in reversed(self.entries) if entry.has_command), "") if rounds else ""
+        if latest:
             head = f"{self.vocabulary.word('repeat')} {rounds} {self.vocabulary.word('count')}:"
             text = latest if rounds == 1 else f"{head}\n{indent(latest, '  ')}"
         margin = text[: len(text) - len(text.lstrip())].rpartition("\n")[2]

@@ -19,7 +19,7 @@ def recorded(text: str, path: Path, seed: int = 7, most_bytes: int | None = None
     """Runs a mission as fast as possible with a recording; the events that another sink got."""
     mission = parse_tree(text)
     events: list[Event] = []
-    files = files_of(mission, text, [])
+    files = files_of(mission, [])
     recorder = Recorder(str(path), mission.label, files, {"seed": str(seed), "rate": "20"}, most_bytes)
     with Session() as session:
         run = session.run(mission, speed="max", sinks=[recorder, events.append], seed=seed, time_limit=120)

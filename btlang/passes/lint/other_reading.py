@@ -94,10 +94,12 @@ def _behind_after(
 def in_pace(node: ast.Every, vocabulary: Lexicon) -> Iterator[Attachment]:
     """`A 3 times every 10 s`: the number could be that of each round."""
     start, body = node.span.start, node.body.span
+    if not node.rounds or body.start != start:
+        return  # as nearly always
     behind = node.span.source.text[body.end : node.span.end]
     words = {vocabulary.orthography.words(pattern)[0] for pattern in vocabulary.roles["every"]}
     at = min((match.start() for match in _WORD.finditer(behind) if match[0].lower() in words), default=0)
-    if node.rounds and body.start == start and _WORD.search(behind[:at]):
+    if _WORD.search(behind[:at]):
         yield Attachment(PACED, start, partial(_repeated, node, Span(body.source, body.end, node.span.end), at))
 
 

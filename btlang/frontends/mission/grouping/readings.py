@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from btlang.diagnostics.diagnostic import diagnostic
-from btlang.frontends.mission.grouping.scan import ENDS, RULES, Scan
+from btlang.frontends.mission.grouping.scan import ENDS, Scan
 from btlang.frontends.mission.grouping.stack import StackEntry
 from btlang.frontends.mission.token import Token
 from btlang.text.source import Span
@@ -70,10 +70,8 @@ def waits_first(scan: Scan, entry: StackEntry) -> None:
 
 def repeated(scan: Scan, token: Token) -> None:
     """BT172 for `do that` and `again` where more than one command stands before: `A then B. Do that 3 times`."""
-    at = max(at for at, entry in enumerate(scan.stack) if entry.is_group)
-    entry, inner = scan.stack[at], scan.stack[at + 1 :][:1]
-    is_rule = inner and inner[0].opener is not None and inner[0].opener.role in RULES
-    if is_rule or entry.commands is None or entry.mixed or entry.begins >= len(scan.out):
+    entry, of_rule = scan.around_statement()
+    if of_rule or entry.commands is None or entry.mixed or entry.begins >= len(scan.out):
         return
     made = scan.out[entry.begins :]
     commands = [each for each in made if each.kind in _COMMANDS]

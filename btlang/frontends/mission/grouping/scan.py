@@ -86,12 +86,16 @@ class Scan:
             self.stack.pop().close_chain()
             self.emit_end()
 
-    def take_statement(self) -> None:
-        """What comes is about the whole statement so far, of a rule about what it does: puts that in brackets."""
+    def around_statement(self) -> tuple[StackEntry, bool]:
+        """What holds the statement so far: the innermost group, or the body of a rule in it (True)."""
         group = max(at for at, entry in enumerate(self.stack) if entry.is_group)
         inner = self.stack[group + 1 :][:1]
         of_rule = inner and inner[0].kind == "body" and inner[0].opener is not None and inner[0].opener.role in RULES
-        entry = inner[0] if of_rule else self.stack[group]
+        return (inner[0], True) if of_rule else (self.stack[group], False)
+
+    def take_statement(self) -> None:
+        """What comes is about the whole statement so far, of a rule about what it does: puts that in brackets."""
+        entry, _ = self.around_statement()
         self.close_forms(entry)
         entry.close_chain()
         self.enclose(entry.begins)
