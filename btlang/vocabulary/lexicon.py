@@ -63,12 +63,12 @@ class Lexicon:
         self.orthography = Orthography(self.articles, language["decimal_comma"], language["contractions"])
         self._with_names: dict[tuple[tuple[str, tuple[str, ...]], ...], Lexicon] = {}
         self.values = Values(self._types_of(files, english), language)
-        self.context = ReadingContext(self.values)
-        """What is known without a mission; whoever reads one has a context of its own."""
         for file in files:
             for kind, words, name in file.names:
                 if self.types[kind].kind == "names":
                     self.values.add_name(kind, self._bare(words), name)
+        self.context = ReadingContext(self.values)
+        """What is known without a mission; whoever reads one has a context of its own."""
         self.roles: dict[str, list[str]] = {**language["roles"], "politeness": language["politeness"]}
         name = language["language"]
         self.word_list = os.path.join(folder, f"{name}.words") if folder and name.isalpha() else ""

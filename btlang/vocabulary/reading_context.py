@@ -32,7 +32,9 @@ class ReadingContext:
     they aren't the names of the types.
     """
 
-    __slots__ = ("_most_words", "joiners", "keys", "known", "lacked", "latest", "pronouns", "types", "values")
+    __slots__ = (
+        "_most_words", "joiners", "keys", "known", "lacked", "latest", "openers", "pronouns", "types", "values",
+    )  # fmt: skip
 
     def __init__(self, values: Values, known: Mapping[str, Known] | None = None) -> None:
         self.values = values
@@ -41,24 +43,22 @@ class ReadingContext:
         self.lacked = False
         self.keys: Mapping[str, str] = {}
         self.known: Mapping[str, Known] | None = {}
+        self.openers: Mapping[str, frozenset[str]] = {}
+        """As those of the values; where the mission names values itself, any value may begin at any word."""
         self._most_words = 0
         self.set_known(known or {})
 
     def set_known(self, known: Mapping[str, Known]) -> None:
         """The values that the mission names where reading goes on."""
         self.known = known
+        self.openers = {} if known else self.values.openers
         self._most_words = max((len(value.words) for value in known.values()), default=0)
 
     def with_references(self) -> ReadingContext:
         """The same, where any name in braces is a value of any type, and with pronouns of its own."""
         made = ReadingContext(self.values)
-        made.known = None
+        made.known, made.openers = None, {}
         return made
-
-    @property
-    def openers(self) -> Mapping[str, frozenset[str]]:
-        """As those of the values; where the mission names values itself, any value may begin at any word."""
-        return self.values.openers if self.known == {} else {}
 
     def read(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
         """The port text of a value of the type and where it ends, or None where there is none."""

@@ -15,6 +15,7 @@ STANDARD_BODY = os.path.join(BODIES, "standard.toml")
 """The robot that a mission runs on where none is named."""
 
 
+@cache
 def shipped(*parts: str) -> str:
     """The path of a shipped file: inside an installed package, else beside the package in a checkout."""
     installed = os.path.join(PACKAGE, "_resources", *parts)
@@ -48,4 +49,5 @@ def language_folder(language: str) -> str | None:
 def keyword_files(folder: str) -> tuple[str, ...]:
     """The keyword files in the folder of a language: the joining words, then the phrases by name."""
     names = sorted(os.listdir(folder), key=lambda name: (name != _JOINING, name))
-    return tuple(os.path.join(folder, name) for name in names if name.endswith(".toml"))
+    beginning = os.path.join(folder, "")
+    return tuple(beginning + name for name in names if name.endswith(".toml"))

@@ -184,6 +184,13 @@ class Values:
         """Of words such as `every place` the type and which of its names they are for, and where they end."""
         return find(self._choices, text.words, at) if text.words[at] in self._choices else None
 
+    def chosen_types(self, text: Words) -> list[str]:
+        """The types of which a text lets the robot choose one, each once."""
+        if text.distinct.isdisjoint(self._choices):
+            return []
+        found = (self.choice(text, at) for at in range(len(text.words)))
+        return list(dict.fromkeys(one[0][0] for one in found if one is not None and one[0][1] in CHOICES))
+
     def choices(self, kind: str) -> list[list[str]]:
         """The words that stand for all names of a type, and for those that are chosen, in the first way to say them."""
         return [words.split() for (own, _), words in self._chosen.items() if own == kind and self._listed.get(kind)]

@@ -9,7 +9,7 @@ from btlang.frontends.mission.grouping.problems import found_words, no_operand, 
 from btlang.frontends.mission.grouping.readings import started_over
 from btlang.frontends.mission.grouping.scan import ENDS, Scan
 from btlang.frontends.mission.grouping.stack import StackEntry
-from btlang.frontends.mission.token import Header, Token
+from btlang.frontends.mission.token import Header, Listed, Token
 
 SEPARATORS = {"in_parallel": "BLOCK_AND", "in_order": "BLOCK_OR", "node": "BLOCK_CHILD", "following": "SEMI"}
 """What begins a block, each with the token between its lines."""
@@ -20,14 +20,10 @@ COMMANDS = frozenset(("command", "wait", "wait_until", "wait_for", "wait_up_to")
 
 
 def operand(scan: Scan, token: Token) -> None:
-    entry = scan.stack[-1]
-    if token.kind == "unknown":
-        scan.begin_statement(token)
-        scan.skip_statement()
-        return
-    if lacks_neither(scan, token):
+    if token.value.__class__ is Listed and lacks_neither(scan, token):
         stray(scan, token)
         return
+    entry = scan.stack[-1]
     if entry.is_condition:
         if token.kind != "condition":
             before = scan.raw[scan.at - 1]
@@ -42,6 +38,11 @@ def operand(scan: Scan, token: Token) -> None:
         scan.begin_statement(token)
         scan.emit("COMMAND", token, token.kind if token.kind != "command" else "")
     scan.next(token, False)
+
+
+def unknown(scan: Scan, token: Token) -> None:
+    scan.begin_statement(token)
+    scan.skip_statement()
 
 
 def negation(scan: Scan, token: Token) -> None:

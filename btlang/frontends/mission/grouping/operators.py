@@ -17,7 +17,8 @@ _JOINTS = {"meanwhile": "AND", "in_parallel": "AND", "while_doing": "AND", "befo
 
 
 def connective(scan: Scan, token: Token) -> None:
-    if token.kind == "and" and [each.kind for each in scan.raw[scan.at + 1 : scan.at + 3]] == ["comma", "then"]:
+    following = scan.raw[scan.at + 1]
+    if following.kind == "comma" and token.kind == "and" and scan.raw[scan.at + 2].kind == "then":
         scan.at += 2  # `A and, once there, B`
         token = scan.raw[scan.at]
     _join(scan, token, _joint(token))

@@ -94,7 +94,8 @@ class StackEntry:
 
     def close_chain(self) -> None:
         """The chain of operands ends here: what no connective told the commas, they mean `then` (or `and`)."""
-        self._settle("")
+        if self.commas:
+            self._settle("")
         self.last = None
         self.joints.clear()
 

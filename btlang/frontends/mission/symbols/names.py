@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Container, Mapping
+from collections.abc import Callable, Iterable, Mapping
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.symbols.continuations import find_continuations, named_at
@@ -19,7 +19,7 @@ from btlang.text.words import Words
 from btlang.tree.ast import Include, all_definitions, all_facts
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import Known
-from btlang.vocabulary.references import CHOICES, free_key
+from btlang.vocabulary.references import free_key
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -80,15 +80,22 @@ class Names:
         self.others = {*self.prefixes, *self.ends, *self.definitions.headers}
         self.bounds: list[int] = []
         self.known = {key: one for named in (shared or {}, *(p.known for p in parts)) for key, one in named.items()}
-        parameters = {key for header in self.definitions.headers.values() for key, _ in header.parameters}
-        taken = parameters | {prefix.key for prefix in self.prefixes.values()}
-        self.known = {key: one for key, one in self.known.items() if not (one.is_chosen and key in taken)}
-        taken |= {key for key, one in self.known.items() if not one.is_chosen}
-        self.chosen = _chosen(text, vocabulary, taken)
+        self.chosen: dict[str, str] = {}
         """The keys for what the robot chooses, by type."""
-        self.known |= {key: Known(key, tuple(key.split("_")), (kind,), True) for kind, key in self.chosen.items()}
+        chosen = vocabulary.values.chosen_types(text)
+        if self.known or chosen:
+            self._name_choices(chosen)
         if self.known or self.prefixes or any(header.parameters for header in self.definitions.headers.values()):
             self._name_values(text)
+
+    def _name_choices(self, kinds: Iterable[str]) -> None:
+        """A free key for each type: its name, or another one. What an included mission chooses gives way, too."""
+        taken = {key for header in self.definitions.headers.values() for key, _ in header.parameters}
+        taken |= {prefix.key for prefix in self.prefixes.values()}
+        self.known = {key: one for key, one in self.known.items() if not (one.is_chosen and key in taken)}
+        taken |= {key for key, one in self.known.items() if not one.is_chosen}
+        self.chosen = {kind: free_key(kind, taken) for kind in kinds}
+        self.known |= {key: Known(key, tuple(key.split("_")), (kind,), True) for kind, key in self.chosen.items()}
 
     def _name_values(self, text: Words) -> None:
         from btlang.frontends.mission.symbols.variables import Variables  # most missions have none
@@ -105,13 +112,3 @@ class Names:
     def included_conditions(self) -> set[str]:
         """The names of included missions that stand for conditions."""
         return {name for part in self.included.values() for name in part.conditions}
-
-
-def _chosen(text: Words, vocabulary: Lexicon, taken: Container[str]) -> dict[str, str]:
-    """A free key for each type of which the text lets the robot choose: the name of the type, or another one."""
-    words = [phrase.split()[0] for how in CHOICES for phrase in vocabulary.roles[how]]
-    if text.distinct.isdisjoint(words):
-        return {}
-    found = [vocabulary.values.choice(text, at) for at, word in enumerate(text.words) if word in words]
-    kinds = dict.fromkeys(one[0][0] for one in found if one is not None and one[0][1] in CHOICES)
-    return {kind: free_key(kind, taken) for kind in kinds}

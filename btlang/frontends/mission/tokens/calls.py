@@ -1,11 +1,11 @@
-"""What a phrase with values says: its entry with arguments, one for each port."""
+"""What a phrase says: its token, of one with values its entry with arguments, one for each port."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
-from btlang.frontends.mission.token import Called, Listed
+from btlang.frontends.mission.token import Called, Listed, Token
 from btlang.text.source import Span
 from btlang.text.words import Words
 from btlang.vocabulary.entry import Entry
@@ -16,22 +16,50 @@ from btlang.vocabulary.trie import Match, SlotValue
 from btlang.vocabulary.value_type import PLACE
 from btlang.vocabulary.values import key_of
 
+NEGATED = frozenset(("negated", "negated_twice"))
+"""The roles of conditions that say `not` themselves."""
 _ODD = ("", "{", "(")  # how texts begin that are no plain values: of unknown names, references, choices and points
 
 
 class Calls:
-    """Makes calls of the phrases of one text; what is wrong with their values becomes `problems`."""
+    """Makes tokens of the phrases of one text; what is wrong with their values becomes `problems`."""
 
     def __init__(self, text: Words, vocabulary: Lexicon, context: ReadingContext, problems: list[Diagnostic]) -> None:
         self._text, self._vocabulary, self._context, self._problems = text, vocabulary, context, problems
 
-    def called(self, entry: Entry, match: Match, at: int) -> Called | Listed:
+    def token(self, match: Match, at: int) -> Token:
+        """The token of a phrase."""
+        text, meaning = self._text, match.meaning
+        values = match.values
+        start, end = text.starts[at], text.ends[match.last - 1]
+        if values and values[-1].first == match.last:  # the article was the value: `print a`
+            end = text.articles[match.last][1]
+        if meaning.entry is not None:
+            kind = "condition" if meaning.role in NEGATED else meaning.role
+            return Token(kind, start, end, self._called(meaning.entry, match, at))
+        if values:
+            return Token(meaning.role, start, end, values[0].text)
+        return Token(meaning.role, start, end, str(meaning.value) if meaning.role == "count" else None, meaning.between)
+
+    def note(self, match: Match) -> None:
+        """What pronouns stand for from here on."""
+        for value in match.values:
+            latest = value.more[-1] if value.more else value.text
+            choice = choice_of(latest) if latest[:1] == "{" else None
+            self._context.latest[value.type] = f"{{{choice.key}}}" if choice is not None else latest
+
+    def _called(self, entry: Entry, match: Match, at: int) -> Called | Listed:
         """The entry with its arguments, or with several of them where one slot holds a list."""
         if entry.sort == "value" and not (self._context.known and entry.id in self._context.known):
             self._unknown_value(self._text.span(at, match.last), entry.id)
-        values = match.values
-        if all(not value.more and value.text[:1] not in _ODD and "{" not in value.text for value in values):
-            return Called(entry, tuple([(value.name, value.text) for value in values]))  # as nearly always
+        arguments = []
+        for value in match.values:
+            text = value.text
+            if value.more or text[:1] in _ODD or "{" in text:
+                break
+            arguments.append((value.name, text))
+        else:
+            return Called(entry, tuple(arguments))  # as nearly always
         self._check_choices(entry, match, at)
         lists = [place for place, value in enumerate(match.values) if value.more]
         if not lists:

@@ -12,7 +12,7 @@ from btlang.frontends.mission.symbols.names import Load, Names
 from btlang.frontends.mission.symbols.nodes import Unreadable, read_node, unreadable
 from btlang.frontends.mission.symbols.prefixes import SEPARATORS, Prefix, span_of
 from btlang.frontends.mission.token import Token, begins_condition, go_on
-from btlang.frontends.mission.tokens.calls import Calls
+from btlang.frontends.mission.tokens.calls import NEGATED, Calls
 from btlang.frontends.mission.tokens.condition_names import called, condition_names
 from btlang.frontends.mission.tokens.partial_commands import PartialCommands, may_be_doing, with_verb
 from btlang.text.source import Source, Span
@@ -21,7 +21,6 @@ from btlang.vocabulary.entry import Meaning
 from btlang.vocabulary.language_tables import CONNECTIVES, NOT_ALONE
 from btlang.vocabulary.lexicon import NODE_ROLES, Lexicon
 from btlang.vocabulary.reading_context import Known, ReadingContext
-from btlang.vocabulary.references import choice_of
 from btlang.vocabulary.trie import SLOTS, Match, TrieNode, longest
 
 _ROLES = {"if_it_works": ("if_possible", "if_works"), "in_parallel": ("in_parallel", "meanwhile")}
@@ -29,8 +28,7 @@ _ROLES = {"if_it_works": ("if_possible", "if_works"), "in_parallel": ("in_parall
 _NOT_READ = frozenset((*SEPARATORS, INCLUDE, *NOT_ALONE))
 _BEGINS = frozenset(("newline", "semi", "indent", "dedent", "open", "define", "colon", "comma", "then"))
 """Behind these a statement, or an item of a list, begins."""
-_NEGATED = ("negated", "negated_twice")
-_CONDITIONS = ("condition", "negated")
+_CONDITIONS = frozenset(("condition", *NEGATED))
 _JOINING = ("and", "or")
 _MARKS = {",": "comma", ";": "semi", ":": "colon", "(": "open", ")": "close"}
 
@@ -73,8 +71,10 @@ class Lexer:
         self._meanings_of = CONNECTIVES.keys() if self.names.meanings else ()
         self._found = {} if has_values else self.names.phrases.fixed
         self.tokens: list[Token] = []
-        self._partial = PartialCommands(self.text, self.vocabulary, self.names.definitions.trie, self.context, self)
         self._calls = Calls(self.text, self.vocabulary, self.context, self.problems)
+        self._partial = PartialCommands(
+            self.text, self.vocabulary, self.names.definitions.trie, self.context, self._calls, self.tokens
+        )
         endings = tuple(self.vocabulary.doing)
         self._verb_forms = {word for word in self.text.distinct if word.endswith(endings)}
         self._lines()
@@ -128,8 +128,9 @@ class Lexer:
     def _line(self, at: int, last: int) -> None:
         text, names, trie, context = self.text, self.names.definitions.trie, self.vocabulary.trie, self.context
         words, starts, ends, tokens = text.words, text.starts, text.ends, self.tokens
-        found, verb_forms = self._found, self._verb_forms
+        found, verb_forms, calls = self._found, self._verb_forms, self._calls
         headers, prefixes, others = self.names.definitions.headers, self.names.prefixes, self.names.others
+        going_on, articles, meanings_of = text.going_on, text.articles, self._meanings_of
         origin: Origin | None = None
         while at < last:
             word = words[at]
@@ -148,7 +149,7 @@ class Lexer:
                 continue
             if word in _MARKS:
                 tokens.append(Token(_MARKS[word], starts[at], ends[at]))
-                if word == END_OF_STATEMENT and at + 1 < last and at + 1 not in text.going_on:
+                if word == END_OF_STATEMENT and at + 1 < last and at + 1 not in going_on:
                     context.latest.clear()
                 at += 1
                 continue
@@ -195,23 +196,27 @@ class Lexer:
                 if role == "politeness":
                     at = self._politeness(match, at)
                     continue
-                if at in text.going_on:
+                if at in going_on:
                     go_on(tokens)
-                if role == "command" and at in text.articles:
+                if role == "command" and at in articles:
                     self.problems += self._partial.whole_command(match, at)
-                if role in _NEGATED:
-                    tokens.append(Token("not", starts[at], starts[at]))
-                    if not shared:
-                        self._check_negation(match, at)
-                tokens.append(self._phrase(match, at))
                 if role in _CONDITIONS:
-                    origin = (tokens[-1], *origin[1:]) if shared and origin else (tokens[-1], at, match, root)
-                if role in self._meanings_of:
+                    if role != "condition":
+                        tokens.append(Token("not", starts[at], starts[at]))
+                        if not shared:
+                            self._check_negation(match, at)
+                    token = calls.token(match, at)
+                    tokens.append(token)
+                    if role != "negated_twice":
+                        origin = (token, *origin[1:]) if shared and origin else (token, at, match, root)
+                else:
+                    tokens.append(calls.token(match, at))
+                if role in meanings_of:
                     tokens[-1].role = self.names.meanings.get(" ".join(words[at : match.last]), tokens[-1].role)
                 if role in _ROLES:
                     tokens[-1].kind = _ROLES[role][len(tokens) > 1 and tokens[-2].kind == "stop"]
                 if match.values:
-                    self._note(match)
+                    calls.note(match)
                 at = match.last
 
     def _in_its_place(self, match: Match | None, role: str, at: int) -> int:
@@ -223,19 +228,6 @@ class Lexer:
             tokens.append(Token("repeat", text.starts[at], text.ends[match.last - 1], role="doing"))
             return match.last
         return self._partial.add_doing(at, match) if at and may_be_doing(tokens) else 0
-
-    def token_of(self, match: Match, at: int) -> Token:
-        """The token of a phrase, which says what pronouns stand for from here on."""
-        token = self._phrase(match, at)
-        self._note(match)
-        return token
-
-    def _note(self, match: Match) -> None:
-        """What pronouns stand for from here on."""
-        for value in match.values:
-            latest = value.more[-1] if value.more else value.text
-            choice = choice_of(latest)
-            self.context.latest[value.type] = f"{{{choice.key}}}" if choice is not None else latest
 
     def _is_told(self, start: int, end: int) -> bool:
         """Whether the latest problem is about these characters already."""
@@ -268,7 +260,7 @@ class Lexer:
         if match is not None:  # `not`
             roots = (self.vocabulary.trie, self.names.definitions.trie)
             following = (longest(root, self.text, match.last, self.context) for root in roots)
-            if any(own is not None and own.meaning.role in ("name", *_CONDITIONS) for own in following):
+            if any(own is not None and own.meaning.role in ("name", "condition", "negated") for own in following):
                 return None
         from btlang.frontends.mission.tokens.shared_words import continued  # most missions have none
 
@@ -296,19 +288,6 @@ class Lexer:
         elif words[match.last] == "," and (not tokens or tokens[-1].kind not in ("command", "name", "condition")):
             return match.last + 1
         return match.last
-
-    def _phrase(self, match: Match, at: int) -> Token:
-        text, meaning = self.text, match.meaning
-        values = match.values
-        start, end = text.starts[at], text.ends[match.last - 1]
-        if values and values[-1].first == match.last:  # the article was the value: `print a`
-            end = text.articles[match.last][1]
-        if meaning.entry is not None:
-            kind = "condition" if meaning.role in _NEGATED else meaning.role
-            return Token(kind, start, end, self._calls.called(meaning.entry, match, at))
-        if values:
-            return Token(meaning.role, start, end, values[0].text)
-        return Token(meaning.role, start, end, str(meaning.value) if meaning.role == "count" else None, meaning.between)
 
     def _statement(self, prefix: Prefix, at: int) -> int:
         """A statement about a value of the mission. Returns where to go on."""

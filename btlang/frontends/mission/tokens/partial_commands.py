@@ -10,23 +10,12 @@ from collections.abc import Iterator, Mapping, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.frontends.mission.token import Token
+from btlang.frontends.mission.tokens.calls import Calls
 from btlang.text.source import Span
 from btlang.text.words import END_OF_TEXT, Words
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import ReadingContext
 from btlang.vocabulary.trie import Match, TrieNode, longest
-
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    from typing import Protocol
-
-    class Reader(Protocol):
-        """Who reads the text: the tokens so far, and the token of a phrase."""
-
-        tokens: list[Token]
-
-        def token_of(self, match: Match, at: int) -> Token: ...
-
 
 BEFORE_DOING = frozenset(("before", "after", "while", "never"))
 """The kinds of tokens behind which a command may have the form of its verb: `after waving`."""
@@ -39,12 +28,19 @@ _MOST_WORDS = 60
 
 
 class PartialCommands:
-    """Those of one text, which is read by `reader`; the functions return the word at which to go on, 0 for none."""
+    """Those of one text, of which `tokens` are read; the functions return the word at which to go on, 0 for none."""
 
     def __init__(
-        self, text: Words, vocabulary: Lexicon, names: TrieNode, context: ReadingContext, reader: Reader
+        self,
+        text: Words,
+        vocabulary: Lexicon,
+        names: TrieNode,
+        context: ReadingContext,
+        calls: Calls,
+        tokens: list[Token],
     ) -> None:
-        self._text, self._vocabulary, self._context, self._reader = text, vocabulary, context, reader
+        self._text, self._vocabulary, self._context, self._calls = text, vocabulary, context, calls
+        self._tokens = tokens
         self._tries = vocabulary.trie, names
         self._said: dict[int, list[int]] = {}  # the words of commands that leave some out, by where these begin
 
@@ -54,7 +50,7 @@ class PartialCommands:
 
     def add_doing(self, at: int, other: Match | None) -> int:
         """Such a command, unless another phrase is as long."""
-        match, before = self.doing(at), self._reader.tokens[-1]
+        match, before = self.doing(at), self._tokens[-1]
         if match is None or (other is not None and other.last >= match.last):
             return 0
         end = match.last
@@ -64,9 +60,9 @@ class PartialCommands:
                 return 0
             end = failing.last
         before.kind = {"if": "if_doing", "while": "while_doing"}.get(before.kind, before.kind)
-        token = self._reader.token_of(match, at)
+        token = self._token_of(match, at)
         token.role = "doing"
-        self._reader.tokens.append(token)
+        self._tokens.append(token)
         return end
 
     def add_left_out(self, at: int) -> int:
@@ -74,9 +70,9 @@ class PartialCommands:
         read = self._left_out(at)
         if read is None:
             return 0
-        token = self._reader.token_of(read[0], at)
+        token = self._token_of(read[0], at)
         self._said[token.start] = read[1]
-        enlist(self._reader.tokens, token)
+        enlist(self._tokens, token)
         return read[0].last
 
     def whole_command(self, match: Match, at: int) -> Iterator[Diagnostic]:
@@ -90,8 +86,13 @@ class PartialCommands:
             problem = diagnostic("BT050", span, taken=bare, other=other, fixed=bare)
             yield problem.replace(readings=((span, bare), (span, other)))
 
+    def _token_of(self, match: Match, at: int) -> Token:
+        token = self._calls.token(match, at)
+        self._calls.note(match)
+        return token
+
     def _left_out(self, at: int) -> tuple[Match, list[int]] | None:
-        said = said_before(self._reader.tokens)
+        said = said_before(self._tokens)
         if said is None:
             return None
         words = self._said.get(said.start) or words_of(self._text, said)
