@@ -190,7 +190,7 @@ def test_speech(sim, client: Client):
 
 
 def test_its_own_emergency_stop(start_sim, client: Client):
-    start_sim("--speed", "2")
+    start_sim("--speed", "0.5")  # slow, so that the arm is under way when it stops
     odometry = client.hear(Odometry, "/odom")
     speaking = client.hear(Bool, "/speaking", LATCHED)
     states = client.hear(JointState, "/joint_states")
