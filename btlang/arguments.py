@@ -51,6 +51,17 @@ def node_name(text: str) -> str:
     return text
 
 
+def at_least(least: int) -> Callable[[str], int]:
+    """A whole number from `least` on."""
+
+    def number(text: str) -> int:
+        if not text.isdecimal() or int(text) < least:
+            raise argparse.ArgumentTypeError(f"expected a whole number from {least} on, not '{text}'")
+        return int(text)
+
+    return number
+
+
 def size(text: str) -> int:
     """Bytes: a number with kB, MB or GB."""
     units = {"kb": 1_000, "mb": 1_000_000, "gb": 1_000_000_000}

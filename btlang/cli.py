@@ -6,17 +6,18 @@ import argparse
 import errno
 import os
 import sys
-from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Callable, Sequence
 from functools import partial
 from importlib import import_module
 
 import btlang
-from btlang.api import Mission, format_mission, parse_tree, world_vocabulary
-from btlang.cli_options import parsed, quoted, reads_as_mission, show_help, verb_parsers
+from btlang.api import Mission, format_mission, world_vocabulary
+from btlang.cli_input import hinting, mission_of, parsed_mission, source_of, typed_source
+from btlang.cli_options import parsed, show_help, verb_parsers
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source, reason_of
 from btlang.diagnostics.report import Report
+from btlang.testing.names import is_test_file
 from btlang.text.output import listing_width, pass_on, show
 from btlang.text.source import Source
 
@@ -77,7 +78,7 @@ def _run(options: argparse.Namespace) -> int:
     from btlang.session import Session
 
     robot = chosen_robot(options)
-    mission = _mission(options)
+    mission = mission_of(options)
     if options.preflight:
         ready = print_preflight(mission.tree, mission.vocabulary, read_world(mission.world, robot.body), robot)
         return SUCCESS if ready else FAILED
@@ -103,7 +104,13 @@ def _run(options: argparse.Namespace) -> int:
 def _check(options: argparse.Namespace) -> int:
     if options.fix or options.then:
         _mend(options)
-    _mission(options).check()
+    source = source_of(options)
+    if is_test_file(source.name):
+        from btlang.testing.test_file import check_tests  # most files are missions
+
+        options.report.add(check_tests(source))
+    else:
+        mission_of(options, source).check()
     if not options.report.is_json:
         show("No problems found.")
     return SUCCESS
@@ -118,11 +125,15 @@ def _mend(options: argparse.Namespace) -> None:
 
     def problems_of(source: Source) -> Sequence[Diagnostic]:
         try:
-            return _parsed(source, options).warnings
+            if is_test_file(source.name):
+                from btlang.testing.test_file import check_tests
+
+                return check_tests(source)
+            return parsed_mission(source, options).warnings
         except MissionError as error:
             return error.diagnostics
 
-    source, count = mended(_source(options), problems_of, fix=options.fix, then=options.then)
+    source, count = mended(source_of(options), problems_of, fix=options.fix, then=options.then)
     if options.text is None and options.file != "-":
         if count:
             replace_text(source.name, source.text)
@@ -135,7 +146,7 @@ def _mend(options: argparse.Namespace) -> None:
 def _show_tree(options: argparse.Namespace) -> int:
     from btlang.tree.dump import plain
 
-    mission = _mission(options)
+    mission = mission_of(options)
     if options.picture is not None:
         _draw_tree(mission, options.picture, options.apart)
         return SUCCESS
@@ -162,7 +173,7 @@ def _compile(options: argparse.Namespace) -> int:
         options.refuse(f"{name} isn't text; write it to a file with -o FILE")
     if options.dialect is not None and "dialect" not in TARGETS[name].options:
         options.refuse(f"--dialect is for xml, not for {name}")
-    return _put(_mission(options).to(name, dialect=options.dialect), options.out)
+    return _put(mission_of(options).to(name, dialect=options.dialect), options.out)
 
 
 def _put(made: str | bytes, path: str | None) -> int:
@@ -217,7 +228,7 @@ def _explain(options: argparse.Namespace) -> int:
     if options.text is not None or (subject is not None and not is_code(subject) and _is_file(subject)):
         return _explain_mission(options)
     if subject is not None:
-        with _hinting(subject, "explain"):
+        with hinting(subject, "explain"):
             show(explain_code(subject))
         return SUCCESS
     show(all_codes())
@@ -231,7 +242,7 @@ def _is_file(subject: str) -> bool:
 
 
 def _explain_mission(options: argparse.Namespace) -> int:
-    show(_mission(options).explain(listing_width(100)))
+    show(mission_of(options).explain(listing_width(100)))
     return SUCCESS
 
 
@@ -239,7 +250,7 @@ def _format(options: argparse.Namespace) -> int:
     """Files in place; standard input and a text of the command line to standard output."""
     sources = [partial(read_source, path, options.include_root) for path in options.file]
     if options.text is not None:
-        sources = [partial(_typed, options)]
+        sources = [partial(typed_source, options)]
     code = SUCCESS
     for read in sources:
         try:
@@ -253,9 +264,14 @@ def _format(options: argparse.Namespace) -> int:
 
 def _format_one(source: Source, options: argparse.Namespace) -> bool:
     """Whether `--check` found that the text would change."""
-    text = format_mission(
-        source, parser=options.parser, keywords=options.keywords, world=options.world, language=options.language
-    )
+    if is_test_file(source.name):
+        from btlang.testing.test_file import format_tests
+
+        text = format_tests(source)
+    else:
+        text = format_mission(
+            source, parser=options.parser, keywords=options.keywords, world=options.world, language=options.language
+        )
     changes = text != source.text
     if options.check:
         if changes:
@@ -327,6 +343,7 @@ _ELSEWHERE = {
     "replay": "btlang.recording.command",
     "why": "btlang.recording.command",
     "diff": "btlang.recording.command",
+    "test": "btlang.testing.command",
     "mcp": "btlang.mcp_server",
     "sim-ros": "btlang.ros.simulator.command",
     "ros-node": "btlang.ros.mission.command",
@@ -350,48 +367,6 @@ _VERBS: dict[str, Callable[[argparse.Namespace], int]] = {
     "help": _help,
     "version": _version,
 }
-
-
-def _typed(options: argparse.Namespace) -> Source:
-    """The text of the option -c, whose folder is the current one."""
-    roots = None if options.include_root is None else ("", options.include_root)
-    return Source(options.text, "<command line>", roots=roots, may_load=True)
-
-
-def _mission(options: argparse.Namespace) -> Mission:
-    """Compiles what the options name; warnings go to the report."""
-    mission = _parsed(_source(options), options)
-    options.report.add(mission.warnings)
-    return mission
-
-
-def _source(options: argparse.Namespace) -> Source:
-    return _typed(options) if options.text is not None else _read_file(options)
-
-
-def _parsed(source: Source, options: argparse.Namespace) -> Mission:
-    return parse_tree(
-        source, parser=options.parser, keywords=options.keywords, world=options.world, main=options.main,
-        language=options.language,
-    )  # fmt: skip
-
-
-def _read_file(options: argparse.Namespace) -> Source:
-    """The text of the file. If it isn't there, the error may say how to give a mission as text."""
-    with _hinting(options.file, options.verb):
-        return read_source(options.file, options.include_root)
-
-
-@contextmanager
-def _hinting(subject: str, verb: str) -> Iterator[None]:
-    """Adds to errors about a subject that isn't a file, but reads as a mission, how to give it as text."""
-    try:
-        yield
-    except MissionError as error:
-        if os.path.exists(subject) or not reads_as_mission(subject):
-            raise
-        told = ("help", f"To give a mission as text: btc {verb} -c {quoted(subject)}")
-        raise MissionError([p.replace(arguments=(*p.arguments, told)) for p in error.diagnostics]) from None
 
 
 if __name__ == "__main__":

@@ -235,6 +235,12 @@ def _why_options(parser: argparse.ArgumentParser) -> None:
     add_recording_file(parser)
 
 
+def _test_options(parser: argparse.ArgumentParser) -> None:
+    from btlang.testing.options import add_test_options
+
+    add_test_options(parser)
+
+
 def _diff_options(parser: argparse.ArgumentParser) -> None:
     _words_options(parser)
     parser.add_argument("--markdown", action="store_true", help="print a list in Markdown, such as for a pull request")
@@ -332,6 +338,7 @@ _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "run": ("run a mission on the simulated robot, or a ROS 2 robot", _run_options),
     "replay": ("show a recorded run as it was", _replay_options),
     "why": ("tell what happened in a recorded run, and why it failed", _why_options),
+    "test": ("run tests of missions, written in English", _test_options),
     "diff": ("tell what differs between two missions, trees or recorded runs", _diff_options),
     "check": ("report the mistakes in a mission", _check_options),
     "tree": ("print the behavior tree of a mission", _tree_options),

@@ -22,7 +22,7 @@ _INCLUDE = re.compile(r'^include "(.+)"$', re.MULTILINE)
 class Example(Record):
     """A shipped mission. `about` is the comment at its top, `world` its world file ("" for the one that ships).
 
-    `parts` are the files that it includes; these include no others. The comment ends with the command that runs it in
+    `parts` are the files that it includes; these include no others. `test` is its file of tests. The comment ends with the command that runs it in
     the folder of the mission, with worlds in `worlds`.
     """
 
@@ -31,6 +31,7 @@ class Example(Record):
     world: str
     text: str
     parts: tuple[str, ...] = ()
+    test: str = ""
 
 
 def examples() -> list[Example]:
@@ -61,7 +62,7 @@ def listing(width: int = 80) -> list[str]:
 
 
 def copied(folder: str, chosen: Sequence[Example]) -> list[str]:
-    """Copies missions to a folder, with the worlds and parts that they need in its `worlds` and `parts`.
+    """Copies missions to a folder, with the worlds, parts and tests that they have in its `worlds`, `parts` and `tests`.
 
     Returns the paths written.
 
@@ -69,7 +70,7 @@ def copied(folder: str, chosen: Sequence[Example]) -> list[str]:
     A world or part that is there with the same text stays.
     """
     files = {os.path.join(folder, f"{example.name}.txt"): example.text.encode() for example in chosen}
-    needed = [name for example in chosen for name in (example.world, *example.parts) if name]
+    needed = [name for example in chosen for name in (example.world, *example.parts, example.test) if name]
     shared = {os.path.join(folder, name): _data(name) for name in needed}
     files |= shared
     there = [path for path in files if os.path.lexists(path)]
@@ -96,7 +97,10 @@ def _example(name: str) -> Example:
     assert command is not None, name
     world = _WORLD.search(command[0])
     about = " ".join(line.removeprefix("#").strip() for line in text[: command.start()].splitlines())
-    return Example(name, about, world[1] if world else "", text, tuple(_INCLUDE.findall(text)))
+    test = f"tests/{name}.test.txt"
+    tested = os.path.exists(shipped("examples", *test.split("/")))
+    parts = tuple(_INCLUDE.findall(text))
+    return Example(name, about, world[1] if world else "", text, parts, test if tested else "")
 
 
 def _data(name: str) -> bytes:

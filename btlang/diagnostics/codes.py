@@ -5,7 +5,7 @@ BT05x what is allowed but probably not meant, BT06x keyword files,
 BT07x worlds, BT08x the Python behind the words and what else has to be installed, BT09x the codes themselves,
 BT10x ROS 2, BT11x missions as ROS 2 nodes, BT12x trees in XML, BT13x trees that were not written as missions,
 BT14x nodes said by their ids, BT15x lists, words that stand for names, and what is forbidden,
-BT16x times of day, BT17x sentences that people mean in two ways.
+BT16x times of day, BT17x sentences that people mean in two ways, BT18x tests.
 
 BT05x and others that are warnings have a `name`, by which a mission silences them: `# allow: two readings`.
 Each code has a page in `pages/`, which `btc explain` prints.
@@ -172,6 +172,11 @@ _ALL = (
          "To keep that, write: {taken}\nIf not, write: {other}", "warning", "repeated"),
     Code("BT173", "'{words}' has only rules, so it goes on for ever here, and other commands don't run meanwhile.",
          "To let it watch beside them, write: {fixed}", "warning", "only rules"),
+    Code("BT180", "'{words}' isn't a line of a test.", "Write for example: {wanted}"),
+    Code("BT181", "This test can't run: {reason}.", "Write for example: {example}"),
+    Code("BT182", "'{words}' {reason}."),
+    Code("BT183", "{file} has tests, not a mission.", "To run them: btc test {file}"),
+    Code("BT184", "There are no tests in {path}.", "The name of a file of tests ends with .test.txt."),
 )  # fmt: skip
 
 CODES = {entry.code: entry for entry in _ALL}

@@ -66,6 +66,12 @@ class Base:
         self._hard = True
         self._forget_trouble()
 
+    def put(self, pose: Pose) -> None:
+        """Stands there at once, at rest."""
+        self.pose, self._wanted, self._speeds = pose, (0.0, 0.0), (0.0, 0.0)
+        self._contact, self._version = None, -1
+        self._forget_trouble()
+
     def step(self, dt: float) -> None:
         """Moves on by `dt` in equal pieces of at most 0.02 s."""
         if self._wanted == (0.0, 0.0) and not self.rolling:

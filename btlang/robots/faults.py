@@ -34,6 +34,15 @@ class Faults:
         self._active = tuple(fault for fault in self._faults if fault.start <= now < fault.end)
         return [fault for fault in self._active if fault not in before]
 
+    def begin(self, fault: Fault) -> None:
+        """One more, from the next `advance` on, beside those of the world file."""
+        self._faults = (*self._faults, fault)
+
+    def end(self, kind: str, place: str = "") -> None:
+        """All of a kind are over, of blocked ways that to a place."""
+        self._faults = tuple(fault for fault in self._faults if (fault.kind, fault.place) != (kind, place))
+        self._active = tuple(fault for fault in self._active if fault in self._faults)
+
     def blocked(self, place: str) -> bool:
         """Whether no way leads to the place."""
         return any(fault.kind == "blocked" and fault.place == place for fault in self._active)

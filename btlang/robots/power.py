@@ -30,6 +30,10 @@ class Power:
         """True while docked and not full."""
         return self.docked and self.level < 100.0
 
+    def set_level(self, percent: float) -> None:
+        """The battery is that full from now on, 0 to 100."""
+        self.level = min(100.0, max(0.0, percent))
+
     def connect(self, pose: Pose) -> None:
         """Raises RobotError where there is no dock at the pose."""
         if self._dock is None:

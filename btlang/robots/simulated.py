@@ -49,9 +49,9 @@ class SimulatedRobot:
         self.stops = 0
         self._obstacles = Obstacles(world)
         self._base = Base(world.start, self._obstacles, body)
-        self._faults = Faults(world.faults)
-        self._navigator = Navigator(world, self._base, self._obstacles, self._faults)
-        self._power = Power(world.battery, world.dock, body)
+        self.faults = Faults(world.faults)
+        self._navigator = Navigator(world, self._base, self._obstacles, self.faults)
+        self.power = Power(world.battery, world.dock, body)
         self._scanner: Scanner | None = None
         self._joints = Joints(body)
         self._hands = Hands(self._obstacles, world.names.objects, body)
@@ -136,9 +136,14 @@ class SimulatedRobot:
         """Metres and degrees a second."""
         return self._base.velocity
 
+    @property
+    def travelled(self) -> float:
+        """Metres that it has driven."""
+        return self._base.travelled
+
     def drive(self, linear: float, angular: float) -> None:
         """Sets the wanted metres and degrees a second; ends a journey under way."""
-        if self._latch.refuses or self._power.empty:
+        if self._latch.refuses or self.power.empty:
             return
         self._navigator.cancel("another command took over the drive")
         self._base.drive(linear, angular)
@@ -180,7 +185,7 @@ class SimulatedRobot:
         goal = self._navigator.start(name, pose)
         if self._latch.refuses:
             goal.end("the robot was stopped")
-        if self._power.empty:
+        if self.power.empty:
             goal.end("the battery is empty")
         self._emit("navigate", name=name)
         return goal
@@ -189,7 +194,7 @@ class SimulatedRobot:
     def scan(self) -> Array:
         """360 distances, computed when first read after a step. Raises RobotError when the scanner is silent."""
         self._need("scanner")
-        if self._faults.scanner_silent:
+        if self.faults.scanner_silent:
             raise SensorSilent("the laser scanner is silent")
         if self._scanner is None:
             from btlang.robots.scan import Scanner  # brings numpy, which takes longer to import than many missions
@@ -239,6 +244,11 @@ class SimulatedRobot:
             raise RobotError(f"{said(known)} can't be moved")
         self._obstacles.move(known, x, y)
 
+    def put(self, pose: Pose) -> None:
+        """Puts the robot somewhere else, at rest, as somebody who carries it would."""
+        self._rest()
+        self._base.put(pose)
+
     def _known(self, name: str) -> str:
         names = self.world.names
         for known in (*names.places, *names.objects, *names.people):
@@ -250,34 +260,34 @@ class SimulatedRobot:
     @property
     def battery(self) -> float:
         """Percent left."""
-        return self._power.level
+        return self.power.level
 
     @property
     def battery_empty(self) -> bool:
         """True when the wheels get no power any more."""
-        return self._power.empty
+        return self.power.empty
 
     @property
     def docked(self) -> bool:
         """True while connected to the dock."""
-        return self._power.docked
+        return self.power.docked
 
     @property
     def charging(self) -> bool:
         """True while docked and not full."""
-        return self._power.charging
+        return self.power.charging
 
     def dock(self) -> CompletedOperation:
         """Connects to the charger at once. Raises RobotError where the robot does not stand at the dock."""
         self._need("docking")
-        self._power.connect(self.pose)
+        self.power.connect(self.pose)
         self._emit("dock")
         return CompletedOperation()
 
     def undock(self) -> CompletedOperation:
         """Disconnects at once; moves nothing."""
-        if self._power.docked:
-            self._power.docked = False
+        if self.power.docked:
+            self.power.docked = False
             self._emit("undock")
         return CompletedOperation()
 
@@ -347,22 +357,22 @@ class SimulatedRobot:
             raise RobotError(f"the robot has no {part_of(need)}")
 
     def _begin_faults(self) -> None:
-        for fault in self._faults.advance(self.time):
+        for fault in self.faults.advance(self.time):
             self._emit("fault", kind=fault.kind, text=describe(fault))
-        self._base.grips = self._faults.grips
+        self._base.grips = self.faults.grips
 
     def _use_power(self, dt: float, metres: float) -> None:
-        was_empty = self._power.empty
-        if self._power.step(dt, metres, self._base.pose):
+        was_empty = self.power.empty
+        if self.power.step(dt, metres, self._base.pose):
             self._emit("undock")
-        if self._power.empty and not was_empty:
+        if self.power.empty and not was_empty:
             self._navigator.cancel("the battery is empty")
             self._base.brake()
             self._emit("battery", percent=0.0)
 
     def _drop(self) -> None:
         for hand in _HANDS:
-            if hand in self._hands.held and self._hands.held_for(hand, self.time) >= self._faults.holds_for(hand):
+            if hand in self._hands.held and self._hands.held_for(hand, self.time) >= self.faults.holds_for(hand):
                 name = self._hands.release(hand, self.pose)
                 self._emit("drop", hand=hand, name=name)
 

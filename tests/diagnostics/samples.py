@@ -14,6 +14,7 @@ from btlang.frontends.btcpp.reader import read_xml
 from btlang.frontends.mission.reader import DEFAULT_PARSER, read_mission
 from btlang.passes import errors_of, run_passes
 from btlang.passes.compilation import Compilation
+from btlang.testing.test_file import check_tests
 from btlang.text.source import Source
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.shipped import ENGLISH
@@ -24,6 +25,8 @@ BAD = Path(__file__).parent.parent / "samples" / "bad"
 def told(source: Source, command: str = "") -> list[Diagnostic]:
     """Errors and warnings of a mission, with the options `--keywords`, `--world` and `--language` of a command line."""
     words = command.split()
+    if words[2:3] == ["test"]:
+        return problems_of_tests(source)
     options = {word: words[at + 1] for at, word in enumerate(words) if word.startswith("--") and at + 1 < len(words)}
     try:
         vocabulary = words_of(options.get("--keywords"), options.get("--world"), options.get("--language", ENGLISH))
@@ -33,6 +36,14 @@ def told(source: Source, command: str = "") -> list[Diagnostic]:
             reading = read_mission(source, vocabulary, DEFAULT_PARSER, errors_of=errors_of)
             compilation = Compilation(vocabulary, reading.mission, warnings=reading.warnings)
         return run_passes(compilation).warnings
+    except MissionError as error:
+        return error.diagnostics
+
+
+def problems_of_tests(source: Source) -> list[Diagnostic]:
+    """What is wrong with a file of tests."""
+    try:
+        return check_tests(source)
     except MissionError as error:
         return error.diagnostics
 

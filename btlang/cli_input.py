@@ -1,0 +1,62 @@
+"""What the options of a verb name: the source of a mission, and the mission."""
+
+from __future__ import annotations
+
+import argparse
+import os
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+from btlang.api import Mission, parse_tree
+from btlang.cli_options import quoted, reads_as_mission
+from btlang.diagnostics.diagnostic import diagnostic
+from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.reading import read_source
+from btlang.testing.names import is_test_file
+from btlang.text.source import Source, Span
+
+
+def typed_source(options: argparse.Namespace) -> Source:
+    """The text of the option -c, whose folder is the current one."""
+    roots = None if options.include_root is None else ("", options.include_root)
+    return Source(options.text, "<command line>", roots=roots, may_load=True)
+
+
+def mission_of(options: argparse.Namespace, source: Source | None = None) -> Mission:
+    """Compiles what the options name; warnings go to the report. Raises MissionError."""
+    mission = parsed_mission(source_of(options) if source is None else source, options)
+    options.report.add(mission.warnings)
+    return mission
+
+
+def source_of(options: argparse.Namespace) -> Source:
+    """The text of the file, or that of the option -c. Raises MissionError."""
+    return typed_source(options) if options.text is not None else _read_file(options)
+
+
+def parsed_mission(source: Source, options: argparse.Namespace) -> Mission:
+    """The mission that a text is with these options. Raises MissionError."""
+    if is_test_file(source.name):
+        raise MissionError([diagnostic("BT183", Span(source, 0, 0), file=source.name)])
+    return parse_tree(
+        source, parser=options.parser, keywords=options.keywords, world=options.world, main=options.main,
+        language=options.language,
+    )  # fmt: skip
+
+
+def _read_file(options: argparse.Namespace) -> Source:
+    """The text of the file. If it isn't there, the error may say how to give a mission as text."""
+    with hinting(options.file, options.verb):
+        return read_source(options.file, options.include_root)
+
+
+@contextmanager
+def hinting(subject: str, verb: str) -> Iterator[None]:
+    """Adds to errors about a subject that isn't a file, but reads as a mission, how to give it as text."""
+    try:
+        yield
+    except MissionError as error:
+        if os.path.exists(subject) or not reads_as_mission(subject):
+            raise
+        told = ("help", f"To give a mission as text: btc {verb} -c {quoted(subject)}")
+        raise MissionError([p.replace(arguments=(*p.arguments, told)) for p in error.diagnostics]) from None

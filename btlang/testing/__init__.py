@@ -1,0 +1,1 @@
+"""Tests of missions in English: `btc test` runs them on the simulated robot."""

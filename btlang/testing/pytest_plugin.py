@@ -1,0 +1,69 @@
+"""The plugin for pytest: collects files of tests (`*.test.txt`), each test an item. pytest finds it by itself."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from btlang.testing.names import is_test_file
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Iterator
+    from typing import Any
+
+    from btlang.testing.test import MissionTest
+
+
+def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Collector | None:
+    """None for other files."""
+    return MissionTestFile.from_parent(parent, path=file_path) if is_test_file(file_path.name) else None
+
+
+class MissionTestFile(pytest.File):
+    """A file of tests. One that can't be read is an error of collection, with all that is wrong with it."""
+
+    def collect(self) -> Iterator[MissionTestItem]:
+        """Its tests, in their order."""
+        from btlang.diagnostics.errors import MissionError
+        from btlang.diagnostics.reading import read_source
+        from btlang.testing.test_file import read_tests
+
+        try:
+            tests = read_tests(read_source(str(self.path), str(self.config.rootpath)))
+        except MissionError as error:
+            raise self.CollectError(str(error)) from None
+        for test in tests:
+            yield MissionTestItem.from_parent(self, name=test.name, test=test)
+
+
+class MissionTestItem(pytest.Item):
+    """One test, with the seed 0."""
+
+    def __init__(self, *, test: MissionTest, **options: Any) -> None:
+        super().__init__(**options)
+        self._test = test
+
+    def runtest(self) -> None:
+        """Raises Failed with what did not hold, and MissionError where the mission can't run."""
+        from btlang.testing.runner import run_test
+
+        result = run_test(self._test)
+        if not result.passed:
+            raise MissionTestFailed(result.problem)
+
+    def repr_failure(self, excinfo: pytest.ExceptionInfo[BaseException], style: Any = None) -> Any:
+        """The lines of `btc test` in place of a traceback."""
+        if isinstance(excinfo.value, MissionTestFailed):
+            return str(excinfo.value)
+        return super().repr_failure(excinfo, style)
+
+    def reportinfo(self) -> tuple[Path, int, str]:
+        """Where it stands."""
+        line, _ = self._test.span.source.position(self._test.span.start)
+        return self.path, line - 1, self.name
+
+
+class MissionTestFailed(Exception):
+    """What did not hold."""

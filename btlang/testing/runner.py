@@ -1,0 +1,115 @@
+"""Runs one test on the simulated robot, as fast as it goes."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from functools import partial
+
+from btlang.api import Mission
+from btlang.engine.blackboard import Blackboard
+from btlang.record import Record
+from btlang.robots.simulation import Simulation
+from btlang.robots.world import World
+from btlang.run.controls import Controls
+from btlang.run.runner import Outcome
+from btlang.session import Session
+from btlang.testing.commands import Command, find_command
+from btlang.testing.coverage import statuses_seen
+from btlang.testing.fakes import Fakes, faked
+from btlang.testing.observations import Observations
+from btlang.testing.script import Broken, Script
+from btlang.testing.test import MissionTest
+from btlang.vocabulary.lexicon import Lexicon
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.engine.leaves.leaf import LeafBinding
+    from btlang.run.events import Sink
+    from btlang.vocabulary.entry import Entry
+
+
+class Result(Record):
+    """How a test ended: `problem` is "" where it passed, else what did not hold; `place` is its file:line.
+
+    `seconds` are those of the mission; with `is_cut` the test took too long. `seen` are the statuses that each node of
+    the mission had; see btlang.testing.coverage.
+    """
+
+    name: str
+    place: str
+    seed: int
+    seconds: float
+    problem: str = ""
+    is_cut: bool = False
+    seen: tuple[int, ...] = ()
+
+    @property
+    def passed(self) -> bool:
+        """Whether all that the test says did hold."""
+        return not self.problem
+
+
+class _TestSimulation(Simulation):
+    """A simulated robot, some of whose words fakes stand in for."""
+
+    def __init__(self, world: World, fakes: Fakes) -> None:
+        super().__init__(world)
+        self._fakes = fakes
+
+    def bind(self, entry: Entry, vocabulary: Lexicon) -> LeafBinding | None:
+        """Only what fakes stand in for."""
+        if not self._fakes.has(entry.id):
+            return None
+        return faked(entry.id, vocabulary, self._fakes, self.bus.clock)
+
+
+def run_test(test: MissionTest, seed: int = 0, mission: Mission | None = None, sinks: Iterable[Sink] = ()) -> Result:
+    """Runs the mission of a test, or another one in its place. Raises MissionError where it can't run at all."""
+    mission = test.mission if mission is None else mission
+    observed, controls, values, fakes = Observations(_commands(test)), Controls(), Blackboard(), Fakes(test.fakes)
+    outcome: Outcome | None = None
+    with Session(lambda world: _TestSimulation(world, fakes), world=mission.world) as session:
+        run = session.prepare(
+            mission, speed="max", time_limit=test.limit, seed=seed, controls=controls, values=values,
+            sinks=[observed, *sinks],
+        )  # fmt: skip
+        script = Script(test, observed, session.robot, controls, values)
+        if script.broken is None:
+            run.bus.add(script)
+            outcome = run.execute()
+    seconds, is_cut = 0.0, False
+    if outcome is not None:
+        observed.outcome, observed.is_over, seconds = outcome, True, outcome.seconds
+        is_cut = outcome.stopped == "time limit" and test.is_cut
+        if not is_cut:
+            script.end(seconds)
+    result = partial(Result, test.name, test.place, seed, seconds, seen=statuses_seen(mission.tree, observed))
+    if script.broken is not None:
+        return result(_told(script.broken, mission, outcome))
+    if is_cut:
+        return result(f"cut after {brief_time(test.limit)}: the mission was not over", is_cut=True)
+    return result()
+
+
+def _commands(test: MissionTest) -> dict[str, Command]:
+    found = ((text, find_command(text, test.mission)) for text in test.texts)
+    return {text: command for text, command in found if command is not None}
+
+
+def _told(broken: Broken, mission: Mission, outcome: Outcome | None) -> str:
+    """The line that did not hold, when and why, and what the mission did."""
+    span = broken.step.span
+    lines = [f"{span.place.rpartition(':')[0]}: {span.text}", f"  after {brief_time(broken.seconds)}: {broken.reason}"]
+    doing = sorted({mission.label(node) for node in broken.doing})
+    if doing:
+        lines.append(f"  the mission was at: {', '.join(doing)}")
+    if outcome is not None and outcome.failure is not None:
+        failed = outcome.failure
+        lines.append(f"  the mission failed: {mission.label(failed.node)}: {failed.reason}")
+    return "\n".join(lines)
+
+
+def brief_time(seconds: float) -> str:
+    """`2 min 5.0 s`."""
+    minutes, rest = divmod(round(seconds, 1), 60)
+    return f"{minutes:.0f} min {rest:.1f} s" if minutes else f"{rest:.1f} s"

@@ -1,0 +1,156 @@
+"""Reads files of tests. A line of a test begins with one of a few words; the rest of it is the English of missions.
+
+test "it goes to charge when it is tired":
+  in the world "museum.toml" with the battery at 25%
+  run "museum_guide.txt"
+  after 30 s the battery drops to 15%
+  then within 2 minutes the robot is charging
+  finally the mission succeeds and it has never bumped
+"""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterator
+
+from btlang.api import Mission, parse_tree, world_vocabulary
+from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
+from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.reading import OUTSIDE, included_path, is_below, read_source
+from btlang.frontends.mission.symbols.needs import WORDS as NEEDED_WORDS
+from btlang.printer.layout import laid_out
+from btlang.record import Record
+from btlang.testing.pieces import Pieces, moved
+from btlang.testing.statements import Statement, statements_of
+from btlang.testing.test import MissionTest
+from btlang.text.source import Source, Span
+from btlang.text.words import Line, Words, split
+from btlang.vocabulary.lexicon import Lexicon
+from btlang.vocabulary.load import load_vocabulary
+
+WORDS = os.path.join(os.path.dirname(__file__), "words.toml")
+"""The keyword file with the words that only tests have."""
+
+
+def read_tests(source: Source) -> tuple[MissionTest, ...]:
+    """The tests of a file, with their missions. Raises MissionError with all that is wrong with them."""
+    vocabulary = load_vocabulary([WORDS])
+    text = split(source, vocabulary.orthography)
+    problems = [diagnostic("BT004", span) for span in text.open_quotes]
+    found: list[MissionTest] = []
+    for block in _blocks(text, problems):
+        try:
+            found.append(_Reader(text, block, vocabulary).test())
+        except MissionError as error:
+            problems += error.diagnostics
+    if not found and not problems:
+        problems.append(_told("BT181", Span(source, 0, 0), "there is no test in this file", 'test "it waves":'))
+    if problems:
+        raise MissionError(sorted(problems, key=lambda one: one.span.start if one.span.source is source else -1))
+    return tuple(found)
+
+
+def check_tests(source: Source) -> list[Diagnostic]:
+    """The warnings of the missions of a file of tests. Raises MissionError with all that is wrong."""
+    return [warning for test in read_tests(source) for warning in test.mission.warnings]
+
+
+def format_tests(source: Source) -> str:
+    """The text in the canonical layout of missions. Raises MissionError where its tests can't be read."""
+    read_tests(source)
+    return laid_out(source, load_vocabulary().orthography)
+
+
+class _Block(Record):
+    """A test: its name, the line that begins it, and the words of its other lines."""
+
+    name: str
+    span: Span
+    lines: tuple[Line, ...]
+
+
+def _blocks(text: Words, problems: list[Diagnostic]) -> Iterator[_Block]:
+    """The tests of a text, by their first lines."""
+    heads = [number for number, line in enumerate(text.lines) if line.indent <= text.lines[0].indent]
+    for at, number in enumerate(heads):
+        line = text.lines[number]
+        words = text.words[line.first : line.last]
+        span = text.span(line.first, line.last)
+        if len(words) != 3 or words[0] != "test" or words[1][0] != '"' or words[2] != ":":
+            problems.append(diagnostic("BT180", span, words=span.text, wanted='test "what it shows":'))
+            continue
+        last = heads[at + 1] if at + 1 < len(heads) else len(text.lines)
+        yield _Block(words[1][1:], span, tuple(text.lines[number + 1 : last]))
+
+
+def _told(code: str, span: Span, reason: str, example: str) -> Diagnostic:
+    return diagnostic(code, span, reason=reason, example=example)
+
+
+class _Reader:
+    """Reads one test: first its mission, whose words its other lines use."""
+
+    def __init__(self, text: Words, block: _Block, vocabulary: Lexicon) -> None:
+        self._text, self._block, self._source = text, block, text.source
+        self._problems: list[Diagnostic] = []
+        self._statements = list(statements_of(text, block.lines, vocabulary, self._problems))
+
+    def test(self) -> MissionTest:
+        """Raises MissionError."""
+        runs = [one for one in self._statements if one.kind == "run"]
+        if len(runs) != 1:
+            span = runs[1].span if runs else self._block.span
+            reason = "it runs more than one mission" if runs else "it runs no mission"
+            self._problems.append(_told("BT181", span, reason, 'run "patrol.txt"'))
+            raise MissionError(self._problems)
+        try:
+            mission = self._mission(runs[0])
+        except MissionError as error:  # the other lines need its words
+            told = [moved(problem, self._source) for problem in error.diagnostics]
+            raise MissionError([*self._problems, *told]) from None
+        keywords: list[str] = []
+        if mission.syntax is not None:
+            needed = [path for role, path in mission.syntax.needs if role == NEEDED_WORDS]
+            keywords = [included_path(path, mission.syntax.span.source)[0] for path in needed]
+        vocabulary = world_vocabulary([*keywords, WORDS], mission.world)
+        pieces = Pieces(self._text, vocabulary, mission)
+        at_run = self._statements.index(runs[0])
+        for number, one in enumerate(self._statements):
+            try:
+                pieces.add(one, before=number < at_run)
+            except MissionError as error:
+                self._problems += error.diagnostics
+        if self._problems:
+            raise MissionError(self._problems)
+        return MissionTest(
+            self._block.name, self._block.span, mission, vocabulary, tuple(pieces.setup), tuple(pieces.fakes),
+            tuple(pieces.steps), tuple(pieces.texts), *pieces.limit(runs[0]),
+        )  # fmt: skip
+
+    def _mission(self, run: Statement) -> Mission:
+        world = next((self._path(one.file) for one in self._statements if one.kind == "world"), None)
+        if run.file is not None:
+            return parse_tree(read_source(self._path(run.file), _root(self._source)), world=world)
+        if run.block is None:
+            raise MissionError([_told("BT181", run.span, "it runs no mission", 'run "patrol.txt"')])
+        return parse_tree(_only(self._source, run.block), world=world)
+
+    def _path(self, named: Span | None) -> str:
+        """Where a file lies that the test names. Raises MissionError where that is no folder of the user's."""
+        assert named is not None
+        path, real = included_path(named.text.strip("\"'“”„’‘"), self._source)  # noqa: RUF001
+        if not any(is_below(real, root) for root in (*self._source.roots, "")):
+            raise MissionError([diagnostic("BT001", named, file=path, reason=OUTSIDE)])
+        if not os.path.isfile(real):
+            raise MissionError([diagnostic("BT001", named, file=path, reason="there is no such file")])
+        return path
+
+
+def _root(source: Source) -> str | None:
+    return source.roots[1] if len(source.roots) > 1 else None
+
+
+def _only(source: Source, span: Span) -> Source:
+    """A text in which all but a part is blank, so that places in it are the same."""
+    before = "".join(character if character == "\n" else " " for character in source.text[: span.start])
+    return Source(before + span.text, source.name, source.folder, source.roots, may_load=source.may_load)
