@@ -22,8 +22,8 @@ _INCLUDE = re.compile(r'^include "(.+)"$', re.MULTILINE)
 class Example(Record):
     """A shipped mission. `about` is the comment at its top, `world` its world file ("" for the one that ships).
 
-    `parts` are the files that it includes; these include no others. `test` is its file of tests. The comment ends with the command that runs it in
-    the folder of the mission, with worlds in `worlds`.
+    `parts` are the files that it includes; these include no others. `test` is its file of tests, "" where it has none.
+    The comment ends with the command that runs it in the folder of the mission, with worlds in `worlds`.
     """
 
     name: str
@@ -62,7 +62,7 @@ def listing(width: int = 80) -> list[str]:
 
 
 def copied(folder: str, chosen: Sequence[Example]) -> list[str]:
-    """Copies missions to a folder, with the worlds, parts and tests that they have in its `worlds`, `parts` and `tests`.
+    """Copies missions to a folder, with their worlds, parts and tests in its `worlds`, `parts` and `tests`.
 
     Returns the paths written.
 

@@ -75,6 +75,7 @@ def test_the_command_of_a_copy_runs_in_its_folder(
     assert main(["examples", "--copy", ".", name]) == 0
     case = CASES[name]
     needed = {f"worlds/{case.world}.toml"} if case.world else {f"parts/{part}.txt" for part in case.parts}
+    needed |= {f"tests/{path.name}" for path in (ROOT / "examples" / "tests").glob(f"{name}.test.txt")}
     assert {p.relative_to(tmp_path).as_posix() for p in tmp_path.rglob("*.*")} == {f"{name}.txt"} | needed
     words = command((tmp_path / f"{name}.txt").read_text(encoding="utf-8"))
     assert words[:2] == ["run", f"{name}.txt"]
