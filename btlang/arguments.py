@@ -62,6 +62,13 @@ def at_least(least: int) -> Callable[[str], int]:
     return number
 
 
+def port(text: str) -> int:
+    """Of TCP, with one behind it."""
+    if not text.isdecimal() or not 1 <= int(text) <= 65_534:
+        raise argparse.ArgumentTypeError(f"expected a port from 1 to 65534, not '{text}'")
+    return int(text)
+
+
 def size(text: str) -> int:
     """Bytes: a number with kB, MB or GB."""
     units = {"kb": 1_000, "mb": 1_000_000, "gb": 1_000_000_000}

@@ -23,6 +23,8 @@ from btlang.text.source import Source
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from typing import Any
+
     from btlang.diagnostics.diagnostic import Diagnostic
 
 SUCCESS, FAILED, UNFORMATTED, BAD_INPUT, CRASHED, INTERRUPTED = 0, 1, 1, 2, 70, 130
@@ -98,7 +100,17 @@ def _run(options: argparse.Namespace) -> int:
             lines=options.lines,
             sinks=[*sinks, *recorders],
             scans=options.record_scans if recorders else None,
+            open_monitor=_groot(options.groot),
         )
+
+
+def _groot(port: int | None) -> Callable[..., Any] | None:
+    """What shows a run to Groot2, if the options ask for that."""
+    if port is None:
+        return None
+    from btlang.monitor.command import groot_monitor
+
+    return partial(groot_monitor, port)
 
 
 def _check(options: argparse.Namespace) -> int:

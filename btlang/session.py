@@ -39,6 +39,7 @@ if TYPE_CHECKING:
     from types import TracebackType
     from typing import Any, Protocol
 
+    from btlang.engine.instance import Hooks
     from btlang.robots.registry import Connect
     from btlang.run.connection import Connection
     from btlang.run.events import Event, Sink
@@ -102,13 +103,14 @@ class Session:
         values: Blackboard | None = None,
         controls: Controls | None = None,
         seed: int | None = None,
+        hooks: Hooks | None = None,
     ) -> Run:
         """A run that hasn't started yet: for `Run.execute` and `Run.tick`.
 
         `speed` is "real", "max" or a factor of real time. `rate` is in ticks per second of mission time, and the
         mission ends after `time_limit` seconds. `sinks` get events (see btlang.run.events) according to their policy
         (see btlang.run.bus). `values` are initial blackboard entries. `controls` may be created before the run. Random
-        choices of the robot follow from `seed`, by default another one for each run.
+        choices of the robot follow from `seed`, by default another one for each run. `hooks` are those of an engine.
 
         Raises MissionError if a command can't run (BT080) or the robot lacks something it needs (BT101), ValueError for
         another speed or rate, RuntimeError during another run.
@@ -120,7 +122,7 @@ class Session:
             raise ValueError(f'speed must be "real", "max" or a number from {SLOWEST} on, not {speed!r}')
         if not RATES[0] <= rate <= RATES[1]:
             raise ValueError(f"rate must be from {RATES[0]:g} to {RATES[1]:g} ticks a second, not {rate!r}")
-        self.current = Run(mission, self.connection, factor, rate, time_limit, sinks, values, controls, seed)
+        self.current = Run(mission, self.connection, factor, rate, time_limit, sinks, values, controls, seed, hooks)
         return self.current
 
     def run(self, mission: Runnable, **options: Any) -> Run:
@@ -175,6 +177,7 @@ class Run:
         values: Blackboard | None,
         controls: Controls | None,
         seed: int | None = None,
+        hooks: Hooks | None = None,
     ) -> None:
         self.id = os.urandom(16).hex()  # what `uuid` does, whose import takes 4 ms
         self.seed = int.from_bytes(os.urandom(4), "big") if seed is None else seed
@@ -189,16 +192,22 @@ class Run:
         self._thread: threading.Thread | None = None
         self._error: BaseException | None = None
         self._under_way = False
-        self._engine = self._bound(connection, sinks, values, timed=speed < math.inf)
+        self._engine = self._bound(connection, sinks, values, hooks, timed=speed < math.inf)
         self._story = FailureHistory(self._engine)
-        self._follower = Follower(self._engine)
+        self.follower = Follower(self._engine)
+        """The statuses of all nodes, for any thread."""
         self._recent = _Recent()
-        for own in (self._story, self._follower, self._recent):
+        for own in (self._story, self.follower, self._recent):
             self.bus.add(own)
         self._runner = Runner(
             self._engine, bus=self.bus, robot=connection.robot, rate=rate, speed=speed, time_limit=time_limit,
             controls=self.controls, pace=connection.pace,
         )  # fmt: skip
+
+    @property
+    def nodes(self) -> Engine:
+        """The nodes of the tree by their numbers, after expansion of subtrees."""
+        return self._engine
 
     @property
     def is_under_way(self) -> bool:
@@ -279,14 +288,14 @@ class Run:
 
     def snapshot(self) -> Snapshot:
         """The statuses of all nodes and the state of the robot, after the event with the number in it."""
-        return self._follower.snapshot(self.mission.label)
+        return self.follower.snapshot(self.mission.label)
 
     def statuses(self) -> dict[str, Status]:
         """The current or last status of each node, by its words; nodes with equal words share the latest.
 
         IDLE nodes were not reached, or were reset when a node above them ended.
         """
-        return self._follower.statuses(self.mission.label)
+        return self.follower.statuses(self.mission.label)
 
     @property
     def sink_errors(self) -> list[Exception]:
@@ -300,7 +309,13 @@ class Run:
             self._error = error
 
     def _bound(
-        self, connection: Connection, sinks: Iterable[Sink], values: Blackboard | None, *, timed: bool
+        self,
+        connection: Connection,
+        sinks: Iterable[Sink],
+        values: Blackboard | None,
+        hooks: Hooks | None,
+        *,
+        timed: bool,
     ) -> Engine:
         mission = self.mission
         connection.robot.name_places(Place(fact.name, fact.x, fact.y, fact.facing) for fact in mission.facts)
@@ -314,7 +329,7 @@ class Run:
         try:
             return traced_engine(
                 mission.tree, bind, bus=self.bus, services={"robot": connection.robot}, proxies={"robot": RobotProxy},
-                blackboard=values, stopwatch=Stopwatch() if timed else None,
+                blackboard=values, stopwatch=Stopwatch() if timed else None, hooks=hooks,
             )  # fmt: skip
         except EngineError as error:
             raise MissionError(self._refused(error, connection)) from None

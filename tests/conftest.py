@@ -4,7 +4,10 @@ from __future__ import annotations
 
 import os
 import re
+import socket
 import sys
+from contextlib import suppress
+from functools import cache
 from pathlib import Path
 from types import ModuleType
 
@@ -69,6 +72,10 @@ def take_away_what_is_missed(code: str, patch: pytest.MonkeyPatch) -> None:
     if code == "BT083":
         patch.setitem(sys.modules, "mcap", None)
         patch.setitem(sys.modules, "mcap.writer", None)
+    if code == "BT085":
+        patch.setitem(sys.modules, "msgpack", None)
+    if code == "BT086":
+        _taken(1667)
     patch.setitem(sys.modules, "btlang_interfaces", None)  # BT110
     if code != "BT101":
         patch.setitem(sys.modules, "rclpy", ModuleType("rclpy") if code == "BT110" else None)  # BT100
@@ -77,6 +84,16 @@ def take_away_what_is_missed(code: str, patch: pytest.MonkeyPatch) -> None:
     patch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "OFF")
     for waited in ("_DISCOVERY", "_AGAIN"):
         patch.setattr(f"btlang.ros.connection.{waited}", 0.5)  # seconds: it finds nobody
+
+
+@cache
+def _taken(port: int) -> socket.socket:
+    """Takes a port for the rest of the process, unless it is taken already."""
+    taken = socket.socket()
+    with suppress(OSError):
+        taken.bind(("127.0.0.1", port))
+        taken.listen()
+    return taken
 
 
 def _buggy(*_: object) -> list[str]:

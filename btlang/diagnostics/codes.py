@@ -128,6 +128,8 @@ _ALL = (
     Code("BT082", "btc mcp needs the Python package mcp, which isn't installed.", "Install it: pip install 'btlang[mcp]'"),
     Code("BT083", "Recordings need the Python package mcap, which isn't installed.", "Install it: pip install 'btlang[record]'"),
     Code("BT084", "{file} isn't a recording of btlang.", "Record a run with: btc run FILE --record {file}"),
+    Code("BT085", "Groot2 needs packages that aren't installed.", "Run: pip install 'btlang[groot]'"),
+    Code("BT086", "Port {port} can't be used for Groot2: {reason}.", "Choose another one: --groot PORT"),
     Code("BT090", "There's no message code '{name}'.", "Run 'btc explain' to list them."),
     Code("BT099", "btlang has a bug: {error}.", "{advice}"),
     Code("BT100", "ROS 2 can't be used: {reason}.", "{advice}"),

@@ -61,6 +61,10 @@ class Blackboard:
         scope, key = self._owner(key)
         return scope._values[key]
 
+    def own_values(self) -> dict[str, Any]:
+        """A copy of the values in this scope itself."""
+        return dict(self._values)
+
     def argument(self, key: str) -> Any:
         """What a subtree was given for a key, None for a key of the outermost scope."""
         scope, key = self._owner(key)

@@ -37,7 +37,7 @@ from btlang.tree.node import Node, Tree
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.engine.instance import Compiled
+    from btlang.engine.instance import Compiled, Hooks
 
 
 SEMANTICS: dict[str, Callable[[NodeInstance, Sequence[Compiled]], Compiled]] = {
@@ -137,7 +137,9 @@ def _root_of(node: Node, name: str, subtrees: dict[str, Node]) -> Node:
     return subtrees[name]
 
 
-def compile_instances(instances: Sequence[NodeInstance], trace: StatusTrace | None) -> Compiled:
+def compile_instances(
+    instances: Sequence[NodeInstance], trace: StatusTrace | None, hooks: Hooks | None = None
+) -> Compiled:
     """Compiles from the last node to the root, so that children are there before their parents."""
     waiting: list[Compiled] = []  # compiled nodes whose parents come later, so that the last ones are the next one's
     traces: list[NodeTrace] = []
@@ -154,12 +156,14 @@ def compile_instances(instances: Sequence[NodeInstance], trace: StatusTrace | No
             lower = traces[: -count - 1 : -1] if count else []
             node_trace = NodeTrace(instance.index, above is not None and repeats(above.node), lower, trace)
             traces[len(traces) - count :] = [node_trace]
-        instance.state.node_trace = node_trace
+        instance.state.node_trace = node_trace if hooks is None else None  # a hook may change what a leaf would report
         compiled = compile_node(instance, children)
         lasts = compiled[1] is not halt_nothing
         path = around[instance.index]
         if path is not None and path.used and path.top == instance.index:
             compiled = resuming(path, compiled)
+        if hooks is not None:
+            compiled = hooks.wrap(instance.index, compiled)
         if node_trace is not None:
             compiled = node_trace.wrap(compiled)
         if path is None and above is not None and lasts:

@@ -25,6 +25,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+    from btlang.engine.instance import Hooks
     from btlang.engine.status_trace import Listener
     from btlang.engine.timing import Stopwatch
 
@@ -57,6 +58,7 @@ class Engine:
     `enums` are names of numbers that scripts and the cases of Switch nodes may use. A `stopwatch` times the leaves.
     `proxies` are for services that are not safe beside the tick: by their names, what makes of the service, and of
     `Work.in_tick`, what background leaves get; its `let_go` is called when such a leaf was halted or has failed.
+    `hooks` may step in before and behind each tick of a node, which then takes longer.
 
     Raises EngineError where the tree cannot be compiled. `listener` gets lists of status changes, children before
     parents; see status_trace.py for what counts as one, and when it gets them. `on_unknown` is called during a tick if
@@ -76,6 +78,7 @@ class Engine:
         stopwatch: Stopwatch | None = None,
         on_unknown: Callable[[Failure], object] | None = None,
         proxies: Mapping[str, Callable[..., Any]] = {},
+        hooks: Hooks | None = None,
     ) -> None:
         self.blackboard = Blackboard() if blackboard is None else blackboard
         self.stopwatch = stopwatch
@@ -88,7 +91,7 @@ class Engine:
         with gc_paused:
             self._instances = expand(tree, self.blackboard, self._state)
             self._trace = None if listener is None else StatusTrace(self._state, listener)
-            self._tick, self._halt = compile_instances(self._instances, self._trace)
+            self._tick, self._halt = compile_instances(self._instances, self._trace, hooks)
         self._frames = _depth(self._instances) * _FRAMES_PER_LEVEL + _FRAMES_FOR_LEAVES
         self._deep = self._frames > _FRAMES_ASSUMED
         listened = self._instances if listener is not None else ()
@@ -221,6 +224,10 @@ class Engine:
         """
         if self._trace is not None and self._trace.thread == get_ident():
             self._trace.flush()
+
+    def values(self, index: int) -> dict[str, Any]:
+        """The values of the blackboard of a node, but for those that it shares with the one above. From any thread."""
+        return self._instances[index].scope.own_values()
 
     def parent(self, index: int) -> int:
         """The node above a node, -1 for the root."""

@@ -52,6 +52,11 @@ if TYPE_CHECKING:
 
         def wrap(self, index: int, compiled: Compiled) -> Compiled: ...
 
+    class Hooks(Protocol):
+        """What steps in before and behind the ticks of nodes; see Breakpoints in btlang/monitor/breakpoints.py."""
+
+        def wrap(self, index: int, compiled: Compiled) -> Compiled: ...
+
     class BackgroundWork(Protocol):
         """See Background in leaves/background.py."""
 

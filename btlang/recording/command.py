@@ -72,6 +72,8 @@ def _replay(options: argparse.Namespace) -> int:
     with opened(options.file, options.keywords if options.as_mission else None) as (recording, mission, nodes):
         if options.as_mission:
             return _run_again(recording, mission, nodes)
+        if options.to is not None:
+            return _write_log(options.to, recording, mission, nodes)
         controls = Controls()
         lines = Lines(mission.label, mission.is_action, show)
         view = None if options.lines else live_view(mission, controls)
@@ -80,11 +82,35 @@ def _replay(options: argparse.Namespace) -> int:
             start = next(iter(failures(recording.events(nodes))), -math.inf)
             controls.paused = view is not None and start > -math.inf
         speed = {"real": 1.0, "max": math.inf}.get(options.speed, options.speed)
-        with nullcontext() if view is None else view:
+        sinks: list[Sink] = [lines if view is None else view]
+        with nullcontext() if view is None else view, _shown(options.groot, controls, mission, nodes) as monitors:
             try:
-                play(recording.events(nodes), [lines if view is None else view], controls, speed, start)
+                play(recording.events(nodes), [*sinks, *monitors], controls, speed, start)
             except KeyboardInterrupt:
                 return 130
+    return 0
+
+
+@contextmanager
+def _shown(port: int | None, controls: Controls, mission: Mission, nodes: RecordedNodes) -> Iterator[list[Sink]]:
+    """The sinks that show a replay to Groot2. Raises MissionError (BT085, BT086)."""
+    if port is None:
+        yield []
+        return
+    from btlang.monitor.command import ReplayMonitor, groot_monitor
+
+    with groot_monitor(port, controls) as monitor:
+        yield [ReplayMonitor(monitor.server, nodes, mission)]
+
+
+def _write_log(path: str, recording: Recording, mission: Mission, nodes: RecordedNodes) -> int:
+    """As a log of BehaviorTree.CPP."""
+    from btlang.backends.files import write_file
+    from btlang.monitor.btlog import to_btlog
+    from btlang.monitor.command import groot_tree
+
+    write_file(path, to_btlog(groot_tree(nodes, mission), recording.events(nodes)))
+    show(f"Wrote {path}.")
     return 0
 
 

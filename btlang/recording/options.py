@@ -5,7 +5,10 @@ from __future__ import annotations
 import argparse
 from contextlib import AbstractContextManager, nullcontext
 
-from btlang.arguments import between, duration, size
+from btlang.arguments import between, duration, port, size
+
+USUAL_PORT = 1667
+"""At which Groot2 looks for a run; it listens to the next one, too."""
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -28,9 +31,18 @@ def add_recording_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--record-scans", type=between(0, 100), default=2.0, metavar="HZ", help="scans per second in it (default: 2)"
     )
+    add_groot_option(parser)
     parser.add_argument(
         "--record-size", type=size, metavar="SIZE", help="begin another file at this size, such as 100MB"
     )
+
+
+def add_groot_option(parser: argparse.ArgumentParser) -> None:
+    """Of the verbs that show a run to Groot2."""
+    parser.add_argument(
+        "--groot", nargs="?", type=port, const=USUAL_PORT, metavar="PORT",
+        help="show the run in Groot2, which connects to this port (default: %(const)s)",
+    )  # fmt: skip
 
 
 def add_replay_options(parser: argparse.ArgumentParser) -> None:
@@ -40,6 +52,8 @@ def add_replay_options(parser: argparse.ArgumentParser) -> None:
         "--from", type=duration, dest="start", metavar="DURATION", help="begin at this time, such as 5min"
     )
     parser.add_argument("--failure", action="store_true", help="begin at the first failure")
+    add_groot_option(parser)
+    parser.add_argument("--to", metavar="FILE", help="write it for Groot2: a file that ends with .btlog")
     parser.add_argument("--as-mission", action="store_true", help="run the mission again; report where it differs")
     parser.add_argument(
         "--keywords", action="append", default=[], metavar="FILE", help="a keyword file of the mission to run again"

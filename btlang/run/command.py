@@ -26,7 +26,7 @@ from btlang.tree.node import Node, Tree
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Protocol, TextIO
+    from typing import Any, Protocol, TextIO
 
     from btlang.run.bus import Bus
     from btlang.run.events import Sink
@@ -48,6 +48,13 @@ if TYPE_CHECKING:
 
         @property
         def prepare(self) -> Callable[..., Run]: ...
+
+    class Monitor(Protocol):
+        """See btlang.monitor.groot.GrootMonitor."""
+
+        hooks: Any
+
+        def watch_run(self, run: Any, mission: Any) -> None: ...
 
     class Mission(Protocol):
         """What can be run from the command line; see btlang.api.Mission."""
@@ -85,6 +92,7 @@ def run_mission(
     values: Blackboard | None = None,
     seed: int | None = None,
     scans: float | None = None,
+    open_monitor: Callable[[Controls], AbstractContextManager[Monitor]] | None = None,
 ) -> int:
     """Runs and reports; returns the exit code. Raises MissionError where the log cannot be opened (BT009).
 
@@ -92,7 +100,8 @@ def run_mission(
     succeeded has the exit code 2. On a terminal it shows the live view, whose tree stays at the end or not and which
     puts keys that aren't for it into `type_ahead`, if given; elsewhere and where `lines` is true plain lines; and
     nothing when `quiet`. `sinks` get all events too, with `scans` also samples of the blackboard and so many scans a
-    second; `open_session` gives the session to run in, `values` and `seed` are as for Session.prepare.
+    second; `open_session` gives the session to run in, `values` and `seed` are as for Session.prepare. `open_monitor`
+    gives what shows the run to another program, such as Groot2.
     """
     controls = Controls()
     view = None if quiet or lines else live_view(mission, controls, type_ahead, tree_stays)
@@ -107,11 +116,16 @@ def run_mission(
             emergency_signal(controls.emergency_stop),
             _opened(log) as file,
             view if view is not None else nullcontext(),
+            open_monitor(controls) if open_monitor is not None else nullcontext() as monitor,
             open_session() as session,
         ):
             if file is not None:
                 sinks.append(JsonLog(file, mission.label))
+            if monitor is not None:
+                options["hooks"] = monitor.hooks
             run = session.prepare(mission, sinks=sinks, **options)
+            if monitor is not None:
+                monitor.watch_run(run, mission)
             if scans is not None:
                 run.bus.add(Sampler(run.bus, values, scans))
             outcome = run.execute()

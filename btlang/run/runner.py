@@ -24,6 +24,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, Protocol
 
+    from btlang.engine.instance import Hooks
     from btlang.engine.status_trace import Changes
     from btlang.engine.timing import Stopwatch
     from btlang.run.events import Robot
@@ -91,6 +92,7 @@ def traced_engine(
     blackboard: Blackboard | None = None,
     stopwatch: Stopwatch | None = None,
     proxies: Mapping[str, Callable[..., Any]] = {},
+    hooks: Hooks | None = None,
 ) -> Engine:
     """An engine whose status changes go on the bus, and once in a run each condition that is not known.
 
@@ -117,6 +119,7 @@ def traced_engine(
         stopwatch=stopwatch,
         on_unknown=unknown,
         proxies=proxies,
+        hooks=hooks,
     )
     bus.before = engine.flush
     return engine

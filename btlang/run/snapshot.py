@@ -16,9 +16,16 @@ from btlang.run.statuses import Status
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.engine.engine import Engine
-    from btlang.run.events import Event
+    from typing import Protocol
+
+    from btlang.run.events import Event, Nodes
     from btlang.tree.node import Node
+
+    class WatchedNodes(Nodes, Protocol):
+        """The nodes of a run that goes on (btlang.engine.engine.Engine), or of a recorded one."""
+
+        def parent(self, index: int) -> int: ...
+
 
 HALTED = IDLE + 1
 """Was RUNNING and was halted."""
@@ -157,11 +164,11 @@ class State:
 
 
 class Follower:
-    """A sink that follows the run of an engine, and gives snapshots of it to any thread."""
+    """A sink that follows a run, and gives snapshots of it to any thread."""
 
     policy = INLINE
 
-    def __init__(self, engine: Engine) -> None:
+    def __init__(self, engine: WatchedNodes) -> None:
         self._engine = engine
         self._lock = Lock()
         self._state: State | None = None
@@ -191,6 +198,11 @@ class Follower:
         reached = {path(index): _status(code) for index, code in enumerate(codes) if code != IDLE}
         running = tuple(label(self._nodes[index]) for index in leaves)
         return Snapshot(run, number, t, _status(codes[0]), reached, running, said, robot)
+
+    def codes(self) -> bytes:
+        """The status of each node in preorder, also HALTED and SUSPENDED; nothing before the first event."""
+        with self._lock:
+            return bytes(self._state.statuses) if self._state is not None else b""
 
     def statuses(self, label: Callable[[Node], str]) -> dict[str, Status]:
         """The status of each node by its words."""

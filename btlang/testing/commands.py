@@ -13,10 +13,14 @@ from btlang.vocabulary.trie import longest
 
 
 class Command(Record):
-    """Nodes of a mission: those with one of these ids and, where the words say them, these values of ports."""
+    """Nodes of a mission: those with one of these ids and, where the words say them, these values of ports.
+
+    With `is_denied` the words say the opposite of a condition: `nobody is near`.
+    """
 
     ids: frozenset[str]
     ports: tuple[tuple[str, str], ...] = ()
+    is_denied: bool = False
 
     def matches(self, node: Node) -> bool:
         """Whether a node, with its values filled in, is meant."""
@@ -40,7 +44,8 @@ def find_command(text: str, mission: Mission) -> Command | None:
     match = longest(vocabulary.trie, words, 0, vocabulary.context)
     if match is not None and match.last == len(wanted) and match.meaning.entry is not None:
         ports = tuple((value.name, value.text) for value in match.values)
-        return _if_there(Command(frozenset((match.meaning.entry.id,)), ports), mission)
+        is_denied = match.meaning.role == "negated"
+        return _if_there(Command(frozenset((match.meaning.entry.id,)), ports, is_denied), mission)
     ids = {entry.id for entries in vocabulary.entries.values() for entry in entries if _begins(entry.phrases, wanted)}
     ids |= {id for id in vocabulary.entries if id.lower() == "".join(wanted)}
     return _if_there(Command(frozenset(ids)), mission)

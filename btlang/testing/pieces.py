@@ -22,7 +22,8 @@ _ANYWHERE = ("run", "fake")
 _KINDS = {"always": ALWAYS, "never": NEVER, "finally": FINALLY, "within": WITHIN, "for": FOR}
 _TOPIC = "testing"
 _OF_COMMANDS = frozenset((
-    "HasDone", "HasDoneTimes", "HasTried", "HasTriedTimes", "HasNeverTried", "HasFailedTo", "IsDoing",
+    "HasDone", "HasDoneOnce", "HasDoneTimes", "HasTried", "HasTriedOnce", "HasTriedTimes", "HasNeverTried",
+    "HasFailedTo", "IsDoing",
 ))  # fmt: skip
 """The conditions of tests whose text is a command of the mission."""
 
@@ -129,7 +130,7 @@ class Pieces:
         while at < one.last:
             succeeds, seconds, at = self._outcome(one, at)
             times, at = self._times(one, at)
-            found.append(Fake(name, command, succeeds, seconds, times))
+            found.append(Fake(name, command, succeeds != command.is_denied, seconds, times))
             while at < one.last and self._text.words[at] in (",", "then", "and"):
                 at += 1
         if not found or any(not fake.times for fake in found[:-1]):

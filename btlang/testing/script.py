@@ -160,7 +160,11 @@ class _Questions:
                 return error.message
         if engine.tick() == SUCCESS:
             return ""
-        return engine.failure.reason if engine.failure is not None else "it can't be known at once"
+        failure = engine.failure
+        if failure is None:
+            return "it can't be known at once"
+        words = failure.span.text if failure.span is not None and tree.root.children else ""
+        return f"'{words}': {failure.reason}" if words else failure.reason
 
     def _engine(self, tree: Tree) -> Engine:
         return Engine(

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from btlang.actions.points import where
+from btlang.engine.leaves.leaf import Failed
 from btlang.engine.status import FAILURE, RUNNING, SUCCESS
 from btlang.robots.geometry import Pose
 from btlang.robots.robot import Hand
@@ -12,6 +13,10 @@ from btlang.run.controls import Controls
 from btlang.testing.observations import Observations
 
 _HANDS: tuple[Hand, Hand] = ("left", "right")
+
+
+def _exactly(wanted: int, count: int) -> bool | Failed:
+    return count == wanted or Failed(f"it was {count} time{'s' * (count != 1)}")
 
 
 def mission_succeeds(observed: Observations) -> bool:
@@ -33,8 +38,12 @@ def has_said(observed: Observations, text: str) -> bool:
     return observed.said_times(text) > 0
 
 
-def has_said_times(observed: Observations, text: str, number: int) -> bool:
-    return observed.said_times(text) == number
+def has_said_once(observed: Observations, text: str) -> bool | Failed:
+    return _exactly(1, observed.said_times(text))
+
+
+def has_said_times(observed: Observations, text: str, number: int) -> bool | Failed:
+    return _exactly(number, observed.said_times(text))
 
 
 def has_never_said(observed: Observations, text: str) -> bool:
@@ -49,16 +58,24 @@ def has_done(observed: Observations, text: str) -> bool:
     return observed.times(text, SUCCESS) > 0
 
 
-def has_done_times(observed: Observations, text: str, number: int) -> bool:
-    return observed.times(text, SUCCESS) == number
+def has_done_once(observed: Observations, text: str) -> bool | Failed:
+    return _exactly(1, observed.times(text, SUCCESS))
+
+
+def has_done_times(observed: Observations, text: str, number: int) -> bool | Failed:
+    return _exactly(number, observed.times(text, SUCCESS))
 
 
 def has_tried(observed: Observations, text: str) -> bool:
     return observed.times(text, RUNNING) > 0
 
 
-def has_tried_times(observed: Observations, text: str, number: int) -> bool:
-    return observed.times(text, RUNNING) == number
+def has_tried_once(observed: Observations, text: str) -> bool | Failed:
+    return _exactly(1, observed.times(text, RUNNING))
+
+
+def has_tried_times(observed: Observations, text: str, number: int) -> bool | Failed:
+    return _exactly(number, observed.times(text, RUNNING))
 
 
 def has_never_tried(observed: Observations, text: str) -> bool:
@@ -87,6 +104,10 @@ def has_reached_person(observed: Observations, person: str) -> bool:
 
 def has_held(observed: Observations, object: str) -> bool:
     return object in observed.held
+
+
+def has_never_held(observed: Observations, object: str) -> bool:
+    return object not in observed.held
 
 
 def has_dropped(observed: Observations) -> bool:
