@@ -75,7 +75,7 @@ def take_away_what_is_missed(code: str, patch: pytest.MonkeyPatch) -> None:
     if code == "BT085":
         patch.setitem(sys.modules, "msgpack", None)
     if code == "BT086":
-        _taken(1667)
+        _taken(64_998)
     patch.setitem(sys.modules, "btlang_interfaces", None)  # BT110
     if code != "BT101":
         patch.setitem(sys.modules, "rclpy", ModuleType("rclpy") if code == "BT110" else None)  # BT100

@@ -41,7 +41,7 @@ def add_groot_option(parser: argparse.ArgumentParser) -> None:
     """Of the verbs that show a run to Groot2."""
     parser.add_argument(
         "--groot", nargs="?", type=port, const=USUAL_PORT, metavar="PORT",
-        help="show the run in Groot2, which connects to this port (default: %(const)s)",
+        help=f"show the run in Groot2, which connects to this port (default: {USUAL_PORT})",
     )  # fmt: skip
 
 

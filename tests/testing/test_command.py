@@ -148,12 +148,10 @@ def test_pytest_collects_them(folder: Path) -> None:
     (folder / "a.test.txt").write_text(PASSES + FAILS)
     (folder / "b.test.txt").write_text("nonsense")
     words = [sys.executable, "-m", "pytest", "-q", "-p", "no:cacheprovider", "-p", "no:xdist"]
+    words.append("--continue-on-collection-errors")
     done = subprocess.run(words, capture_output=True, text=True, check=False, cwd=folder)
-    assert "a.test.txt::it nods" in done.stdout or done.returncode == 2, done.stdout
+    assert "1 failed, 1 passed, 1 error" in done.stdout
     assert "BT180" in done.stdout
-    (folder / "b.test.txt").unlink()
-    done = subprocess.run(words, capture_output=True, text=True, check=False, cwd=folder)
-    assert "1 failed, 1 passed" in done.stdout
     assert "after 1.0 s: it is not true" in done.stdout
     assert "Traceback" not in done.stdout
 
@@ -161,7 +159,7 @@ def test_pytest_collects_them(folder: Path) -> None:
 @pytest.mark.long
 def test_many_tests_of_five_minutes(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
     (folder / "m.txt").write_text("repeat forever: go to the lobby then go to the lab and look around\n")
-    count = amount(6, 100)
+    count = amount(5, 100)
     (folder / "a.test.txt").write_text(
         "\n".join(
             f'test "{number}":\n  run "m.txt" for 5 minutes\n  within 2 minutes it has reached the lab\n'
