@@ -13,9 +13,11 @@ from contextlib import contextmanager, nullcontext
 from btlang.api import Mission
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import unwritable
+from btlang.pictures.command import pictures_of
 from btlang.recording.bundle import files_of
 from btlang.recording.compare import first_difference
 from btlang.recording.diff import diff
+from btlang.recording.drawing import drawn
 from btlang.recording.open import opened
 from btlang.recording.reader import RecordedNodes, Recording
 from btlang.recording.recorder import Recorder
@@ -83,11 +85,18 @@ def _replay(options: argparse.Namespace) -> int:
             controls.paused = view is not None and start > -math.inf
         speed = {"real": 1.0, "max": math.inf}.get(options.speed, options.speed)
         sinks: list[Sink] = [lines if view is None else view]
-        with nullcontext() if view is None else view, _shown(options.groot, controls, mission, nodes) as monitors:
+        with (
+            pictures_of(mission, options.picture, options.tree_picture, quiet=False) as pictures,
+            nullcontext() if view is None else view,
+            _shown(options.groot, controls, mission, nodes) as monitors,
+        ):
+            sinks += [*monitors, *map(drawn, pictures)]
             try:
-                play(recording.events(nodes), [*sinks, *monitors], controls, speed, start)
+                play(recording.events(nodes), sinks, controls, speed, start)
             except KeyboardInterrupt:
                 return 130
+        if options.why:
+            show("\n".join(Story(mission, nodes, recording.about).take(recording.events(nodes)).lines()))
     return 0
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 from contextlib import AbstractContextManager, nullcontext
 
-from btlang.arguments import between, duration, port, size
+from btlang.arguments import between, duration, picture, port, size
 
 USUAL_PORT = 1667
 """At which Groot2 looks for a run; it listens to the next one, too."""
@@ -53,6 +53,13 @@ def add_replay_options(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--failure", action="store_true", help="begin at the first failure")
     add_groot_option(parser)
+    parser.add_argument(
+        "--picture", type=picture(".svg", ".png", ".gif"), metavar="FILE", help="draw the run: .svg, .png or .gif"
+    )
+    parser.add_argument(
+        "--tree-picture", type=picture(".svg", ".png"), metavar="FILE", help="draw the tree with its final statuses"
+    )
+    parser.add_argument("--why", action="store_true", help="tell what happened at the end, as btc why does")
     parser.add_argument("--to", metavar="FILE", help="write it for Groot2: a file that ends with .btlog")
     parser.add_argument("--as-mission", action="store_true", help="run the mission again; report where it differs")
     parser.add_argument(

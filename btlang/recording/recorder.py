@@ -5,11 +5,14 @@ from __future__ import annotations
 import json
 import os
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
 
+from btlang.api import Mission
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.reading import unwritable
+from btlang.recording.bundle import files_of
 from btlang.recording.channels import Channel, messages
 from btlang.run.bus import BLOCK
 from btlang.run.events import Ended, Event, PeriodPassed
@@ -126,3 +129,16 @@ def _schema(channel: Channel) -> str:
 
 def _media_type(name: str) -> str:
     return {".xml": "application/xml", ".json": "application/json"}.get(os.path.splitext(name)[1], "text/plain")
+
+
+def recorder_in(folder: str, mission: Mission, keywords: Sequence[str], about: Mapping[str, str]) -> Recorder:
+    """A recorder for a run of a mission, in a file of a folder that is named after the time. Raises MissionError."""
+    import btlang
+
+    path = os.path.join(folder, time.strftime("%Y-%m-%d-%H%M%S-") + os.urandom(2).hex() + ".mcap")
+    known = {"btlang": btlang.__version__, "wall": f"{time.time():.3f}", **about}
+    try:
+        os.makedirs(folder, exist_ok=True)
+        return Recorder(path, mission.label, files_of(mission, keywords), known)
+    except OSError as error:
+        raise MissionError([unwritable(path, error)]) from None

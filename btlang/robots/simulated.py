@@ -190,6 +190,10 @@ class SimulatedRobot:
         self._emit("navigate", name=name)
         return goal
 
+    def drop_goal(self, reason: str) -> None:
+        """A journey under way fails, as if the navigation had lost it."""
+        self._navigator.cancel(reason)
+
     # Senses
     def scan(self) -> Array:
         """360 distances, computed when first read after a step. Raises RobotError when the scanner is silent."""

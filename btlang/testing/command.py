@@ -6,7 +6,7 @@ import os
 import platform
 import re
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from contextlib import suppress
 from functools import cache, partial
 
@@ -17,7 +17,7 @@ from btlang.diagnostics.reading import read_source
 from btlang.testing.coverage import covered
 from btlang.testing.names import ENDING
 from btlang.testing.report import Summary, ending, junit, lines
-from btlang.testing.runner import Result, run_test
+from btlang.testing.runner import Result, run_chaos, run_test
 from btlang.testing.test import MissionTest
 from btlang.testing.test_file import read_tests
 from btlang.text.output import show
@@ -90,13 +90,13 @@ def _results(
     most = min(options.jobs or os.cpu_count() or 1, len(tests))
     if most == 1 or len(tests) * len(seeds) <= _FEW:
         for _, _, test in tests:
-            yield _summary(test, seeds, options.keep)
+            yield _summary(test, seeds, options.keep, options.chaos)
         return
     from concurrent.futures import ProcessPoolExecutor
     from multiprocessing import get_context
 
     with ProcessPoolExecutor(most, get_context("spawn")) as pool:
-        run = partial(_run, seeds=seeds, keep=options.keep, include_root=options.include_root)
+        run = partial(_run, seeds=seeds, keep=options.keep, include_root=options.include_root, chaos=options.chaos)
         try:
             yield from pool.map(run, *zip(*((path, number) for path, number, _ in tests), strict=True))
         except KeyboardInterrupt:
@@ -104,9 +104,9 @@ def _results(
             raise
 
 
-def _run(path: str, number: int, *, seeds: Sequence[int], keep: str, include_root: str | None) -> Summary:
+def _run(path: str, number: int, *, seeds: Sequence[int], keep: str, include_root: str | None, chaos: bool) -> Summary:
     """A test by its file and number there: what it is made of cannot go to another process."""
-    return _summary(_read(path, include_root)[number], seeds, keep)
+    return _summary(_read(path, include_root)[number], seeds, keep, chaos)
 
 
 @cache
@@ -114,22 +114,23 @@ def _read(path: str, include_root: str | None) -> tuple[MissionTest, ...]:
     return read_tests(read_source(path, include_root))
 
 
-def _summary(test: MissionTest, seeds: Sequence[int], keep: str) -> Summary:
-    results = tuple(_result(test, seed) for seed in seeds)
+def _summary(test: MissionTest, seeds: Sequence[int], keep: str, chaos: bool) -> Summary:
+    run = run_chaos if chaos else run_test
+    results = tuple(_result(run, test, seed) for seed in seeds)
     failed = next((result for result in results if not result.passed), None)
-    return Summary(results, "" if failed is None else _kept(test, failed, keep))
+    return Summary(results, "" if failed is None else _kept(run, test, failed, keep))
 
 
-def _result(test: MissionTest, seed: int) -> Result:
+def _result(run: Callable[..., Result], test: MissionTest, seed: int) -> Result:
     """A mission that can't run has failed its test."""
     try:
-        return run_test(test, seed)
+        return run(test, seed)
     except MissionError as error:
         problem = "\n".join(f"{one.span.place}: {one.message}" for one in error.diagnostics)
         return Result(test.name, test.place, seed, 0.0, problem)
 
 
-def _kept(test: MissionTest, failed: Result, folder: str) -> str:
+def _kept(run: Callable[..., Result], test: MissionTest, failed: Result, folder: str) -> str:
     """The path of a recording of a test that failed: the run is the same each time, so it is recorded when it is known
     that somebody will want to see it. "" where the package for recordings is missing or nothing can be written.
     """
@@ -147,7 +148,7 @@ def _kept(test: MissionTest, failed: Result, folder: str) -> str:
         os.makedirs(folder, exist_ok=True)
         recorder = Recorder(path, test.mission.label, files_of(test.mission, ()), about)
         try:
-            again = run_test(test, failed.seed, sinks=[recorder])
+            again = run(test, failed.seed, sinks=[recorder])
         finally:
             recorder.close()
         return path if not again.passed else f"{path} (it passed when it ran again)"

@@ -15,6 +15,9 @@ def add_test_options(parser: argparse.ArgumentParser) -> None:
         "--repeat", type=at_least(1), default=1, metavar="N", help="run each test with so many seeds, from --seed on"
     )
     parser.add_argument(
+        "--chaos", action="store_true", help="let the world go wrong at random, and watch only the rules of safety"
+    )
+    parser.add_argument(
         "--jobs", type=at_least(1), metavar="N", help="tests to run at the same time (default: one for each core)"
     )
     parser.add_argument("--coverage", action="store_true", help="draw on the trees what never ran or never happened")

@@ -13,6 +13,7 @@ from btlang.robots.world import World
 from btlang.run.controls import Controls
 from btlang.run.runner import Outcome
 from btlang.session import Session
+from btlang.testing.chaos import Chaos
 from btlang.testing.commands import Command, find_command
 from btlang.testing.coverage import statuses_seen
 from btlang.testing.fakes import Fakes, faked
@@ -32,7 +33,7 @@ class Result(Record):
     """How a test ended: `problem` is "" where it passed, else what did not hold; `place` is its file:line.
 
     `seconds` are those of the mission; with `is_cut` the test took too long. `seen` are the statuses that each node of
-    the mission had; see btlang.testing.coverage.
+    the mission had; see btlang.testing.coverage. `troubles` are what chaos made of the world.
     """
 
     name: str
@@ -42,6 +43,7 @@ class Result(Record):
     problem: str = ""
     is_cut: bool = False
     seen: tuple[int, ...] = ()
+    troubles: tuple[str, ...] = ()
 
     @property
     def passed(self) -> bool:
@@ -89,6 +91,26 @@ def run_test(test: MissionTest, seed: int = 0, mission: Mission | None = None, s
     if is_cut:
         return result(f"cut after {brief_time(test.limit)}: the mission was not over", is_cut=True)
     return result()
+
+
+def run_chaos(test: MissionTest, seed: int, sinks: Iterable[Sink] = ()) -> Result:
+    """Runs the mission of a test while the world goes wrong, and watches the rules of safety (see Chaos).
+
+    What the test expects doesn't count, but its events at the start and its fakes do. Raises MissionError.
+    """
+    observed, controls, fakes = Observations({}), Controls(), Fakes(test.fakes)
+    with Session(lambda world: _TestSimulation(world, fakes), world=test.mission.world) as session:
+        run = session.prepare(
+            test.mission, speed="max", time_limit=test.limit, seed=seed, controls=controls, sinks=[observed, *sinks]
+        )
+        Script(test.replace(steps=()), observed, session.robot, controls, Blackboard())  # for its setup
+        chaos = Chaos(seed, test.limit, observed, session.robot, controls, test.mission.vocabulary)
+        run.bus.add(chaos)
+        outcome = run.execute()
+        chaos.end()
+    seen = statuses_seen(test.mission.tree, observed)
+    problem = "\n".join((chaos.broken, *(f"  {line}" for line in chaos.told))) if chaos.broken else ""
+    return Result(test.name, test.place, seed, outcome.seconds, problem, seen=seen, troubles=tuple(chaos.told))
 
 
 def _commands(test: MissionTest) -> dict[str, Command]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import signal
 import sys
 import time
@@ -56,14 +57,49 @@ def test_what_it_tells_on_topics(start_node, client: Client, run_mission: Any):
     goal = mission(client, run_mission, "say hello then go to the moon")
     assert goal.result().status == GoalStatus.STATUS_ABORTED
     mission(client, run_mission, "say hello").result()
-    outline = client.hear(String, "/btlang/tree", LATCHED).wait()  # whoever comes later hears it too
-    assert outline.data == "Say: say hello"
+    tree = json.loads(client.hear(String, "/btlang/tree", LATCHED).wait().data)  # whoever comes later hears it too
+    assert (tree["outline"], tree["statuses"]) == ("Say: say hello", {"/": "SUCCESS"})
+    assert tree["nodes"] == [{"path": "/", "id": "Say", "words": "say hello", "ports": {"text": "hello"}}]
     status = client.hear(TreeStatus, "/btlang/status", LATCHED).wait()
     assert (list(status.paths), list(status.statuses)) == (["/"], [TreeStatus.SUCCESS])
     log.wait(lambda line: line.data.startswith("the mission succeeded after"))
     assert any('says   "hello"' in line.data for line in log.messages)
     found = health.wait(lambda array: array.status[0].message.startswith("the mission succeeded"))
     assert found.status[0].name == "btlang: mission"
+
+
+def test_who_joins_late_knows_the_statuses(start_node, client: Client, run_mission: Any):
+    """A snapshot and the changes after it give what one gets who was there from the start."""
+    start_node("--speed", "5")
+    changes = client.hear(String, "/btlang/tree_changes")
+    goal = mission(client, run_mission, "repeat 4 times: wave then nod")
+    changes.wait()
+    late = client.hear(String, "/btlang/tree", LATCHED)
+    snapshot = json.loads(late.wait().data)
+    goal.result()
+    last = json.loads(late.wait(lambda message: json.loads(message.data)["statuses"].get("/") == "SUCCESS").data)
+    known, sequence = dict(snapshot["statuses"]), snapshot["sequence"]
+    for change in map(json.loads, [message.data for message in changes.messages]):
+        if change["sequence"] > sequence:
+            assert change["sequence"] == sequence + 1
+            sequence = change["sequence"]
+            known |= change["changes"]
+    assert (known["/"], sequence) == ("SUCCESS", last["sequence"])
+    assert known == last["statuses"]
+
+
+def test_missions_are_recorded(start_node, client: Client, run_mission: Any, tmp_path: Path, capsys):
+    start_node("--speed", "10", "--record", str(tmp_path / "kept"))
+    assert mission(client, run_mission, "wave then nod").result().result.success
+    assert not mission(client, run_mission, "wave then fail").result().result.success
+    files = sorted((tmp_path / "kept").iterdir())
+    assert len(files) == 2
+    told = []
+    for file in files:
+        assert main(["why", str(file)]) == 0
+        told.append(capsys.readouterr().out)
+    assert any("The mission succeeded" in text for text in told)
+    assert any("The mission failed" in text for text in told)
 
 
 def test_why_it_fails(start_node, client: Client, run_mission: Any):

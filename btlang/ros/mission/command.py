@@ -39,6 +39,9 @@ def add_node_options(parser: argparse.ArgumentParser) -> None:
         metavar="NAME|DIR",
         help="let other programs use this pack, or the keyword files below DIR; these run Python (default: none)",
     )
+    parser.add_argument(
+        "--record", metavar="FOLDER", help="record each mission in this folder"
+    )
     parser.add_argument("--ros-args", nargs=argparse.REMAINDER, help="all further arguments are for ROS 2")
 
 
@@ -66,7 +69,7 @@ def _serve(options: argparse.Namespace, came: EndingSignals) -> int:
     setup = Setup(
         options.name, options.robot, options.over, options.sim_time, options.namespace, options.speed,
         options.mission, options.keywords, options.world, options.parser, options.include_root, options.allow_keywords,
-        options.language,
+        options.language, options.record,
     )  # fmt: skip
     controls = Controls()
     came.on_arrival = controls.wake

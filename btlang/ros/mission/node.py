@@ -15,6 +15,7 @@ from btlang.ros.mission.server import MissionServer
 from btlang.ros.mission.setup import Setup
 from btlang.ros.mission.thread import MissionThread, Report, problems
 from btlang.ros.mission.topics import ERROR, OK, WARN, Topics
+from btlang.ros.mission.tree_topic import TreeTopic
 from btlang.run.lines import Lines
 from btlang.text.source import Source
 
@@ -22,6 +23,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+    from btlang.recording.recorder import Recorder
     from btlang.run.events import Sink
     from btlang.session import Run, Session
 
@@ -150,26 +152,41 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
     ) -> MissionThread:
         assert self._session is not None
 
+        recorders: list[Recorder] = []
+
         def sinks(mission: Mission) -> list[Sink]:
-            return [Lines(mission.label, mission.is_action, self._topics.log)]
+            try:
+                recorder = self._setup.recorder(mission, keywords)
+            except MissionError as error:  # a mission runs without its recording, too
+                self._topics.complain(problems(error))
+                recorder = None
+            recorders.extend([recorder] if recorder is not None else [])
+            return [Lines(mission.label, mission.is_action, self._topics.log), *recorders]
 
-        def watch(run: Run) -> None:
-            run.bus.add(Progress(run.snapshot, told, self._topics.status))
+        def watch(mission: Mission, run: Run) -> None:
+            tree = TreeTopic(mission, run, self._topics.tree, self._topics.tree_changes)
 
-        def told(news: News) -> None:
-            self._running = news.running
-            changed(news)
+            def told(news: News) -> None:
+                self._running = news.running
+                tree.changed(news)
+                changed(news)
+
+            def reached(news: News) -> None:
+                tree.reached(news, is_last=news.is_last)
+                self._topics.status(news)
+
+            run.bus.add(Progress(run.snapshot, told, reached))
 
         def over(report: Report) -> None:
+            for recorder in recorders:
+                recorder.close()
             self._latest, self._running = report, ""
             self._topics.log(str(report))
             ended(report)
 
         def compiled() -> Mission:
             self._setup.check_keywords(keywords)
-            mission = self._setup.compiled(source, keywords)
-            self._topics.tree(mission)
-            return mission
+            return self._setup.compiled(source, keywords)
 
         self._run = MissionThread(self._session, compiled, sinks, watch, over, self._setup.speed)
         return self._run

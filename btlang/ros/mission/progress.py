@@ -20,11 +20,15 @@ _PAUSE = 0.1  # seconds of real time between two snapshots of all nodes
 
 
 class News(Record):
-    """Statuses of nodes by path at a time of the mission, and the words of the commands that run."""
+    """Statuses of nodes by path at a time of the mission, and the words of the commands that run.
+
+    `is_last` where the run is over.
+    """
 
     time: float
     running: str
     statuses: Mapping[str, int]
+    is_last: bool = False
 
 
 class Progress:
@@ -53,9 +57,9 @@ class Progress:
         elif isinstance(event, PeriodPassed):
             self._report(time.monotonic() - self._told >= _PAUSE)
         elif isinstance(event, Ended):
-            self._report(True)
+            self._report(True, is_last=True)
 
-    def _report(self, all_too: bool) -> None:
+    def _report(self, all_too: bool, *, is_last: bool = False) -> None:
         if not (self._new or (self._untold and all_too)):
             return
         now = self._snapshot()
@@ -65,4 +69,4 @@ class Progress:
             self._new, self._untold = {}, True
         if all_too:
             self._untold, self._told = False, time.monotonic()
-            self._reached(News(now.t, running, now.statuses))
+            self._reached(News(now.t, running, now.statuses, is_last))

@@ -15,6 +15,10 @@ from btlang.session import Session
 from btlang.text.source import Source, Span
 from btlang.vocabulary.shipped import DEFAULT_WORLD, ENGLISH
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.recording.recorder import Recorder
+
 _NOT_ALLOWED = "other programs can't use it; to allow it, start the node with --allow-keywords and its name or folder"
 
 
@@ -22,7 +26,7 @@ class Setup(Record):
     """`robot` and `over` are as for Session; `file` is the mission that the node runs when activated, "" for none.
 
     What other programs send may include only files below `include_root`, and use only the keyword files of
-    `allowed_keywords`: names of packs, and folders.
+    `allowed_keywords`: names of packs, and folders. `record` is the folder for recordings of missions, if there is one.
     """
 
     name: str = "btlang"
@@ -38,6 +42,7 @@ class Setup(Record):
     include_root: str | None = None
     allowed_keywords: Sequence[str] = ()
     language: str = ENGLISH
+    record: str | None = None
 
     def session(self) -> Session:
         """The robot in its world. Raises MissionError."""
@@ -61,6 +66,15 @@ class Setup(Record):
             return False
         folders = [name for name in self.allowed_keywords if os.path.isdir(name)]
         return any(is_below(os.path.realpath(name), folder) for folder in folders)
+
+    def recorder(self, mission: Mission, keywords: Sequence[str] = ()) -> Recorder | None:
+        """What records a mission, None where nothing is to be recorded. Raises MissionError (BT009, BT083)."""
+        if self.record is None:
+            return None
+        from btlang.recording.recorder import recorder_in
+
+        about = {"robot": self.robot, "over": self.over or "", "language": self.language, "speed": str(self.speed)}
+        return recorder_in(self.record, mission, [*self.keywords, *keywords], about)
 
     def compiled(self, source: Source, keywords: Sequence[str] = ()) -> Mission:
         """A mission, with further keyword files. Raises MissionError."""

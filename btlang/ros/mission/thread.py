@@ -40,7 +40,7 @@ class Report(Record):
 class MissionThread:
     """Runs one mission in a session; begins at once, in its own thread, which compiles the mission too.
 
-    `compiled` makes the mission, `sinks` what hears of its run from the start, and `watch` gets the run before it is
+    `compiled` makes the mission, `sinks` what hears of its run from the start, and `watch` gets both before the run is
     under way. `ended` gets the report once the robot stands still. All of them are called in the thread of the run;
     `stop` and the like come from any.
     """
@@ -50,7 +50,7 @@ class MissionThread:
         session: Session,
         compiled: Callable[[], Mission],
         sinks: Callable[[Mission], list[Sink]],
-        watch: Callable[[Run], object],
+        watch: Callable[[Mission, Run], object],
         ended: Callable[[Report], object],
         speed: float | str = "real",
     ) -> None:
@@ -93,7 +93,7 @@ class MissionThread:
             return Report("stopped", "emergency stop" if self._controls.emergency else "interrupted")
         sinks = self._sinks(mission)
         run = self._session.prepare(mission, speed=self._speed, controls=self._controls, sinks=sinks)
-        self._watch(run)
+        self._watch(mission, run)
         return _report(run.execute())
 
 

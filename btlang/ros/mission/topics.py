@@ -10,7 +10,6 @@ from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from std_msgs.msg import String
 
-from btlang.api import Mission
 from btlang.ros.node import LATCHED
 
 TYPE_CHECKING = False
@@ -24,8 +23,9 @@ _PERIOD = 1.0  # seconds between two diagnostics
 
 
 class Topics:
-    """~/tree, ~/status, ~/log and /diagnostics; may be used from any thread. `show` gets each line of the log.
+    """~/tree, ~/tree_changes, ~/status, ~/log and /diagnostics; may be used from any thread.
 
+    `show` gets each line of the log.
     `health` says how the node does: level, message and values; it is asked in the thread of the executor.
     """
 
@@ -34,15 +34,20 @@ class Topics:
     ) -> None:
         self._node, self._show, self._health = node, show, health
         self._tree = node.create_publisher(String, "~/tree", LATCHED)
+        self._changes = node.create_publisher(String, "~/tree_changes", 1000)
         self._status = node.create_publisher(TreeStatus, "~/status", LATCHED)
         self._log = node.create_publisher(String, "~/log", 100)
         self._diagnostics = node.create_publisher(DiagnosticArray, "/diagnostics", 10)
         # of the machine's time, so that a simulated one that stands still is told of too
         node.create_timer(_PERIOD, self._tell_health, clock=Clock(clock_type=ClockType.STEADY_TIME))
 
-    def tree(self, mission: Mission) -> None:
-        """The tree that runs now, as an outline."""
-        self._tree.publish(String(data=str(mission)))
+    def tree(self, snapshot: str) -> None:
+        """The tree that runs now, with its statuses; see btlang.ros.mission.tree_topic."""
+        self._tree.publish(String(data=snapshot))
+
+    def tree_changes(self, changes: str) -> None:
+        """What is new in it."""
+        self._changes.publish(String(data=changes))
 
     def status(self, news: News) -> None:
         """The nodes that have been reached."""
