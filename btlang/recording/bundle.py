@@ -14,12 +14,13 @@ from btlang.tree.ast import Include
 
 TREE = "tree.json"
 MISSION = "mission.txt"
+ROBOT = "robot.toml"
 _WORLD, _WORDS, _INCLUDED = "world.toml", "words", "included"
 _ENDINGS = (".txt", ".toml", ".xml", ".json")
 
 
-def files_of(mission: Mission, keywords: Sequence[str]) -> dict[str, bytes]:
-    """The tree, the text of the mission with what it includes, its world and its keyword files, by their names."""
+def files_of(mission: Mission, keywords: Sequence[str], robot: str = "") -> dict[str, bytes]:
+    """The tree, the text of the mission with what it includes, its world, keyword and robot files, by their names."""
     files = {TREE: str(mission.to("json")).encode()}
     if mission.syntax is not None:
         files[MISSION] = mission.syntax.span.source.text.encode()
@@ -29,6 +30,8 @@ def files_of(mission: Mission, keywords: Sequence[str]) -> dict[str, bytes]:
         files[f"{_WORDS}/{number}/{os.path.basename(path)}"] = _content(path)
     if mission.world is not None and os.path.isfile(mission.world):
         files[_WORLD] = _content(mission.world)
+    if robot.endswith(".toml") and os.path.isfile(robot):
+        files[ROBOT] = _content(robot)
     return files
 
 

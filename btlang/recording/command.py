@@ -6,6 +6,7 @@ import math
 import os
 import platform
 import sys
+import tempfile
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
@@ -14,7 +15,7 @@ from btlang.api import Mission
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import unwritable
 from btlang.pictures.command import pictures_of
-from btlang.recording.bundle import files_of
+from btlang.recording.bundle import ROBOT, files_of
 from btlang.recording.compare import first_difference
 from btlang.recording.diff import diff
 from btlang.recording.drawing import drawn
@@ -23,6 +24,7 @@ from btlang.recording.reader import RecordedNodes, Recording
 from btlang.recording.recorder import Recorder
 from btlang.recording.replay import failures, play
 from btlang.recording.story import Story
+from btlang.robots.body_file import shipped_bodies
 from btlang.run.command import live_view
 from btlang.run.controls import Controls
 from btlang.run.events import Event
@@ -52,7 +54,7 @@ def recorded(mission: Mission, options: argparse.Namespace) -> Iterator[list[Sin
         "time_limit": "" if options.time_limit is None else f"{options.time_limit:g}",
     }  # fmt: skip
     try:
-        files = files_of(mission, options.keywords)
+        files = files_of(mission, options.keywords, options.robot)
         recorder = Recorder(options.record, mission.label, files, about, options.record_size)
     except OSError as error:
         raise MissionError([unwritable(options.record, error)]) from None
@@ -131,10 +133,24 @@ def _why(options: argparse.Namespace) -> int:
     return 0
 
 
+@contextmanager
+def _robot_of(recording: Recording) -> Iterator[tuple[str, str | None]]:
+    """The robot of a recording and what it runs on, for as long as it is used: always a simulated one."""
+    if ROBOT not in recording.files:
+        name = recording.about.get("robot", "")
+        yield (name, "simulated") if name in shipped_bodies() else ("simulated", None)
+        return
+    with tempfile.TemporaryDirectory(prefix="btlang-") as folder:
+        path = os.path.join(folder, ROBOT)
+        with open(path, "wb") as file:
+            file.write(recording.files[ROBOT])
+        yield path, "simulated"
+
+
 def _run_again(recording: Recording, mission: Mission, nodes: RecordedNodes) -> int:
     """Runs the mission of a recording on the simulated robot, and shows where it goes otherwise."""
     about, events = recording.about, list[Event]()
-    with Session("simulated", world=mission.world) as session:
+    with _robot_of(recording) as (robot, over), Session(robot, world=mission.world, over=over) as session:
         session.run(
             mission, speed="max", rate=float(about.get("rate", 20)), seed=int(about.get("seed", 0)),
             time_limit=float(about["time_limit"]) if about.get("time_limit") else None, sinks=[events.append],

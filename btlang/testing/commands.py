@@ -46,15 +46,16 @@ def find_command(text: str, mission: Mission) -> Command | None:
         ports = tuple((value.name, value.text) for value in match.values)
         is_denied = match.meaning.role == "negated"
         return _if_there(Command(frozenset((match.meaning.entry.id,)), ports, is_denied), mission)
-    ids = {entry.id for entries in vocabulary.entries.values() for entry in entries if _begins(entry.phrases, wanted)}
+    entries = [entry for same in vocabulary.entries.values() for entry in same]
+    ids = {entry.id for entry in entries if _begins(entry.phrases, wanted, vocabulary.articles)}
     ids |= {id for id in vocabulary.entries if id.lower() == "".join(wanted)}
     return _if_there(Command(frozenset(ids)), mission)
 
 
-def _begins(phrases: tuple[str, ...], wanted: list[str]) -> bool:
+def _begins(phrases: tuple[str, ...], wanted: list[str], articles: frozenset[str]) -> bool:
     """Whether a way to say one of the phrases begins with these words."""
     for phrase in phrases:
-        for form in forms(phrase):
+        for form in forms(phrase, articles):
             first = form[: len(wanted)]
             if len(first) == len(wanted) and not any(isinstance(part, Slot) for part in first) and [*first] == wanted:
                 return True

@@ -13,6 +13,7 @@ from btlang.testing.statements import Statement
 from btlang.testing.test import ALWAYS, BEFORE, EVENT, FINALLY, FOR, HOLDS, NEVER, USUAL_LIMIT, WITHIN, Step
 from btlang.text.source import Source, Span
 from btlang.text.words import Words
+from btlang.tree.catalogue import SUBTREE
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.trie import longest
@@ -125,6 +126,9 @@ class Pieces:
         command = find_command(name, self._mission)
         if command is None:
             raise self._no_command(name, self._text.span(one.first, one.first + 1))
+        if SUBTREE in command.ids:
+            span, reason = self._text.span(one.first, one.first + 1), "is a definition; fake the commands in it"
+            raise MissionError([diagnostic("BT182", span, words=name, reason=reason)])
         found: list[Fake] = []
         at = one.first + 1
         while at < one.last:

@@ -33,7 +33,8 @@ def lines(summary: Summary, *, has_seeds: bool) -> Iterable[str]:
     shown = failures[0]
     yield one_line(f"{'CUT' if shown.is_cut else 'FAILED':7} {first.place}: {first.name}")
     if has_seeds:
-        yield f"  {len(failures)} of {len(summary.results)} failed; the first: btc test --seed {shown.seed}"
+        again = f"btc test --seed {shown.seed} {first.place.rpartition(':')[0]}"
+        yield one_line(f"  {len(failures)} of {len(summary.results)} failed; the first: {again}")
     yield from (f"  {line}" for line in shown.problem.splitlines())
     if summary.recording:
         yield f"  recorded in {summary.recording}"

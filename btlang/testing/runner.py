@@ -12,7 +12,7 @@ from btlang.robots.simulation import Simulation
 from btlang.robots.world import World
 from btlang.run.controls import Controls
 from btlang.run.runner import Outcome
-from btlang.session import Session
+from btlang.session import Run, Session
 from btlang.testing.chaos import Chaos
 from btlang.testing.commands import Command, find_command
 from btlang.testing.coverage import statuses_seen
@@ -78,7 +78,7 @@ def run_test(test: MissionTest, seed: int = 0, mission: Mission | None = None, s
         script = Script(test, observed, session.robot, controls, values)
         if script.broken is None:
             run.bus.add(script)
-            outcome = run.execute()
+            outcome = _executed(run, controls)
     seconds, is_cut = 0.0, False
     if outcome is not None:
         observed.outcome, observed.is_over, seconds = outcome, True, outcome.seconds
@@ -106,11 +106,19 @@ def run_chaos(test: MissionTest, seed: int, sinks: Iterable[Sink] = ()) -> Resul
         Script(test.replace(steps=()), observed, session.robot, controls, Blackboard())  # for its setup
         chaos = Chaos(seed, test.limit, observed, session.robot, controls, test.mission.vocabulary)
         run.bus.add(chaos)
-        outcome = run.execute()
+        outcome = _executed(run, controls)
         chaos.end()
     seen = statuses_seen(test.mission.tree, observed)
     problem = "\n".join((chaos.broken, *(f"  {line}" for line in chaos.told))) if chaos.broken else ""
     return Result(test.name, test.place, seed, outcome.seconds, problem, seen=seen, troubles=tuple(chaos.told))
+
+
+def _executed(run: Run, controls: Controls) -> Outcome:
+    """Raises KeyboardInterrupt at Ctrl-C, which ends all tests and not only this one."""
+    outcome = run.execute()
+    if outcome.stopped == "interrupted" and not controls.stopped:
+        raise KeyboardInterrupt
+    return outcome
 
 
 def _commands(test: MissionTest) -> dict[str, Command]:

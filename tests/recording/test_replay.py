@@ -13,6 +13,7 @@ from btlang.cli import main
 from btlang.recording.replay import failures, play
 from btlang.run.controls import Controls
 from btlang.run.events import Event, PeriodPassed
+from btlang.vocabulary.shipped import BODIES
 from tests.conftest import matches_golden
 from tests.recording.runs import recorded, replayed
 
@@ -129,3 +130,14 @@ def test_it_begins_where_one_wants(tmp_path: Path) -> None:
     began = time.monotonic()
     play(events, [], Controls(), 20.0, start=9.0)
     assert time.monotonic() - began < 0.3
+
+
+def test_the_robot_file_is_in_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    robot, file = tmp_path / "small.toml", str(tmp_path / "r.mcap")
+    robot.write_text((Path(BODIES) / "small.toml").read_text())
+    run = ["run", "-c", "move forward 1 m, then turn left", "--speed", "max", "--quiet", "--record", file]
+    for named in (str(robot), "small"):
+        assert main([*run, "--robot", named]) == 0
+        robot.unlink(missing_ok=True)
+        assert main(["replay", "--as-mission", file]) == 0
+        assert "The run was the same." in capsys.readouterr().out

@@ -51,6 +51,7 @@ def test_it_may_be_closed_twice_and_before_it_starts(domain: int):
 @pytest.mark.parametrize("make", [ActionClient, partial(ActionServer, execute_callback=print)])
 def test_a_node_with_actions_leaves_the_graph_when_it_is_closed(make: Callable[..., object], nav2: Any, domain: int):
     """And not when Python next collects garbage."""
+    gc.collect()  # what other tests have left
     gc.disable()
     try:
         with SpunNode("leaves", domain_id=domain) as spun:

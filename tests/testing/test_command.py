@@ -59,8 +59,9 @@ def test_the_smallest_seed_that_fails(folder: Path, capsys: pytest.CaptureFixtur
     (folder / "a.test.txt").write_text(ROUNDS)
     assert main(["test", "--repeat", "12"]) == 1
     line = capsys.readouterr().out.splitlines()[1]
-    seed = line.rpartition(" ")[2]
     assert " of 12 failed; the first: btc test --seed " in line
+    seed, file = line.split()[-2:]
+    assert file == "a.test.txt"
     assert main(["test", "--repeat", seed]) == 0 if int(seed) else seed == "0"
     assert main(["test", "--seed", seed]) == 1
 

@@ -17,7 +17,7 @@ from btlang.text.source import Source
 from tests.profiles import searches
 from tests.testing.files import codes, told
 
-HEAD = 'test "t":\n  run:\n    wave then go to the lab\n'
+HEAD = 'test "t":\n  run:\n    round is nod\n    wave then go to the lab then round\n'
 
 
 @pytest.mark.parametrize(
@@ -36,6 +36,7 @@ HEAD = 'test "t":\n  run:\n    wave then go to the lab\n'
         ('"wave" fails, then succeeds', "BT180"),
         ('"wave"', "BT180"),
         ('"juggle" fails', "BT182"),
+        ('"round" fails', "BT182"),
         ('finally it has done "juggle"', "BT182"),
         ("after 5 s go to the lab", "BT182"),
         ("finally go to the lab", "BT029"),
@@ -57,7 +58,7 @@ def test_places_are_those_in_the_file() -> None:
     with pytest.raises(MissionError) as raised:
         read_tests(Source(text, "t.test.txt"))
     [problem] = raised.value.diagnostics
-    assert (problem.span.text, problem.span.place) == ("mon", "t.test.txt:4:30")
+    assert (problem.span.text, problem.span.place) == ("mon", "t.test.txt:5:30")
 
 
 def test_what_is_wrong_with_the_mission_has_its_place_in_the_test() -> None:

@@ -59,7 +59,7 @@ kinds = st.sampled_from([HOLDS, WITHIN, FOR, BEFORE])
 lines = st.builds(lambda kind, periods: Step(kind, SPAN, FIRST, periods * PERIOD, SECOND), kinds, st.integers(0, 5))
 
 
-@searches(300, 20000)
+@searches(100, 20000)
 @given(st.lists(lines, min_size=1, max_size=4), bools, bools)
 def test_lines_hold_as_the_formulas_say(steps: list[Step], first: list[bool], second: list[bool]) -> None:
     at: int | None = 0
@@ -72,7 +72,7 @@ def test_lines_hold_as_the_formulas_say(steps: list[Step], first: list[bool], se
     assert Told(taken, first, second).play() == (at is not None)
 
 
-@searches(100, 5000)
+@searches(40, 5000)
 @given(lines, bools, bools)
 def test_what_holds_throughout(step: Step, first: list[bool], second: list[bool]) -> None:
     always, final = Step(ALWAYS, SPAN, SECOND), Step(FINALLY, SPAN, SECOND)

@@ -39,9 +39,7 @@ def add_node_options(parser: argparse.ArgumentParser) -> None:
         metavar="NAME|DIR",
         help="let other programs use this pack, or the keyword files below DIR; these run Python (default: none)",
     )
-    parser.add_argument(
-        "--record", metavar="FOLDER", help="record each mission in this folder"
-    )
+    parser.add_argument("--record", metavar="FOLDER", help="record each mission in this folder")
     parser.add_argument("--ros-args", nargs=argparse.REMAINDER, help="all further arguments are for ROS 2")
 
 
