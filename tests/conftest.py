@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import atexit
 import os
 import re
 import socket
@@ -90,6 +91,7 @@ def take_away_what_is_missed(code: str, patch: pytest.MonkeyPatch) -> None:
 def _taken(port: int) -> socket.socket:
     """Takes a port for the rest of the process, unless it is taken already."""
     taken = socket.socket()
+    atexit.register(taken.close)
     with suppress(OSError):
         taken.bind(("127.0.0.1", port))
         taken.listen()

@@ -193,6 +193,7 @@ def test_nobody_there_is_no_reason_to_stand_still(monkeypatch: pytest.MonkeyPatc
         ([b"\x02I\0\0\0\0", b"{"], ""),
         ([b"\x02I\0\0\0\0", b"[1, 2]"], ""),
         ([b"\x02I\0\0\0\0", b'{"uid": 1}'], "position"),
+        ([b"\x02I\0\0\0\0", b'{"uid": 1e999}'], "infinity"),
         ([b"\x02U\0\0\0\0", b'{"uid": 1, "position": 0, "desired_status": "SKIPPED", "remove_when_done": true}'],
          "Node ID not found"),
         ([b"\x02I\0\0\0\0",
