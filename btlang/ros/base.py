@@ -32,7 +32,7 @@ _REMEMBERED = 200  # odometry that a late localization is matched with
 _REST, _TURN_REST = 0.01, 1.0  # metres and degrees a second that odometry reports of a robot that stands
 _STUCK_AFTER, _STUCK_SHARE = 1.0, 0.05
 _BEGINS = 3.0  # seconds that it gets to set off, from the time when somebody listens
-_STEP = 0.25  # seconds that a step counts at most: robots brake by themselves before one that comes late
+_STEP = 0.1  # seconds that a step counts at most: robots brake by themselves before one that comes late
 _ACKNOWLEDGED = Duration(seconds=0.5)
 
 
