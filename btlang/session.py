@@ -5,10 +5,8 @@ from __future__ import annotations
 import math
 import os
 import threading
-from collections import deque
 from collections.abc import Iterable, Iterator
 from functools import cache, partial
-from threading import Condition
 
 from btlang.backends.engine import bind_leaf
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
@@ -16,6 +14,7 @@ from btlang.diagnostics.errors import MissionError
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.clock import Clock
 from btlang.engine.engine import Engine, EngineError
+from btlang.engine.saving import SaveError
 from btlang.engine.timing import Stopwatch
 from btlang.robots.proxy import RobotProxy
 from btlang.robots.registry import connector
@@ -23,9 +22,10 @@ from btlang.robots.world import Place
 from btlang.robots.world_problem import read_world
 from btlang.run.bus import INLINE, Bus
 from btlang.run.controls import Controls, disable
-from btlang.run.events import PeriodPassed
+from btlang.run.events import Chosen
 from btlang.run.failure_history import FailureHistory
 from btlang.run.limits import RATES, SLOWEST
+from btlang.run.recent import RecentEvents
 from btlang.run.report import failure_report
 from btlang.run.runner import Outcome, Runner, traced_engine
 from btlang.run.snapshot import Follower, Snapshot
@@ -35,7 +35,7 @@ from btlang.text.source import NOWHERE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from collections.abc import Sequence
+    from collections.abc import Mapping, Sequence
     from types import TracebackType
     from typing import Any, Protocol
 
@@ -63,10 +63,6 @@ if TYPE_CHECKING:
         def says_ids(self) -> bool: ...
 
         def label(self, node: Node) -> str: ...
-
-
-MOST_EVENTS = 10_000
-"""So many of the latest events are kept for `Run.events`."""
 
 
 class Session:
@@ -124,6 +120,16 @@ class Session:
             raise ValueError(f"rate must be from {RATES[0]:g} to {RATES[1]:g} ticks a second, not {rate!r}")
         self.current = Run(mission, self.connection, factor, rate, time_limit, sinks, values, controls, seed, hooks)
         return self.current
+
+    def restore(self, mission: Runnable, saved: Mapping[str, Any], **options: Any) -> Run:
+        """Like `prepare`, for a run that goes on where another one was saved, maybe in another process.
+
+        Positions, counts, timers, values and mission time are as they were; commands that were running start again.
+        `saved` comes from `Run.save`. Raises MissionError (BT193) if it isn't from a run of this mission.
+        """
+        run = self.prepare(mission, **{**options, "seed": int(saved.get("seed", 0))})
+        run._restore(saved)
+        return run
 
     def run(self, mission: Runnable, **options: Any) -> Run:
         """Runs a mission to its end, in this thread; the options are those of `prepare`. Ctrl-C ends it."""
@@ -185,7 +191,7 @@ class Run:
         self.mission = mission
         self.controls = Controls() if controls is None else controls
         """Pause, resume, single step and the stops, from any thread."""
-        self.controls.robot = connection.robot
+        self.controls.robot = self._robot = connection.robot
         self.outcome: Outcome | None = None
         """How it ended; None until then."""
         self.bus = Bus(self.id, Clock(), queued=speed < math.inf)
@@ -196,8 +202,9 @@ class Run:
         self._story = FailureHistory(self._engine)
         self.follower = Follower(self._engine)
         """The statuses of all nodes, for any thread."""
-        self._recent = _Recent()
-        for own in (self._story, self.follower, self._recent):
+        self._recent = RecentEvents()
+        self._choices = _Choices()
+        for own in (self._story, self.follower, self._recent, self._choices):
             self.bus.add(own)
         self._runner = Runner(
             self._engine, bus=self.bus, robot=connection.robot, rate=rate, speed=speed, time_limit=time_limit,
@@ -222,6 +229,7 @@ class Run:
             self.outcome = outcome
             return outcome
         finally:
+            self._runner.answer_requests()
             self.bus.close()
             self._under_way = False
             self._recent.close()
@@ -264,6 +272,30 @@ class Run:
         """Ends the run; if it hasn't started, before its first tick."""
         self.controls.stop()
 
+    def suspend(self) -> None:
+        """Ends the run so that `Session.restore` can go on with what `save` then gives; its outcome is "suspended"."""
+        self.controls.suspend()
+
+    def save(self) -> dict[str, Any]:
+        """All that `Session.restore` needs, as JSON: as it is between two ticks, for which it waits.
+
+        Raises MissionError (BT192) if a value of the mission can't be saved.
+        """
+        try:
+            saved = self._runner.between_ticks(self._engine.save)
+        except SaveError as error:
+            raise MissionError([diagnostic("BT192", NOWHERE, reason=str(error))]) from None
+        return {**saved, "seed": self.seed, "choices": self._choices.made}
+
+    def _restore(self, saved: Mapping[str, Any]) -> None:
+        try:
+            self._engine.restore(saved)
+            self._choices.made = int(saved["choices"])
+        except (SaveError, KeyError, TypeError, ValueError) as error:
+            raise MissionError([diagnostic("BT193", NOWHERE, reason=str(error))]) from None
+        if self._choices.made:
+            self._robot.seed_choices(self.seed, self._choices.made)
+
     def emergency_stop(self) -> None:
         """Stops the robot at once without waiting for the current tick, then ends the run.
 
@@ -283,7 +315,7 @@ class Run:
         return failure_report(failure, self._story, self.mission.label, RED if colour else "")
 
     def events(self) -> Iterator[Event]:
-        """The latest events (up to MOST_EVENTS), then new ones until the run is over."""
+        """The latest events (up to btlang.run.recent.MOST_EVENTS), then new ones until the run is over."""
         return self._recent.events()
 
     def snapshot(self) -> Snapshot:
@@ -351,39 +383,14 @@ def _bind(vocabulary: Lexicon, connection: Connection, node_id: str) -> Any:
     return bind_leaf(node_id, vocabulary, connection.bind)
 
 
-class _Recent:
-    """Keeps the latest events for late readers."""
+class _Choices:
+    """Counts the random choices of a run."""
 
     policy = INLINE
 
     def __init__(self) -> None:
-        self._events: deque[Event] = deque(maxlen=MOST_EVENTS)
-        self._count = 0
-        self._over = False
-        self._changed = Condition()
+        self.made = 0
 
     def __call__(self, event: Event) -> None:
-        if isinstance(event, PeriodPassed):
-            return
-        with self._changed:
-            self._events.append(event)
-            self._count += 1
-            self._changed.notify_all()
-
-    def close(self) -> None:
-        with self._changed:
-            self._over = True
-            self._changed.notify_all()
-
-    def events(self) -> Iterator[Event]:
-        given = 0
-        while True:
-            with self._changed:
-                while self._count == given and not self._over:
-                    self._changed.wait()
-                new = min(self._count - given, len(self._events))
-                batch = list(self._events)[len(self._events) - new :]
-                given = self._count
-            if not batch:
-                return
-            yield from batch
+        if isinstance(event, Chosen) and event.how == "random":
+            self.made += 1

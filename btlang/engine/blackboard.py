@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 from btlang.engine.leaves.leaf import ActionFailed
 
@@ -88,6 +88,15 @@ class Blackboard:
         """How often the key was set, to whatever value, since this was first asked of it."""
         scope, key = self._owner(key)
         return scope._writes.setdefault(key, 0)
+
+    def dump(self, keep: Callable[[Any], Any]) -> dict[str, Any]:
+        """The values of this scope itself, each made into JSON by `keep`, and how often its keys were set."""
+        return {"values": {key: keep(value) for key, value in self._values.items()}, "writes": dict(self._writes)}
+
+    def load(self, saved: Mapping[str, Any], unkeep: Callable[[Any], Any]) -> None:
+        """The values of this scope are those that were saved."""
+        self._values = {key: unkeep(value) for key, value in saved["values"].items()}
+        self._writes = dict(saved["writes"])
 
     def __contains__(self, key: str) -> bool:
         scope, key = self._owner(key)

@@ -155,6 +155,7 @@ def compile_instances(
         if trace is not None:
             lower = traces[: -count - 1 : -1] if count else []
             node_trace = NodeTrace(instance.index, above is not None and repeats(above.node), lower, trace)
+            trace.nodes.append(node_trace)
             traces[len(traces) - count :] = [node_trace]
         instance.state.node_trace = node_trace if hooks is None else None  # a hook may change what a leaf would report
         compiled = compile_node(instance, children)
@@ -171,6 +172,8 @@ def compile_instances(
             if wider is not None and wider.top != above.index:  # else the way down is not longer
                 compiled = resumable(wider, compiled)
         waiting.append(compiled)
+    if trace is not None:
+        trace.nodes.reverse()
     [root] = waiting
     return root
 
@@ -207,6 +210,8 @@ def _compile_built_in(instance: NodeInstance, kind: NodeKind, children: Sequence
         elif port[:1] != "_" and not kind.any_ports:
             raise instance.error(f"{kind.id} takes no port {port}")
     compiled = fused(SEMANTICS[kind.id], instance, children)(instance, children)
+    if kind.id != SUBTREE:  # which is its child
+        instance.memory = (compiled,)
     return _checked(instance, compiled) if from_blackboard and not kind.any_ports else compiled
 
 

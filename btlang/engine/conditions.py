@@ -65,14 +65,16 @@ def conditioned(instance: NodeInstance, compiled: Compiled) -> Compiled:
         return compiled
     if texts == {"_skipIf": "true"}:
         return skipped(instance, ())
-    return _watched_by_scripts(instance, compiled, texts)
+    compiled = _watched_by_scripts(instance, compiled, texts)
+    instance.memory = (*instance.memory, compiled)
+    return compiled
 
 
 def _watched_by_scripts(instance: NodeInstance, compiled: Compiled, texts: Mapping[str, str]) -> Compiled:
     tick_node, halt_node = compiled
     scope = instance.scope
     scripts = {port: read_script(instance, port, text) for port, text in texts.items()}
-    before = [(port, scripts[port], *rule) for port, rule in _DECIDES.items() if port in scripts]
+    before = tuple([(port, scripts[port], *rule) for port, rule in _DECIDES.items() if port in scripts])
     goes_on = scripts.get("_while")
     after = {
         SUCCESS: [scripts[port] for port in ("_onSuccess", "_post") if port in scripts],

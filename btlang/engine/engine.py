@@ -11,6 +11,7 @@ from btlang.engine.clock import Clock
 from btlang.engine.compile import compile_instances, expand
 from btlang.engine.instance import EngineError, EngineState, Fault, NodeInstance, blackboard_key
 from btlang.engine.leaves.leaf import REFUSED, LeafBinding, reason_text, unheard
+from btlang.engine.saving import restore_nodes, save_nodes
 from btlang.engine.script.values import as_text
 from btlang.engine.status import FAILURE, IDLE
 from btlang.engine.status_trace import Changes, StatusTrace
@@ -143,6 +144,22 @@ class Engine:
     def suspend(self) -> None:
         """Halts every running leaf but keeps positions, counts and timers; the next tick starts those leaves anew."""
         self._stop(True)
+
+    def save(self) -> dict[str, Any]:
+        """What it remembers between two ticks, as JSON. Leaves that run now will start again, as after `suspend`.
+
+        Raises SaveError for a value on the blackboard that JSON can't hold.
+        """
+        return {"now": self._state.clock.now, **save_nodes(self._instances, self._trace)}
+
+    def restore(self, saved: Mapping[str, Any]) -> None:
+        """Before the first tick: it goes on where another engine of the same tree was saved, its clock too.
+
+        Raises SaveError if that was another tree, or another version of btlang.
+        """
+        restore_nodes(saved, self._instances, self._trace)
+        self._state.clock.now = float(saved["now"])
+        self.suspend()  # nodes work out again what follows from what they remember
 
     def take_halt_failures(self) -> list[Failure]:
         """What leaves raised while they were halted since it was last asked, oldest first.

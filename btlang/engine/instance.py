@@ -152,7 +152,7 @@ class NodeInstance:
     without a separate reason.
     """
 
-    __slots__ = ("_usual", "above", "index", "node", "position", "scope", "state")
+    __slots__ = ("_usual", "above", "index", "memory", "node", "position", "scope", "state")
 
     reason = REFUSED
     exception = None
@@ -168,6 +168,7 @@ class NodeInstance:
         self.scope = scope
         self.state = state
         self._usual: Fault | None = None
+        self.memory: tuple[Compiled, ...] = ()  # the functions whose cells hold what it remembers; see saving.py
 
     @property
     def parent_keeps_completed(self) -> bool:

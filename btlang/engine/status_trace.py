@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from _thread import get_ident  # `threading` takes longer to import
-from collections.abc import Callable, Iterator
+from collections.abc import Callable, Iterator, Mapping
 
 from btlang.engine.leaves.callables import FunctionLeaf, as_function, status_of, unanswered
 from btlang.engine.status import FAILURE, IDLE, NAMES, RUNNING, SUCCESS
@@ -71,7 +71,7 @@ class StatusTrace:
     takes time starts and when it has ended, and whenever `flush` is called.
     """
 
-    __slots__ = ("listener", "pending", "state", "thread", "tick")
+    __slots__ = ("listener", "nodes", "pending", "state", "thread", "tick")
 
     def __init__(self, state: EngineState, listener: Listener) -> None:
         self.state = state
@@ -79,6 +79,14 @@ class StatusTrace:
         self.tick = 0
         self.thread = 0  # that of the latest tick
         self.pending = Changes()
+        self.nodes: list[NodeTrace] = []  # in preorder
+
+    def restore(self, statuses: Mapping[int, int]) -> None:
+        """Nodes have had these statuses before the first tick, which is reported like any change."""
+        for index in sorted(statuses, reverse=True):
+            self.nodes[index].last = statuses[index]
+            self.pending.add(index, IDLE, statuses[index])
+        self.flush()
 
     def flush(self) -> None:
         """Hands the pending changes to the listener, oldest first."""

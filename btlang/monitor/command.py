@@ -18,7 +18,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from btlang.run.snapshot import WatchedNodes
+    from btlang.run.snapshot import State, WatchedNodes
 
 
 class GrootMonitor:
@@ -61,6 +61,10 @@ class ReplayMonitor:
             return
         self._follower(event)
         self._server(event)
+
+    def jump(self, state: State) -> None:
+        """The replay has gone on elsewhere."""
+        self._follower.jump(state)
 
     def _values_of(self, index: int) -> dict[str, Any]:
         """Only those of the whole mission are recorded."""

@@ -10,6 +10,7 @@ import tempfile
 import time
 from collections.abc import Iterator
 from contextlib import contextmanager, nullcontext
+from functools import partial
 
 from btlang.api import Mission
 from btlang.diagnostics.errors import MissionError
@@ -22,13 +23,14 @@ from btlang.recording.drawing import drawn
 from btlang.recording.open import opened
 from btlang.recording.reader import RecordedNodes, Recording
 from btlang.recording.recorder import Recorder
-from btlang.recording.replay import failures, play
+from btlang.recording.replay import Player, Timeline
 from btlang.recording.story import Story
 from btlang.robots.body_file import shipped_bodies
 from btlang.run.command import live_view
 from btlang.run.controls import Controls
 from btlang.run.events import Event
 from btlang.run.lines import Lines
+from btlang.run.live.keys import LEFT, RIGHT
 from btlang.session import Session
 from btlang.text.output import show
 
@@ -37,6 +39,9 @@ if TYPE_CHECKING:
     import argparse
 
     from btlang.run.events import Sink
+    from btlang.run.live.view import ViewKey
+
+_MOVE = 10.0  # seconds of the mission that an arrow key goes on or back
 
 
 @contextmanager
@@ -78,28 +83,39 @@ def _replay(options: argparse.Namespace) -> int:
             return _run_again(recording, mission, nodes)
         if options.to is not None:
             return _write_log(options.to, recording, mission, nodes)
-        controls = Controls()
+        controls, sinks = Controls(), list[Sink]()
+        timeline = Timeline(list(recording.events(nodes)), nodes)
+        player = Player(timeline, sinks, controls)
         lines = Lines(mission.label, mission.is_action, show)
-        view = None if options.lines else live_view(mission, controls)
+        view = None if options.lines else live_view(mission, controls, keys=partial(_keys, player, controls))
         start = -math.inf if options.start is None else options.start
         if options.failure:
-            start = next(iter(failures(recording.events(nodes))), -math.inf)
+            start = next(iter(timeline.failures()), -math.inf)
             controls.paused = view is not None and start > -math.inf
         speed = {"real": 1.0, "max": math.inf}.get(options.speed, options.speed)
-        sinks: list[Sink] = [lines if view is None else view]
-        with (
-            pictures_of(mission, options.picture, options.tree_picture, quiet=False) as pictures,
-            nullcontext() if view is None else view,
-            _shown(options.groot, controls, mission, nodes) as monitors,
-        ):
-            sinks += [*monitors, *map(drawn, pictures)]
+        sinks.append(lines if view is None else view)
+        with nullcontext() if view is None else view, _shown(options.groot, controls, mission, nodes) as monitors:
+            sinks += monitors
             try:
-                play(recording.events(nodes), sinks, controls, speed, start)
+                player.play(speed, start)
             except KeyboardInterrupt:
                 return 130
+        with pictures_of(mission, options.picture, options.tree_picture, quiet=False) as pictures:
+            for event in timeline.events:
+                for picture in pictures:
+                    drawn(picture)(event)
         if options.why:
-            show("\n".join(Story(mission, nodes, recording.about).take(recording.events(nodes)).lines()))
+            show("\n".join(Story(mission, nodes, recording.about).take(timeline.events).lines()))
     return 0
+
+
+def _keys(player: Player, controls: Controls) -> list[ViewKey]:
+    from btlang.run.live.view import ViewKey, usual_keys
+
+    pause, step, stop, _ = usual_keys(controls)
+    moves = {LEFT: partial(player.move, -_MOVE), RIGHT: partial(player.move, _MOVE)}
+    across = ViewKey(f"{LEFT}/{RIGHT}", f"{_MOVE:g} s", moves)
+    return [pause, step, across, ViewKey("f", "next failure", {"f": player.next_failure}), stop]
 
 
 @contextmanager

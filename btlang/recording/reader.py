@@ -10,9 +10,10 @@ from functools import cached_property
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import reason_of
+from btlang.engine.status import NAMES
 from btlang.engine.status_trace import Changes
 from btlang.record import Record
-from btlang.recording.channels import CLASSES, STATE, STATUSES, VALUES
+from btlang.recording.channels import CLASSES, LOG, POSE, SCAN, STATE, STATUSES, VALUES
 from btlang.recording.recorder import ABOUT
 from btlang.robots.geometry import Pose
 from btlang.run.events import Event, PeriodPassed, Sampled, StatusesChanged
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
 
 MOST_BYTES = 64_000_000
 """Of one record: a broken length would fill the memory."""
+_STATUSES = range(len(NAMES))
+_FOR_OTHERS = frozenset((POSE.topic, SCAN.topic, LOG.topic))  # which say again what our own messages do
 
 
 class RecordedNodes:
@@ -86,17 +89,20 @@ class RecordedNodes:
 
 
 class Recording(Record):
-    """`about` and `files` are those of the Recorder, `entries` the messages: topic and data."""
+    """`about` and `files` are those of the Recorder, `entries` the messages that are ours: topic and JSON."""
 
     about: Mapping[str, str]
     files: Mapping[str, bytes]
-    entries: tuple[tuple[str, Mapping[str, Any]], ...]
+    entries: tuple[tuple[str, bytes], ...]
 
     def events(self, nodes: RecordedNodes) -> Iterator[Event]:
-        """What happened, as the classes of events."""
+        """What happened, as the classes of events, up to the first that is broken."""
         run = self.about.get("run", "")
         for topic, data in self.entries:
-            event = _event(topic, data, run, nodes)
+            try:
+                event = _event(topic, json.loads(data), run, nodes)
+            except (ValueError, KeyError, IndexError, TypeError, AttributeError, RecursionError):
+                return
             if event is not None:
                 yield event
 
@@ -112,13 +118,15 @@ def read_recording(path: str) -> Recording:
     about: dict[str, str] = {}
     files: dict[str, bytes] = {}
     topics: dict[int, str] = {}
-    entries: list[tuple[str, Mapping[str, Any]]] = []
+    entries: list[tuple[str, bytes]] = []
     try:
         with open(path, "rb") as file:
             try:
                 for record in StreamReader(file, emit_chunks=True, record_size_limit=MOST_BYTES).records:
                     if isinstance(record, Message):
-                        entries.append((topics[record.channel_id], json.loads(record.data)))
+                        topic = topics[record.channel_id]
+                        if topic not in _FOR_OTHERS:
+                            entries.append((topic, record.data))
                     elif isinstance(record, Channel):
                         topics[record.id] = record.topic
                     elif isinstance(record, Metadata) and record.name == ABOUT:
@@ -138,7 +146,7 @@ def _event(topic: str, data: Mapping[str, Any], run: str, nodes: RecordedNodes) 
     if topic == STATUSES.topic:
         common = data["t"], run, data["number"], data["wall"]
         valued = {int(index): _with_ports(nodes, int(index), ports) for index, ports in data.get("values", {}).items()}
-        return StatusesChanged(*common, _changes(data), nodes, valued)
+        return StatusesChanged(*common, _changes(data, nodes.size), nodes, valued)
     if topic == STATE.topic:
         common = data["t"], run, data["number"], data["wall"]
         pose = Pose(*data["pose"]) if data.get("pose") else None
@@ -157,9 +165,13 @@ def _event(topic: str, data: Mapping[str, Any], run: str, nodes: RecordedNodes) 
     return kind(**{**dict.fromkeys(missing), **given})
 
 
-def _changes(data: Mapping[str, Any]) -> Changes:
+def _changes(data: Mapping[str, Any], size: int) -> Changes:
     changes = Changes()
     changes.indices, changes.codes = data["indices"], data["codes"]
+    if not all(0 <= index < size for index in changes.indices):
+        raise ValueError("there's no such node")
+    if not all(code & 7 in _STATUSES and code >> 3 in _STATUSES for code in changes.codes):
+        raise ValueError("there's no such status")
     changes.faults = {int(at): reason for at, reason in data.get("reasons", {}).items()}
     return changes
 

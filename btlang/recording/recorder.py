@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import struct
 import time
 from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
@@ -13,7 +14,7 @@ from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import unwritable
 from btlang.recording.bundle import files_of
-from btlang.recording.channels import Channel, messages
+from btlang.recording.channels import POSE, Channel, messages
 from btlang.run.bus import BLOCK
 from btlang.run.events import Ended, Event, PeriodPassed
 from btlang.text.source import NOWHERE
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
 ABOUT = "btlang"
 """The name of the metadata that say what was run."""
 _encode = json.JSONEncoder(ensure_ascii=False, default=str, separators=(",", ":")).encode
+_MESSAGE, _OPCODE = struct.Struct("<BQHIQQ"), 0x05  # https://mcap.dev/spec#message-op0x05
 _SYNCED = 1.0  # seconds of real time after which the file is brought to the disk: what a loss of power may take
 
 
@@ -54,6 +56,7 @@ class Recorder:
         """Whether the file could not be written to its end."""
         self._began: int | None = None
         self._count = 0
+        self._pose: object = None
         self._synced = time.monotonic()
         self._open()
 
@@ -73,9 +76,16 @@ class Recorder:
             self._about["run"] = event.run
             self._writer.add_metadata(ABOUT, self._about)
         at = self._began + int(event.t * 1e9)  # mission time, so that it is played at its pace
+        published = int(event.wall * 1e9)
         for channel, data in messages(event, at, self._label):
-            text = data if isinstance(data, str) else _encode(data)
-            self._writer.add_message(self._id(channel), at, text.encode(), int(event.wall * 1e9))
+            if channel is POSE:
+                pose = getattr(event, "state").pose  # noqa: B009
+                if pose == self._pose:
+                    continue
+                self._pose = pose
+            text = (data if isinstance(data, str) else _encode(data)).encode()
+            head = _MESSAGE.pack(_OPCODE, _MESSAGE.size - 9 + len(text), self._id(channel), 0, at, published)
+            self._file.write(head + text)  # what the writer does in 3 us, a third of all that an event costs
         if not isinstance(event, PeriodPassed | Ended):
             return  # what belongs to one tick goes into the file together
         self._file.flush()
@@ -105,8 +115,9 @@ class Recorder:
         path = self.path if self._count == 1 else f"{stem}.{self._count}{ending}"
         self._file = open(path, "wb")  # noqa: SIM115 - closed by `close`
         # in chunks, what is not yet written of one would be lost with the process
-        self._writer = Writer(self._file, compression=CompressionType.NONE, use_chunking=False)
+        self._writer = Writer(self._file, compression=CompressionType.NONE, use_chunking=False, use_statistics=False)
         self._channels: dict[str, int] = {}
+        self._pose = None  # each file can be read by itself
         now = time.time_ns()
         self._writer.start(library=f"btlang {self._about.get('btlang', '')}".strip())
         self._writer.add_metadata(ABOUT, self._about)

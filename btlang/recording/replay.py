@@ -1,50 +1,146 @@
-"""Plays a recording: hands its events to sinks at the pace of the mission, with pause, single steps and a start."""
+"""Plays a recording: hands its events to sinks at the pace of the mission, with pause, single steps and jumps."""
 
 from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterable, Sequence
+from bisect import bisect_right
+from collections.abc import Sequence
 
 from btlang.engine.status import FAILURE
+from btlang.recording.reader import RecordedNodes
 from btlang.run.controls import Controls
 from btlang.run.events import Event, PeriodPassed, StatusesChanged
+from btlang.run.shape import Shape
+from btlang.run.snapshot import State
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+_KEPT = 2_000  # changes of statuses between two states that are kept: a jump takes so many, some milliseconds
 
 
-def play(
-    events: Iterable[Event],
-    sinks: Sequence[Callable[[Event], object]],
-    controls: Controls,
-    speed: float,
-    start: float = -math.inf,
-) -> bool:
-    """Plays events to their end; returns False if it was stopped before.
+class Timeline:
+    """The events of a run by their times, and the state of the run after any of them."""
 
-    `speed` is seconds of the mission per second of real time, math.inf for no pauses. What comes before `start`, in
-    seconds of the mission, comes at once. A step goes on to the end of the next period.
+    def __init__(self, events: Sequence[Event], nodes: RecordedNodes) -> None:
+        self.events = events
+        self._times = [event.t for event in events]
+        self._nodes = [nodes.node(index) for index in range(nodes.size)]
+        self._shape = Shape([nodes.parent(index) for index in range(nodes.size)])
+        self._kept: list[tuple[int, State]] = []  # how many events each has taken
+
+    def count_before(self, t: float) -> int:
+        """How many events there are up to a time, in seconds of the mission."""
+        return bisect_right(self._times, t)
+
+    def failures(self) -> list[float]:
+        """When nodes failed, in seconds of the mission."""
+        found: dict[float, None] = {}
+        for event in self.events:
+            if isinstance(event, StatusesChanged) and FAILURE in {status for _, status, _, _ in event.changes}:
+                found[event.t] = None
+        return list(found)
+
+    def state(self, count: int) -> State:
+        """The state after so many events; the caller may change it."""
+        if not self._kept:
+            self._keep()
+        at = bisect_right(self._kept, count, key=lambda kept: kept[0]) - 1
+        taken, kept = self._kept[at]
+        state = kept.copy()
+        for event in self.events[taken:count]:
+            state.take(event)
+        return state
+
+    def _keep(self) -> None:
+        """One pass over all events; the states are as far apart as a tree is large, or they would fill the memory."""
+        state, changes = State(self._shape, self._nodes), 0
+        self._kept.append((0, state.copy()))
+        apart = max(_KEPT, len(self._shape))
+        for count, event in enumerate(self.events):
+            state.take(event)
+            changes += event.count or 1
+            if changes >= apart:
+                self._kept.append((count + 1, state.copy()))
+                changes = 0
+
+
+class Player:
+    """Plays the events of a timeline. `controls` pause it, go on by one period, and end it, from any thread.
+
+    A sink with a method `jump` gets the state of the run after a jump; others get what was left out, if it was forward.
     """
-    began: float | None = None  # the real time at which the mission would have begun, None where it stands still
-    for event in events:
-        if event.t >= start and speed < math.inf:
-            began = time.monotonic() - event.t / speed if began is None else began
-            due = began + event.t / speed
-            while not (controls.stopped or controls.paused) and (left := due - time.monotonic()) > 0:
-                controls.wait(left)
-        for sink in sinks:
-            sink(event)
-        if event.t >= start and isinstance(event, PeriodPassed) and controls.paused:
-            began = None
-            while controls.paused and not controls.stopped and not controls.take_step():
-                controls.wait(None)
-        if controls.stopped:
-            return False
-    return True
 
+    def __init__(self, timeline: Timeline, sinks: Sequence[Callable[[Event], object]], controls: Controls) -> None:
+        self._timeline, self._sinks, self._controls = timeline, sinks, controls
+        self._count = 0  # events that have been played
+        self._wanted: float | None = None  # where to go on, in seconds of the mission
 
-def failures(events: Iterable[Event]) -> list[float]:
-    """When nodes failed, in seconds of the mission."""
-    found: dict[float, None] = {}
-    for event in events:
-        if isinstance(event, StatusesChanged) and any(status == FAILURE for _, status, _, _ in event.without_paths()):
-            found[event.t] = None
-    return list(found)
+    def seek(self, t: float) -> None:
+        """Goes on behind what happened up to a time, in seconds of the mission. From any thread."""
+        self._wanted = t
+        self._controls.wake()
+
+    def move(self, seconds: float) -> None:
+        """Goes so many seconds on, or back where they are negative. From any thread."""
+        self.seek(max(0.0, (self._now if self._wanted is None else self._wanted) + seconds))
+
+    def next_failure(self) -> None:
+        """Goes on to the next time at which a node failed, and pauses there; does nothing if none follows."""
+        following = next((t for t in self._timeline.failures() if t > self._now), None)
+        if following is not None:
+            self._controls.pause()
+            self.seek(following)
+
+    def play(self, speed: float, start: float = -math.inf) -> bool:
+        """Plays to the end; returns False if it was stopped before.
+
+        `speed` is seconds of the mission per second of real time, math.inf for no waiting. What comes before `start`
+        comes at once. A step goes on to the end of the next period.
+        """
+        if start > -math.inf:
+            self._wanted = start
+        began: float | None = None  # the real time at which the mission would have begun, None where it stands still
+        controls, events = self._controls, self._timeline.events
+        while not controls.stopped and (self._count < len(events) or self._wanted is not None):
+            if self._wanted is not None:
+                self._jump(self._timeline.count_before(self._wanted))
+                began = None
+                self._stand_still()
+                continue
+            event = events[self._count]
+            if speed < math.inf:
+                began = time.monotonic() - event.t / speed if began is None else began
+                if not controls.paused and (left := began + event.t / speed - time.monotonic()) > 0:
+                    controls.wait(left)
+                    continue
+            self._count += 1
+            for sink in self._sinks:
+                sink(event)
+            if isinstance(event, PeriodPassed) and controls.paused:
+                began = None
+                self._stand_still()
+        return not controls.stopped
+
+    @property
+    def _now(self) -> float:
+        return self._timeline.events[self._count - 1].t if self._count else 0.0
+
+    def _stand_still(self) -> None:
+        """Until the pause is over, a step or a jump is asked for."""
+        controls = self._controls
+        while controls.paused and not controls.stopped and self._wanted is None and not controls.take_step():
+            controls.wait(None)
+
+    def _jump(self, count: int) -> None:
+        self._wanted = None
+        skipped, self._count = self._timeline.events[self._count : count], count
+        for sink in self._sinks:
+            jump = getattr(sink, "jump", None)
+            if jump is not None:
+                jump(self._timeline.state(count))
+                continue
+            for event in skipped:
+                sink(event)

@@ -144,8 +144,8 @@ class Base(Machine, Protocol):
         Raises RobotError where there is none.
         """
 
-    def seed_choices(self, seed: int) -> None:
-        """A run begins, whose random choices follow from the seed."""
+    def seed_choices(self, seed: int, made: int = 0) -> None:
+        """A run begins, whose random choices follow from the seed; so many have been made before, in another run."""
 
     def nearby_people(self, within: float) -> list[str]:
         """Names of the people within that many metres, nearest first."""

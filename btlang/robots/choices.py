@@ -6,21 +6,19 @@ from collections.abc import Callable, Sequence
 
 from btlang.robots.robot import OnEvent, RobotError
 
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    from random import Random
-
 
 class Choices:
-    """The choices of one run after the other; each begins with a seed of its own."""
+    """The choices of one run after the other; each begins with a seed of its own.
+
+    What is chosen depends on the seed and on how many random choices came before: so a run can go on elsewhere.
+    """
 
     def __init__(self) -> None:
-        self.seed = 0
-        self._random: Random | None = None
+        self.seed = self._made = 0
 
-    def begin(self, seed: int) -> None:
-        """A new run."""
-        self.seed, self._random = seed, None
+    def begin(self, seed: int, made: int = 0) -> None:
+        """A run with so many random choices behind it."""
+        self.seed, self._made = seed, made
 
     def choose(
         self, kind: str, how: str, names: Sequence[str], distance: Callable[[str], float], tell: OnEvent | None
@@ -39,8 +37,7 @@ class Choices:
         return str(data["name"])
 
     def _any(self, names: Sequence[str]) -> str:
-        if self._random is None:
-            from random import Random  # most missions need none
+        from random import Random  # most missions need none
 
-            self._random = Random(self.seed)
-        return self._random.choice(names)
+        self._made += 1
+        return Random(f"{self.seed} {self._made}").choice(names)

@@ -224,9 +224,9 @@ class SimulatedRobot:
             kind, how, names, lambda name: self.pose.distance_to(self.locate(name)), self.on_event
         )
 
-    def seed_choices(self, seed: int) -> None:
-        """A run begins, whose random choices follow from the seed."""
-        self._choices.begin(seed)
+    def seed_choices(self, seed: int, made: int = 0) -> None:
+        """A run begins, whose random choices follow from the seed; so many have been made."""
+        self._choices.begin(seed, made)
 
     def nearby_people(self, within: float) -> list[str]:
         """Names of the people within so many metres, nearest first."""

@@ -277,9 +277,9 @@ class RosRobot:
             kind, how, names, lambda name: pose.distance_to(self._places.locate(name, pose)), self.on_event
         )
 
-    def seed_choices(self, seed: int) -> None:
-        """A run begins, whose random choices follow from the seed."""
-        self._choices.begin(seed)
+    def seed_choices(self, seed: int, made: int = 0) -> None:
+        """A run begins, whose random choices follow from the seed; so many have been made."""
+        self._choices.begin(seed, made)
 
     def nearby_people(self, within: float) -> list[str]:
         """Names of the people of the world file within so many metres, nearest first."""

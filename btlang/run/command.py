@@ -5,7 +5,7 @@ from __future__ import annotations
 import os
 import signal
 import sys
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from contextlib import AbstractContextManager, contextmanager, nullcontext, suppress
 
 from btlang.diagnostics.errors import MissionError
@@ -30,7 +30,7 @@ if TYPE_CHECKING:
 
     from btlang.run.bus import Bus
     from btlang.run.events import Sink
-    from btlang.run.live.view import LiveView
+    from btlang.run.live.view import LiveView, ViewKey
 
     class Run(Protocol):
         """See btlang.session.Run."""
@@ -183,7 +183,11 @@ def _interrupted_by_signals() -> Iterator[list[int]]:
 
 
 def live_view(
-    mission: Mission, controls: Controls, type_ahead: list[str] | None = None, tree_stays: bool = True
+    mission: Mission,
+    controls: Controls,
+    type_ahead: list[str] | None = None,
+    tree_stays: bool = True,
+    keys: Callable[[], Sequence[ViewKey]] | None = None,
 ) -> LiveView | None:
     """None where standard output is no terminal in which it can be shown."""
     output = sys.stdout
@@ -199,7 +203,7 @@ def live_view(
     from btlang.run.live.view import LiveView
 
     try:
-        return LiveView(mission, controls, output, sys.stdin, tree_stays, type_ahead)
+        return LiveView(mission, controls, output, sys.stdin, tree_stays, type_ahead, keys() if keys else None)
     except EngineError:
         return None  # the run itself tells what is wrong
 

@@ -37,6 +37,8 @@ class Controls:
         """Whether the run has been told to end."""
         self.emergency = False
         """Whether that was an emergency stop."""
+        self.suspends = False
+        """Whether it is to end where it can go on later."""
 
     def pause(self) -> None:
         """The robot comes to rest and the time of the mission stands still."""
@@ -65,6 +67,11 @@ class Controls:
         """Ends the run."""
         self.stopped = True
         self.wake()
+
+    def suspend(self) -> None:
+        """Ends the run, and keeps where it was."""
+        self.suspends = True
+        self.stop()
 
     def emergency_stop(self) -> None:
         """Stops the robot at once, in this thread, whatever a leaf is doing; then ends the run.

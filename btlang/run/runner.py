@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import math
+from _thread import get_ident
+from collections import deque
 from collections.abc import Callable, Mapping
+from threading import Event
 
 from btlang.engine.blackboard import Blackboard
 from btlang.engine.engine import Engine, Failure
@@ -50,6 +53,8 @@ if TYPE_CHECKING:
         def close(self, patience: float = 0.0) -> list[Failure]: ...
 
 
+SUSPENDED = "suspended"
+_LOOK = 0.5  # seconds of real time after which who waits for a tick looks whether the run goes on
 _REST = 2.0  # seconds of the mission that a robot gets to come to rest
 _PATIENCE = 2.0  # seconds of real time that background leaves get to end after the last halt
 
@@ -60,7 +65,8 @@ class Outcome(Record, uncompared=("why", "statuses")):
     `why()` is why it failed, as `btc run` says it, "" where it did not; `statuses()` are those of the nodes at the end,
     by their words.
 
-    `stopped` is "" where the tree completed, else (status IDLE) "time limit", "interrupted" or "emergency stop".
+    `stopped` is "" where the tree completed, else (status IDLE) "time limit", "interrupted", "suspended" (it can go on
+    in another run) or "emergency stop".
     `seconds` are those of the mission, without the time in which the robot came to rest. `overruns` are the ticks that
     took too long, `worst` the slowest leaf in one and its seconds; None where no leaf was to blame, or nobody looked.
     `standstill` says whether the robot came to rest.
@@ -166,6 +172,8 @@ class Runner:
         if isinstance(engine, Engine) and engine.stopwatch is not None and speed < math.inf:
             self._overruns = Overruns(engine, engine.stopwatch, self._pause, self._bus)
         self.ticks = 0
+        self._requests: deque[Callable[[], object]] = deque()
+        self._thread = 0  # that of `run`, while it goes on
         self.controls.robot = robot
         engine.on_wake = self._pace.wake
 
@@ -189,6 +197,35 @@ class Runner:
             self._engine.close()
         return status
 
+    def between_ticks(self, call: Callable[[], Any]) -> Any:
+        """What `call` returns or raises, between two ticks of `run`. From any thread; waits until then."""
+        if self._thread in (0, get_ident()):
+            return call()
+        answered = Event()
+        answers: list[Any] = []
+        problems: list[Exception] = []
+
+        def request() -> None:
+            try:
+                answers.append(call())
+            except Exception as problem:
+                problems.append(problem)
+            answered.set()
+
+        self._requests.append(request)
+        self.controls.wake()
+        while not answered.wait(_LOOK):
+            if not self._thread:  # it ended meanwhile
+                self.answer_requests()
+        if problems:
+            raise problems[0]
+        return answers[0]
+
+    def answer_requests(self) -> None:
+        """Does what `between_ticks` waits for; also after the run."""
+        while self._requests:
+            self._requests.popleft()()
+
     def run(self) -> Outcome:
         """Runs to the end, the time limit, a stop or Ctrl-C; then halts the tree and brings the robot to rest.
 
@@ -196,6 +233,7 @@ class Runner:
         the same and comes through.
         """
         self._began, self.ticks = self._clock.now, 0
+        self._thread = get_ident()
         self._publish_period()
         try:
             status, stopped = self._loop()
@@ -203,9 +241,10 @@ class Runner:
             status, stopped = IDLE, "interrupted"
         finally:
             seconds = self._clock.now - self._began
-            standstill = self._end()
+            standstill = self._end(suspends=self.controls.suspends)
         if self.controls.emergency:
             status, stopped = IDLE, "emergency stop"
+        self._thread = 0
         failure = None if stopped else self._engine.failure
         count, worst = (self._overruns.count, self._overruns.worst) if self._overruns is not None else (0, None)
         outcome = Outcome(Status(status), seconds, self.ticks, failure, stopped, count, worst, standstill)
@@ -216,6 +255,7 @@ class Runner:
         controls, stepped = self.controls, False
         self._pace.begin()
         while not controls.stopped:
+            self.answer_requests()
             if controls.paused and not controls.take_step():
                 self._stand_still(stepped)
                 self._pace.begin()
@@ -229,7 +269,7 @@ class Runner:
             if self._clock.due > self._clock.now:
                 self._pace.real = getattr(self._engine, "works_beside", False)
                 self._advance(self._pace.sleep(self._period_left(), self._clock.due - self._clock.now))
-        return IDLE, "interrupted"
+        return IDLE, SUSPENDED if controls.suspends else "interrupted"
 
     def _tick(self, ticking: Ticked | Overruns) -> int:
         self._suspended = False
@@ -275,10 +315,13 @@ class Runner:
     def _publish_period(self) -> None:
         self._bus.emit(PeriodPassed, self.ticks, self._pace.late, read_robot(self._robot), self._robot)
 
-    def _end(self) -> Standstill:
+    def _end(self, suspends: bool = False) -> Standstill:
         """Another Ctrl-C cuts short only the wait for the robot, not the halting."""
         try:
-            self._engine.halt(emergency=self.controls.emergency)
+            if suspends and not self.controls.emergency:
+                self._engine.suspend()
+            else:
+                self._engine.halt(emergency=self.controls.emergency)
         finally:
             if self._robot is not None:
                 self._disable(self._robot)

@@ -75,6 +75,14 @@ class State:
         self._sweep = 1
         self._halted: list[int] = []  # by the halts that come in a row
 
+    def copy(self) -> State:
+        """Another one, which goes on from here by itself."""
+        other = State.__new__(State)
+        for name, value in vars(self).items():
+            shared = name in ("shape", "_nodes") or not isinstance(value, bytearray | dict | list)
+            setattr(other, name, value if shared else value.copy())
+        return other
+
     def take(self, event: Event) -> None:
         """An event of the run."""
         if isinstance(event, StatusesChanged):
@@ -183,6 +191,11 @@ class Follower:
                 self._state = State(Shape([self._engine.parent(index) for index in range(count)]), self._nodes)
             self._state.take(event)
             self._latest = event
+
+    def jump(self, state: State) -> None:
+        """Goes on from another state of the same tree."""
+        with self._lock:
+            self._state = state
 
     def snapshot(self, label: Callable[[Node], str]) -> Snapshot:
         """The state now; `label` gives the words of a command."""

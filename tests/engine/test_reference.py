@@ -1,11 +1,12 @@
 """The engine does what the reference interpreter does, on random trees with random leaves.
 
-After every tick, halt, emergency stop and suspension: the same status, the same calls and halts of leaves in the same
-order, the same blackboards. So do the plain nodes, where no faster variant of them is chosen.
+After every tick, halt, emergency stop and suspension, also one that another engine goes on from: the same status, the
+same calls and halts of leaves in the same order, the same blackboards. So do the plain nodes, where no faster variant of them is chosen.
 """
 
 from __future__ import annotations
 
+import json
 from contextlib import nullcontext
 from typing import Any
 from unittest.mock import patch
@@ -29,34 +30,41 @@ LEFT_RUNNING = n("LoopString", n("RateController", Node("F:k"), hz=0.4), queue="
 
 @example(LEFT_RUNNING, "ttt", False, True)
 @searches(300, 20000)
-@given(TREES | BUSY, letters("ttttthpem", 3, 12), st.booleans(), st.booleans())
+@given(TREES | BUSY, letters("ttttthperm", 3, 12), st.booleans(), st.booleans())
 def test_engine_equals_reference(shape: Node, orders: str, watched: bool, fused: bool) -> None:
     drawn, world = Drawn(shape), World()
     drawn.bind(world)
-    with nullcontext() if fused else patch("btlang.engine.compile.fused", lambda usual, *_: usual):
-        engine = world.engine(drawn.tree, watched)
+    variants = nullcontext() if fused else patch("btlang.engine.compile.fused", lambda usual, *_: usual)
+    with variants:
+        check(drawn, world, orders, watched)
+
+
+def check(drawn: Drawn, world: World, orders: str, watched: bool) -> None:
+    engine = world.engine(drawn.tree, watched)
     mission = Mission(drawn.tree, drawn.scripts, world.clock)
     reference = Reference(drawn.tree.root, mission, Board())
-    boards = [
-        (instance.scope, node.board) for instance, node in zip(engine._instances, preorder(reference), strict=True)
-    ]
+    boards = [node.board for node in preorder(reference)]
     for order in orders:
         if order in "he":
             engine.halt(emergency=order == "e")
             mission.emergency = order == "e"
             reference.reset()
             mission.emergency = False
-        elif order == "p":
+        elif order in "pr":
+            saved = json.dumps(engine.save())
             engine.suspend()
             reference.suspend()
+            if order == "r":
+                engine = world.engine(drawn.tree, watched)
+                engine.restore(json.loads(saved))
         else:
             ours, theirs = engine.tick(), reference.execute()
             assert LETTER[ours] == LETTER[theirs]
             if LETTER[theirs] in "sf":
                 reference.status = IDLE  # and no more: Tree::tickRoot leaves what is below the root as it is
         assert world.log == mission.log
-        for ours, theirs in boards:
-            assert values(ours) == values(theirs)
+        for instance, board in zip(engine._instances, boards, strict=True):
+            assert values(instance.scope) == values(board)
         world.clock.advance(60 if order == "m" else 1)
 
 

@@ -5,17 +5,23 @@ from __future__ import annotations
 import re
 import threading
 import time
+from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import pytest
 
 from btlang.cli import main
-from btlang.recording.replay import failures, play
+from btlang.engine.compile import outline
+from btlang.recording import replay
+from btlang.recording.reader import RecordedNodes, read_recording
+from btlang.recording.replay import Player, Timeline
 from btlang.run.controls import Controls
 from btlang.run.events import Event, PeriodPassed
+from btlang.run.snapshot import State
 from btlang.vocabulary.shipped import BODIES
 from tests.conftest import matches_golden
-from tests.recording.runs import recorded, replayed
+from tests.recording.runs import recorded
 
 HERE = Path(__file__).parent
 FAILING = """
@@ -30,6 +36,12 @@ grasp the book
 
 def run(text: str, path: Path, *options: str) -> int:
     return main(["run", "-c", text, "--speed", "max", "--seed", "7", "--record", str(path), *options])
+
+
+def timeline_of(text: str, folder: Path) -> Timeline:
+    mission, _ = recorded(text, folder / "run.mcap")
+    nodes = RecordedNodes(*outline(mission.tree))
+    return Timeline(list(read_recording(str(folder / "run.mcap")).events(nodes)), nodes)
 
 
 def printed(capsys: pytest.CaptureFixture[str], *words: str) -> tuple[int, str]:
@@ -102,15 +114,15 @@ def test_a_recording_runs_no_code_that_came_with_it(tmp_path: Path, capsys: pyte
 
 
 def test_pace_pause_step_and_stop(tmp_path: Path) -> None:
-    mission, _ = recorded("wait 1 s", tmp_path / "run.mcap")
-    events, controls, seen = replayed(mission, tmp_path / "run.mcap"), Controls(), list[Event]()
+    timeline = timeline_of("wait 1 s", tmp_path)
+    events, controls, seen = timeline.events, Controls(), list[Event]()
     began = time.monotonic()
-    assert play(events, [seen.append], controls, 4.0)
+    assert Player(timeline, [seen.append], controls).play(4.0)
     assert time.monotonic() - began == pytest.approx(events[-1].t / 4, rel=0.3)
     assert seen == events
     seen.clear()
     controls.pause()
-    thread = threading.Thread(target=play, args=(events, [seen.append], controls, 1.0))
+    thread = threading.Thread(target=Player(timeline, [seen.append], controls).play, args=(1.0,))
     thread.start()
     for _ in range(3):
         time.sleep(0.1)
@@ -124,12 +136,67 @@ def test_pace_pause_step_and_stop(tmp_path: Path) -> None:
 
 
 def test_it_begins_where_one_wants(tmp_path: Path) -> None:
-    mission, _ = recorded("wait 5 s then try to grasp the book then wait 5 s", tmp_path / "run.mcap")
-    events = replayed(mission, tmp_path / "run.mcap")
-    assert failures(events) == [pytest.approx(5.0, abs=0.1)]
+    timeline = timeline_of("wait 5 s then try to grasp the book then wait 5 s", tmp_path)
+    assert timeline.failures() == [pytest.approx(5.0, abs=0.1)]
+    seen = list[Event]()
     began = time.monotonic()
-    play(events, [], Controls(), 20.0, start=9.0)
+    Player(timeline, [seen.append], Controls()).play(20.0, start=9.0)
     assert time.monotonic() - began < 0.3
+    assert seen == timeline.events  # a sink without jumps gets all
+
+
+class Screen:
+    """A sink that notes what it is shown."""
+
+    def __init__(self, timeline: Timeline) -> None:
+        self.state = timeline.state(0)
+        self.jumps: list[float] = []
+
+    def __call__(self, event: Event) -> None:
+        self.state.take(event)
+
+    def jump(self, state: State) -> None:
+        self.state = state
+        self.jumps.append(state.now)
+
+
+def test_the_state_after_any_event_is_that_of_all_before_it(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(replay, "_KEPT", 20)
+    timeline = timeline_of(FAILING, tmp_path)
+    state = timeline.state(0)
+    for count, event in enumerate(timeline.events):
+        assert vars(timeline.state(count)) == vars(state)
+        state.take(event)
+
+
+def test_one_goes_on_and_back_and_to_the_next_failure(tmp_path: Path) -> None:
+    timeline = timeline_of("repeat twice: wait 20 s then try to grasp the book", tmp_path)
+    screen, controls = Screen(timeline), Controls()
+    player = Player(timeline, [screen], controls)
+    thread = threading.Thread(target=player.play, args=(1.0,))
+    controls.pause()
+    thread.start()
+
+    def jumped(ask: Callable[[], object]) -> float:
+        before = len(screen.jumps)
+        ask()
+        until = time.monotonic() + 5
+        while len(screen.jumps) == before and time.monotonic() < until:
+            time.sleep(0.01)
+        return screen.jumps[-1]
+
+    assert jumped(partial(player.move, 10)) == pytest.approx(10, abs=0.1)
+    assert jumped(player.next_failure) == pytest.approx(20, abs=0.2)
+    assert screen.state.statuses == timeline.state(timeline.count_before(screen.jumps[-1])).statuses
+    controls.resume()
+    assert jumped(player.next_failure) == pytest.approx(40, abs=0.3)
+    assert controls.paused
+    player.next_failure()  # none follows
+    assert jumped(partial(player.move, -100)) == pytest.approx(0, abs=0.1)
+    assert jumped(partial(player.seek, 1e9)) == pytest.approx(timeline.events[-1].t, abs=0.2)
+    controls.resume()
+    thread.join(5)
+    assert not thread.is_alive()
 
 
 def test_the_robot_file_is_in_it(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

@@ -60,31 +60,27 @@ def _loop(instance: NodeInstance, children: Sequence[Compiled], convert: Callabl
     key = blackboard_key("queue", text)
     values = [] if key is not None else _constants(instance, text, convert, sort)
     stays = instance.parent_keeps_completed  # it does not reset a child that has completed
-    queue: Any = deque(values)
+    queue = deque(values)  # of its own, where there is none on the blackboard
     running = False  # whether the child was RUNNING at the last tick
 
-    def taken() -> bool:
-        nonlocal queue
-        if key is not None:
-            queue = _stored(instance, key)
-        if not queue:
-            return False
-        value = queue.popleft() if isinstance(queue, deque) else queue.pop(0)
-        if target:
-            scope.set(target, _converted(value, convert, sort))
-        return True
-
     def reset() -> None:
-        nonlocal queue, running
-        queue, running = deque(values), False
+        nonlocal running
+        queue.clear()
+        queue.extend(values)
+        running = False
 
     def tick() -> int:
         nonlocal running
-        if not running and not taken():
-            status = if_empty()
-            if status != SKIPPED and not stays:
-                reset()
-            return instance.fail("its queue is empty") if status == FAILURE else status
+        if not running:
+            left = queue if key is None else _stored(instance, key)
+            if not left:
+                status = if_empty()
+                if status != SKIPPED and not stays:
+                    reset()
+                return instance.fail("its queue is empty") if status == FAILURE else status
+            value = left.popleft() if isinstance(left, deque) else left.pop(0)
+            if target:
+                scope.set(target, _converted(value, convert, sort))
         status = child()
         running = status == RUNNING
         if status == FAILURE:

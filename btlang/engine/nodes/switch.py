@@ -24,7 +24,8 @@ def switch(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
     """
     ticks, halts = apart(children)
     cases = len(ticks) - 1
-    variable, *values = [_text(instance, port) for port in CATALOGUE[instance.node.id].ports]
+    variable, *cases_of = [_text(instance, port) for port in CATALOGUE[instance.node.id].ports]
+    values = tuple(cases_of)
     enums = instance.state.enums
     running = -1  # the child that was RUNNING at the last tick
 

@@ -47,6 +47,14 @@ class Stopwatch:
         self.clock.wake_at(self.since + max(msec / 1000, SOONEST) - self.kept)
         return RUNNING
 
+    def saved(self) -> float:
+        """The seconds that it has run."""
+        return self.kept + (0.0 if self.since is None else self.clock.now - self.since)
+
+    def restore(self, seconds: float) -> None:
+        """It has run so long, and is paused."""
+        self.kept, self.since = seconds, None
+
     def halt(self, keep: bool) -> None:
         if not keep:
             self.kept = 0.0

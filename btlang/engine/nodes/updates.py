@@ -7,12 +7,12 @@ alone.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 
 from btlang.engine.instance import NodeInstance, halt_nothing
 from btlang.engine.nodes.ports import key_port
 from btlang.engine.nodes.start_guard import start_guarded
-from btlang.engine.status import IDLE, RUNNING, SKIPPED, SUCCESS
+from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -21,32 +21,41 @@ if TYPE_CHECKING:
 
 def skip_unless_updated(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
     """Its child where the entry is new, else SKIPPED; a RUNNING child is ticked on without asking."""
-    is_new = _news(instance)
-    return start_guarded(children, lambda: IDLE if is_new() else SKIPPED)
+    return start_guarded(children, _News(instance, SKIPPED))
 
 
 def wait_value_update(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
     """RUNNING until the entry is new, then its child."""
-    is_new = _news(instance)
-    return start_guarded(children, lambda: IDLE if is_new() else RUNNING)
+    return start_guarded(children, _News(instance, RUNNING))
 
 
 def was_entry_updated(instance: NodeInstance, children: Sequence[Compiled]) -> Compiled:
     """SUCCESS where the entry is new, else FAILURE."""
-    is_new = _news(instance)
+    news = _News(instance, FAILURE)
     refusal = f"nothing has been written to {{{key_port(instance, 'entry')}}} since the last check"
-    return (lambda: SUCCESS if is_new() else instance.fail(refusal)), halt_nothing
+    return (lambda: SUCCESS if news() == IDLE else instance.fail(refusal)), halt_nothing
 
 
-def _news(instance: NodeInstance) -> Callable[[], bool]:
-    scope, key = instance.scope, key_port(instance, "entry")
-    seen = -1
+class _News:
+    """IDLE where the entry is new since the last call, else the status `otherwise`."""
 
-    def is_new() -> bool:
-        nonlocal seen
-        before = seen
-        if key in scope:
-            seen = scope.writes(key)
-        return seen != before
+    __slots__ = ("key", "otherwise", "scope", "seen")
 
-    return is_new
+    def __init__(self, instance: NodeInstance, otherwise: int) -> None:
+        self.scope, self.key = instance.scope, key_port(instance, "entry")
+        self.otherwise = otherwise
+        self.seen = -1
+
+    def __call__(self) -> int:
+        before = self.seen
+        if self.key in self.scope:
+            self.seen = self.scope.writes(self.key)
+        return IDLE if self.seen != before else self.otherwise
+
+    def saved(self) -> int:
+        """How often the entry had been set."""
+        return self.seen
+
+    def restore(self, seen: int) -> None:
+        """As `saved` gave it."""
+        self.seen = seen

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 from collections import deque
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 
 from btlang.engine.compile import outline
 from btlang.run.events import PeriodPassed
@@ -52,17 +52,25 @@ class Board:
         self._words = frame.Words(nodes, mission.label)
         self._above: list[str] = []
         self._lines: Callable[[Event], None] = Lines(mission.label, mission.is_action, self._above.append)
-        self._waiting: deque[Event | str] = deque(maxlen=_MOST_WAITING)
+        self._waiting: deque[Event | str | State] = deque(maxlen=_MOST_WAITING)
         self._noted = self._taken = self._lost = 0  # events
         self._period: PeriodPassed | None = None
+        self._begun = False
 
     def note(self, event: Event | str) -> None:
         """Keeps an event, or a line that was printed."""
         if isinstance(event, PeriodPassed):
-            self._period = event
+            self._period, self._begun = event, True
         else:
             self._waiting.append(event)
             self._noted += 1
+        self.changes += 1
+
+    def jump(self, state: State) -> None:
+        """The run goes on from another state; what has been noted before is still written."""
+        self._waiting.append(state)
+        self._noted += 1
+        self._begun = True
         self.changes += 1
 
     def take(self) -> list[str]:
@@ -82,15 +90,17 @@ class Board:
         self._above.clear()
         return lines
 
-    def frame(self, width: int, height: int, doing: str, keys: str, explained: bool = False) -> list[frame.Line]:
+    def frame(
+        self, width: int, height: int, doing: str, keys: Sequence[tuple[str, str]], explained: bool = False
+    ) -> list[frame.Line]:
         """At most `height` lines (7 or more) while the run goes on. `doing` says what it does, "" that it has ended.
 
-        `keys` is that of frame.keys_line; `explained` adds what the signs mean, as far as there is room. A run that
+        `keys` are what frame.keys_line says; `explained` adds what the signs mean, as far as there is room. A run that
         ended before it began leaves nothing to show.
         """
         state, signs, over = self.state, self._signs, not doing
         below = [frame.robot_line(state, signs), frame.counts_line(state, signs)]
-        if over and self._period is None:
+        if over and not self._begun:
             return []
         if over:
             return [*frame.tree_lines(state, self._words, height - 2, width, over, signs), *below]
@@ -100,9 +110,13 @@ class Board:
         tree = frame.tree_lines(state, self._words, height - 1 - len(below), width, over, signs)
         return [frame.header(self._title, state, doing, signs), *tree, *below]
 
-    def _take(self, event: Event | str) -> None:
+    def _take(self, event: Event | str | State) -> None:
         if isinstance(event, str):
             self._above.append(event)
+            return
+        if isinstance(event, State):
+            self._above.append(f"         ({event.now:.1f} s)")
+            self.state, self._period = event, None
             return
         self.state.take(event)
         self._lines(event)

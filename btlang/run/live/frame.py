@@ -32,8 +32,8 @@ _MEANINGS = {
     SUSPENDED: "paused",
 }  # fmt: skip
 _LABELS = {IDLE: "dim", RUNNING: "bold", FAILURE: "red", SKIPPED: "dim", SUSPENDED: "bold"}
-_KEYS = (("space", "pause"), ("s", "step"), ("q", "stop"), ("e", "emergency stop"), ("?", "legend"))
-_SIGNALS = (("Ctrl-C", "stop"), *((("Ctrl-\\", "emergency stop"),) if hasattr(signal, "SIGQUIT") else ()))
+SIGNALS = (("Ctrl-C", "stop"), *((("Ctrl-\\", "emergency stop"),) if hasattr(signal, "SIGQUIT") else ()))
+"""What works without keys."""
 
 
 class Signs(Record):
@@ -152,10 +152,10 @@ def legend_lines(width: int, signs: Signs) -> list[Line]:
     return lines
 
 
-def keys_line(paused: bool, keys: str, signs: Signs) -> Line:
-    """What the "keys" do, or only "space" and those of signals, or else just these."""
+def keys_line(paused: bool, keys: Sequence[tuple[str, str]], signs: Signs) -> Line:
+    """What each key does."""
     pieces: list[tuple[str, str]] = []
-    for key, deed in {"keys": _KEYS, "space": (_KEYS[0], *_SIGNALS)}.get(keys, _SIGNALS):
+    for key, deed in keys:
         deed = "resume" if paused and deed == "pause" else deed
         pieces += [(key, "bold"), (f" {deed}{signs.apart}", "dim")]
     last = pieces.pop()[0].removesuffix(signs.apart)

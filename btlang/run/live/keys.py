@@ -19,11 +19,13 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-_SEQUENCE = re.compile(r"\x1b(?:[\[O][0-?]*[ -/]*[@-~]?|.)?", re.DOTALL)  # an arrow key or the like
-_PATIENCE = 0.2  # seconds until a process in the background looks again
-
 GONE = ""
 """In place of a key: the terminal is gone."""
+LEFT, RIGHT = "left", "right"
+"""The arrow keys that are handed on."""
+_KEY = re.compile(r"\x1b(?:[\[O][0-?]*[ -/]*[@-~]?|.)?|.", re.DOTALL)  # one, or an arrow key or the like
+_ARROWS = {"\x1b[C": RIGHT, "\x1bOC": RIGHT, "\x1b[D": LEFT, "\x1bOD": LEFT}
+_PATIENCE = 0.2  # seconds until a process in the background looks again
 
 
 class Keys:
@@ -94,5 +96,8 @@ class Keys:
             if not text:  # the terminal is gone, and nobody could end a pause
                 self._pressed(GONE)
                 return
-            for key in _SEQUENCE.sub("", text):
-                self._pressed(key)
+            for key in _KEY.findall(text):
+                if not key.startswith("\x1b"):
+                    self._pressed(key)
+                elif key in _ARROWS:
+                    self._pressed(_ARROWS[key])

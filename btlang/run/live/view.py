@@ -6,8 +6,10 @@ import os
 import sys
 import threading
 import time
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import ExitStack, suppress
 
+from btlang.record import Record
 from btlang.run.bus import INLINE
 from btlang.run.events import PeriodPassed
 from btlang.run.live import frame
@@ -20,11 +22,12 @@ from btlang.run.live.stopping import stoppable
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from types import TracebackType
-    from typing import TextIO
+    from typing import Any, TextIO
 
     from btlang.run.controls import Controls
     from btlang.run.events import Event
     from btlang.run.live.board import Viewed
+    from btlang.run.snapshot import State
 
 
 _INTERVAL = 0.2  # seconds between two frames
@@ -36,15 +39,33 @@ _SWITCH = 0.0005  # seconds after which the drawing thread lets a run that is wa
 _OTHER_LINES = 6  # one row in so many shows what happened, above the frame
 
 
+class ViewKey(Record):
+    """What a key does: how it is shown, what it does in words, and what each key calls (see Keys)."""
+
+    shown: str
+    does: str
+    calls: Mapping[str, Callable[[], Any]]
+
+
+def usual_keys(controls: Controls) -> list[ViewKey]:
+    """The keys of a run that goes on; the pause comes first."""
+    return [
+        ViewKey("space", "pause", {" ": controls.toggle}),
+        ViewKey("s", "step", {"s": controls.step}),
+        ViewKey("q", "stop", {"q": controls.stop}),
+        ViewKey("e", "emergency stop", {"e": controls.emergency_stop}),
+    ]
+
+
 class LiveView:
     """A sink for one run, between `with` and its end.
 
     It shows the tree at the end of what the terminal shows, and above it the lines that `Lines` writes, which stay; the
-    tree stays too unless `tree_stays` is false. The keys space, s, q and e of `keyboard`, where there is one, pause,
-    step and stop the run, and stop the robot at once; ? explains the signs. With `type_ahead`, a space is the only key
-    that does so while the mission runs: that list gets any other key, and what follows it. What is printed to standard
-    output, or to a standard error on a terminal, comes above the tree. Raises EngineError for a tree that cannot be
-    compiled.
+    tree stays too unless `tree_stays` is false. The `keys` of `keyboard`, where there is one, are by default space, s,
+    q and e, which pause, step and stop the run, and stop the robot at once; ? explains the signs. With `type_ahead`, a
+    space is the only key that does so while the mission runs: that list gets any other key, and what follows it. What
+    is printed to standard output, or to a standard error on a terminal, comes above the tree. Raises EngineError for a
+    tree that cannot be compiled.
     """
 
     policy = INLINE
@@ -57,6 +78,7 @@ class LiveView:
         keyboard: TextIO | None = None,
         tree_stays: bool = True,
         type_ahead: list[str] | None = None,
+        keys: Sequence[ViewKey] | None = None,
     ) -> None:
         unicode = (output.encoding or "").lower().startswith("utf")
         self._board = Board(mission, frame.UNICODE if unicode else frame.ASCII)
@@ -65,6 +87,11 @@ class LiveView:
         self._controls = controls
         self._output = output
         self._screen = Screen(output, lambda: os.get_terminal_size(output.fileno()))
+        used = [*(usual_keys(controls) if keys is None else keys), ViewKey("?", "legend", {"?": self._explain})]
+        self._shown_keys = [(key.shown, key.does) for key in used]
+        self._calls = {GONE: controls.stop}
+        for key in used:
+            self._calls.update(key.calls)
         self._keys = self._open_keys(keyboard)
         self._due = 0.0  # when the next frame may be drawn
         self._wake = threading.Event()
@@ -82,6 +109,11 @@ class LiveView:
         self._board.note(event)
         if isinstance(event, PeriodPassed) and time.monotonic() >= self._due:
             self._wake.set()
+
+    def jump(self, state: State) -> None:
+        """The run goes on from another state."""
+        self._board.jump(state)
+        self._wake.set()
 
     def __enter__(self) -> LiveView:
         with ExitStack() as exits:
@@ -139,11 +171,12 @@ class LiveView:
         )
         self._screen.draw(above, lines)
 
-    def _keys_shown(self, doing: str) -> str:
+    def _keys_shown(self, doing: str) -> Sequence[tuple[str, str]]:
         """As frame.keys_line takes it."""
         if self._keys is None:
-            return "signals"
-        return "keys" if self._type_ahead is None or doing == "paused" else "space"
+            return frame.SIGNALS
+        typing = self._type_ahead is not None and doing != "paused"
+        return (self._shown_keys[0], *frame.SIGNALS) if typing else self._shown_keys
 
     def _doing(self) -> str:
         if self._ended:
@@ -182,11 +215,9 @@ class LiveView:
         if key and self._type_ahead is not None and not controls.paused and (key != " " or self._type_ahead):
             self._type_ahead.append(key)
             return
-        deeds = {" ": controls.toggle, "s": controls.step, "q": controls.stop, "e": controls.emergency_stop}
-        deeds |= {GONE: controls.stop, "?": self._explain}
-        deed = deeds.get(key.lower())
-        if deed is not None:
-            deed()
+        call = self._calls.get(key.lower())
+        if call is not None:
+            call()
             self._wake.set()
 
     def _explain(self) -> None:

@@ -8,8 +8,10 @@ from rich.cells import cell_len
 
 from btlang.engine.status import FAILURE, IDLE, RUNNING, SKIPPED, SUCCESS
 from btlang.robots.geometry import Pose
+from btlang.run.controls import Controls
 from btlang.run.live.frame import (
     ASCII,
+    SIGNALS,
     UNICODE,
     Words,
     counts_line,
@@ -20,6 +22,7 @@ from btlang.run.live.frame import (
     robot_line,
     tree_lines,
 )
+from btlang.run.live.view import usual_keys
 from btlang.run.robot_state import RobotState
 from btlang.run.shape import Shape
 from btlang.run.snapshot import HALTED, SUSPENDED, State
@@ -29,6 +32,9 @@ from btlang.tree.node import Node
 from .trees import SHAPES, shape_of
 
 Line = tuple[tuple[str, str], ...]
+
+
+KEYS = [(key.shown, key.does) for key in usual_keys(Controls())] + [("?", "legend")]
 
 
 def text(line: Line) -> str:
@@ -146,9 +152,9 @@ def test_the_lines_around() -> None:
     assert text(counts_line(state, UNICODE)) == "ticks 246"
     state.overruns = 3  # more than one in a hundred
     assert text(counts_line(state, UNICODE)) == "ticks 246 · overruns 3"
-    assert text(keys_line(False, "keys", UNICODE)) == "space pause · s step · q stop · e emergency stop · ? legend"
-    assert text(keys_line(True, "keys", UNICODE)) == "space resume · s step · q stop · e emergency stop · ? legend"
-    assert text(keys_line(True, "signals", ASCII)) == "Ctrl-C stop - Ctrl-\\ emergency stop"
+    assert text(keys_line(False, KEYS, UNICODE)) == "space pause · s step · q stop · e emergency stop · ? legend"
+    assert text(keys_line(True, KEYS, UNICODE)) == "space resume · s step · q stop · e emergency stop · ? legend"
+    assert text(keys_line(True, SIGNALS, ASCII)) == "Ctrl-C stop - Ctrl-\\ emergency stop"
 
 
 def test_the_legend_explains_every_sign_in_any_width() -> None:

@@ -1,0 +1,145 @@
+"""What an engine remembers between two ticks, as JSON, and back: positions, counts, timers, statuses and values.
+
+The memory of a node is what the cells of its `tick` and `halt` hold: numbers, truths, texts, lists of these, failures,
+and objects with `saved` and `restore`, such as a Stopwatch. Leaves have none: one that was running starts again, as
+after a pause. So nodes need no code for it, and pay nothing for it while they are ticked.
+"""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from types import CellType
+
+from btlang.engine.blackboard import Blackboard
+from btlang.engine.instance import Fault, NodeInstance
+from btlang.engine.leaves.leaf import REFUSED, reason_text
+from btlang.engine.status import IDLE, RUNNING
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+    from btlang.engine.status_trace import StatusTrace
+
+FORMAT = 1
+"""Of what is saved; it grows when a node remembers something else."""
+_PLAIN = (bool, int, float, str, type(None))
+
+
+class SaveError(Exception):
+    """What is remembered can't be saved, or what was saved isn't that of this tree."""
+
+
+def save_nodes(instances: Sequence[NodeInstance], trace: StatusTrace | None) -> dict[str, Any]:
+    """Between two ticks. Raises SaveError for a value on the blackboard that isn't text, number, truth or list."""
+    nodes = {}
+    for instance in instances:
+        layers = [_read(functions) for functions in instance.memory]
+        if any(layers):
+            nodes[str(instance.index)] = layers
+    scopes = [scope.dump(_kept) for scope in _scopes(instances)]
+    statuses = {}
+    if trace is not None:
+        last = [IDLE if node.last == RUNNING else node.last for node in trace.nodes]
+        statuses = {str(index): status for index, status in enumerate(last) if status != IDLE}
+    return {"format": FORMAT, "size": len(instances), "nodes": nodes, "scopes": scopes, "statuses": statuses}
+
+
+def restore_nodes(saved: Mapping[str, Any], instances: Sequence[NodeInstance], trace: StatusTrace | None) -> None:
+    """Into nodes that haven't been ticked. Raises SaveError if they aren't those of the tree that was saved."""
+    scopes = list(_scopes(instances))
+    try:
+        if (saved["format"], saved["size"], len(saved["scopes"])) != (FORMAT, len(instances), len(scopes)):
+            raise SaveError("it was saved by another version of btlang, or from another tree")
+        for index, layers in saved["nodes"].items():
+            instance = instances[int(index)]
+            for functions, layer in zip(instance.memory, layers, strict=True):
+                _write(functions, layer, instances)
+        for scope, values in zip(scopes, saved["scopes"], strict=True):
+            scope.load(values, _unkept)
+        if trace is not None:
+            trace.restore({int(index): int(status) for index, status in saved["statuses"].items()})
+    except (KeyError, IndexError, TypeError, ValueError, AttributeError) as error:
+        raise SaveError(f"what was saved is damaged: {error}") from None
+
+
+def _scopes(instances: Sequence[NodeInstance]) -> Iterator[Blackboard]:
+    return iter(dict.fromkeys(instance.scope for instance in instances))
+
+
+def _cells(functions: Sequence[Callable[..., Any]]) -> Iterator[tuple[str, CellType]]:
+    """Those of a tick and its halt, which share most of them."""
+    found: dict[str, CellType] = {}
+    for function in functions:
+        code = getattr(function, "__code__", None)
+        if code is not None:
+            found.update(zip(code.co_freevars, function.__closure__ or (), strict=True))
+    return iter(found.items())
+
+
+def _read(functions: Sequence[Callable[..., Any]]) -> dict[str, Any]:
+    memory: dict[str, Any] = {}
+    for name, cell in _cells(functions):
+        value = cell.cell_contents
+        if isinstance(value, _PLAIN):
+            memory[name] = value
+        elif isinstance(value, list | deque):
+            memory[name] = {"list": [_kept(each) for each in value]}
+        elif isinstance(value, Fault | NodeInstance):
+            memory[name] = {"fault": _fault(value)}
+        elif hasattr(value, "saved"):
+            memory[name] = {"object": value.saved()}
+    return memory
+
+
+def _write(
+    functions: Sequence[Callable[..., Any]], memory: Mapping[str, Any], instances: Sequence[NodeInstance]
+) -> None:
+    cells = dict(_cells(functions))
+    for name, value in memory.items():
+        cell = cells[name]
+        if not isinstance(value, dict):
+            cell.cell_contents = value
+        elif "object" in value:
+            cell.cell_contents.restore(value["object"])
+        elif "list" in value:
+            values = cell.cell_contents  # itself, since others hold it too
+            values.clear()
+            values.extend(map(_unkept, value["list"]))
+        else:
+            cell.cell_contents = _unfault(value["fault"], instances)
+
+
+def _fault(fault: Fault | NodeInstance) -> list[Any]:
+    """Those that caused one another, the outermost first. What refuses without a reason has its own text again."""
+    found: list[Any] = []
+    while True:
+        found.append([fault.index, None if fault.reason is REFUSED else reason_text(fault.reason)])
+        if fault.cause is None:
+            return found
+        fault = fault.cause
+
+
+def _unfault(chain: Sequence[Any], instances: Sequence[NodeInstance]) -> Fault | NodeInstance | None:
+    fault: Fault | NodeInstance | None = None
+    for index, reason in reversed(chain):
+        alone = reason is None and fault is None
+        fault = instances[index] if alone else Fault(index, REFUSED if reason is None else reason, None, fault)
+    return fault
+
+
+def _kept(value: Any) -> Any:
+    """Raises SaveError for what JSON can't hold."""
+    if isinstance(value, _PLAIN):
+        return value
+    if isinstance(value, list | tuple | deque):
+        return {type(value).__name__: [_kept(each) for each in value]}
+    raise SaveError(f"a value of the kind {type(value).__name__} can't be saved")
+
+
+def _unkept(value: Any) -> Any:
+    if not isinstance(value, dict):
+        return value
+    [(kind, values)] = value.items()
+    return {"list": list, "tuple": tuple, "deque": deque}[kind](map(_unkept, values))

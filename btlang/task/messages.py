@@ -1,0 +1,323 @@
+"""What may be asked of a robot: a class for each command. The CLI, the library, ROS 2 and servers all send these.
+
+As JSON a command is an object with its name under "command" and its fields; `schema` describes them all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+from btlang.diagnostics.diagnostic import diagnostic
+from btlang.diagnostics.errors import MissionError
+from btlang.record import Record
+from btlang.task.task import Missed, Overlap, Restart
+from btlang.text.source import NOWHERE
+from btlang.text.spelling import nearest
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any, ClassVar
+
+
+class Command(Record):
+    """What somebody wants the robot, or its task layer, to do. `tag` is its name."""
+
+    tag: ClassVar[str] = ""
+    changes: ClassVar[bool] = True
+    """Whether it may change anything: such commands are in the audit trail."""
+
+
+class Submit(Command):
+    """A mission to do: a text, or the name of one in the library. `at` and `by` are when it may begin at the earliest
+    and at the latest: seconds since 1970, or English such as "14:30" or "in 10 minutes".
+    """
+
+    tag = "submit"
+    text: str = ""
+    name: str = ""
+    values: Mapping[str, Any] = {}
+    priority: int = 0
+    labels: tuple[str, ...] = ()
+    at: str | float | None = None
+    by: str | float | None = None
+    restart: str = Restart.GIVE_UP
+
+
+class List(Command):
+    """The tasks that are not over, in the order of their turn; or those in these `states`, newest first."""
+
+    tag = "list"
+    changes = False
+    states: tuple[str, ...] = ()
+    label: str = ""
+    limit: int = 100
+
+
+class Show(Command):
+    """All that is known of a task."""
+
+    tag = "show"
+    changes = False
+    task: int
+
+
+class Cancel(Command):
+    """Ends a task; a mission under way is halted as it says itself (what cleans up after it runs)."""
+
+    tag = "cancel"
+    task: int
+    reason: str = ""
+
+
+class Kill(Command):
+    """Ends a task at once; nothing cleans up after its mission."""
+
+    tag = "kill"
+    task: int
+    reason: str = ""
+
+
+class Interrupt(Command):
+    """Halts a mission, which can go on later: the answer has the token that `resume` needs."""
+
+    tag = "interrupt"
+    task: int
+    reason: str = ""
+
+
+class Resume(Command):
+    """Lets an interrupted task go on. Without a task: ends a pause, or what keeps all tasks waiting, if it's over."""
+
+    tag = "resume"
+    task: int = 0
+    token: str = ""
+
+
+class Skip(Command):
+    """A task that hasn't begun is left out."""
+
+    tag = "skip"
+    task: int
+    reason: str = ""
+
+
+class Reorder(Command):
+    """A task that waits gets another priority, or comes right before another task (and gets its priority)."""
+
+    tag = "reorder"
+    task: int
+    priority: int | None = None
+    before: int = 0
+
+
+class Again(Command):
+    """A new task like an earlier one."""
+
+    tag = "again"
+    task: int
+
+
+class AddSchedule(Command):
+    """A mission for certain times: `rule` is English, such as "every day at 9:00", in the time zone `zone`."""
+
+    tag = "schedule"
+    rule: str
+    text: str = ""
+    name: str = ""
+    zone: str = ""
+    values: Mapping[str, Any] = {}
+    priority: int = 0
+    labels: tuple[str, ...] = ()
+    restart: str = Restart.GIVE_UP
+    overlap: str = Overlap.SKIP
+    missed: str = Missed.SKIP
+    within: float | None = None
+
+
+class RemoveSchedule(Command):
+    """Ends a schedule; tasks that it has made stay."""
+
+    tag = "unschedule"
+    schedule: int
+
+
+class Schedules(Command):
+    """All schedules, with the time when each is due next."""
+
+    tag = "schedules"
+    changes = False
+
+
+class PutMission(Command):
+    """Keeps a mission in the library under a name. Every earlier revision stays."""
+
+    tag = "put"
+    name: str
+    text: str
+
+
+class DeleteMission(Command):
+    """Takes a mission out of the library; its revisions stay, and tasks that have its text still run."""
+
+    tag = "delete"
+    name: str
+
+
+class Library(Command):
+    """The missions of the library; with a `name`, the revisions of that one."""
+
+    tag = "library"
+    changes = False
+    name: str = ""
+
+
+class Pause(Command):
+    """The robot comes to rest, and the mission under way waits; no other one begins."""
+
+    tag = "pause"
+
+
+class Step(Command):
+    """In a pause: the mission goes on by one tick."""
+
+    tag = "step"
+
+
+class EmergencyStop(Command):
+    """Stops the robot at once. Nothing moves it before `release`."""
+
+    tag = "emergency_stop"
+    reason: str = ""
+
+
+class Release(Command):
+    """Opens the latch of the emergency stop; the mission that it ended doesn't go on."""
+
+    tag = "release"
+
+
+class Say(Command):
+    """The robot says a text now, whatever it does meanwhile."""
+
+    tag = "say"
+    text: str
+
+
+class Status(Command):
+    """What the robot does now, and what keeps it from doing more."""
+
+    tag = "status"
+    changes = False
+
+
+class Trail(Command):
+    """The audit trail: the latest commands, and who gave them."""
+
+    tag = "trail"
+    changes = False
+    limit: int = 50
+
+
+COMMANDS: dict[str, type[Command]] = {
+    kind.tag: kind
+    for kind in (
+        Submit, List, Show, Cancel, Kill, Interrupt, Resume, Skip, Reorder, Again, AddSchedule, RemoveSchedule,
+        Schedules, PutMission, DeleteMission, Library, Pause, Step, EmergencyStop, Release, Say, Status, Trail,
+    )
+}  # fmt: skip
+"""By their names."""
+
+
+class Answer(Record):
+    """What became of a command: `text` says it to people, `data` has it for programs. If it was refused, `code` is that
+    of the diagnostic (see docs/messages.md), and `text` says why and what to do.
+    """
+
+    ok: bool
+    text: str
+    data: Mapping[str, Any] = {}
+    code: str = ""
+
+    def as_json(self) -> dict[str, Any]:
+        """Its fields."""
+        return {"ok": self.ok, "text": self.text, "data": dict(self.data), "code": self.code}
+
+
+def read_command(data: object) -> Command:
+    """A command from its JSON. Raises MissionError (BT198) if it isn't one."""
+    if not isinstance(data, dict):
+        raise _wrong("", "it must be an object")
+    name = data.get("command")
+    kind = COMMANDS.get(name) if isinstance(name, str) else None
+    if kind is None:
+        similar = nearest(str(name), COMMANDS, 1)
+        raise _wrong(str(name), "there's no such command" + (f"; did you mean '{similar[0]}'?" if similar else ""))
+    given: dict[str, Any] = {}
+    for field, value in data.items():
+        if field == "command":
+            continue
+        if field not in kind.fields:
+            raise _wrong(kind.tag, f"it has no field '{field}'")
+        given[field] = _checked(kind, field, value)
+    missing = [field for field in kind.fields if field not in given and field not in kind.field_defaults]
+    if missing:
+        raise _wrong(kind.tag, f"the field '{missing[0]}' is missing")
+    return kind(**given)
+
+
+def as_json(command: Command) -> dict[str, Any]:
+    """A command as `read_command` takes it, without the fields that have their defaults."""
+    written: dict[str, Any] = {"command": command.tag}
+    for field in command.fields:
+        value = getattr(command, field)
+        if field not in command.field_defaults or value != command.field_defaults[field]:
+            written[field] = list(value) if isinstance(value, tuple) else value
+    return written
+
+
+def schema() -> dict[str, Any]:
+    """The JSON schema (draft 2020-12) of a command, made from the classes."""
+    return {
+        "$schema": "https://json-schema.org/draft/2020-12/schema",
+        "title": "A command for a robot of btlang",
+        "oneOf": [_described(kind) for kind in COMMANDS.values()],
+    }
+
+
+def _described(kind: type[Command]) -> dict[str, Any]:
+    fields = {field: _TYPES[kind.__annotations__[field]][1] for field in kind.fields}
+    return {
+        "title": kind.__name__,
+        "description": " ".join((kind.__doc__ or "").split()),
+        "type": "object",
+        "properties": {"command": {"const": kind.tag}, **fields},
+        "required": ["command", *(field for field in kind.fields if field not in kind.field_defaults)],
+        "additionalProperties": False,
+    }
+
+
+_NUMBER, _TEXT, _TEXTS = {"type": "number"}, {"type": "string"}, {"type": "array", "items": {"type": "string"}}
+_TYPES: dict[str, tuple[Any, dict[str, Any]]] = {
+    "str": (str, _TEXT),
+    "int": (int, {"type": "integer"}),
+    "int | None": (int | None, {"type": ["integer", "null"]}),
+    "float | None": (int | float | None, {"type": ["number", "null"]}),
+    "str | float | None": (str | int | float | None, {"type": ["string", "number", "null"]}),
+    "tuple[str, ...]": (list, _TEXTS),
+    "Mapping[str, Any]": (dict, {"type": "object"}),
+}
+"""By the annotations of the fields: what JSON gives for them, and how the schema describes that."""
+
+
+def _checked(kind: type[Command], field: str, value: Any) -> Any:
+    annotation = kind.__annotations__[field]
+    expected, described = _TYPES[annotation]
+    texts = annotation == "tuple[str, ...]"
+    fits = isinstance(value, expected) and not isinstance(value, bool)
+    if not fits or (texts and not all(isinstance(each, str) for each in value)) or value != value:
+        raise _wrong(kind.tag, f"'{field}' must be of the type {described['type']}")
+    return tuple(value) if texts else value
+
+
+def _wrong(name: str, reason: str) -> MissionError:
+    return MissionError([diagnostic("BT198", NOWHERE, name=name, reason=reason)])
