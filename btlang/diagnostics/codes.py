@@ -179,6 +179,10 @@ _ALL = (
     Code("BT182", "'{words}' {reason}."),
     Code("BT183", "{file} has tests, not a mission.", "To run them: btc test {file}"),
     Code("BT184", "There are no tests in {path}.", "The name of a file of tests ends with .test.txt."),
+    Code("BT188", "House rules can only be rules, each with 'whenever'.", "Write for example: {example}"),
+    Code("BT192", "The run can't be saved: {reason}."),
+    Code("BT193", "The mission can't go on from what was saved: {reason}.", "Start it again from its beginning."),
+    Code("BT198", "The command '{name}' can't be read: {reason}."),
 )  # fmt: skip
 
 CODES = {entry.code: entry for entry in _ALL}

@@ -83,7 +83,8 @@ def _replay(options: argparse.Namespace) -> int:
             return _run_again(recording, mission, nodes)
         if options.to is not None:
             return _write_log(options.to, recording, mission, nodes)
-        controls, sinks = Controls(), list[Sink]()
+        controls = Controls()
+        sinks: list[Sink] = []
         timeline = Timeline(list(recording.events(nodes)), nodes)
         player = Player(timeline, sinks, controls)
         lines = Lines(mission.label, mission.is_action, show)

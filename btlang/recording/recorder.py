@@ -14,7 +14,7 @@ from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import unwritable
 from btlang.recording.bundle import files_of
-from btlang.recording.channels import POSE, Channel, messages
+from btlang.recording.channels import Channel, messages
 from btlang.run.bus import BLOCK
 from btlang.run.events import Ended, Event, PeriodPassed
 from btlang.text.source import NOWHERE
@@ -27,7 +27,7 @@ if TYPE_CHECKING:
 ABOUT = "btlang"
 """The name of the metadata that say what was run."""
 _encode = json.JSONEncoder(ensure_ascii=False, default=str, separators=(",", ":")).encode
-_MESSAGE, _OPCODE = struct.Struct("<BQHIQQ"), 0x05  # https://mcap.dev/spec#message-op0x05
+_MESSAGE, _OPCODE, _BEFORE = struct.Struct("<BQHIQQ"), 0x05, 9  # https://mcap.dev/spec#message-op0x05
 _SYNCED = 1.0  # seconds of real time after which the file is brought to the disk: what a loss of power may take
 
 
@@ -56,7 +56,6 @@ class Recorder:
         """Whether the file could not be written to its end."""
         self._began: int | None = None
         self._count = 0
-        self._pose: object = None
         self._synced = time.monotonic()
         self._open()
 
@@ -78,14 +77,13 @@ class Recorder:
         at = self._began + int(event.t * 1e9)  # mission time, so that it is played at its pace
         published = int(event.wall * 1e9)
         for channel, data in messages(event, at, self._label):
-            if channel is POSE:
-                pose = getattr(event, "state").pose  # noqa: B009
-                if pose == self._pose:
-                    continue
-                self._pose = pose
             text = (data if isinstance(data, str) else _encode(data)).encode()
-            head = _MESSAGE.pack(_OPCODE, _MESSAGE.size - 9 + len(text), self._id(channel), 0, at, published)
-            self._file.write(head + text)  # what the writer does in 3 us, a third of all that an event costs
+            known = self._channels.get(channel.topic)
+            if known is None:  # the writer puts the channel before its first message
+                self._writer.add_message(self._new_id(channel), at, text, published)
+            else:  # as the writer does it in 3 us, a third of all that an event may cost
+                head = _MESSAGE.pack(_OPCODE, _MESSAGE.size - _BEFORE + len(text), known, 0, at, published)
+                self._file.write(head + text)
         if not isinstance(event, PeriodPassed | Ended):
             return  # what belongs to one tick goes into the file together
         self._file.flush()
@@ -117,7 +115,6 @@ class Recorder:
         # in chunks, what is not yet written of one would be lost with the process
         self._writer = Writer(self._file, compression=CompressionType.NONE, use_chunking=False, use_statistics=False)
         self._channels: dict[str, int] = {}
-        self._pose = None  # each file can be read by itself
         now = time.time_ns()
         self._writer.start(library=f"btlang {self._about.get('btlang', '')}".strip())
         self._writer.add_metadata(ABOUT, self._about)
@@ -125,12 +122,11 @@ class Recorder:
             self._writer.add_attachment(now, now, name, _media_type(name), data)
         self._file.flush()
 
-    def _id(self, channel: Channel) -> int:
-        known = self._channels.get(channel.topic)
-        if known is None:
-            schema = self._writer.register_schema(channel.schema, "jsonschema", _schema(channel).encode())
-            known = self._channels[channel.topic] = self._writer.register_channel(channel.topic, "json", schema)
-        return known
+    def _new_id(self, channel: Channel) -> int:
+        schema = self._writer.register_schema(channel.schema, "jsonschema", _schema(channel).encode())
+        number: int = self._writer.register_channel(channel.topic, "json", schema)
+        self._channels[channel.topic] = number
+        return number
 
 
 def _schema(channel: Channel) -> str:

@@ -199,8 +199,7 @@ def test_a_whole_recording_has_a_summary(tmp_path: Path) -> None:
     with (tmp_path / "run.mcap").open("rb") as file:
         summary = make_reader(file).get_summary()
     assert summary is not None
-    assert summary.statistics is not None
-    assert summary.statistics.message_count > 20
+    assert {channel.topic for channel in summary.channels.values()} > {"/robot/state", "/btlang/statuses"}
     with (tmp_path / "run.mcap").open("rb") as file:
         assert sum(1 for _ in StreamReader(file).records) > 20
 

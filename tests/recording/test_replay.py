@@ -88,7 +88,7 @@ def test_where_it_goes_otherwise_is_shown(tmp_path: Path, capsys: pytest.Capture
     run("go to a random place then nod", path, "--quiet")
     path.write_bytes(path.read_bytes().replace(b"\x04\0\0\0seed\x01\0\0\x007", b"\x04\0\0\0seed\x01\0\0\x009"))
     assert main(["replay", str(path), "--as-mission"]) == 0  # statuses alone are the same
-    run("go to a random place; if you are in the living room, nod, otherwise wave", path, "--quiet")
+    run("go to a random place; if you are in the lobby, nod, otherwise wave", path, "--quiet")
     path.write_bytes(path.read_bytes().replace(b"\x04\0\0\0seed\x01\0\0\x007", b"\x04\0\0\0seed\x01\0\0\x002"))
     capsys.readouterr()
     codes = [main(["replay", str(path), "--as-mission"])]

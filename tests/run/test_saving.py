@@ -16,19 +16,19 @@ from btlang.session import Run, Session
 
 TALK = """
 greeting is say "hello" then wait 0.3 s
-whenever {n} = 2, say "two"
+whenever n is 2, say "two"
 set n to 0
-repeat 4 times: set n to {n} + 1 then greeting then say "{n}"
+repeat 4 times: increase n then greeting then say "{n}"
 """
 MISSIONS = {
     "counts, rules and values": TALK,
     "retries and limits": """
-        try to (wait 0.2 s then go to the moon pool) up to 3 times, otherwise say "no way"
-        for 1 s: say "again" then wait 0.3 s
-    """.replace("go to the moon pool", "pick up the ball"),
-    "choices": 'repeat 5 times: choose a random place as goal then say "{goal}" then wait 0.1 s',
+        try to (wait 0.2 s then grasp the book) up to 3 times, otherwise say "no way"
+        (repeat forever: say "again" then wait 0.3 s) for 5 s
+    """,
+    "choices": 'repeat 5 times: face a random place then say "there" then wait 0.1 s',
     "side by side": 'say "a" then wait 1 s and meanwhile repeat 3 times: say "b" then wait 0.2 s',
-    "lists": 'for each place: say "{place}" then wait 0.1 s',
+    "lists": 'for each room in lab, kitchen and lobby: say "{room}" then wait 0.1 s',
     "times of day": 'wait 0.2 s then wait until 9:01 then say "now"',
 }
 
@@ -45,17 +45,27 @@ def ticked(run: Run, most: int) -> int:
     return most
 
 
-def interrupted_future(text: str, ticks: int) -> tuple[list[tuple[float, str]], str]:
-    """What is said after a pause behind so many ticks, and what was saved there."""
+def future(text: str, ticks: int, restores: bool) -> list[tuple[float, str]]:
+    """What is said after a pause behind so many ticks, which in the end another run of the session may follow."""
     events: list[Event] = []
+    mission = btlang.parse_tree(text)
     with Session() as session:
-        run = session.prepare(btlang.parse_tree(text), speed="max", seed=5, sinks=[events.append])
+        run = session.prepare(mission, speed="max", seed=5, sinks=[events.append])
         ticked(run, ticks)
         saved = json.dumps(run.save())
         run.nodes.suspend()
         before = len(events)
+        if restores:
+            run = session.restore(mission, json.loads(saved), speed="max", sinks=[events.append])
         ticked(run, 3000)
-        return told(events[before:]), saved
+    return told(events[before:])
+
+
+def saved_after(text: str, ticks: int) -> str:
+    with Session() as session:
+        run = session.prepare(btlang.parse_tree(text), seed=5)
+        ticked(run, ticks)
+        return json.dumps(run.save())
 
 
 def restored_future(text: str, saved: str) -> list[tuple[float, str]]:
@@ -68,24 +78,22 @@ def restored_future(text: str, saved: str) -> list[tuple[float, str]]:
 
 @pytest.mark.parametrize("text", MISSIONS.values(), ids=MISSIONS)
 def test_it_goes_on_as_after_a_pause(text: str) -> None:
-    ticks, futures = 1, []
-    while ticks == 1 or futures[-1]:
-        future, saved = interrupted_future(text, ticks)
-        assert restored_future(text, saved) == future
-        futures.append(future)
-        ticks += 3
-    assert len(futures) > 3
+    with Session() as session:
+        length = ticked(session.prepare(btlang.parse_tree(text), speed="max", seed=5), 3000)
+    for ticks in range(1, length, max(1, length // 12)):
+        assert future(text, ticks, restores=True) == future(text, ticks, restores=False)
 
 
 def test_in_another_process() -> None:
-    futures = [interrupted_future(TALK, ticks) for ticks in range(1, 30, 4)]
+    ticks = range(1, 60, 6)
     with multiprocessing.get_context("spawn").Pool(1) as pool:
-        restored = pool.starmap(restored_future, [(TALK, saved) for _, saved in futures])
-    assert restored == [future for future, _ in futures]
+        restored = pool.starmap(restored_future, [(TALK, saved_after(TALK, count)) for count in ticks])
+    assert restored == [future(TALK, count, restores=False) for count in ticks]
+    assert all(restored)
 
 
 def test_a_run_that_goes_on_is_saved_between_two_ticks_and_suspended() -> None:
-    mission = btlang.parse_tree('repeat 3 times: say "now" then wait 0.5 s')
+    mission = btlang.parse_tree('repeat 3 times: print "now" then wait 0.5 s')
     with Session() as session:
         run = session.start(mission, seed=1)
         saved: dict[str, Any] = {}
