@@ -211,7 +211,7 @@ def _compile_built_in(instance: NodeInstance, kind: NodeKind, children: Sequence
             raise instance.error(f"{kind.id} takes no port {port}")
     compiled = fused(SEMANTICS[kind.id], instance, children)(instance, children)
     if kind.id != SUBTREE:  # which is its child
-        instance.memory = (compiled,)
+        instance.memory = (compiled[0],)
     return _checked(instance, compiled) if from_blackboard and not kind.any_ports else compiled
 
 

@@ -66,7 +66,7 @@ def conditioned(instance: NodeInstance, compiled: Compiled) -> Compiled:
     if texts == {"_skipIf": "true"}:
         return skipped(instance, ())
     compiled = _watched_by_scripts(instance, compiled, texts)
-    instance.memory = (*instance.memory, compiled)
+    instance.memory = (*instance.memory, compiled[0])
     return compiled
 
 

@@ -168,7 +168,7 @@ class NodeInstance:
         self.scope = scope
         self.state = state
         self._usual: Fault | None = None
-        self.memory: tuple[Compiled, ...] = ()  # the functions whose cells hold what it remembers; see saving.py
+        self.memory: tuple[Tick, ...] = ()  # the functions whose cells hold what it remembers; see saving.py
 
     @property
     def parent_keeps_completed(self) -> bool:

@@ -1,7 +1,7 @@
 """What an engine remembers between two ticks, as JSON, and back: positions, counts, timers, statuses and values.
 
-The memory of a node is what the cells of its `tick` and `halt` hold: numbers, truths, texts, lists of these, failures,
-and objects with `saved` and `restore`, such as a Stopwatch. Leaves have none: one that was running starts again, as
+The memory of a node is what the cells of its `tick` hold: numbers, truths, texts, lists of these, failures, and objects
+with `saved` and `restore`, such as a Stopwatch. (Its `halt` may be that of its child.) Leaves have none: one that was running starts again, as
 after a pause. So nodes need no code for it, and pay nothing for it while they are ticked.
 """
 
@@ -35,7 +35,7 @@ def save_nodes(instances: Sequence[NodeInstance], trace: StatusTrace | None) -> 
     """Between two ticks. Raises SaveError for a value on the blackboard that isn't text, number, truth or list."""
     nodes = {}
     for instance in instances:
-        layers = [_read(functions) for functions in instance.memory]
+        layers = [_read(tick) for tick in instance.memory]
         if any(layers):
             nodes[str(instance.index)] = layers
     scopes = [scope.dump(_kept) for scope in _scopes(instances)]
@@ -54,12 +54,12 @@ def restore_nodes(saved: Mapping[str, Any], instances: Sequence[NodeInstance], t
             raise SaveError("it was saved by another version of btlang, or from another tree")
         for index, layers in saved["nodes"].items():
             instance = instances[int(index)]
-            for functions, layer in zip(instance.memory, layers, strict=True):
-                _write(functions, layer, instances)
+            for tick, layer in zip(instance.memory, layers, strict=True):
+                _write(tick, layer, instances)
         for scope, values in zip(scopes, saved["scopes"], strict=True):
             scope.load(values, _unkept)
         if trace is not None:
-            trace.restore({int(index): int(status) for index, status in saved["statuses"].items()})
+            trace.restore({int(index): status for index, status in saved["statuses"].items()})
     except (KeyError, IndexError, TypeError, ValueError, AttributeError) as error:
         raise SaveError(f"what was saved is damaged: {error}") from None
 
@@ -68,19 +68,14 @@ def _scopes(instances: Sequence[NodeInstance]) -> Iterator[Blackboard]:
     return iter(dict.fromkeys(instance.scope for instance in instances))
 
 
-def _cells(functions: Sequence[Callable[..., Any]]) -> Iterator[tuple[str, CellType]]:
-    """Those of a tick and its halt, which share most of them."""
-    found: dict[str, CellType] = {}
-    for function in functions:
-        code = getattr(function, "__code__", None)
-        if code is not None:
-            found.update(zip(code.co_freevars, function.__closure__ or (), strict=True))
-    return iter(found.items())
+def _cells(tick: Callable[..., Any]) -> dict[str, CellType]:
+    code = getattr(tick, "__code__", None)  # a partial has none, and remembers nothing
+    return {} if code is None else dict(zip(code.co_freevars, tick.__closure__ or (), strict=True))
 
 
-def _read(functions: Sequence[Callable[..., Any]]) -> dict[str, Any]:
+def _read(tick: Callable[..., Any]) -> dict[str, Any]:
     memory: dict[str, Any] = {}
-    for name, cell in _cells(functions):
+    for name, cell in _cells(tick).items():
         value = cell.cell_contents
         if isinstance(value, _PLAIN):
             memory[name] = value
@@ -93,10 +88,8 @@ def _read(functions: Sequence[Callable[..., Any]]) -> dict[str, Any]:
     return memory
 
 
-def _write(
-    functions: Sequence[Callable[..., Any]], memory: Mapping[str, Any], instances: Sequence[NodeInstance]
-) -> None:
-    cells = dict(_cells(functions))
+def _write(tick: Callable[..., Any], memory: Mapping[str, Any], instances: Sequence[NodeInstance]) -> None:
+    cells = _cells(tick)
     for name, value in memory.items():
         cell = cells[name]
         if not isinstance(value, dict):

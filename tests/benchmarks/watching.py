@@ -2,13 +2,15 @@
 
     python -m tests.benchmarks.watching [--minutes 5] [--rounds 5] [--nodes 5000]
 
-First a patrol, as fast as it goes: alone, as a test with four lines, and recorded. Then a tree of many nodes at 20 Hz
+First a patrol, as fast as it goes: alone, as a test with four lines, and recorded. Then jumps in the replay of an hour
+of it, anywhere: to the state, which a screen then draws. Then a tree of many nodes at 20 Hz
 in real time with a client of Groot2 that polls as it does: printed are late ticks, and how long answers took.
 """
 
 from __future__ import annotations
 
 import argparse
+import random
 import tempfile
 import time
 from collections.abc import Callable
@@ -16,9 +18,12 @@ from pathlib import Path
 from statistics import median
 
 import btlang
+from btlang.engine.compile import outline
 from btlang.monitor.command import groot_monitor
 from btlang.recording.bundle import files_of
+from btlang.recording.reader import RecordedNodes, read_recording
 from btlang.recording.recorder import Recorder
+from btlang.recording.replay import Timeline
 from btlang.run.controls import Controls
 from btlang.session import Session
 from btlang.testing.runner import run_test
@@ -55,6 +60,7 @@ def main() -> None:
     for name, run in (("as a test", lambda: run_test(test)), ("recorded", recorded)):
         taken = _median(run, options.rounds)
         print(f"  {name}: {taken:.2f} s, {taken / alone:.2f} times as long")
+    _jumps(mission)
     _groot(options.nodes)
 
 
@@ -65,6 +71,26 @@ def _median(run: Callable[[], object], rounds: int) -> float:
         run()
         times.append(time.perf_counter() - began)
     return median(times)
+
+
+def _jumps(mission: btlang.Mission) -> None:
+    with tempfile.TemporaryDirectory() as folder, Session() as session:
+        path = str(Path(folder, "r.mcap"))
+        recorder = Recorder(path, mission.label, files_of(mission, ()), {})
+        session.run(mission, speed="max", time_limit=3600.0, sinks=[recorder])
+        recorder.close()
+        began = time.perf_counter()
+        nodes = RecordedNodes(*outline(mission.tree))
+        timeline = Timeline(list(read_recording(path).events(nodes)), nodes)
+        timeline.state(0)
+        print(f"a replay of an hour, {len(timeline.events)} events: opened in {time.perf_counter() - began:.1f} s")
+    taken = []
+    for number in range(500):
+        wanted = random.Random(number).uniform(0, 3600)
+        began = time.perf_counter()
+        timeline.state(timeline.count_before(wanted))
+        taken.append(time.perf_counter() - began)
+    print(f"  jumps: {median(taken) * 1e3:.1f} ms, the slowest {max(taken) * 1e3:.1f} ms")
 
 
 def _groot(count: int) -> None:

@@ -57,6 +57,7 @@ def check(drawn: Drawn, world: World, orders: str, watched: bool) -> None:
             if order == "r":
                 engine = world.engine(drawn.tree, watched)
                 engine.restore(json.loads(saved))
+                assert json.dumps(engine.save()) == saved
         else:
             ours, theirs = engine.tick(), reference.execute()
             assert LETTER[ours] == LETTER[theirs]
