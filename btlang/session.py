@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 import os
 import threading
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from functools import cache, partial
 
 from btlang.backends.engine import bind_leaf
@@ -286,6 +286,14 @@ class Run:
         except SaveError as error:
             raise MissionError([diagnostic("BT192", NOWHERE, reason=str(error))]) from None
         return {**saved, "seed": self.seed, "choices": self._choices.made}
+
+    def call(self, call: Callable[[], Any]) -> Any:
+        """What `call` returns or raises, in the thread of the run, between two ticks; waits until then."""
+        return self._runner.between_ticks(call)
+
+    def after_ticks(self, call: Callable[[], object]) -> None:
+        """Calls it after each tick, in the thread of the run; what it raises ends the run."""
+        self._runner.after_tick = call
 
     def _restore(self, saved: Mapping[str, Any]) -> None:
         try:

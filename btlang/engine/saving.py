@@ -1,8 +1,8 @@
 """What an engine remembers between two ticks, as JSON, and back: positions, counts, timers, statuses and values.
 
 The memory of a node is what the cells of its `tick` hold: numbers, truths, texts, lists of these, failures, and objects
-with `saved` and `restore`, such as a Stopwatch. (Its `halt` may be that of its child.) Leaves have none: one that was running starts again, as
-after a pause. So nodes need no code for it, and pay nothing for it while they are ticked.
+with `saved` and `restore`, such as a Stopwatch. (Its `halt` may be that of its child.) Leaves have none: one that was
+running starts again, as after a pause. So nodes need no code for it, and pay nothing for it while they are ticked.
 """
 
 from __future__ import annotations

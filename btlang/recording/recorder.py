@@ -138,7 +138,9 @@ def _media_type(name: str) -> str:
     return {".xml": "application/xml", ".json": "application/json"}.get(os.path.splitext(name)[1], "text/plain")
 
 
-def recorder_in(folder: str, mission: Mission, keywords: Sequence[str], about: Mapping[str, str]) -> Recorder:
+def recorder_in(
+    folder: str, mission: Mission, keywords: Sequence[str], about: Mapping[str, str], most_bytes: int | None = None
+) -> Recorder:
     """A recorder for a run of a mission, in a file of a folder that is named after the time. Raises MissionError."""
     import btlang
 
@@ -146,6 +148,6 @@ def recorder_in(folder: str, mission: Mission, keywords: Sequence[str], about: M
     known = {"btlang": btlang.__version__, "wall": f"{time.time():.3f}", **about}
     try:
         os.makedirs(folder, exist_ok=True)
-        return Recorder(path, mission.label, files_of(mission, keywords), known)
+        return Recorder(path, mission.label, files_of(mission, keywords), known, most_bytes)
     except OSError as error:
         raise MissionError([unwritable(path, error)]) from None

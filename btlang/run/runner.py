@@ -172,6 +172,8 @@ class Runner:
         if isinstance(engine, Engine) and engine.stopwatch is not None and speed < math.inf:
             self._overruns = Overruns(engine, engine.stopwatch, self._pause, self._bus)
         self.ticks = 0
+        self.after_tick: Callable[[], object] | None = None
+        """Called after each tick of the tree, in the thread of the run."""
         self._requests: deque[Callable[[], object]] = deque()
         self._thread = 0  # that of `run`, while it goes on
         self.controls.robot = robot
@@ -280,6 +282,8 @@ class Runner:
         status = ticking.tick()
         self.ticks += 1
         self._report_halts()
+        if self.after_tick is not None:
+            self.after_tick()
         return status
 
     def _stand_still(self, stepped: bool) -> None:

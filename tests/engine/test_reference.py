@@ -1,7 +1,8 @@
 """The engine does what the reference interpreter does, on random trees with random leaves.
 
 After every tick, halt, emergency stop and suspension, also one that another engine goes on from: the same status, the
-same calls and halts of leaves in the same order, the same blackboards. So do the plain nodes, where no faster variant of them is chosen.
+same calls and halts of leaves in the same order, the same blackboards. So do the plain nodes, where no faster variant
+of them is chosen.
 """
 
 from __future__ import annotations

@@ -1,0 +1,149 @@
+"""Decides which task comes next: queue, deadlines and schedules, on what the store keeps."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+
+from btlang.task.moments import shown
+from btlang.task.recurrence import read_rule
+from btlang.task.task import ACTIVE, WAITING, Missed, Overlap, Restart, Schedule, State, Task
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.task.store import Store
+
+_PUNCTUAL = 60.0  # seconds after its time from which one that was missed counts as missed
+_MOST_LATE = 1000  # tasks that a schedule makes at most of the times that were missed
+CUT_OFF = "the robot was cut off"
+
+
+class Manager:
+    """All times are seconds since 1970. Methods raise StoreError where the store can't be used.
+
+    A task is due if it is queued, or was suspended for a more urgent one, and its earliest time has come.
+    """
+
+    def __init__(self, store: Store) -> None:
+        self._store = store
+
+    def recover(self, now: float, reason: str = CUT_OFF) -> list[Task]:
+        """After a start: what becomes of the task that was under way when the robot's process ended."""
+        found = []
+        for task in self._store.tasks(ACTIVE):
+            after = recovered(task, self._store, now, reason)
+            if after is not None:
+                found.append(after)
+        return found
+
+    def refresh(self, now: float) -> list[Task]:
+        """Makes the tasks whose scheduled times have come, and skips those whose deadline has passed.
+
+        Returns tasks under way that their schedules replace.
+        """
+        replaced: list[Task] = []
+        for schedule in self._store.due_schedules(now):
+            replaced += self._come(schedule, now)
+        for task in self._store.tasks({State.QUEUED}):
+            if task.deadline is not None and task.deadline < now:
+                self._skip(task, now, f"it couldn't begin by {shown(task.deadline, now)}: {task.reason or 'no time'}")
+        return replaced
+
+    def claim(self, now: float) -> Task | None:
+        """The next task, which is then the executor's."""
+        return self._store.claim(now)
+
+    def is_more_urgent(self, than: Task, now: float) -> bool:
+        """Whether a task is due that another one has to make way for."""
+        best = self._store.peek(now)
+        return best is not None and best.priority > than.priority
+
+    def next_time(self, now: float) -> float | None:
+        """When to look again, if nobody asks for anything before."""
+        times = [schedule.next for schedule in self._store.schedules()]
+        for task in self._store.tasks({State.QUEUED}):
+            times += [task.earliest, task.deadline]
+        coming = [time for time in times if time is not None and time > now]
+        return min(coming, default=None)
+
+    def why_waiting(self, task: Task, now: float, hindrance: str = "") -> str:
+        """Why a task that waits hasn't begun yet."""
+        if task.state not in WAITING:
+            return ""
+        if task.state is State.DELAYED and task.token:
+            return f"it was interrupted: {task.reason}" if task.reason else "it was interrupted"
+        if task.state is State.BLOCKED:
+            return task.reason
+        if task.earliest is not None and task.earliest > now:
+            return f"its time is {shown(task.earliest, now)}"
+        if hindrance:
+            return hindrance
+        before = [other for other in self._store.tasks(ACTIVE) if other.id != task.id]
+        for other in self._store.tasks({State.QUEUED, State.DELAYED}):
+            if other.id == task.id:
+                break
+            if not other.token and (other.earliest is None or other.earliest <= now):
+                before.append(other)
+        if not before:
+            return "it's next"
+        return f"task {before[0].id} comes first" if len(before) == 1 else f"{len(before)} tasks come first"
+
+    def _come(self, schedule: Schedule, now: float) -> Iterator[Task]:
+        assert schedule.next is not None
+        recurrence = read_rule(schedule.rule, schedule.zone)
+        times = [schedule.next]
+        for time in recurrence.between(schedule.next, now):
+            times.append(time)
+            if len(times) > _MOST_LATE:
+                break
+        for time in self._worth_doing(schedule, times, now):
+            yield from self._make(schedule, time, now)
+        self._store.amend_schedule(schedule.id, next=recurrence.next(max(now, times[-1])))
+
+    def _worth_doing(self, schedule: Schedule, times: list[float], now: float) -> Iterator[float]:
+        """The times of a schedule for which a task is made; the others get a task that is skipped, with the reason."""
+        missed = [time for time in times if now - time > _PUNCTUAL]
+        kept = {Missed.SKIP: [], Missed.ONCE: missed[-1:], Missed.ALL: missed}[schedule.missed]
+        if len(missed) < len(times):
+            kept = [] if schedule.missed is Missed.ONCE else kept
+        for time in times:
+            if time in missed and time not in kept:
+                task = self._store.add(self._task(schedule, time, now), "its time has come")
+                self._skip(task, now, f"its time, {shown(time, now)}, was missed: the robot wasn't up, or was stopped")
+            else:
+                yield time
+
+    def _make(self, schedule: Schedule, time: float, now: float) -> Iterator[Task]:
+        earlier = [task for task in self._store.tasks(WAITING | ACTIVE, schedule=schedule.id)]
+        task = self._store.add(self._task(schedule, time, now), "its time has come")
+        if not earlier:
+            return
+        if schedule.overlap is Overlap.SKIP:
+            self._skip(task, now, f"task {earlier[0].id} of the same schedule isn't over")
+        elif schedule.overlap is Overlap.REPLACE:
+            for other in earlier:
+                if other.state in WAITING:
+                    self._skip(other, now, f"task {task.id} of the same schedule replaces it")
+                else:
+                    yield other
+
+    def _skip(self, task: Task, now: float, reason: str) -> None:
+        self._store.change(task.id, WAITING, State.SKIPPED, time=now, cause=reason, ended=now)
+
+    def _task(self, schedule: Schedule, time: float, now: float) -> Task:
+        deadline = None if schedule.within is None else time + schedule.within
+        return Task(
+            0, schedule.mission, schedule.person, now, priority=schedule.priority, labels=schedule.labels,
+            deadline=deadline, restart=schedule.restart, schedule=schedule.id, due=time,
+        )  # fmt: skip
+
+
+def recovered(task: Task, store: Store, now: float, reason: str) -> Task | None:
+    """A task that was under way and is no longer, as it says itself: given up, again from its start, or to be resumed."""
+    if task.state is State.STANDBY and not task.saved:
+        return store.change(task.id, ACTIVE, State.QUEUED, time=now, cause=f"{reason} before it began")
+    if task.restart is Restart.GIVE_UP:
+        return store.change(task.id, ACTIVE, State.ERROR, time=now, cause=reason, ended=now)
+    saved = task.saved if task.restart is Restart.RESUME else ""
+    how = "goes on where it was" if saved else "begins again"
+    return store.change(task.id, ACTIVE, State.QUEUED, time=now, cause=f"{reason}; it {how}", saved=saved)
+

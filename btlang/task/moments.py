@@ -1,0 +1,12 @@
+"""Moments as people read them."""
+
+from __future__ import annotations
+
+import time
+
+
+def shown(moment: float, now: float) -> str:
+    """A time since 1970 in the time zone of this computer: "14:30" on the same day, else "2026-11-24 14:30"."""
+    there, today = time.localtime(moment), time.localtime(now)
+    clock = time.strftime("%H:%M:%S" if there.tm_sec else "%H:%M", there)
+    return clock if there[:3] == today[:3] else f"{time.strftime('%Y-%m-%d', there)} {clock}"

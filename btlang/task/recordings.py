@@ -1,0 +1,49 @@
+"""The recordings of tasks, in a folder that doesn't grow without end."""
+
+from __future__ import annotations
+
+import os
+from contextlib import suppress
+
+from btlang.api import Mission
+from btlang.diagnostics.errors import MissionError
+from btlang.recording.recorder import Recorder, recorder_in
+
+MOST_BYTES = 1_000_000_000
+"""Of all recordings together; the oldest go first."""
+_EACH = 200_000_000  # bytes of one, which then goes on in another file
+
+
+class Recordings:
+    """A recorder for each task, in `folder`; none if the package mcap isn't installed, which `problem` then says."""
+
+    def __init__(self, folder: str, most_bytes: int = MOST_BYTES) -> None:
+        self._folder, self._most = folder, most_bytes
+        self.problem = ""
+        """Why there are no recordings, "" if there are."""
+
+    def recorder(self, mission: Mission, task: int) -> Recorder | None:
+        """For a run of a task that begins now."""
+        self._make_room()
+        try:
+            recorder = recorder_in(self._folder, mission, (), {"task": str(task)}, _EACH)
+        except MissionError as error:
+            self.problem = error.diagnostics[0].message
+            return None
+        self.problem = ""
+        return recorder
+
+    def _make_room(self) -> None:
+        found: list[tuple[float, int, str]] = []
+        with suppress(OSError):
+            for entry in os.scandir(self._folder):
+                if entry.name.endswith(".mcap"):
+                    status = entry.stat()
+                    found.append((status.st_mtime, status.st_size, entry.path))
+        total = sum(size for _, size, _ in found)
+        for _, size, path in sorted(found):
+            if total <= self._most - _EACH:
+                break
+            with suppress(OSError):
+                os.remove(path)
+            total -= size
