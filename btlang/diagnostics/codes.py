@@ -5,7 +5,7 @@ BT05x what is allowed but probably not meant, BT06x keyword files,
 BT07x worlds, BT08x the Python behind the words and what else has to be installed, BT09x the codes themselves,
 BT10x ROS 2, BT11x missions as ROS 2 nodes, BT12x trees in XML, BT13x trees that were not written as missions,
 BT14x nodes said by their ids, BT15x lists, words that stand for names, and what is forbidden,
-BT16x times of day, BT17x sentences that people mean in two ways, BT18x tests.
+BT16x times of day, BT17x sentences that people mean in two ways, BT18x tests, BT19x tasks and schedules.
 
 BT05x and others that are warnings have a `name`, by which a mission silences them: `# allow: two readings`.
 Each code has a page in `pages/`, which `btc explain` prints.
@@ -182,6 +182,7 @@ _ALL = (
     Code("BT188", "House rules can only be rules, each with 'whenever'.", "Write for example: {example}"),
     Code("BT192", "The run can't be saved: {reason}."),
     Code("BT193", "The mission can't go on from what was saved: {reason}.", "Start it again from its beginning."),
+    Code("BT194", "{what} {problem}.", "{advice}"),
     Code("BT198", "The command '{name}' can't be read: {reason}."),
 )  # fmt: skip
 

@@ -2,8 +2,8 @@
 
 A label, an empty line and indented lines are an example. Labels are `Wrong:` and `Right:` for a mission, `Wrong
 keyword file:`, `Wrong world:` and `Wrong robot:` for a file that a mission is used with, `Wrong ros keyword file:` for
-one whose words are bound to ROS 2, `Wrong command:` for a command, and `The file NAME:` for a file beside it. `, saved
-as ENCODING` may end a label.
+one whose words are bound to ROS 2, `Wrong schedule:` for the rule of a schedule, `Wrong command:` for a command, and
+`The file NAME:` for a file beside it. `, saved as ENCODING` may end a label.
 """
 
 from __future__ import annotations
@@ -20,6 +20,7 @@ from btlang.diagnostics.codes import CODES, NAMES
 from btlang.diagnostics.explain import PAGES
 from tests.conftest import take_away_what_is_missed
 from tests.ros.bound import bind_words
+from tests.task.schedules import read_schedules
 
 TEXTS = {path.stem: path.read_text(encoding="utf-8") for path in Path(PAGES).iterdir()}
 _LABELLED = re.compile(r"^(Wrong|Right|The file)(?: ([\w. ]+))?(?:, saved as ([\w-]+))?:\n\n((?: {4}.*\n?)+)", re.M)
@@ -52,6 +53,8 @@ def said(example: Example, page: str, folder: Path, capsys: pytest.CaptureFixtur
     if example.of == "command":
         [btc, *command] = shlex.split(example.text)
         assert btc == "btc"
+    elif example.of == "schedule":
+        return read_schedules(example.text.splitlines()), capsys.readouterr().err
     else:
         (folder / "example.txt").write_text(example.text, encoding=example.encoding)
         if example.of == "ros keyword file":

@@ -1,7 +1,7 @@
 """Every code of a message has a bad sample in `bad/`, and its exact output beside it.
 
 A sample is compiled with `btc check`; a first line `# btc VERB FILE ...` asks for another command, and `# ros FILE`
-binds the words of a keyword file to ROS 2.
+binds the words of a keyword file to ROS 2. `# schedules ZONE` reads each further line as the rule of a schedule.
 """
 
 from __future__ import annotations
@@ -14,6 +14,7 @@ from btlang.cli import CRASHED, main
 from btlang.diagnostics.codes import CODES
 from tests.conftest import matches_golden, take_away_what_is_missed, without_pointer
 from tests.ros.bound import bind_words
+from tests.task.schedules import read_schedules
 
 BAD = Path(__file__).parent / "bad"
 SAMPLES = sorted(BAD.glob("*.txt"))
@@ -26,6 +27,9 @@ def test_message(sample: Path, capsys: pytest.CaptureFixture[str], monkeypatch: 
     first = sample.read_text(encoding="latin-1").splitlines()[0]
     if first.startswith("# ros "):
         code = bind_words(first.removeprefix("# ros "))
+    elif first.startswith("# schedules"):
+        rules = sample.read_text(encoding="utf-8").splitlines()[1:]
+        code = read_schedules(rules, first.removeprefix("# schedules").strip())
     else:
         code = run_sample(sample, first)
     errors = without_pointer(capsys.readouterr().err)
