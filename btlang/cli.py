@@ -357,6 +357,8 @@ _ELSEWHERE = {
     "diff": "btlang.recording.command",
     "test": "btlang.testing.command",
     "mcp": "btlang.mcp_server",
+    "robot": "btlang.task.robot_command",
+    "task": "btlang.task.command",
     "sim-ros": "btlang.ros.simulator.command",
     "ros-node": "btlang.ros.mission.command",
     "serve-actions": "btlang.ros.serving.command",

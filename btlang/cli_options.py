@@ -222,6 +222,18 @@ def _run_options(parser: argparse.ArgumentParser) -> None:
     add_robot_options(parser)
 
 
+def _robot_options(parser: argparse.ArgumentParser) -> None:
+    from btlang.task.options import add_robot_options
+
+    add_robot_options(parser)
+
+
+def _task_options(parser: argparse.ArgumentParser) -> None:
+    from btlang.task.options import add_task_options
+
+    add_task_options(parser)
+
+
 def _replay_options(parser: argparse.ArgumentParser) -> None:
     from btlang.recording.options import add_replay_options
 
@@ -345,6 +357,8 @@ _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "compile": ("write the tree of a mission as XML, English, JSON, a picture ...", _compile_options),
     "words": ("list what missions can say", _listing_options),
     "grammar": ("write a grammar of missions, for language models", _grammar_options),
+    "robot": ("keep a robot up for many tasks of many people", _robot_options),
+    "task": ("give work to a robot that is up, and ask about it", _task_options),
     "mcp": ("let language models write and simulate missions, as an MCP server", _words_options),
     "examples": ("list, print or copy the example missions", _examples_options),
     "explain": ("show how a mission is understood, or explain a message code", _explain_options),

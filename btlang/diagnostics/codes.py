@@ -179,11 +179,17 @@ _ALL = (
     Code("BT182", "'{words}' {reason}."),
     Code("BT183", "{file} has tests, not a mission.", "To run them: btc test {file}"),
     Code("BT184", "There are no tests in {path}.", "The name of a file of tests ends with .test.txt."),
+    Code("BT185", "{what}.", "{advice}"),
+    Code("BT186", "The robot can't do this now: {reason}."),
+    Code("BT187", "{what} {reason}."),
     Code("BT188", "House rules can only be rules, each with 'whenever'.", "Write for example: {example}"),
+    Code("BT190", "A robot '{name}' is up already.", "End it with: btc robot down --name {name}"),
     Code("BT192", "The run can't be saved: {reason}."),
     Code("BT193", "The mission can't go on from what was saved: {reason}.", "Start it again from its beginning."),
     Code("BT194", "{what} {problem}.", "{advice}"),
+    Code("BT195", "The task store {place} can't be used: {reason}."),
     Code("BT198", "The command '{name}' can't be read: {reason}."),
+    Code("BT199", "The robot '{name}' doesn't answer.", "See whether it is up: btc robot status"),
 )  # fmt: skip
 
 CODES = {entry.code: entry for entry in _ALL}

@@ -6,7 +6,7 @@ import re
 
 from btlang.diagnostics.diagnostic import Diagnostic
 from btlang.text.escaping import CYAN, PLAIN, RED, YELLOW, one_line
-from btlang.text.source import Span
+from btlang.text.source import NOWHERE, Span
 
 # Not by rich: `btc check` would start later by its import, more than all that it does takes.
 _COLOURS = {"error": RED, "warning": YELLOW}
@@ -25,6 +25,8 @@ def render(diagnostic: Diagnostic, colour: bool = False) -> str:
     severity = diagnostic.kind.severity
     own, noted = (_COLOURS[severity], CYAN) if colour else ("", "")
     place = one_line(diagnostic.span.place)
+    if diagnostic.span.source is NOWHERE.source:
+        place = "btc"
     if diagnostic.span.source.hidden:
         return f"{place}: {_painted(f'{severity} {diagnostic.code}', own)} (its text isn't shown here)"
     label = _painted(f"{severity} {diagnostic.code}:", own)

@@ -11,16 +11,20 @@ from functools import partial
 from btlang.api import Mission
 from btlang.diagnostics.errors import MissionError
 from btlang.engine.leaves.leaf import described
+from btlang.engine.status import RUNNING
 from btlang.record import Record
 from btlang.run.runner import SUSPENDED
 from btlang.session import Run, Session
+from btlang.task.database import StoreError
 from btlang.task.emergency import EmergencyStop
 from btlang.task.house_rules import HouseRules
-from btlang.task.manager import Manager, recovered
+from btlang.task.manager import ENDED, Manager, recovered
 from btlang.task.recordings import Recordings
-from btlang.task.store import Store, StoreError
+from btlang.task.store import Store
 from btlang.task.task import ACTIVE, Restart, State, Task
 from btlang.task.watch import RunWatch, indices_of
+from btlang.tree.catalogue import CATALOGUE
+from btlang.tree.node import Node
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -86,7 +90,7 @@ class Executor:
         self._unwritten: list[Callable[[], object]] = []  # changes of states that the store hasn't taken yet
         self._next: float | None = None  # when the manager wants to look again
         self._new = True  # somebody has asked for something since the last look
-        self._before_rule = ""  # the run as it was when a house rule began to act
+        self._latest = ""  # the run as it was when a command ended or a house rule began to act
         self._thread = threading.Thread(target=self._work, name="btlang executor", daemon=True)
 
     def start(self) -> None:
@@ -217,6 +221,8 @@ class Executor:
         task = self._manager.claim(now)
         if task is None:
             self._idle()
+        elif (hindrance := self.hindrance()) != "":  # it came meanwhile
+            self._change(task, State.QUEUED, hindrance)
         else:
             self._do(task)
 
@@ -255,7 +261,7 @@ class Executor:
                 self._change(task, State.ERROR, error.diagnostics[0].message, ended=self._now())
                 return
             self._change(task, State.UNDERWAY, "it goes on" if task.saved else "it begins", started=self._now())
-            self._before_rule = ""
+            self._latest = task.saved
             try:
                 outcome = self._execute(run)
             except Exception as problem:  # a word or a sink of the user's is broken
@@ -281,7 +287,7 @@ class Executor:
             run = self._session.prepare(mission, **options)
             for name, value in task.mission.values.items():
                 run.nodes.blackboard.set(name, value)
-        commands = [index for index, (_, node) in enumerate(run.nodes.nodes) if mission.is_action(node)]
+        commands = [index for index, (_, node) in enumerate(run.nodes.nodes) if _is_command(node, mission)]
         self._watch = RunWatch(indices_of(run, self._rules.reactions), commands, self.wake)
         run.bus.add(self._watch)
         run.after_ticks(partial(self._after_tick, task, run, self._watch))
@@ -291,10 +297,14 @@ class Executor:
         """In the thread of the run: keeps where it is, and looks whether another task is more urgent."""
         began, ended = watch.take_began(), watch.take_ended()
         try:
-            if began:
-                self._before_rule = json.dumps(run.save())
+            if run.nodes.status != RUNNING:
+                if task.restart is Restart.RESUME:  # it takes a moment yet until its state is final
+                    self._store.amend(task.id, saved=json.dumps({ENDED: run.nodes.status}))
+                return
+            if began or ended:
+                self._latest = json.dumps(run.save())
             if ended and task.restart is Restart.RESUME:
-                self._store.amend(task.id, saved=json.dumps(run.save()))
+                self._store.amend(task.id, saved=self._latest)
             now = self._now()
             if not self._new and (self._next is None or now < self._next):
                 return
@@ -333,7 +343,7 @@ class Executor:
         ending = self._ending
         if outcome.failure is not None and self._rules.is_own(outcome.failure.path):
             reason = outcome.failure.reason
-            self._change(task, State.BLOCKED, f"a house rule failed: {reason}", saved=self._before_rule)
+            self._change(task, State.BLOCKED, f"a house rule failed: {reason}", saved=self._latest)
             self._ask_for_help(reason)
         elif outcome.failure is not None:
             self._change(task, State.FAILED, _reason(outcome), ended=self._now())
@@ -363,9 +373,7 @@ class Executor:
 
     def _change(self, task: Task, state: State, cause: str, person: str = "", **fields: Any) -> None:
         now = self._now()
-        self._write(
-            partial(self._store.change, task.id, ACTIVE, state, time=now, cause=cause, person=person, **fields)
-        )
+        self._write(partial(self._store.change, task.id, ACTIVE, state, time=now, cause=cause, person=person, **fields))
 
     def _write(self, write: Callable[[], object]) -> None:
         """Now, or as soon as the store can be written to: what has happened is not lost."""
@@ -376,6 +384,11 @@ class Executor:
             except StoreError as error:
                 self._trouble(str(error))
         self._unwritten.append(write)
+
+
+def _is_command(node: Node, mission: Mission) -> bool:
+    kind = CATALOGUE.get(node.id)
+    return mission.is_action(node) if kind is None else kind.kind == "Action"
 
 
 def _reason(outcome: Outcome) -> str:

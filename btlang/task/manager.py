@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import json
 from collections.abc import Iterator
 
+from btlang.engine.status import FAILURE
 from btlang.task.moments import shown
 from btlang.task.recurrence import read_rule
 from btlang.task.task import ACTIVE, WAITING, Missed, Overlap, Restart, Schedule, State, Task
@@ -15,6 +17,8 @@ if TYPE_CHECKING:
 _PUNCTUAL = 60.0  # seconds after its time from which one that was missed counts as missed
 _MOST_LATE = 1000  # tasks that a schedule makes at most of the times that were missed
 CUT_OFF = "the robot was cut off"
+ENDED = "ended"
+"""In place of a saved run: the status with which its tree ended."""
 
 
 class Manager:
@@ -65,8 +69,8 @@ class Manager:
         coming = [time for time in times if time is not None and time > now]
         return min(coming, default=None)
 
-    def why_waiting(self, task: Task, now: float, hindrance: str = "") -> str:
-        """Why a task that waits hasn't begun yet."""
+    def why_waiting(self, task: Task, now: float, hindrance: str = "", first: int | None = None) -> str:
+        """Why a task that waits hasn't begun yet. `first` is the task that comes first, if known, 0 for none."""
         if task.state not in WAITING:
             return ""
         if task.state is State.DELAYED and task.token:
@@ -77,15 +81,11 @@ class Manager:
             return f"its time is {shown(task.earliest, now)}"
         if hindrance:
             return hindrance
-        before = [other for other in self._store.tasks(ACTIVE) if other.id != task.id]
-        for other in self._store.tasks({State.QUEUED, State.DELAYED}):
-            if other.id == task.id:
-                break
-            if not other.token and (other.earliest is None or other.earliest <= now):
-                before.append(other)
-        if not before:
-            return "it's next"
-        return f"task {before[0].id} comes first" if len(before) == 1 else f"{len(before)} tasks come first"
+        if first is None:
+            active = self._store.tasks(ACTIVE)
+            best = active[0] if active else self._store.peek(now)
+            first = best.id if best is not None else 0
+        return f"task {first} comes first" if first not in (0, task.id) else "it's next"
 
     def _come(self, schedule: Schedule, now: float) -> Iterator[Task]:
         assert schedule.next is not None
@@ -113,7 +113,7 @@ class Manager:
                 yield time
 
     def _make(self, schedule: Schedule, time: float, now: float) -> Iterator[Task]:
-        earlier = [task for task in self._store.tasks(WAITING | ACTIVE, schedule=schedule.id)]
+        earlier = self._store.tasks(WAITING | ACTIVE, schedule=schedule.id)
         task = self._store.add(self._task(schedule, time, now), "its time has come")
         if not earlier:
             return
@@ -138,12 +138,15 @@ class Manager:
 
 
 def recovered(task: Task, store: Store, now: float, reason: str) -> Task | None:
-    """A task that was under way and is no longer, as it says itself: given up, again from its start, or to be resumed."""
+    """A task that was under way and is no longer, as it says itself: given up, again from its start, or resumed."""
     if task.state is State.STANDBY and not task.saved:
         return store.change(task.id, ACTIVE, State.QUEUED, time=now, cause=f"{reason} before it began")
     if task.restart is Restart.GIVE_UP:
         return store.change(task.id, ACTIVE, State.ERROR, time=now, cause=reason, ended=now)
     saved = task.saved if task.restart is Restart.RESUME else ""
+    status = json.loads(saved).get(ENDED) if saved else None
+    if status is not None:
+        state = State.FAILED if status is FAILURE else State.COMPLETED
+        return store.change(task.id, ACTIVE, state, time=now, cause=f"{reason} when it was over", ended=now)
     how = "goes on where it was" if saved else "begins again"
     return store.change(task.id, ACTIVE, State.QUEUED, time=now, cause=f"{reason}; it {how}", saved=saved)
-

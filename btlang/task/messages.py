@@ -203,6 +203,12 @@ class Say(Command):
     text: str
 
 
+class Down(Command):
+    """The robot's process ends, as after SIGTERM."""
+
+    tag = "down"
+
+
 class Status(Command):
     """What the robot does now, and what keeps it from doing more."""
 
@@ -222,7 +228,7 @@ COMMANDS: dict[str, type[Command]] = {
     kind.tag: kind
     for kind in (
         Submit, List, Show, Cancel, Kill, Interrupt, Resume, Skip, Reorder, Again, AddSchedule, RemoveSchedule,
-        Schedules, PutMission, DeleteMission, Library, Pause, Step, EmergencyStop, Release, Say, Status, Trail,
+        Schedules, PutMission, DeleteMission, Library, Pause, Step, EmergencyStop, Release, Say, Down, Status, Trail,
     )
 }  # fmt: skip
 """By their names."""

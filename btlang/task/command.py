@@ -1,0 +1,135 @@
+"""What `btc task` does: words of the command line to commands for the robot that is up."""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import time
+from collections.abc import Callable
+
+from btlang.diagnostics.diagnostic import diagnostic
+from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.reading import read_source
+from btlang.task import messages
+from btlang.task.client import Client
+from btlang.task.messages import Answer, Command
+from btlang.task.task import State
+from btlang.text.output import pass_on, show
+from btlang.text.source import NOWHERE
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    import argparse
+    from typing import Any
+
+_AGAIN = 0.5  # seconds between two looks of the live list
+_CLEAR = "\x1b[H\x1b[J"
+
+
+def serve(options: argparse.Namespace) -> int:
+    """Does the verb `task`; returns the exit code: 1 if the robot refuses."""
+    command = _command(options)
+    with Client(options.name) as client:
+        if options.live:
+            return _live(client, command)
+        return tell(client.send(command), options.json)
+
+
+def tell(answer: Answer, as_json: bool) -> int:
+    """Prints an answer; returns the exit code."""
+    if as_json:
+        show(json.dumps(answer.as_json(), ensure_ascii=False, indent=2))
+    elif answer.ok:
+        pass_on(answer.text + "\n")
+    else:
+        show(answer.text, sys.stderr)
+    return 0 if answer.ok else 1
+
+
+def _live(client: Client, command: Command) -> int:
+    try:
+        while True:
+            pass_on(_CLEAR + client.send(messages.Status()).text + "\n\n" + client.send(command).text + "\n")
+            time.sleep(_AGAIN)
+    except KeyboardInterrupt:
+        return 0
+
+
+def _command(options: argparse.Namespace) -> Command:
+    """Raises MissionError for words that make no command (BT198)."""
+    act, reason = options.act, options.reason
+    if act in ("add", "schedule", "put"):
+        return _with_mission(options)
+    if act == "list":
+        return messages.List(tuple(State) if options.all else (), options.label[0] if options.label else "")
+    if act == "schedules":
+        return messages.Schedules()
+    if act == "library":
+        return messages.Library(_word(options, "") if options.item else "")
+    if act == "trail":
+        return messages.Trail()
+    if act == "delete":
+        return messages.DeleteMission(_word(options, "the name of a mission"))
+    number = _number(options)
+    if act == "move":
+        return messages.Reorder(number, options.priority, options.before)
+    if act == "resume":
+        return messages.Resume(number, options.token)
+    ends: dict[str, Callable[[int, str], Command]] = {
+        "cancel": messages.Cancel, "kill": messages.Kill, "interrupt": messages.Interrupt, "skip": messages.Skip,
+    }  # fmt: skip
+    if act in ends:
+        return ends[act](number, reason)
+    return {"show": messages.Show, "again": messages.Again, "unschedule": messages.RemoveSchedule}[act](number)
+
+
+def _with_mission(options: argparse.Namespace) -> Command:
+    text, name = options.code or "", ""
+    if options.act == "put":
+        name = options.item[0] if options.item else ""
+        if not text:
+            text = read_source(_word(options, "a name and a file", 1)).text
+        return messages.PutMission(name, text)
+    if not text:
+        name = _word(options, "a file, a name of the library, or -c TEXT")
+        if os.path.exists(name) or name.endswith(".txt"):
+            text, name = read_source(name).text, os.path.basename(name)
+    given: dict[str, Any] = {
+        "text": text, "name": name, "values": dict(map(_value, options.set)), "priority": options.priority or 0,
+        "labels": tuple(options.label), "restart": options.restart,
+    }  # fmt: skip
+    if options.act == "add":
+        return messages.Submit(**given, at=options.at, by=options.by)
+    if not options.every:
+        raise _wrong(options.act, 'it needs --every RULE, such as --every "every day at 9:00"')
+    return messages.AddSchedule(
+        options.every, **given, zone=options.zone, overlap=options.overlap, missed=options.missed, within=options.within
+    )
+
+
+def _value(text: str) -> tuple[str, str | float]:
+    name, equals, value = text.partition("=")
+    if not equals or not name.strip():
+        raise _wrong("--set", "write NAME=VALUE")
+    try:
+        return name.strip(), float(value) if "." in value else int(value)
+    except ValueError:
+        return name.strip(), value
+
+
+def _number(options: argparse.Namespace) -> int:
+    word = _word(options, "the number of a task")
+    if not word.isdecimal():
+        raise _wrong(options.act, f"'{word}' isn't the number of a task")
+    return int(word)
+
+
+def _word(options: argparse.Namespace, wanted: str, at: int = 0) -> str:
+    if len(options.item) <= at:
+        raise _wrong(options.act, f"it needs {wanted}")
+    return str(options.item[at])
+
+
+def _wrong(act: str, reason: str) -> MissionError:
+    return MissionError([diagnostic("BT198", NOWHERE, name=act, reason=reason)])

@@ -1,0 +1,399 @@
+"""The message handler: does what commands say, and answers with what happened or why not."""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from functools import partial
+
+from btlang.api import Mission
+from btlang.diagnostics.diagnostic import diagnostic
+from btlang.diagnostics.errors import MissionError
+from btlang.task import messages
+from btlang.task.answers import revision_data, schedule_data, short, task_data, task_line
+from btlang.task.emergency import EmergencyStop
+from btlang.task.executor import Ending, Executor
+from btlang.task.manager import Manager
+from btlang.task.messages import Answer, Command
+from btlang.task.moments import shown
+from btlang.task.recurrence import read_moment, read_rule
+from btlang.task.store import Store
+from btlang.task.task import (
+    ACTIVE,
+    FINAL,
+    PRIORITIES,
+    WAITING,
+    Act,
+    Missed,
+    MissionText,
+    Overlap,
+    Restart,
+    Schedule,
+    State,
+    Task,
+)
+from btlang.text.escaping import one_line
+from btlang.text.source import NOWHERE
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from enum import StrEnum
+    from typing import Any, TypeVar
+
+    from btlang.session import Session
+
+    Choice = TypeVar("Choice", bound=StrEnum)
+
+
+class Handler:
+    """`handle` is for any thread. `admit` compiles a text for this robot and refuses what it can't do, with all
+    reasons (MissionError); `now` gives the time since 1970, `down` ends the process.
+    """
+
+    def __init__(
+        self,
+        store: Store,
+        manager: Manager,
+        executor: Executor,
+        emergency: EmergencyStop,
+        session: Session,
+        admit: Callable[[str, str], Mission],
+        now: Callable[[], float],
+        down: Callable[[], object],
+    ) -> None:
+        self._store, self._manager, self._executor, self._emergency = store, manager, executor, emergency
+        self._session, self._admit, self._now, self._down = session, admit, now, down
+        self._does: dict[type[Command], Callable[[Any, str], Answer]] = {
+            messages.Submit: self._submit, messages.List: self._list, messages.Show: self._show,
+            messages.Cancel: partial(self._end, State.CANCELED), messages.Kill: partial(self._end, State.KILLED),
+            messages.Interrupt: self._interrupt, messages.Resume: self._resume, messages.Skip: self._skip,
+            messages.Reorder: self._reorder, messages.Again: self._again, messages.AddSchedule: self._schedule,
+            messages.RemoveSchedule: self._unschedule, messages.Schedules: self._schedules,
+            messages.PutMission: self._put, messages.DeleteMission: self._delete, messages.Library: self._library,
+            messages.Pause: self._pause, messages.Step: self._step, messages.EmergencyStop: self._stop,
+            messages.Release: self._release, messages.Say: self._say, messages.Down: self._end_all,
+            messages.Status: self._status, messages.Trail: self._trail,
+        }  # fmt: skip
+
+    def handle(self, command: Command, person: str) -> Answer:
+        """Does a command of a person, who is allowed to give it; a refusal is an answer, too."""
+        try:
+            answer = self._does[type(command)](command, person)
+        except MissionError as error:
+            first = error.diagnostics[0]
+            answer = Answer(False, str(error), {}, first.code)
+        if command.changes:
+            self._log(command, person, answer)
+        return answer
+
+    def _log(self, command: Command, person: str, answer: Answer) -> None:
+        details = json.dumps(messages.as_json(command), ensure_ascii=False, default=str)
+        with suppress(MissionError):  # then the command was refused for the same reason, or needs no store
+            self._store.log(Act(self._now(), person, command.tag, details, answer.text))
+
+    def _submit(self, command: messages.Submit, person: str) -> Answer:
+        now = self._now()
+        mission = self._text(command.text, command.name, command.values)
+        task = self._store.add(
+            Task(
+                0, mission, person, now, priority=_priority(command.priority), labels=command.labels,
+                earliest=_moment(command.at, now), deadline=_moment(command.by, now),
+                restart=_choice(Restart, command.restart, "restart"),
+            ),
+            "it was submitted",
+        )  # fmt: skip
+        self._executor.wake()
+        return Answer(True, f"Task {task.id} is queued.", {"task": task_data(task)})
+
+    def _list(self, command: messages.List, person: str) -> Answer:
+        wanted = {_choice(State, state, "state") for state in command.states}
+        states = wanted or WAITING | ACTIVE
+        found = self._store.tasks(states, label=command.label, newest=bool(wanted & FINAL), limit=command.limit)
+        found.sort(key=lambda task: task.state not in ACTIVE)
+        hindrance, now, tasks, first = self._executor.hindrance(), self._now(), [], 0
+        for task in found:
+            tasks.append(task_data(task, self._manager.why_waiting(task, now, hindrance, first)))
+            first = first or task.id
+        text = "\n".join(map(task_line, tasks)) or "There are no tasks."
+        return Answer(True, text, {"tasks": tasks, "hindrance": hindrance})
+
+    def _show(self, command: messages.Show, person: str) -> Answer:
+        task = self._known(command.task)
+        now, data = self._now(), self._data(task)
+        changes = [change for _, change in self._store.changes(task.id)]
+        data["changes"] = [
+            {"time": each.time, "state": each.state, "cause": each.cause, "person": each.person} for each in changes
+        ]
+        lines = [task_line(data), f"  asked for by {one_line(task.person) or 'nobody'} at {shown(task.created, now)}"]
+        for each in changes:
+            by = f", by {one_line(each.person)}" if each.person else ""
+            cause = f": {one_line(each.cause)}" if each.cause else ""
+            lines.append(f"  {shown(each.time, now)}  {each.state}{cause}{by}")
+        if task.recording:
+            lines.append(f"  recorded in {one_line(task.recording)}")
+        return Answer(True, "\n".join(lines), {"task": {**data, "text": task.mission.text}})
+
+    def _end(self, state: State, command: messages.Cancel | messages.Kill, person: str) -> Answer:
+        task = self._open(command.task)
+        cause = command.reason or f"{person or 'somebody'} asked for it"
+        ended = self._executor.end(task.id, Ending(state, cause, person))
+        if ended is None:
+            now = self._now()
+            ended = self._store.change(
+                task.id, WAITING, state, time=now, cause=cause, person=person, ended=now
+            ) or self._executor.end(task.id, Ending(state, cause, person))  # it may have begun meanwhile
+        ended = ended or self._known(task.id)
+        self._executor.wake()
+        if ended.state is state:
+            return Answer(True, f"Task {task.id} is {state}.", {"task": self._data(ended)})
+        if ended.state in FINAL:
+            raise _refused(task.id, f"was already over: {ended.state}")
+        return Answer(True, f"Task {task.id} is about to be {state}.", {"task": self._data(ended)})
+
+    def _interrupt(self, command: messages.Interrupt, person: str) -> Answer:
+        task = self._open(command.task)
+        token, cause = os.urandom(8).hex(), command.reason or f"{person or 'somebody'} asked for it"
+        run = self._executor.run
+        if self._executor.task is not None and self._executor.task.id == task.id and run is not None:
+            run.save()  # raises if it can't be kept
+        ended = self._executor.end(task.id, Ending(State.DELAYED, cause, person, token))
+        if ended is None:
+            raise _refused(task.id, f"isn't under way: it's {task.state}")
+        if ended.state in FINAL:
+            raise _refused(task.id, f"was already over: {ended.state}")
+        text = f"Task {task.id} is interrupted. To let it go on, use the token {token}."
+        return Answer(True, text, {"task": self._data(ended), "token": token})
+
+    def _resume(self, command: messages.Resume, person: str) -> Answer:
+        if not command.task:
+            ended = self._executor.resume()
+            return Answer(True, f"That ends {ended}." if ended else "Nothing was paused.", {"ended": ended})
+        task = self._open(command.task)
+        if task.state is not State.DELAYED or not task.token:
+            raise _refused(task.id, f"wasn't interrupted: it's {task.state}")
+        if command.token != task.token:
+            raise _refused(task.id, "has another token: it was interrupted again, or by somebody else")
+        cause = f"{person or 'somebody'} lets it go on"
+        resumed = self._store.change(
+            task.id, {State.DELAYED}, State.QUEUED, time=self._now(), cause=cause, person=person, token=""
+        )
+        if resumed is None:
+            raise _refused(task.id, "has changed meanwhile")
+        self._executor.wake()
+        return Answer(True, f"Task {task.id} goes on when it's its turn.", {"task": self._data(resumed)})
+
+    def _skip(self, command: messages.Skip, person: str) -> Answer:
+        task, now = self._open(command.task), self._now()
+        cause = command.reason or f"{person or 'somebody'} asked for it"
+        skipped = self._store.change(task.id, WAITING, State.SKIPPED, time=now, cause=cause, person=person, ended=now)
+        if skipped is None:
+            raise _refused(task.id, "has begun, so it can't be skipped: cancel it")
+        self._executor.wake()
+        return Answer(True, f"Task {task.id} is skipped.", {"task": self._data(skipped)})
+
+    def _reorder(self, command: messages.Reorder, person: str) -> Answer:
+        task = self._open(command.task)
+        if command.priority is not None:
+            moved = self._store.amend(task.id, priority=_priority(command.priority))
+        elif command.before:
+            other = self._open(command.before)
+            equal = [each.id for each in self._store.tasks(WAITING) if each.priority == other.priority]
+            order = [each for each in equal if each != task.id]
+            order.insert(order.index(other.id) if other.id in order else 0, task.id)
+            for position, number in enumerate(order):
+                self._store.amend(number, position=position - len(order), priority=other.priority)
+            moved = self._store.task(task.id)
+        else:
+            raise _wrong("reorder", "it needs 'priority' or 'before'")
+        self._executor.wake()
+        assert moved is not None
+        return Answer(True, f"Task {task.id} has a new place.", {"task": self._data(moved)})
+
+    def _again(self, command: messages.Again, person: str) -> Answer:
+        task = self._known(command.task)
+        fresh = Task(
+            0, task.mission, person, self._now(), priority=task.priority, labels=task.labels, restart=task.restart
+        )
+        self._admit(task.mission.text, task.mission.name)
+        made = self._store.add(fresh, f"like task {task.id}")
+        self._executor.wake()
+        return Answer(True, f"Task {made.id} is queued.", {"task": task_data(made)})
+
+    def _schedule(self, command: messages.AddSchedule, person: str) -> Answer:
+        recurrence, now = read_rule(command.rule, command.zone), self._now()
+        mission = self._text(command.text, command.name, command.values)
+        first = recurrence.next(now)
+        made = self._store.add_schedule(
+            Schedule(
+                0, str(recurrence), command.zone, mission, person, now, first, _priority(command.priority),
+                command.labels, _choice(Restart, command.restart, "restart"),
+                _choice(Overlap, command.overlap, "overlap"), _choice(Missed, command.missed, "missed"), command.within,
+            )
+        )  # fmt: skip
+        self._executor.wake()
+        when = "never" if first is None else f"next at {shown(first, now)}"
+        return Answer(True, f"Schedule {made.id}: {made.rule}; {when}.", {"schedule": schedule_data(made)})
+
+    def _unschedule(self, command: messages.RemoveSchedule, person: str) -> Answer:
+        if not self._store.delete_schedule(command.schedule):
+            raise MissionError(
+                [diagnostic("BT187", NOWHERE, what=f"Schedule {command.schedule}", reason="isn't known")]
+            )
+        return Answer(True, f"Schedule {command.schedule} is removed.", {})
+
+    def _schedules(self, command: messages.Schedules, person: str) -> Answer:
+        now, found = self._now(), self._store.schedules()
+        lines = [
+            f"{each.id:>4}  {each.rule}: {short(each.mission)}"
+            + ("" if each.next is None else f"; next at {shown(each.next, now)}")
+            for each in found
+        ]
+        text = "\n".join(lines) or "There are no schedules."
+        return Answer(True, text, {"schedules": [schedule_data(each) for each in found]})
+
+    def _put(self, command: messages.PutMission, person: str) -> Answer:
+        if not command.name.strip() or "/" in command.name:
+            raise _wrong("put", "'name' must be a name without '/'")
+        self._admit(command.text, command.name)
+        kept = self._store.put_mission(command.name, command.text, person, self._now())
+        text = f"'{one_line(kept.name)}' is in the library, revision {kept.number}."
+        return Answer(True, text, {"mission": revision_data(kept)})
+
+    def _delete(self, command: messages.DeleteMission, person: str) -> Answer:
+        if not self._store.delete_mission(command.name, person, self._now()):
+            raise _no_mission(command.name)
+        return Answer(True, f"'{one_line(command.name)}' is no longer in the library.", {})
+
+    def _library(self, command: messages.Library, person: str) -> Answer:
+        found = self._store.revisions(command.name) if command.name else self._store.missions()
+        now = self._now()
+        lines = [
+            f"{one_line(each.name)}, revision {each.number}: {one_line(each.person)}, {shown(each.time, now)}"
+            + (", deleted" if each.deleted else "")
+            for each in found
+        ]
+        data = [{**revision_data(each), "text": each.text} for each in found]
+        return Answer(True, "\n".join(lines) or "The library is empty.", {"missions": data})
+
+    def _pause(self, command: messages.Pause, person: str) -> Answer:
+        self._executor.pause()
+        return Answer(True, "The robot is paused.", {})
+
+    def _step(self, command: messages.Step, person: str) -> Answer:
+        if not self._executor.step():
+            raise MissionError([diagnostic("BT187", NOWHERE, what="The robot", reason="has no paused mission to step")])
+        return Answer(True, "One tick.", {})
+
+    def _stop(self, command: messages.EmergencyStop, person: str) -> Answer:
+        self._emergency.stop(f"emergency stop by {person or 'somebody'}" + f": {command.reason}" * bool(command.reason))
+        self._executor.wake()
+        return Answer(True, "The robot is stopped. Nothing moves it until 'release'.", {})
+
+    def _release(self, command: messages.Release, person: str) -> Answer:
+        if not self._emergency.is_latched:
+            return Answer(True, "The robot isn't stopped.", {})
+        try:
+            self._emergency.release()
+        except OSError as error:
+            raise MissionError([diagnostic("BT195", NOWHERE, place="the latch", reason=str(error))]) from None
+        self._executor.wake()
+        return Answer(True, "The robot may move again.", {})
+
+    def _say(self, command: messages.Say, person: str) -> Answer:
+        say = getattr(self._session.robot, "say", None)
+        if say is None:
+            raise MissionError([diagnostic("BT187", NOWHERE, what="The robot", reason="has no voice")])
+        run = self._executor.run
+        call = partial(say, command.text)
+        if run is not None:
+            run.call(call)
+        else:
+            call()
+        return Answer(True, "It says that.", {})
+
+    def _end_all(self, command: messages.Down, person: str) -> Answer:
+        self._down()
+        return Answer(True, "The robot goes down.", {})
+
+    def _status(self, command: messages.Status, person: str) -> Answer:
+        run, task, hindrance = self._executor.run, self._executor.task, self._executor.hindrance()
+        snapshot = None if run is None or task is None else run.snapshot()
+        state = self._executor.robot_state
+        data: dict[str, Any] = {
+            "stopped": self._emergency.reason, "paused": self._executor.is_paused, "hindrance": hindrance,
+            "task": None if task is None else self._data(self._known(task.id)),
+            "running": [] if snapshot is None else list(snapshot.running),
+            "battery": None if state is None else state.battery,
+            "waiting": len(self._store.tasks(WAITING)),
+        }  # fmt: skip
+        doing = "It has nothing to do" if task is None else f"Task {task.id} is under way: {', '.join(data['running'])}"
+        lines = [f"{hindrance[0].upper()}{hindrance[1:]}." if hindrance else f"{doing}."]
+        lines.append(f"{data['waiting']} waiting." if data["waiting"] else "Nothing waits.")
+        return Answer(True, "\n".join(lines), data)
+
+    def _trail(self, command: messages.Trail, person: str) -> Answer:
+        now, found = self._now(), self._store.acts(command.limit)
+        lines = [f"{shown(each.time, now)}  {one_line(each.person)}: {one_line(each.details)}" for each in found]
+        data = [{field: getattr(each, field) for field in each.fields} for each in found]
+        return Answer(True, "\n".join(lines) or "Nobody has asked for anything.", {"acts": data})
+
+    def _text(self, text: str, name: str, values: Mapping[str, Any]) -> MissionText:
+        """The mission of a command, which this robot can do."""
+        revision = 0
+        if not text:
+            if not name:
+                raise _wrong("submit", "it needs 'text' or 'name'")
+            found = self._store.mission(name)
+            if found is None:
+                raise _no_mission(name)
+            text, revision = found.text, found.number
+        self._admit(text, name)
+        return MissionText(text, name, revision, dict(values))
+
+    def _known(self, number: int) -> Task:
+        task = self._store.task(number)
+        if task is None:
+            raise _refused(number, "isn't known")
+        return task
+
+    def _open(self, number: int) -> Task:
+        task = self._known(number)
+        if task.state in FINAL:
+            raise _refused(number, f"was already over: {task.state}")
+        return task
+
+    def _data(self, task: Task) -> dict[str, Any]:
+        return task_data(task, self._manager.why_waiting(task, self._now(), self._executor.hindrance()))
+
+
+def _moment(given: str | float | None, now: float) -> float | None:
+    return read_moment(given, now) if isinstance(given, str) else given
+
+
+def _priority(priority: int) -> int:
+    least, most = PRIORITIES
+    if not least <= priority <= most:
+        raise _wrong("submit", f"'priority' must be from {least} to {most}")
+    return priority
+
+
+def _choice(kind: type[Choice], given: str, field: str) -> Choice:
+    try:
+        return kind(given)
+    except ValueError:
+        names = ", ".join(f"'{each}'" for each in kind)
+        raise _wrong(field, f"'{given}' isn't one of {names}") from None
+
+
+def _refused(task: int, reason: str) -> MissionError:
+    return MissionError([diagnostic("BT187", NOWHERE, what=f"Task {task}", reason=reason)])
+
+
+def _no_mission(name: str) -> MissionError:
+    return MissionError([diagnostic("BT187", NOWHERE, what=f"The mission '{name}'", reason="isn't in the library")])
+
+
+def _wrong(name: str, reason: str) -> MissionError:
+    return MissionError([diagnostic("BT198", NOWHERE, name=name, reason=reason)])

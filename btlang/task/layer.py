@@ -1,0 +1,158 @@
+"""A robot that is up: its session with all of the task layer, in one process."""
+
+from __future__ import annotations
+
+import os
+import time
+from collections.abc import Callable, Sequence
+from functools import lru_cache
+
+from btlang.api import Mission, parse_tree
+from btlang.diagnostics.diagnostic import diagnostic
+from btlang.diagnostics.errors import MissionError
+from btlang.robots.needs import check_body
+from btlang.session import Session
+from btlang.task.emergency import EmergencyStop
+from btlang.task.executor import Executor
+from btlang.task.handler import Handler
+from btlang.task.house_rules import HouseRules, no_house_rules, read_house_rules
+from btlang.task.manager import Manager
+from btlang.task.messages import Answer, Command, read_command
+from btlang.task.recordings import Recordings
+from btlang.task.store import open_store
+from btlang.task.task import Task
+from btlang.text.source import NOWHERE, Source
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from types import TracebackType
+    from typing import Any
+
+    from btlang.robots.registry import Connect
+    from btlang.run.events import Sink
+
+_IDLE = "repeat forever: wait 24 h"
+_REMEMBERED = 64  # missions that were compiled last
+_SLOW = 1.0  # ticks per second between tasks where no time is lost by waiting
+_EMPTY = 1.0  # percent of the battery below which no mission begins that needs the wheels
+
+
+class TaskLayer:
+    """A robot for many tasks of many people: `handle` takes their commands between `start` and `close`.
+
+    `robot`, `over` and `world` are those of btlang.Session. `folder` keeps what belongs to the robot; `store` is the
+    place of its store (see btlang.task.store), by default a file there. `rules` is the path of its house rules,
+    `keywords` are its keyword files. `speed` is that of all runs: if it isn't "real", time is that of the robot, and
+    begins at the moment `begins` (seconds since 1970). `trouble` gets what goes wrong, for people. `sinks` makes sinks
+    for the run of each task, `down` is what the command of that name calls. Raises MissionError.
+    """
+
+    def __init__(
+        self,
+        robot: str | Connect = "simulated",
+        *,
+        folder: str,
+        over: str | None = None,
+        world: str | None = None,
+        store: str = "",
+        rules: str | None = None,
+        keywords: Sequence[str] = (),
+        speed: float | str = "real",
+        begins: float | None = None,
+        durable: bool = False,
+        records: bool = True,
+        trouble: Callable[[str], object] = lambda text: None,
+        down: Callable[[], object] = lambda: None,
+        sinks: Callable[[Task], list[Sink]] = lambda task: [],
+    ) -> None:
+        os.makedirs(folder, mode=0o700, exist_ok=True)
+        self._keywords, self._world = tuple(keywords), world
+        self.rules: HouseRules = no_house_rules() if rules is None else read_house_rules(rules, keywords, world)
+        self.store = open_store(store or os.path.join(folder, "tasks.db"), durable)
+        try:
+            self.store.own()
+            self.session = Session(robot, world=world, over=over)
+        except BaseException:
+            self.store.close()
+            raise
+        self._begins = time.time() if begins is None else begins
+        self._real = speed == "real"
+        self.compiled = lru_cache(_REMEMBERED)(self._compiled)
+        self.emergency = EmergencyStop(os.path.join(folder, "emergency_stop"), self.session.emergency_stop)
+        self.manager = Manager(self.store)
+        self.executor = Executor(
+            self.session, self.store, self.manager, self.emergency, self.rules, self._admitted(_IDLE, ""),
+            missions=lambda task: self.compiled(task.mission.text, task.mission.name), now=self.now, trouble=trouble,
+            recordings=Recordings(os.path.join(folder, "recordings")) if records else None,
+            speed=speed, idle_rate=20.0 if self._real else _SLOW, sinks=sinks,
+        )  # fmt: skip
+        self.handler = Handler(
+            self.store,
+            self.manager,
+            self.executor,
+            self.emergency,
+            self.session,
+            self._admitted,
+            self.now,
+            down,
+        )
+
+    def now(self) -> float:
+        """Seconds since 1970, as the robot's day goes."""
+        return time.time() if self._real else self._begins + float(self.session.robot.time)
+
+    def handle(self, command: Command | dict[str, Any], person: str = "") -> Answer:
+        """Does a command (see btlang.task.messages), or its JSON, from any thread. A refusal is an answer, too."""
+        if isinstance(command, dict):
+            try:
+                command = read_command(command)
+            except MissionError as error:
+                return Answer(False, str(error), {}, error.diagnostics[0].code)
+        return self.handler.handle(command, person)
+
+    def stop(self, person: str) -> None:
+        """The emergency stop, from any thread; nothing delays it."""
+        self.emergency.stop(f"emergency stop by {person or 'somebody'}")
+
+    def start(self) -> None:
+        """Takes up what was left, and begins to work."""
+        self.executor.start()
+
+    def close(self) -> None:
+        """Ends the mission under way, as its task says for a restart, and lets go of the robot. May be called twice."""
+        self.executor.close()
+        self.session.close()
+        self.emergency.close()
+        self.store.close()
+
+    def __enter__(self) -> TaskLayer:
+        self.start()
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.close()
+
+    def _compiled(self, text: str, name: str) -> Mission:
+        source = Source(text, name or "mission")
+        return parse_tree(source, keywords=self._keywords, world=self._world)
+
+    def _admitted(self, text: str, name: str) -> Mission:
+        """The mission of a text, which this robot can do. Raises MissionError with all reasons why it can't."""
+        mission = self.compiled(text, name)
+        mission.check()
+        body = getattr(self.session.robot, "body", None)
+        if body is not None:
+            check_body(body, mission.tree, mission.vocabulary)
+        state = self.executor.robot_state if hasattr(self, "executor") else None
+        battery = None if state is None else state.battery
+        if battery is not None and battery < _EMPTY and _drives(mission):
+            raise MissionError([diagnostic("BT186", NOWHERE, reason=f"its battery is at {battery:.0f}%")])
+        return mission
+
+
+def _drives(mission: Mission) -> bool:
+    from btlang.robots.needs import needs_of
+
+    return any({"base", "navigation"} & {*needs_of(node, mission.vocabulary)} for node in mission.tree.walk())

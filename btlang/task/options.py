@@ -1,0 +1,69 @@
+"""The options of `btc robot` and `btc task`, apart from what these do: most commands need no more."""
+
+from __future__ import annotations
+
+import argparse
+
+from btlang.arguments import duration, speed
+
+ROBOT_ACTS = (
+    "up", "down", "status", "stop", "release", "pause", "resume", "step", "say", "unit", "backup", "restore",
+)  # fmt: skip
+"""What `btc robot` does."""
+TASK_ACTS = (
+    "add", "list", "show", "cancel", "kill", "interrupt", "resume", "skip", "move", "again", "schedule", "schedules",
+    "unschedule", "put", "delete", "library", "trail",
+)  # fmt: skip
+"""What `btc task` does."""
+
+
+def add_robot_options(parser: argparse.ArgumentParser) -> None:
+    """Those of `btc robot`."""
+    _add_name(parser)
+    parser.add_argument("--robot", default="simulated", metavar="ROBOT", help="robot file (default: simulated)")
+    parser.add_argument("--world", metavar="FILE", help="world file")
+    parser.add_argument("--rules", metavar="FILE", help="house rules, which hold during and between missions")
+    parser.add_argument("--keywords", action="append", default=[], metavar="FILE", help="keyword file")
+    parser.add_argument("--store", default="", metavar="PLACE", help="where tasks are kept: a file or postgresql://...")
+    parser.add_argument("--durable", action="store_true", help="what was acknowledged survives a loss of power, too")
+    parser.add_argument("--no-recordings", action="store_true", help="don't record what tasks do")
+    parser.add_argument("--speed", type=speed, default="real", metavar="SPEED", help="real, max or a factor")
+    parser.add_argument("--reason", default="", metavar="TEXT", help="why, for others to read")
+    _add_json(parser)
+    parser.add_argument("act", choices=ROBOT_ACTS, metavar="ACT", help=", ".join(ROBOT_ACTS))
+    parser.add_argument("item", nargs="*", metavar="FILE", help="the file to back up to or to restore, or what to say")
+
+
+def add_task_options(parser: argparse.ArgumentParser) -> None:
+    """Those of `btc task`."""
+    _add_name(parser)
+    parser.add_argument("-c", dest="code", metavar="TEXT", help="the mission itself")
+    parser.add_argument("--priority", type=int, metavar="N", help="from -100 to 100, higher first (default: 0)")
+    parser.add_argument("--at", metavar="TIME", help='begin at this time at the earliest: "14:30", "in 10 minutes"')
+    parser.add_argument("--by", metavar="TIME", help="skip it if it hasn't begun by this time")
+    parser.add_argument("--label", action="append", default=[], metavar="TEXT", help="a label to find it by")
+    parser.add_argument(
+        "--restart", default="give up", metavar="WHAT", help="after a crash: 'give up' (default), 'again' or 'resume'"
+    )
+    parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="a value of the mission")
+    parser.add_argument("--every", default="", metavar="RULE", help='when a schedule is due: "every day at 9:00"')
+    parser.add_argument("--zone", default="", metavar="ZONE", help="its time zone, such as Europe/Berlin")
+    parser.add_argument("--overlap", default="skip", metavar="WHAT", help="skip (default), queue or replace")
+    parser.add_argument("--missed", default="skip", metavar="WHAT", help="skip (default), once or all")
+    parser.add_argument("--within", type=duration, metavar="DURATION", help="skip it if it is so late")
+    parser.add_argument("--before", type=int, default=0, metavar="TASK", help="move it before this task")
+    parser.add_argument("--token", default="", metavar="TOKEN", help="of the interruption that resume ends")
+    parser.add_argument("--reason", default="", metavar="TEXT", help="why, for others to read")
+    parser.add_argument("--all", action="store_true", help="list tasks that are over, too")
+    parser.add_argument("--live", action="store_true", help="go on showing the list")
+    _add_json(parser)
+    parser.add_argument("act", choices=TASK_ACTS, metavar="ACT", help=", ".join(TASK_ACTS))
+    parser.add_argument("item", nargs="*", metavar="FILE", help="a mission file, a name of the library, or a task")
+
+
+def _add_name(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--name", default="", metavar="NAME", help="which robot, if several are up (default: robot)")
+
+
+def _add_json(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("--json", action="store_true", help="print the answer as JSON")

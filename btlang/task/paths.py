@@ -1,0 +1,62 @@
+"""Where a robot that is up keeps what belongs to it, and where it is spoken to: by its name."""
+
+from __future__ import annotations
+
+import os
+import re
+import stat
+import tempfile
+
+from btlang.diagnostics.diagnostic import diagnostic
+from btlang.diagnostics.errors import MissionError
+from btlang.text.source import NOWHERE
+from btlang.user_dirs import user_dir
+
+USUAL_NAME = "robot"
+_NAME = re.compile(r"[A-Za-z0-9][A-Za-z0-9_-]{0,31}")
+_LONGEST = 100
+"""Bytes of the path of a Unix socket; Linux takes 107, macOS 103."""
+
+
+def checked_name(name: str) -> str:
+    """The name. Raises MissionError (BT198) if it can't be part of a file name."""
+    if _NAME.fullmatch(name) is None:
+        reason = "it must be up to 32 letters, digits, '-' and '_'"
+        raise MissionError([diagnostic("BT198", NOWHERE, name=name, reason=reason)])
+    return name
+
+
+def data_folder(name: str) -> str:
+    """What the robot keeps: its store, its recordings, its latch."""
+    return os.path.join(user_dir("data"), "robots", checked_name(name))
+
+
+def socket_folder() -> str:
+    """A folder of this user alone for sockets. Raises MissionError (BT195) if there can't be one."""
+    runtime = os.environ.get("XDG_RUNTIME_DIR", "")
+    folder = os.path.join(runtime, "btlang")
+    if not os.path.isdir(runtime) or len(os.fsencode(folder)) > _LONGEST - len("/.sock") - 38:
+        folder = os.path.join(tempfile.gettempdir(), f"btlang-{os.getuid()}")
+    try:
+        os.makedirs(folder, mode=0o700, exist_ok=True)
+        status = os.lstat(folder)
+    except OSError as error:
+        raise MissionError([diagnostic("BT195", NOWHERE, place=folder, reason=str(error))]) from None
+    if not stat.S_ISDIR(status.st_mode) or status.st_uid != os.getuid() or status.st_mode & 0o077:
+        reason = "it belongs to somebody else, or others may use it"
+        raise MissionError([diagnostic("BT195", NOWHERE, place=folder, reason=reason)])
+    return folder
+
+
+def socket_path(name: str, stop: bool = False) -> str:
+    """The socket for commands to a robot; with `stop` the one for the emergency stop alone."""
+    return os.path.join(socket_folder(), f"{checked_name(name)}{'.stop' if stop else ''}.sock")
+
+
+def names_up() -> list[str]:
+    """Robots that have a socket; after a crash it may be that nobody listens there."""
+    return sorted(
+        entry.removesuffix(".sock")
+        for entry in os.listdir(socket_folder())
+        if entry.endswith(".sock") and not entry.endswith(".stop.sock")
+    )

@@ -1,0 +1,131 @@
+"""What `btc robot` does: brings a robot up with its task layer, and speaks to one that is."""
+
+from __future__ import annotations
+
+import os
+import shlex
+import signal
+import sys
+import threading
+from collections.abc import Callable
+from functools import partial
+
+from btlang.diagnostics.diagnostic import diagnostic
+from btlang.diagnostics.errors import MissionError
+from btlang.run.emergency import emergency_signal
+from btlang.task import messages
+from btlang.task.backup import restore_backup
+from btlang.task.client import Client, emergency_stop
+from btlang.task.command import tell
+from btlang.task.layer import TaskLayer
+from btlang.task.paths import USUAL_NAME, data_folder
+from btlang.task.socket_server import SocketServer
+from btlang.task.store import open_store
+from btlang.text.escaping import one_line
+from btlang.text.output import pass_on, show
+from btlang.text.source import NOWHERE
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    import argparse
+
+_UNIT = """[Unit]
+Description=The robot '{name}' (btlang)
+After=network.target
+
+[Service]
+ExecStart={command}
+WorkingDirectory={folder}
+Restart=on-failure
+KillSignal=SIGTERM
+TimeoutStopSec=30
+
+[Install]
+WantedBy=default.target
+"""
+
+
+def serve(options: argparse.Namespace) -> int:
+    """Does the verb `robot`; returns the exit code."""
+    act = options.act
+    if act == "up":
+        return _up(options)
+    if act == "unit":
+        pass_on(_unit(options))
+        return 0
+    if act in ("backup", "restore"):
+        return _copy(options)
+    if act == "stop":
+        emergency_stop(options.name)
+        show("The robot is stopped. Nothing moves it until: btc robot release")
+        return 0
+    if act == "say" and not options.item:
+        raise MissionError([diagnostic("BT198", NOWHERE, name=act, reason="it needs a text")])
+    commands: dict[str, Callable[[], messages.Command]] = {
+        "down": messages.Down, "status": messages.Status, "release": messages.Release, "pause": messages.Pause,
+        "resume": messages.Resume, "step": messages.Step, "say": partial(messages.Say, " ".join(options.item)),
+    }  # fmt: skip
+    with Client(options.name) as client:
+        return tell(client.send(commands[act]()), options.json)
+
+
+def _up(options: argparse.Namespace) -> int:
+    """Until `btc robot down`, Ctrl-C or SIGTERM."""
+    name, ended = options.name or USUAL_NAME, threading.Event()
+    layer = TaskLayer(
+        options.robot, folder=data_folder(name), world=options.world, store=options.store, rules=options.rules,
+        keywords=options.keywords, speed=options.speed, durable=options.durable, records=not options.no_recordings,
+        trouble=lambda text: show(one_line(text), sys.stderr), down=ended.set,
+    )  # fmt: skip
+    try:
+        door = SocketServer(name, layer.handle, layer.stop)
+        try:
+            for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
+                signal.signal(number, lambda *_: ended.set())
+            layer.start()
+            door.start()
+            show(f"The robot '{name}' is up. Give it work with: btc task add")
+            if layer.emergency.is_latched:
+                show(f"It is stopped: {layer.emergency.reason}. To let it move: btc robot release", sys.stderr)
+            with emergency_signal(partial(layer.stop, "the keyboard")):
+                while not ended.wait(1.0):
+                    pass
+        finally:
+            door.close()
+    finally:
+        layer.close()
+    show(f"The robot '{name}' is down.")
+    return 0
+
+
+def _unit(options: argparse.Namespace) -> str:
+    """A unit of systemd that brings the robot up with these options."""
+    words = [sys.executable, "-m", "btlang", "robot", "up"]
+    for option in ("name", "robot", "world", "rules", "store"):
+        value = getattr(options, option)
+        if value and value != "simulated":
+            words += [f"--{option}", os.path.abspath(value) if os.path.exists(value) else value]
+    for keywords in options.keywords:
+        words += ["--keywords", os.path.abspath(keywords)]
+    words += ["--durable"] * options.durable + ["--no-recordings"] * options.no_recordings
+    return _UNIT.format(
+        name=options.name or USUAL_NAME, command=shlex.join(words).replace("%", "%%"), folder=os.getcwd()
+    )
+
+
+def _copy(options: argparse.Namespace) -> int:
+    """A backup of the store, or one brought back."""
+    if len(options.item) != 1:
+        raise MissionError([diagnostic("BT198", NOWHERE, name=options.act, reason="it needs a file")])
+    [path] = options.item
+    folder = data_folder(options.name or USUAL_NAME)
+    os.makedirs(folder, mode=0o700, exist_ok=True)
+    place = options.store or os.path.join(folder, "tasks.db")
+    if options.act == "restore":
+        restore_backup(path, place)
+        show(f"Restored {path}.")
+    else:
+        with open_store(place) as store:
+            store.backup(path)
+        show(f"Wrote {path}.")
+    return 0

@@ -1,0 +1,149 @@
+"""The door to a robot on its own computer: Unix sockets that only its user can open, with a line of JSON a message.
+
+The emergency stop has a socket of its own, whose thread does nothing else: no number of other commands delays it.
+"""
+
+from __future__ import annotations
+
+import fcntl
+import json
+import os
+import socket
+import struct
+import threading
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager, suppress
+
+from btlang.diagnostics.diagnostic import diagnostic
+from btlang.diagnostics.errors import MissionError
+from btlang.task.messages import Answer, EmergencyStop
+from btlang.task.paths import socket_path
+from btlang.text.source import NOWHERE
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+    Handle = Callable[[dict[str, Any], str], Answer]
+
+MOST_BYTES = 4_000_000
+"""Of one message: a line without an end would fill the memory."""
+_LEAVE = 2.0  # seconds that the last answers get
+_WAITING = 128  # connections that may wait to be taken
+
+
+class SocketServer:
+    """Serves a robot's name until `close`. `handle` does a command in JSON for a person: the user of the process that
+    sent it. `stop` is the emergency stop. Raises MissionError (BT190) if a robot of this name is up.
+    """
+
+    def __init__(self, name: str, handle: Handle, stop: Callable[[str], object]) -> None:
+        self._handle, self._stop = handle, stop
+        self._busy, self._answered = 0, threading.Condition()
+        self._paths = [socket_path(name), socket_path(name, stop=True)]
+        self._lock = os.open(f"{self._paths[0]}.lock", os.O_RDWR | os.O_CREAT, 0o600)
+        try:
+            fcntl.flock(self._lock, fcntl.LOCK_EX | fcntl.LOCK_NB)  # which ends with the process, however it ends
+        except OSError:
+            os.close(self._lock)
+            raise MissionError([diagnostic("BT190", NOWHERE, name=name)]) from None
+        self._sockets = [_listening(path) for path in self._paths]
+        self._threads = [
+            threading.Thread(target=self._accept, args=(self._sockets[0],), daemon=True, name="btlang door"),
+            threading.Thread(target=self._accept_stops, args=(self._sockets[1],), daemon=True, name="btlang stop"),
+        ]
+
+    def start(self) -> None:
+        """From now on commands are taken."""
+        for thread in self._threads:
+            thread.start()
+
+    def close(self) -> None:
+        """Takes no more commands; those under way are answered first. May be called twice."""
+        with self._answered:
+            self._answered.wait_for(lambda: not self._busy, _LEAVE)
+        for each, path in zip(self._sockets, self._paths, strict=True):
+            with suppress(OSError):
+                each.shutdown(socket.SHUT_RDWR)
+            each.close()
+            with suppress(OSError):
+                os.unlink(path)
+        with suppress(OSError):
+            os.close(self._lock)
+
+    def _accept(self, listening: socket.socket) -> None:
+        while True:
+            try:
+                connection, _ = listening.accept()
+            except OSError:
+                return
+            threading.Thread(target=self._serve, args=(connection,), daemon=True, name="btlang caller").start()
+
+    def _accept_stops(self, listening: socket.socket) -> None:
+        """Whoever connects here wants a stop, and nothing that he then does or doesn't do delays it."""
+        while True:
+            try:
+                connection, _ = listening.accept()
+            except OSError:
+                return
+            self._stop(_person(connection))
+            with suppress(OSError), connection:
+                connection.settimeout(0.0)
+                connection.sendall(b"stopped\n")
+
+    def _serve(self, connection: socket.socket) -> None:
+        person = _person(connection)
+        with suppress(OSError), connection, connection.makefile("rb") as lines:
+            while line := lines.readline(MOST_BYTES):
+                with self._at_work():
+                    answer = self._answer(line, person)
+                    connection.sendall(json.dumps(answer.as_json(), default=str).encode() + b"\n")
+                if not line.endswith(b"\n"):
+                    return
+
+    @contextmanager
+    def _at_work(self) -> Iterator[None]:
+        with self._answered:
+            self._busy += 1
+        try:
+            yield
+        finally:
+            with self._answered:
+                self._busy -= 1
+                self._answered.notify_all()
+
+    def _answer(self, line: bytes, person: str) -> Answer:
+        try:
+            data = json.loads(line)
+        except (ValueError, RecursionError):
+            return Answer(False, "That isn't a line of JSON.", {}, "BT198")
+        if isinstance(data, dict) and data.get("command") == EmergencyStop.tag:
+            self._stop(person)  # first of all; what follows writes it down
+        return self._handle(data, person)
+
+
+def _listening(path: str) -> socket.socket:
+    with suppress(FileNotFoundError):
+        os.unlink(path)  # nobody listens there: the lock is ours
+    listening = socket.socket(socket.AF_UNIX)
+    before = os.umask(0o177)
+    try:
+        listening.bind(path)
+    finally:
+        os.umask(before)
+    listening.listen(_WAITING)
+    return listening
+
+
+def _person(connection: socket.socket) -> str:
+    """The name of the user whose process is at the other end."""
+    try:
+        _, user, _ = struct.unpack("3i", connection.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, 12))
+    except (OSError, AttributeError):  # only this user can open it anyway
+        user = os.getuid()
+    import pwd
+
+    try:
+        return pwd.getpwuid(user).pw_name
+    except KeyError:
+        return str(user)

@@ -1,0 +1,62 @@
+"""A robot with its task layer, for tests."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
+from pathlib import Path
+from typing import Any
+
+from btlang.task.layer import TaskLayer
+from btlang.task.task import State, Task
+
+LONG = 20.0
+"""Seconds for what should happen soon."""
+
+
+@contextmanager
+def layer_in(folder: Path, **options: Any) -> Iterator[TaskLayer]:
+    """A robot that is up; simulated, 50 times as fast as real time."""
+    with TaskLayer(folder=str(folder), **{"speed": 50.0, "records": False, **options}) as layer:
+        yield layer
+
+
+def ask(layer: TaskLayer, command: str, **fields: Any) -> dict[str, Any]:
+    """The data of an answer, which has to be a good one."""
+    answer = layer.handle({"command": command, **fields}, "ann")
+    assert answer.ok, answer.text
+    return dict(answer.data)
+
+
+def refusal(layer: TaskLayer, command: str, **fields: Any) -> str:
+    """Why a command is refused."""
+    answer = layer.handle({"command": command, **fields}, "ann")
+    assert not answer.ok, answer.text
+    return answer.text
+
+
+def submit(layer: TaskLayer, text: str, **fields: Any) -> int:
+    """The number of a new task."""
+    return int(ask(layer, "submit", text=text, **fields)["task"]["id"])
+
+
+def task(layer: TaskLayer, number: int) -> Task:
+    """A task as the store has it."""
+    found = layer.store.task(number)
+    assert found is not None
+    return found
+
+
+def wait_until(holds: Callable[[], object], seconds: float = LONG) -> None:
+    """Until something holds."""
+    until = time.monotonic() + seconds
+    while not holds():
+        assert time.monotonic() < until
+        time.sleep(0.005)
+
+
+def wait_for(layer: TaskLayer, number: int, *states: State) -> Task:
+    """Until a task is in one of some states; the task then."""
+    wait_until(lambda: task(layer, number).state in states)
+    return task(layer, number)

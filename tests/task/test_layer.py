@@ -1,0 +1,163 @@
+"""Tasks on the simulated robot: their order, their ends, interruptions, rules and stops."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from btlang.run.events import Event, Printed
+from btlang.task.task import FINAL, State, Task
+
+from .layers import ask, layer_in, refusal, submit, task, wait_for, wait_until
+
+RULES = "whenever the battery is below 60%, go to the dock then charge to 90%\n"
+
+
+class Printer:
+    """What the missions printed."""
+
+    def __init__(self) -> None:
+        self.texts: list[str] = []
+
+    def __call__(self, event: Event) -> None:
+        if isinstance(event, Printed):
+            self.texts.append(event.text)
+
+    def sinks(self, task: Task) -> list[object]:
+        return [self]
+
+
+def test_the_most_urgent_comes_first_then_the_oldest(tmp_path: Path) -> None:
+    printer = Printer()
+    with layer_in(tmp_path, sinks=printer.sinks) as layer:
+        ask(layer, "pause")
+        numbers = [submit(layer, f"print {number}", priority=number % 3) for number in range(6)]
+        ask(layer, "reorder", task=numbers[3], before=numbers[0])
+        ask(layer, "resume")
+        for number in numbers:
+            assert wait_for(layer, number, *FINAL).state is State.COMPLETED
+    assert printer.texts == ["2", "5", "1", "4", "3", "0"]
+
+
+def test_a_more_urgent_task_interrupts_and_the_other_goes_on(tmp_path: Path) -> None:
+    printer = Printer()
+    with layer_in(tmp_path, sinks=printer.sinks) as layer:
+        slow = submit(layer, "print a then wait 20 s then print b then wait 10 s then print c")
+        wait_until(lambda: printer.texts == ["a"])
+        urgent = submit(layer, "print now", priority=1)
+        assert wait_for(layer, urgent, *FINAL).state is State.COMPLETED
+        assert wait_for(layer, slow, *FINAL).state is State.COMPLETED
+        states = [change.state for _, change in layer.store.changes(slow)]
+    assert printer.texts == ["a", "now", "b", "c"]
+    assert states == [
+        State.QUEUED, State.STANDBY, State.UNDERWAY, State.DELAYED, State.STANDBY, State.UNDERWAY, State.COMPLETED,
+    ]  # fmt: skip
+
+
+def test_an_interruption_ends_with_its_token(tmp_path: Path) -> None:
+    printer = Printer()
+    with layer_in(tmp_path, sinks=printer.sinks) as layer:
+        number = submit(layer, "print a then wait 100 s then print b")
+        wait_until(lambda: printer.texts == ["a"])
+        token = ask(layer, "interrupt", task=number, reason="a child is in the way")["token"]
+        assert task(layer, number).state is State.DELAYED
+        [waiting] = ask(layer, "list")["tasks"]
+        assert waiting["waits"] == "it was interrupted: a child is in the way"
+        other = submit(layer, "print c")
+        assert wait_for(layer, other, *FINAL).state is State.COMPLETED
+        assert "has another token" in refusal(layer, "resume", task=number, token="0")
+        ask(layer, "resume", task=number, token=token)
+        assert wait_for(layer, number, *FINAL).state is State.COMPLETED
+        assert "was already over: completed" in refusal(layer, "resume", task=number, token=token)
+    assert printer.texts == ["a", "c", "b"]
+
+
+CLEANS = """
+<TryCatch catch_on_halt="true"><Sleep msec="1000000"/><PrintText text="cleaned"/></TryCatch>
+"""
+
+
+@pytest.mark.parametrize(("act", "state", "cleaned"), [("cancel", State.CANCELED, 1), ("kill", State.KILLED, 0)])
+def test_a_cancel_cleans_up_and_a_kill_does_not(act: str, state: State, cleaned: int, tmp_path: Path) -> None:
+    printer = Printer()
+    tree = f'<root BTCPP_format="4"><BehaviorTree ID="Main">{CLEANS}</BehaviorTree></root>'
+    with layer_in(tmp_path, sinks=printer.sinks) as layer:
+        number = submit(layer, tree.replace("PrintText", layer.compiled("print hi", "").tree.root.id))
+        wait_for(layer, number, State.UNDERWAY)
+        ask(layer, act, task=number, reason="too late")
+        ended = task(layer, number)
+        assert (ended.state, ended.reason) == (state, "too late")
+        assert f"was already over: {state}" in refusal(layer, act, task=number)
+    assert len(printer.texts) == cleaned
+
+
+def test_failures_and_what_cannot_be_done_have_reasons(tmp_path: Path) -> None:
+    with layer_in(tmp_path) as layer:
+        number = submit(layer, "grasp the book")
+        assert wait_for(layer, number, *FINAL).reason.startswith("grasp the book: ")
+        assert "BT010" in refusal(layer, "submit", text="frobnicate")
+        assert "isn't in the library" in refusal(layer, "submit", name="tour")
+        assert "isn't known" in refusal(layer, "cancel", task=99)
+        assert "there's no such command" in refusal(layer, "sumbit")
+        assert "BT194" in refusal(layer, "submit", text="wave", at="half past")
+        assert ask(layer, "list")["tasks"] == []
+
+
+def test_an_emergency_stop_is_latched_also_by_the_next_process(tmp_path: Path) -> None:
+    printer = Printer()
+    with layer_in(tmp_path, sinks=printer.sinks) as layer:
+        driving = submit(layer, "go to the lab")
+        wait_for(layer, driving, State.UNDERWAY)
+        ask(layer, "emergency_stop", reason="smoke")
+        assert wait_for(layer, driving, *FINAL).state is State.KILLED
+        waiting = submit(layer, "print later")
+        assert layer.session.robot.velocity == (0.0, 0.0)
+        assert ask(layer, "list")["tasks"][0]["waits"] == "the robot is stopped: emergency stop by ann: smoke"
+    with layer_in(tmp_path, sinks=printer.sinks) as layer:
+        assert layer.emergency.is_latched
+        assert task(layer, waiting).state is State.QUEUED
+        assert printer.texts == []
+        ask(layer, "release")
+        assert wait_for(layer, waiting, *FINAL).state is State.COMPLETED
+    with layer_in(tmp_path) as layer:
+        assert not layer.emergency.is_latched
+
+
+def test_house_rules_hold_during_and_between_missions(tmp_path: Path) -> None:
+    rules = tmp_path / "rules.txt"
+    rules.write_text(RULES)
+    printer = Printer()
+    with layer_in(tmp_path, rules=str(rules), sinks=printer.sinks) as layer:
+        power = layer.session.robot.power
+        number = submit(layer, "print a then wait 20 s then print b")
+        wait_until(lambda: printer.texts == ["a"])
+        power.set_level(50.0)
+        assert wait_for(layer, number, *FINAL).state is State.COMPLETED
+        assert layer.session.robot.battery > 85
+        wait_until(lambda: layer.executor.run is not None)
+        power.set_level(50.0)
+        wait_until(lambda: layer.executor.hindrance() == "a house rule acts")
+        number = submit(layer, "print c")
+        assert wait_for(layer, number, *FINAL).state is State.COMPLETED
+        assert layer.session.robot.battery > 85
+    assert printer.texts == ["a", "b", "c"]
+
+
+def test_a_house_rule_that_fails_stops_the_robot_until_somebody_helps(tmp_path: Path) -> None:
+    rules = tmp_path / "rules.txt"
+    rules.write_text("whenever the battery is below 60%, grasp the book\n")
+    printer, troubles = Printer(), list[str]()
+    with layer_in(tmp_path, rules=str(rules), sinks=printer.sinks, trouble=troubles.append) as layer:
+        number = submit(layer, "print a then wait 20 s then print b")
+        wait_until(lambda: printer.texts == ["a"])
+        layer.session.robot.power.set_level(50.0)
+        wait_for(layer, number, State.BLOCKED)
+        other = submit(layer, "print c")
+        assert "a house rule failed" in ask(layer, "list")["tasks"][0]["waits"]
+        assert "The robot needs help" in troubles[0]
+        layer.session.robot.power.set_level(90.0)
+        ask(layer, "resume")
+        assert wait_for(layer, number, *FINAL).state is State.COMPLETED
+        assert wait_for(layer, other, *FINAL).state is State.COMPLETED
+    assert printer.texts == ["a", "b", "c"]
