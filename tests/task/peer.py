@@ -1,0 +1,32 @@
+"""A robot that is up in a process of its own, for tests that kill it: `python -m tests.task.peer FOLDER [SPEED]`.
+
+Reads commands as lines of JSON, and writes what happens as lines: `up`, the numbers of new tasks, and what is printed.
+"""
+
+from __future__ import annotations
+
+import json
+import sys
+
+from btlang.run.events import Event, Printed
+from btlang.task.layer import TaskLayer
+
+
+def main() -> None:
+    """Until its input ends."""
+    folder, speed = sys.argv[1], float(sys.argv[2]) if len(sys.argv) > 2 else 50.0
+
+    def printed(event: Event) -> None:
+        if isinstance(event, Printed):
+            print("printed", event.text, flush=True)
+
+    printed.policy = "inline"  # type: ignore[attr-defined]
+    with TaskLayer(folder=folder, speed=speed, records=False, sinks=lambda task: [printed]) as layer:
+        print("up", flush=True)
+        for line in sys.stdin:
+            answer = layer.handle(json.loads(line), "ann")
+            print("answer", json.dumps(answer.data.get("task", {}).get("id", 0)), flush=True)
+
+
+if __name__ == "__main__":
+    main()
