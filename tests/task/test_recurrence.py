@@ -111,6 +111,10 @@ def moment(wall: str, zone: str = BERLIN) -> float:
             "Mon 2026-11-23 12:00", "Mon 2026-11-23 14:00",
         ),
         (
+            "every 7 hours between 10 and 24", "every 7 hours between 10:00 and 00:00",
+            "Mon 2026-11-23 17:00", "Tue 2026-11-24 00:00",
+        ),
+        (
             "every hour between nine and 11", "every hour between 09:00 and 11:00",
             "Mon 2026-11-23 11:00", "Tue 2026-11-24 09:00",
         ),
@@ -149,6 +153,10 @@ def moment(wall: str, zone: str = BERLIN) -> float:
         (
             "on the first Monday of every month at 8:00", "on the 1st Monday of every month at 08:00",
             "Mon 2026-12-07 08:00", "Mon 2027-01-04 08:00",
+        ),
+        (
+            "on the last Monday of every month at 2 pm", "on the last Monday of every month at 14:00",
+            "Mon 2026-11-30 14:00", "Mon 2026-12-28 14:00",
         ),
         (
             "every second and last Friday of the month at 8:00", "on the 2nd and last Friday of every month at 08:00",
@@ -218,6 +226,12 @@ def test_moments(text: str, expected: str) -> None:
         ("every day at midnight", "America/Havana", "2026-03-07 12:00", "Sun 2026-03-08 01:00, Mon 2026-03-09 00:00"),
         ("every day at 9:00", "Pacific/Apia", "2011-12-29 08:00", "Thu 2011-12-29 09:00, Sat 2011-12-31 09:00"),
         ("on 30 December 2011 at 9:00", "Pacific/Apia", "2011-12-01", "Sat 2011-12-31 09:00"),
+        (
+            "every 3 hours between 22 and 4",
+            "Pacific/Apia",
+            "2011-12-31 02:00",
+            "Sat 2011-12-31 04:00, Sat 2011-12-31 22:00",
+        ),
         # elapsed time since midnight: an hour is missing, or there is one more
         ("every 2 hours", BERLIN, "2026-03-29 00:30", "Sun 2026-03-29 03:00, Sun 2026-03-29 05:00"),
         ("every 2 hours", BERLIN, "2026-10-25 00:30", "Sun 2026-10-25 02:00, Sun 2026-10-25 03:00"),
@@ -268,17 +282,26 @@ def test_the_calendar_has_ends(after: float) -> None:
 
 
 @pytest.fixture
-def computer_zone(monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
+def computer_zone(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> Iterator[str]:
     """That of this computer is another one during a test."""
     if not hasattr(time, "tzset"):
         pytest.skip("this system can't change its time zone in a process")
     with monkeypatch.context() as patch:
-        patch.setenv("TZ", "America/New_York")
+        patch.setenv("TZ", request.param)
         time.tzset()
-        yield "America/New_York"
+        yield request.param
     time.tzset()
 
 
+@pytest.mark.parametrize("computer_zone", ["XXX0YYY,J100/23:30,J300"], indirect=True)
+def test_a_gap_around_midnight(computer_zone: str) -> None:
+    """On 10 April the clock goes from 23:30 to 0:30, so that 23:45 comes after 0:40 of the next day."""
+    start = datetime(2026, 4, 10, 12).timestamp()
+    found = read_rule("every day at 23:45 and 0:40").between(start, start + 86_400)
+    assert [datetime.fromtimestamp(each).strftime("%d %H:%M") for each in found] == ["11 00:40", "11 00:45"]
+
+
+@pytest.mark.parametrize("computer_zone", ["America/New_York"], indirect=True)
 @pytest.mark.parametrize("text", ["every day at 2:30", "every 50 minutes", "every 20 minutes between 23 and 3"])
 def test_the_zone_of_the_computer(text: str, computer_zone: str) -> None:
     for zone, day in CHANGES:
