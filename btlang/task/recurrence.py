@@ -28,7 +28,7 @@ _MOMENT = "tomorrow at 9:00"
 
 
 def read_rule(text: str, zone: str = "") -> Recurrence:
-    """What a rule such as `on weekdays at 14:30` means in a time zone such as `Europe/Berlin`, or in that of the
+    """What a rule such as `on weekdays at 14:30` means in a time zone such as `Europe/Berlin`; "" is that of the
     computer. docs/schedules.md has all forms. Raises MissionError (BT194) for another text, and for an unknown zone.
     """
     read_zone(zone)
@@ -42,7 +42,7 @@ class Recurrence(Record):
     zone: str = ""
 
     def next(self, after: float) -> float | None:
-        """The first time after a moment, and not at it; None if there is none any more."""
+        """The first time strictly after a moment; None if it never comes again."""
         return next(self._after(after), None)
 
     def between(self, start: float, end: float) -> Iterator[float]:
@@ -57,7 +57,7 @@ class Recurrence(Record):
         return str(self.rule)
 
     def _after(self, start: float) -> Iterator[float]:
-        """All of them, in order. In gaps, what belongs to a day may come after what belongs to the next one."""
+        """All of them, in order. Where the clock skips midnight, times of one day may come after times of the next."""
         zone = read_zone(self.zone)
         found: set[float] = set()
         for day in self.rule.days.since(day_of(start, zone) - _BEFORE):
@@ -81,8 +81,8 @@ class Recurrence(Record):
 
 
 def read_moment(text: str, now: float, zone: str = "") -> float:
-    """A point in time such as `14:30` (the next time that it is), `Monday at 9 am`, `24 December at noon` or `in 10
-    minutes`, in seconds since 1970. Only `today` and a date with a year may give one that is over.
+    """A point in time such as `14:30` (the next such time), `Monday at 9 am`, `24 December at noon` or `in 10 minutes`,
+    in seconds since 1970. It may be in the past only if the text says `today`, or a date with its year.
 
     Raises MissionError (BT194) for another text, and for an unknown zone.
     """

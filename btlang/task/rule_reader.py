@@ -58,16 +58,16 @@ class _RuleReader:
         if not words.at:
             raise words.incomplete("")
         if self._times and self._interval:
-            raise words.incomplete("says both how often and at what time")
+            raise words.wrong("says both how often and at what time", 0)
         days = self._all_days()
         if not self._interval and not self._times:
             lacked = ("how often", "every 2 hours") if self._window else ("at what time", "at 9:00")
             raise words.incomplete(f"doesn't say {lacked[0]}", lacked[1])
         if self._window and not self._interval:
-            raise words.incomplete("has a time and also a window of times")
+            raise words.wrong("has both a time and a window", 0, _WINDOW)
         begin = self._window[0] if self._window else 0
         if self._on_the_hour and (not self._interval or self._interval % 3600 or begin % 3600):
-            raise words.incomplete("isn't always on the hour")
+            raise words.wrong("isn't always on the hour", 0, "every hour on the hour between 10:00 and 18:00")
         return Rule(days, self._times, self._interval, self._window)
 
     def _all_days(self) -> Days:
@@ -82,9 +82,9 @@ class _RuleReader:
         days = days or Days()
         left = tuple(day for day in days.weekdays if day not in self._excepted)
         if self._excepted and days != Days(days.weekdays):
-            raise words.incomplete("excepts weekdays from days that aren't weekdays")
+            raise words.wrong("can't leave out weekdays: only 'every day' and lists of weekdays can", 0)
         if not left:
-            raise words.incomplete("leaves no day")
+            raise words.wrong("leaves no day", 0)
         return Days(left) if self._excepted else days
 
     def _read_part(self) -> None:
@@ -101,7 +101,7 @@ class _RuleReader:
             if not self._read_weekdays(first, every=False):
                 self._read_window(first, "to", "until", "till")
         elif words.exception():
-            self._once(first, bool(self._excepted), "which days are excepted")
+            self._once(first, bool(self._excepted), "exceptions are")
             self._excepted = self._weekdays()[0]
             if not self._excepted:
                 raise words.unknown("every day except Sunday at 10:00")
@@ -110,23 +110,25 @@ class _RuleReader:
         elif period := words.takes(*_PERIODS):
             self._periods.add(_PERIODS[period])
         elif words.takes("and"):
+            if words.is_over:
+                raise words.incomplete("isn't complete")
             raise words.wrong("can't join two rules: make a schedule of each", first, "every day at 9:00 and 14:30")
         else:
             self._read_days(first)
 
     def _once(self, first: int, is_known: bool, what: str) -> None:
         if is_known:
-            raise self._words.wrong(f"says again {what}; make two schedules", first)
+            raise self._words.wrong(f"doesn't fit here: the {what} already given", first)
 
     def _read_times(self, first: int, time: int) -> None:
         """The times behind the first one."""
-        self._once(first, bool(self._times), "at what time")
+        self._once(first, bool(self._times), "times are")
         more = self._words.listed(self._words.listed_time, "at", goes_on=True)
         self._times = tuple(sorted({time, *more}))
 
     def _read_window(self, first: int, *joining: str) -> None:
         words = self._words
-        self._once(first, bool(self._window), "between which times")
+        self._once(first, bool(self._window), "window is")
         places, times, bare = [], [], []
         for joiners in ((), joining):
             if joiners and not words.takes(*joiners):
@@ -148,7 +150,7 @@ class _RuleReader:
 
     def _set_interval(self, first: int, seconds: float) -> None:
         words, whole = self._words, round(seconds)
-        self._once(first, bool(self._interval), "how often")
+        self._once(first, bool(self._interval), "interval is")
         if seconds < _SHORTEST:
             raise words.wrong("is less than a minute", first, "every minute")
         if seconds > DAY:
@@ -179,7 +181,7 @@ class _RuleReader:
             self._set_interval(first, seconds)
 
     def _set_days(self, first: int, days: Days) -> None:
-        self._once(first, self._days is not None, "on which days")
+        self._once(first, self._days is not None, "days are")
         self._days = days
 
     def _refuse_counted(self, first: int) -> None:

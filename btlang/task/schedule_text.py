@@ -19,6 +19,7 @@ if TYPE_CHECKING:
     T = TypeVar("T")
 
 _CAPITAL = {name.lower(): name for name in (*WEEKDAYS, *(f"{name}s" for name in WEEKDAYS), *MONTHS)}
+_CLEAR = 4  # letters of a word that may be a correction even if the text still can't be read
 _LONGEST_WORD = 40  # letters; nobody mistypes a longer one
 
 
@@ -48,7 +49,7 @@ def _correction(unread: Unread, read: Callable[[ScheduleWords], object]) -> str:
         try:
             read(ScheduleWords(Source(span.source.text[: span.start] + shown + span.source.text[span.end :])))
         except Unread as other:
-            farther = farther or (shown if other.reached > unread.reached else "")
+            farther = farther or (shown if other.reached > unread.reached and len(word) >= _CLEAR else "")
             continue
         return shown
     return farther

@@ -38,6 +38,7 @@ _MONTHS = {
     **{name[:3].lower(): number for number, name in enumerate(MONTHS, 1)},
     "sept": 9,
 }
+_DATES = "24 December 2026, or 2026-12-24"
 _UNKNOWN = "isn't understood here"
 _LONGEST_HINT = 60  # characters of a text to which a hint adds words
 
@@ -75,7 +76,7 @@ class ScheduleWords:
         self.source = source
         self.at = 0
         self._last = len(self._text.words)
-        while self._last and self._text.words[self._last - 1] in (END_OF_STATEMENT, END_OF_TEXT):
+        while self._last and self._text.words[self._last - 1] in (",", END_OF_STATEMENT, END_OF_TEXT):
             self._last -= 1
         self._asked: dict[int, set[str]] = {}
         self._value_words = frozenset(word for tree in self._values.word_trees() for word in tree if word.isalpha())
@@ -157,7 +158,7 @@ class ScheduleWords:
     def listed_time(self) -> int | None:
         """A time of day. Raises Unread for one or two figures that aren't one, nor a day."""
         time, first = self.time_of_day(), self.at
-        if time is None and self.ahead()[0].isdecimal() and not self.ahead()[:3].isdecimal():
+        if time is None and re.match(r"\d\d?\b", self.ahead()):
             if self.calendar_date() is None and self.ordinal() is None:
                 self.needed_time()
             self.at = first
@@ -201,7 +202,7 @@ class ScheduleWords:
         units = self._values.types[DURATION].units
         self._asked.setdefault(self.at, set()).update(word for unit in units for word in unit.words)
         if self.is_over:
-            raise self.wrong("has no unit of time", first, f"{self.since(first).text} minutes")
+            raise self.wrong("needs a unit of time", first, f"{self.since(first).text} minutes")
         raise self.unknown(f"{self.since(first).text} minutes")
 
     def weekdays(self) -> tuple[tuple[int, ...], bool] | None:
@@ -245,9 +246,9 @@ class ScheduleWords:
         try:
             date(year or 2000, month, day)  # which has a 29 February
         except ValueError:
-            year = -1
-        if year not in (0, *YEARS):
-            raise self.wrong("isn't a date", first, "24 December 2026, or 2026-12-24")
+            raise self.wrong("isn't a date", first, _DATES) from None
+        if year and year not in YEARS:
+            raise self.wrong(f"isn't a date from {YEARS[0]} to {YEARS[-1]}", first, _DATES)
         return found
 
     def _date_in_figures(self) -> tuple[int, int, int] | None:
@@ -292,14 +293,17 @@ class ScheduleWords:
             return Unread(Span(self.source, 0, 0), "is empty", 0, what="The text")
         span = self._text.span(0, self._last)
         shown = more and len(span.text) <= _LONGEST_HINT
-        return Unread(span, problem, self._last, f"{span.text.rstrip(' ,')} {' '.join(more)}" if shown else "")
+        return Unread(span, problem, self._last, f"{span.text} {' '.join(more)}" if shown else "")
 
     def unknown(self, example: str) -> Unread:
-        """To raise: the next word isn't understood, or the text has ended before it."""
+        """To raise: the next word isn't understood, or one behind it that was looked at, or the text has ended."""
         if self.is_over:
             return self.incomplete("isn't complete")
-        unread = Unread(self._text.span(self.at, self.at + 1), _UNKNOWN, self.at, example)
-        unread.expected = self._asked.get(self.at, ())
+        farthest = max((at for at in self._asked if at < self._last), default=self.at)
+        at = max(self.at, farthest)  # `of evry month` is no words in which `of` is the mistake
+        unread = Unread(self._text.span(at, at + 1), _UNKNOWN, at, example)
+        if self._text.words[at] not in self._value_words:  # `every hundred hours` has no misspelt word
+            unread.expected = self._asked.get(at, ())
         return unread
 
 
