@@ -24,7 +24,9 @@ from btlang.vocabulary.cache import cached
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.load import load_vocabulary
+from btlang.vocabulary.reading_context import Known
 from btlang.vocabulary.shipped import DEFAULT_WORLD, ENGLISH, STANDARD_BODY
+from btlang.vocabulary.values import key_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -43,18 +45,21 @@ def parse_tree(
     world: str | None = None,
     main: str = "",
     language: str = ENGLISH,
+    values: Mapping[str, object] = {},
 ) -> Mission:
     """Compiles a mission in English, or a tree: a text that begins with `<` is XML of BehaviorTree.CPP, with `{` JSON.
 
     `parser` is "shunting-yard" or "lark" (both give the same tree). `keywords` are paths of keyword files, names of
     installed packs, or functions decorated with `action` or `condition`. `world` is the path of a world file, by
     default the world that ships. `main` is the ID of the tree to run, if XML or JSON has several. `language`
-    is that of the mission: "en", "es" or the folder of another one. Raises MissionError with all diagnostics.
+    is that of the mission: "en", "es" or the folder of another one. `values` are what the mission may use by these
+    names though it doesn't set them, or others of the same kind: a run gets them (`Session.prepare`). Raises
+    MissionError with all diagnostics.
     """
     source = Source(text) if isinstance(text, str) else text
     with gc_paused:
         vocabulary, world = mission_vocabulary(source, keywords, world, language)
-        read = read_text(source, main, vocabulary=vocabulary, parser=parser, errors_of=errors_of)
+        read = read_text(source, main, vocabulary=vocabulary, parser=parser, errors_of=errors_of, known=_known(values))
         if isinstance(read, Tree):
             compilation = run_passes(Compilation(vocabulary, tree=read))
             return Mission(compilation.tree, vocabulary, world, tuple(compilation.warnings))
@@ -106,6 +111,14 @@ def format_mission(
         mission = read_mission(source, vocabulary, parser, errors_of=errors_of).mission
         compile_mission(mission, vocabulary, needs_command=False)
     return laid_out(source, vocabulary.orthography)
+
+
+def _known(values: Mapping[str, object]) -> dict[str, Known]:
+    known = {}
+    for name, value in values.items():
+        words = tuple(name.lower().split())
+        known[key_of(words)] = Known(key_of(words), words, ("text",) if isinstance(value, str) else ("number",))
+    return known
 
 
 def mission_vocabulary(

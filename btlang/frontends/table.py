@@ -37,7 +37,7 @@ FRONTENDS = {
     "xml": Frontend("btlang.frontends.btcpp.reader:read_xml", lambda text: text[:1] == "<", ("main",)),
     "json": Frontend("btlang.frontends.json.reader:read_json", _is_json, ("main",)),
     "english": Frontend(
-        "btlang.frontends.mission.reader:read_mission", lambda _: True, ("vocabulary", "parser", "errors_of")
+        "btlang.frontends.mission.reader:read_mission", lambda _: True, ("vocabulary", "parser", "errors_of", "known")
     ),
 }
 """The first that a text begins as reads it."""

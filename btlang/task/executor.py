@@ -25,6 +25,7 @@ from btlang.task.task import ACTIVE, Restart, State, Task
 from btlang.task.watch import RunWatch, indices_of
 from btlang.tree.catalogue import CATALOGUE
 from btlang.tree.node import Node
+from btlang.vocabulary.values import key_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -286,7 +287,7 @@ class Executor:
         else:
             run = self._session.prepare(mission, **options)
             for name, value in task.mission.values.items():
-                run.nodes.blackboard.set(name, value)
+                run.nodes.blackboard.set(key_of(name.lower().split()), value)
         commands = [index for index, (_, node) in enumerate(run.nodes.nodes) if _is_command(node, mission)]
         self._watch = RunWatch(indices_of(run, self._rules.reactions), commands, self.wake)
         run.bus.add(self._watch)

@@ -59,7 +59,7 @@ class Handler:
         executor: Executor,
         emergency: EmergencyStop,
         session: Session,
-        admit: Callable[[str, str], Mission],
+        admit: Callable[[str, str, Mapping[str, Any]], Mission],
         now: Callable[[], float],
         down: Callable[[], object],
     ) -> None:
@@ -216,7 +216,7 @@ class Handler:
         fresh = Task(
             0, task.mission, person, self._now(), priority=task.priority, labels=task.labels, restart=task.restart
         )
-        self._admit(task.mission.text, task.mission.name)
+        self._admit(task.mission.text, task.mission.name, task.mission.values)
         made = self._store.add(fresh, f"like task {task.id}")
         self._executor.wake()
         return Answer(True, f"Task {made.id} is queued.", {"task": task_data(made)})
@@ -256,7 +256,7 @@ class Handler:
     def _put(self, command: messages.PutMission, person: str) -> Answer:
         if not command.name.strip() or "/" in command.name:
             raise _wrong("put", "'name' must be a name without '/'")
-        self._admit(command.text, command.name)
+        self._admit(command.text, command.name, {})
         kept = self._store.put_mission(command.name, command.text, person, self._now())
         text = f"'{one_line(kept.name)}' is in the library, revision {kept.number}."
         return Answer(True, text, {"mission": revision_data(kept)})
@@ -349,7 +349,7 @@ class Handler:
             if found is None:
                 raise _no_mission(name)
             text, revision = found.text, found.number
-        self._admit(text, name)
+        self._admit(text, name, values)
         return MissionText(text, name, revision, dict(values))
 
     def _known(self, number: int) -> Task:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from functools import lru_cache
 
 from btlang.api import Mission, parse_tree
@@ -82,7 +82,8 @@ class TaskLayer:
         self.manager = Manager(self.store)
         self.executor = Executor(
             self.session, self.store, self.manager, self.emergency, self.rules, self._admitted(_IDLE, ""),
-            missions=lambda task: self.compiled(task.mission.text, task.mission.name), now=self.now, trouble=trouble,
+            missions=lambda task: self._read(task.mission.text, task.mission.name, task.mission.values),
+            now=self.now, trouble=trouble,
             recordings=Recordings(os.path.join(folder, "recordings")) if records else None,
             speed=speed, idle_rate=20.0 if self._real else _SLOW, sinks=sinks,
         )  # fmt: skip
@@ -134,13 +135,17 @@ class TaskLayer:
     ) -> None:
         self.close()
 
-    def _compiled(self, text: str, name: str) -> Mission:
-        source = Source(text, name or "mission")
-        return parse_tree(source, keywords=self._keywords, world=self._world)
+    def _read(self, text: str, name: str, values: Mapping[str, Any]) -> Mission:
+        """Fast for a mission that was read a moment ago."""
+        return self.compiled(text, name, tuple((each, isinstance(value, str)) for each, value in values.items()))
 
-    def _admitted(self, text: str, name: str) -> Mission:
+    def _compiled(self, text: str, name: str, values: tuple[tuple[str, bool], ...]) -> Mission:
+        given = {each: "" if is_text else 0 for each, is_text in values}
+        return parse_tree(Source(text, name or "mission"), keywords=self._keywords, world=self._world, values=given)
+
+    def _admitted(self, text: str, name: str, values: Mapping[str, Any] = {}) -> Mission:
         """The mission of a text, which this robot can do. Raises MissionError with all reasons why it can't."""
-        mission = self.compiled(text, name)
+        mission = self._read(text, name, values)
         mission.check()
         body = getattr(self.session.robot, "body", None)
         if body is not None:

@@ -11,6 +11,7 @@ import subprocess
 import sys
 import threading
 import time
+from contextlib import suppress
 from pathlib import Path
 
 import pytest
@@ -19,7 +20,7 @@ from btlang.task.store import open_store
 from btlang.task.task import FINAL, State
 from tests.profiles import amount
 
-from .layers import LONG
+from .layers import LONG, wait_until
 
 TWENTY = """
 whenever n is 7, print "rule"
@@ -62,6 +63,11 @@ class Peer:
     def _rest(self) -> list[str]:
         self._process.wait(LONG)
         self._thread.join(LONG)
+        assert self._process.stdin is not None
+        assert self._process.stdout is not None
+        with suppress(BrokenPipeError):
+            self._process.stdin.close()
+        self._process.stdout.close()
         lines = []
         while line := self.lines.get(timeout=LONG):
             lines.append(line)
@@ -93,12 +99,8 @@ def test_a_task_that_is_resumed_does_nothing_again(tmp_path: Path) -> None:
         assert isinstance(recorded, int)
         assert recorded in (moment - 1, moment, moment + 1)
         peer = Peer(folder)
-        again: list[str] = []
-        while not again or again[-1] not in ("printed 20", ""):
-            again.append(peer.lines.get(timeout=LONG))
-            if values(folder)[1] in FINAL:
-                break
-        again += peer.end()
+        wait_until(lambda: values(folder)[1] in FINAL)
+        again = peer.end()
         numbers = [line.split()[1] for line in again if line.startswith("printed") and line != "printed rule"]
         assert numbers == [str(number) for number in range(recorded + 1, 21)]
         rules = [*seen, *again].count("printed rule")

@@ -83,7 +83,7 @@ def test_a_cancel_cleans_up_and_a_kill_does_not(act: str, state: State, cleaned:
     printer = Printer()
     tree = f'<root BTCPP_format="4"><BehaviorTree ID="Main">{CLEANS}</BehaviorTree></root>'
     with layer_in(tmp_path, sinks=printer.sinks) as layer:
-        number = submit(layer, tree.replace("PrintText", layer.compiled("print hi", "").tree.root.id))
+        number = submit(layer, tree.replace("PrintText", layer.compiled("print hi", "", ()).tree.root.id))
         wait_for(layer, number, State.UNDERWAY)
         ask(layer, act, task=number, reason="too late")
         ended = task(layer, number)
