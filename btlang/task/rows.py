@@ -1,0 +1,69 @@
+"""The records of tasks as rows of tables and back: a column for each field."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from enum import StrEnum
+from functools import cache
+
+from btlang.record import Record
+from btlang.task.task import Missed, MissionText, Overlap, Restart, State
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any, TypeVar
+
+    R = TypeVar("R", bound=Record)
+
+_READERS: dict[str, Callable[[Any], Any]] = {
+    "MissionText": lambda text: MissionText(**json.loads(text)),
+    "tuple[str, ...]": lambda text: tuple(json.loads(text)),
+    "bool": bool,
+    "float": float,
+    "float | None": lambda number: None if number is None else float(number),  # RETURNING may give a whole number
+    **{kind.__name__: kind for kind in (State, Restart, Overlap, Missed)},
+}
+"""By the annotation of the field. Other ones are as in the table."""
+
+
+def columns_of(kind: type[Record]) -> str:
+    """The columns of its table."""
+    return ", ".join(kind.fields)
+
+
+def marks(count: int) -> str:
+    """As many placeholders of SQL."""
+    return ", ".join("?" * count)
+
+
+def to_row(record: Record) -> list[Any]:
+    """The values of its columns."""
+    return [to_column(getattr(record, field)) for field in record.fields]
+
+
+def to_column(value: Any) -> Any:
+    """The value of a field, for the table."""
+    if isinstance(value, MissionText):
+        return json.dumps({**{field: getattr(value, field) for field in value.fields}, "values": dict(value.values)})
+    if isinstance(value, tuple):
+        return json.dumps(value, indent=0)  # in lines, so that `in_lines` finds one of them
+    if isinstance(value, StrEnum):
+        return value.value
+    return int(value) if isinstance(value, bool) else value
+
+
+def in_lines(text: str) -> str:
+    """What a column for several texts contains if, and only if, this text is one of them."""
+    return "\n" + json.dumps(text)
+
+
+def from_row(kind: type[R], row: tuple[Any, ...]) -> R:
+    """The record of a row. Raises ValueError or TypeError if it can't be one."""
+    pairs = zip(row, _readers(kind), strict=True)
+    return kind(*(value if reader is None else reader(value) for value, reader in pairs))
+
+
+@cache
+def _readers(kind: type[Record]) -> list[Callable[[Any], Any] | None]:
+    return [_READERS.get(kind.__annotations__[field]) for field in kind.fields]
