@@ -5,7 +5,8 @@ BT05x what is allowed but probably not meant, BT06x keyword files,
 BT07x worlds, BT08x the Python behind the words and what else has to be installed, BT09x the codes themselves,
 BT10x ROS 2, BT11x missions as ROS 2 nodes, BT12x trees in XML, BT13x trees that were not written as missions,
 BT14x nodes said by their ids, BT15x lists, words that stand for names, and what is forbidden,
-BT16x times of day, BT17x sentences that people mean in two ways, BT18x tests, BT19x tasks.
+BT16x times of day, BT17x sentences that people mean in two ways, BT18x tests and robots
+that are up, BT19x tasks and schedules.
 
 BT05x and others that are warnings have a `name`, by which a mission silences them: `# allow: two readings`.
 Each code has a page in `pages/`, which `btc explain` prints.
@@ -179,11 +180,22 @@ _ALL = (
     Code("BT182", "'{words}' {reason}."),
     Code("BT183", "{file} has tests, not a mission.", "To run them: btc test {file}"),
     Code("BT184", "There are no tests in {path}.", "The name of a file of tests ends with .test.txt."),
-    Code("BT189", "A task store in PostgreSQL needs the Python package psycopg, which isn't installed.", "Install it: pip install 'btlang[postgres]'"),
+    Code("BT185", "{what}.", "{advice}"),
+    Code("BT186", "The robot can't do this now: {reason}."),
+    Code("BT187", "{what} {reason}."),
+    Code("BT188", "House rules can only be rules, each with 'whenever'.", "Write for example: {example}"),
+    Code("BT189", "A task store in PostgreSQL needs the Python package psycopg, which isn't installed.",
+         "Install it: pip install 'btlang[postgres]'"),
+    Code("BT190", "A robot '{name}' is up already.", "End it with: btc robot down --name {name}"),
+    Code("BT192", "The run can't be saved: {reason}."),
+    Code("BT193", "The mission can't go on from what was saved: {reason}.", "Start it again from its beginning."),
+    Code("BT194", "{what} {problem}.", "{advice}"),
     Code("BT195", "The task store {place} can't be used: {reason}."),
-    Code("BT196", "The task store {place} belongs to a newer btlang: it has version {version}, and this one knows versions up to {known}.",
-         "Update btlang: pip install --upgrade btlang"),
+    Code("BT196", "The task store {place} belongs to a newer btlang: it has version {version}, and this one knows versions "
+         "up to {known}.", "Update btlang: pip install --upgrade btlang"),
     Code("BT197", "The tasks of {place} are run already by {owner}.", "End that first, or use another store."),
+    Code("BT198", "The command '{name}' can't be read: {reason}."),
+    Code("BT199", "The robot '{name}' doesn't answer.", "See whether it is up: btc robot status"),
 )  # fmt: skip
 
 CODES = {entry.code: entry for entry in _ALL}

@@ -259,14 +259,14 @@ class Executor:
             try:
                 run = self._prepared(task)
             except MissionError as error:
-                self._change(task, State.ERROR, error.diagnostics[0].message, ended=self._now())
+                self._change(task, State.ERROR, error.diagnostics[0].message)
                 return
             self._change(task, State.UNDERWAY, "it goes on" if task.saved else "it begins", started=self._now())
             self._latest = task.saved
             try:
                 outcome = self._execute(run)
             except Exception as problem:  # a word or a sink of the user's is broken
-                self._change(task, State.ERROR, described(problem), ended=self._now())
+                self._change(task, State.ERROR, described(problem))
                 return
             self._end(task, run, outcome)
         finally:
@@ -347,16 +347,16 @@ class Executor:
             self._change(task, State.BLOCKED, f"a house rule failed: {reason}", saved=self._latest)
             self._ask_for_help(reason)
         elif outcome.failure is not None:
-            self._change(task, State.FAILED, _reason(outcome), ended=self._now())
+            self._change(task, State.FAILED, _reason(outcome))
         elif not outcome.stopped:
-            self._change(task, State.COMPLETED, "" if outcome.seconds else "there was nothing to do", ended=self._now())
+            self._change(task, State.COMPLETED, "" if outcome.seconds else "there was nothing to do")
         elif self._emergency.is_latched:
-            self._change(task, State.KILLED, self._emergency.reason, ended=self._now())
+            self._change(task, State.KILLED, self._emergency.reason)
         elif ending is not None and ending.state is State.DELAYED:
             saved = json.dumps(run.save())
             self._change(task, State.DELAYED, ending.cause, ending.person, saved=saved, token=ending.token)
         elif ending is not None:
-            self._change(task, ending.state, ending.cause, ending.person, ended=self._now())
+            self._change(task, ending.state, ending.cause, ending.person)
         else:
             saved = json.dumps(run.save()) if outcome.stopped == SUSPENDED and task.restart is Restart.RESUME else ""
             if saved:
@@ -374,6 +374,8 @@ class Executor:
 
     def _change(self, task: Task, state: State, cause: str, person: str = "", **fields: Any) -> None:
         now = self._now()
+        if state in FINAL:
+            fields |= {"ended": now, "saved": ""}
         self._write(partial(self._store.change, task.id, ACTIVE, state, time=now, cause=cause, person=person, **fields))
 
     def _write(self, write: Callable[[], object]) -> None:

@@ -12,6 +12,7 @@ import sys
 import threading
 import time
 from contextlib import suppress
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -79,8 +80,12 @@ def values(folder: Path) -> tuple[dict[str, object], State]:
     with open_store(str(folder / "tasks.db")) as store:
         task = store.task(1)
         assert task is not None
-        scopes = json.loads(task.saved)["scopes"] if task.saved else [{"values": {}}]
-        return dict(scopes[0]["values"]), task.state
+        saved = json.loads(task.saved or "{}")
+        return dict(saved["scopes"][0]["values"]) if "scopes" in saved else {}, task.state
+
+
+def is_over(folder: Path) -> bool:
+    return values(folder)[1] in FINAL
 
 
 @pytest.mark.long
@@ -99,7 +104,7 @@ def test_a_task_that_is_resumed_does_nothing_again(tmp_path: Path) -> None:
         assert isinstance(recorded, int)
         assert recorded in (moment - 1, moment, moment + 1)
         peer = Peer(folder)
-        wait_until(lambda: values(folder)[1] in FINAL)
+        wait_until(partial(is_over, folder))
         again = peer.end()
         numbers = [line.split()[1] for line in again if line.startswith("printed") and line != "printed rule"]
         assert numbers == [str(number) for number in range(recorded + 1, 21)]
