@@ -21,7 +21,7 @@ from btlang.task.house_rules import HouseRules
 from btlang.task.manager import ENDED, Manager, recovered
 from btlang.task.recordings import Recordings
 from btlang.task.store import Store
-from btlang.task.task import ACTIVE, Restart, State, Task
+from btlang.task.task import ACTIVE, FINAL, Restart, State, Task
 from btlang.task.watch import RunWatch, indices_of
 from btlang.tree.catalogue import CATALOGUE
 from btlang.tree.node import Node
