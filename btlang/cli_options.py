@@ -7,6 +7,7 @@ import os
 import shlex
 import sys
 from collections.abc import Callable, Sequence
+from importlib import import_module
 from itertools import takewhile
 
 from btlang.arguments import between, duration, picture, speed
@@ -222,16 +223,9 @@ def _run_options(parser: argparse.ArgumentParser) -> None:
     add_robot_options(parser)
 
 
-def _robot_options(parser: argparse.ArgumentParser) -> None:
-    from btlang.task.options import add_robot_options
-
-    add_robot_options(parser)
-
-
-def _task_options(parser: argparse.ArgumentParser) -> None:
-    from btlang.task.options import add_task_options
-
-    add_task_options(parser)
+def _elsewhere(module: str, name: str) -> Callable[[argparse.ArgumentParser], None]:
+    """Options that a module adds which only their verb needs."""
+    return lambda parser: getattr(import_module(module), name)(parser)
 
 
 def _replay_options(parser: argparse.ArgumentParser) -> None:
@@ -239,18 +233,6 @@ def _replay_options(parser: argparse.ArgumentParser) -> None:
 
     _speed_option(parser)
     add_replay_options(parser)
-
-
-def _why_options(parser: argparse.ArgumentParser) -> None:
-    from btlang.recording.options import add_recording_file
-
-    add_recording_file(parser)
-
-
-def _test_options(parser: argparse.ArgumentParser) -> None:
-    from btlang.testing.options import add_test_options
-
-    add_test_options(parser)
 
 
 def _diff_options(parser: argparse.ArgumentParser) -> None:
@@ -349,16 +331,22 @@ _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "repl": ("type a mission line by line, as with `btc` alone", _repl_options),
     "run": ("run a mission on the simulated robot, or a ROS 2 robot", _run_options),
     "replay": ("show a recorded run as it was", _replay_options),
-    "why": ("tell what happened in a recorded run, and why it failed", _why_options),
-    "test": ("run tests of missions, written in English", _test_options),
+    "why": (
+        "tell what happened in a recorded run, and why it failed",
+        _elsewhere("btlang.recording.options", "add_recording_file"),
+    ),
+    "test": ("run tests of missions, written in English", _elsewhere("btlang.testing.options", "add_test_options")),
     "diff": ("tell what differs between two missions, trees or recorded runs", _diff_options),
     "check": ("report the mistakes in a mission", _check_options),
     "tree": ("print the behavior tree of a mission", _tree_options),
     "compile": ("write the tree of a mission as XML, English, JSON, a picture ...", _compile_options),
     "words": ("list what missions can say", _listing_options),
     "grammar": ("write a grammar of missions, for language models", _grammar_options),
-    "robot": ("keep a robot up for many tasks of many people", _robot_options),
-    "task": ("give work to a robot that is up, and ask about it", _task_options),
+    "robot": ("keep a robot up for many tasks of many people", _elsewhere("btlang.task.options", "add_robot_options")),
+    "task": (
+        "give work to a robot that is up, and ask about it",
+        _elsewhere("btlang.task.options", "add_task_options"),
+    ),
     "mcp": ("let language models write and simulate missions, as an MCP server", _words_options),
     "examples": ("list, print or copy the example missions", _examples_options),
     "explain": ("show how a mission is understood, or explain a message code", _explain_options),

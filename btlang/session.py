@@ -349,13 +349,7 @@ class Run:
             self._error = error
 
     def _bound(
-        self,
-        connection: Connection,
-        sinks: Iterable[Sink],
-        values: Blackboard | None,
-        hooks: Hooks | None,
-        *,
-        timed: bool,
+        self, connection: Connection, sinks: Iterable[Sink], values: Blackboard | None, hooks: Hooks | None, timed: bool
     ) -> Engine:
         mission = self.mission
         connection.robot.name_places(Place(fact.name, fact.x, fact.y, fact.facing) for fact in mission.facts)

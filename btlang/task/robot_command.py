@@ -72,13 +72,18 @@ def serve(options: argparse.Namespace) -> int:
 def _up(options: argparse.Namespace) -> int:
     """Until `btc robot down`, Ctrl-C or SIGTERM."""
     name, ended = options.name or USUAL_NAME, threading.Event()
-    layer = TaskLayer(
-        options.robot, folder=data_folder(name), world=options.world, store=options.store, rules=options.rules,
-        keywords=options.keywords, speed=options.speed, durable=options.durable, records=not options.no_recordings,
-        trouble=lambda text: show(one_line(text), sys.stderr), down=ended.set,
-    )  # fmt: skip
+    layer: TaskLayer
+    door = SocketServer(name, lambda data, person: layer.handle(data, person), lambda person: layer.stop(person))
+    try:  # the name is ours before the store and the robot are touched
+        layer = TaskLayer(
+            options.robot, folder=data_folder(name), world=options.world, store=options.store, rules=options.rules,
+            keywords=options.keywords, speed=options.speed, durable=options.durable, records=not options.no_recordings,
+            trouble=lambda text: show(one_line(text), sys.stderr), down=ended.set,
+        )  # fmt: skip
+    except BaseException:
+        door.close()
+        raise
     try:
-        door = SocketServer(name, layer.handle, layer.stop)
         try:
             for number in (signal.SIGINT, signal.SIGTERM, signal.SIGHUP):
                 signal.signal(number, lambda *_: ended.set())

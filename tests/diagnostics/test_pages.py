@@ -2,8 +2,9 @@
 
 A label, an empty line and indented lines are an example. Labels are `Wrong:` and `Right:` for a mission, `Wrong
 keyword file:`, `Wrong world:` and `Wrong robot:` for a file that a mission is used with, `Wrong ros keyword file:` for
-one whose words are bound to ROS 2, `Wrong schedule:` for the rule of a schedule, `Wrong command:` for a command, and
-`The file NAME:` for a file beside it. `, saved as ENCODING` may end a label.
+one whose words are bound to ROS 2, `Wrong schedule:` for the rule of a schedule, `Wrong house rules:` for those of a
+robot, `Wrong restored mission:` for one that goes on from a saved run, `Wrong command:` for a command, and `The file
+NAME:` for a file beside it. `, saved as ENCODING` may end a label. Commands for a robot that is up find one.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from btlang.diagnostics.explain import PAGES
 from tests.conftest import take_away_what_is_missed
 from tests.ros.bound import bind_words
 from tests.task.schedules import read_schedules
+from tests.task.up import REFUSALS, read_rules, restored, robot_for
 
 TEXTS = {path.stem: path.read_text(encoding="utf-8") for path in Path(PAGES).iterdir()}
 _LABELLED = re.compile(r"^(Wrong|Right|The file)(?: ([\w. ]+))?(?:, saved as ([\w-]+))?:\n\n((?: {4}.*\n?)+)", re.M)
@@ -57,6 +59,9 @@ def said(example: Example, page: str, folder: Path, capsys: pytest.CaptureFixtur
         return read_schedules(example.text.splitlines()), capsys.readouterr().err
     else:
         (folder / "example.txt").write_text(example.text, encoding=example.encoding)
+        if example.of in ("house rules", "restored mission"):
+            problem = read_rules("example.txt") if example.of == "house rules" else restored(example.text)
+            return 2 if problem else 0, problem
         if example.of == "ros keyword file":
             (folder / "example.txt").rename(folder / "example.toml")
             return bind_words("example.toml"), capsys.readouterr().err
@@ -75,10 +80,12 @@ def test_examples(
     [wrong] = [example for example in examples(page) if example.sort == "Wrong"]
     [right] = [example for example in examples(page) if example.sort == "Right"]
     assert wrong.of == right.of
-    exit_code, messages = said(wrong, page, tmp_path, capsys)
-    assert re.findall(r" (?:error|warning) (BT\d+): ", messages)[:1] == [code], messages
-    assert exit_code == (CRASHED if code == "BT099" else 0 if CODES[code].severity == "warning" else 2)
-    assert said(right, page, tmp_path, capsys) == (0, "")
+    with robot_for(code, monkeypatch):
+        exit_code, messages = said(wrong, page, tmp_path, capsys)
+        assert re.findall(r" (?:error|warning) (BT\d+): ", messages)[:1] == [code], messages
+        expected = 0 if CODES[code].severity == "warning" else 2
+        assert exit_code == {"BT099": CRASHED, **dict.fromkeys(REFUSALS, 1)}.get(code, expected)
+        assert said(right, page, tmp_path, capsys) == (0, "")
 
 
 def test_every_code_has_a_page_and_every_page_a_code() -> None:

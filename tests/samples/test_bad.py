@@ -1,11 +1,13 @@
 """Every code of a message has a bad sample in `bad/`, and its exact output beside it.
 
 A sample is compiled with `btc check`; a first line `# btc VERB FILE ...` asks for another command, and `# ros FILE`
-binds the words of a keyword file to ROS 2. `# schedules ZONE` reads each further line as the rule of a schedule.
+binds the words of a keyword file to ROS 2. `# schedules ZONE` reads each further line as the rule of a schedule, and
+`# restored` goes on with the mission from a saved run of another one. Commands for a robot that is up find one.
 """
 
 from __future__ import annotations
 
+import sys
 from pathlib import Path
 
 import pytest
@@ -15,6 +17,7 @@ from btlang.diagnostics.codes import CODES
 from tests.conftest import matches_golden, take_away_what_is_missed, without_pointer
 from tests.ros.bound import bind_words
 from tests.task.schedules import read_schedules
+from tests.task.up import REFUSALS, restored, robot_for
 
 BAD = Path(__file__).parent / "bad"
 SAMPLES = sorted(BAD.glob("*.txt"))
@@ -30,13 +33,18 @@ def test_message(sample: Path, capsys: pytest.CaptureFixture[str], monkeypatch: 
     elif first.startswith("# schedules"):
         rules = sample.read_text(encoding="utf-8").splitlines()[1:]
         code = read_schedules(rules, first.removeprefix("# schedules").strip())
+    elif first == "# restored":
+        problem = restored(sample.read_text(encoding="utf-8"))
+        print(problem, file=sys.stderr)
+        code = 2 if problem else 0
     else:
-        code = run_sample(sample, first)
+        with robot_for(sample.stem[:5], monkeypatch):
+            code = run_sample(sample, first)
     errors = without_pointer(capsys.readouterr().err)
     assert sample.stem[:5] in errors
     assert "Traceback" not in errors
     expected = 0 if CODES[sample.stem[:5]].severity == "warning" else 2
-    assert code == (CRASHED if sample.stem == "BT099" else expected)
+    assert code == {"BT099": CRASHED, **dict.fromkeys(REFUSALS, 1)}.get(sample.stem[:5], expected)
     matches_golden(errors, sample.with_suffix(".out"))
 
 

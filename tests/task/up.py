@@ -1,0 +1,97 @@
+"""Robots that are up, for the messages of `btc robot` and `btc task`: what a code needs to be shown."""
+
+from __future__ import annotations
+
+import socket
+import tempfile
+import threading
+from collections.abc import Iterator
+from contextlib import closing, contextmanager, suppress
+from pathlib import Path
+
+import pytest
+
+from btlang.api import parse_tree
+from btlang.diagnostics.errors import MissionError
+from btlang.session import Session
+from btlang.task.house_rules import read_house_rules
+from btlang.task.paths import USUAL_NAME, socket_path
+from btlang.task.socket_server import SocketServer
+from btlang.task.task import State
+from tests.task.layers import layer_in, submit, wait_for, wait_until
+
+REFUSALS = ("BT186", "BT187", "BT192")
+"""Codes that a robot answers with: `btc` ends with 1 then, and with 2 if it can't read a command."""
+_CODES = ("BT185", "BT190", "BT198", "BT199", *REFUSALS)
+_SAVED = "wave then nod"
+
+
+@contextmanager
+def robot_for(code: str, patch: pytest.MonkeyPatch) -> Iterator[None]:
+    """Puts a robot up for a code that needs one, in folders of its own, and does to it what the code is about."""
+    if code not in _CODES:
+        yield
+        return
+    with tempfile.TemporaryDirectory() as short:  # the path of a socket has to be
+        for variable in ("XDG_RUNTIME_DIR", "XDG_DATA_HOME"):
+            patch.setenv(variable, short)
+        with (
+            layer_in(Path(short, "data")) as layer,
+            closing(SocketServer(USUAL_NAME, layer.handle, layer.stop)) as door,
+        ):
+            door.start()
+            if code == "BT186":
+                layer.session.robot.power.set_level(0.0)
+                wait_until(lambda: (state := layer.executor.robot_state) is not None and state.battery == 0)
+            if code == "BT192":
+                number = submit(layer, "wait 20 h")
+                wait_for(layer, number, State.UNDERWAY)
+                run = layer.executor.run
+                assert run is not None
+                run.call(lambda: run.nodes.blackboard.set("seen", object()))
+            if code == "BT199":
+                with _mute("kim"):
+                    yield
+            else:
+                yield
+
+
+@contextmanager
+def _mute(name: str) -> Iterator[None]:
+    """A robot that hangs up on everybody."""
+    with socket.socket(socket.AF_UNIX) as listening:
+        listening.bind(socket_path(name))
+        listening.listen()
+
+        def hang_up() -> None:
+            with suppress(OSError):
+                while True:
+                    listening.accept()[0].close()
+
+        thread = threading.Thread(target=hang_up)
+        thread.start()
+        try:
+            yield
+        finally:
+            listening.shutdown(socket.SHUT_RDWR)
+            thread.join()
+
+
+def read_rules(path: str) -> str:
+    """What is wrong with a file of house rules, "" for nothing."""
+    try:
+        read_house_rules(path)
+    except MissionError as error:
+        return str(error)
+    return ""
+
+
+def restored(text: str) -> str:
+    """Why a mission can't go on from a saved run of `wave then nod`, "" if it can."""
+    with Session() as session:
+        saved = session.prepare(parse_tree(_SAVED)).save()
+        try:
+            session.restore(parse_tree(text), saved)
+        except MissionError as error:
+            return str(error)
+    return ""
