@@ -1,4 +1,4 @@
-"""Random commands against a plain model of the queue: the same states, the same order, and refusals where it says so."""
+"""Random commands against a plain model of the queue: the same states and order, and refusals where it says so."""
 
 from __future__ import annotations
 
