@@ -1,0 +1,302 @@
+"""What a store keeps and finds again, in SQLite and in PostgreSQL."""
+
+from __future__ import annotations
+
+import math
+from typing import Any
+
+import pytest
+
+from btlang.diagnostics.errors import MissionError
+from btlang.task.database import StoreError
+from btlang.task.store import Store, open_store
+from btlang.task.task import (
+    ACTIVE,
+    FINAL,
+    WAITING,
+    Act,
+    Change,
+    Missed,
+    MissionText,
+    Overlap,
+    Restart,
+    Revision,
+    Schedule,
+    State,
+    Task,
+)
+from tests.task.places import a_task, execute_at
+
+FULL = Task(
+    0, MissionText("go to the lab\nthen wave", "tour", 3, {"speed": 0.5, "names": ["Ö", "\0"]}), "ada", 1.25,
+    State.BLOCKED, -7, ("night", 'the "lab"', "a\nb"), 2.5, 3.5, Restart.RESUME, ("base", "voice"), 4, 5.5, 6, 7,
+    8.5, 9.5, "it's dark 🌙", '{"tree": 1}', "t0ken", "runs/1.mcap",
+)  # fmt: skip
+PLAN = Schedule(
+    0, "every day at 9:00", "Europe/Berlin", MissionText("wave", values={"n": 1}), "bo", 1.5, 10.0, 5, ("a", "b"),
+    Restart.AGAIN, Overlap.REPLACE, Missed.ONCE, 600.0,
+)  # fmt: skip
+
+
+def reason(error: pytest.ExceptionInfo[StoreError]) -> str:
+    """Why the store can't be used."""
+    [told] = error.value.diagnostics
+    assert told.code == "BT195"
+    return told.message.partition("can't be used: ")[2]
+
+
+def test_a_task_is_found_again(store: Store, place: str) -> None:
+    added = store.add(FULL, "submitted")
+    assert added == FULL.replace(id=1)
+    assert added.id == store.tasks()[0].id
+    assert store.add(a_task()).id == 2
+    store.close()
+    with open_store(place) as again:
+        found = again.task(1)
+        assert found == added
+        assert found is not None
+        assert [type(getattr(found, field)) for field in found.fields] == [type(getattr(FULL, f)) for f in FULL.fields]
+        assert again.task(2) == a_task().replace(id=2)
+        assert again.task(3) is None
+        assert again.changes(1) == [(1, Change(1, 1.25, State.BLOCKED, "submitted", "ada"))]
+
+
+def test_tasks_are_found_in_the_order_of_their_turn(store: Store) -> None:
+    urgent = store.add(a_task(priority=5))
+    usual = [store.add(a_task(position=position)).id for position in (2, 1, 2, -1)]
+    last = store.add(a_task(priority=-3))
+    assert [task.id for task in store.tasks()] == [urgent.id, usual[3], usual[1], usual[0], usual[2], last.id]
+    assert [task.id for task in store.tasks(newest=True)] == [6, 5, 4, 3, 2, 1]
+    assert [task.id for task in store.tasks(limit=2)] == [urgent.id, usual[3]]
+    assert [store.tasks(limit=0), store.tasks(limit=-1)] == [[], []]
+
+
+def test_tasks_are_found_by_state_and_schedule(store: Store) -> None:
+    by_state = {state: store.add(a_task(state=state, schedule=len(state))) for state in State}
+    assert store.tasks([State.FAILED]) == [by_state[State.FAILED]]
+    assert store.tasks([State.FAILED, State.QUEUED]) == [by_state[State.QUEUED], by_state[State.FAILED]]
+    for states in (FINAL, WAITING, ACTIVE):
+        assert {task.state for task in store.tasks(states)} == states
+    assert store.tasks([]) == []
+    assert [task.state for task in store.tasks(schedule=7)] == [State.STANDBY, State.DELAYED, State.BLOCKED, "skipped"]
+    assert store.tasks([State.QUEUED], schedule=7) == []
+
+
+@pytest.mark.parametrize("label", ["lab", "the lab", 'the "lab"', ", ", ",", '"', "a\nb", "LAB", "%", "\\", "Ö", "[\n"])
+def test_tasks_are_found_by_label_and_not_by_a_part_of_one(store: Store, label: str) -> None:
+    store.add(a_task(labels=("x", "the labs", 'x"lab"', "la", "b", "_", "a", "Lab")))
+    wanted = [store.add(a_task(labels=labels)) for labels in ((label,), ("a", label), (label, "b"), ("a", label, "b"))]
+    store.add(a_task())
+    assert store.tasks(label=label) == wanted
+
+
+def test_a_change_needs_the_state_before(store: Store) -> None:
+    task = store.add(a_task(), "submitted")
+    assert store.change(task.id, ACTIVE, State.COMPLETED, time=1.0) is None
+    assert store.change(99, State, State.COMPLETED, time=1.0) is None
+    assert store.change(task.id, (), State.COMPLETED, time=1.0) is None
+    begun = store.change(
+        task.id, WAITING, State.UNDERWAY, time=2.0, cause="it began", person="bo", started=2.0, needs=("base",)
+    )
+    assert begun == task.replace(state=State.UNDERWAY, reason="it began", started=2.0, needs=("base",))
+    assert store.task(task.id) == begun
+    assert store.changes() == [
+        (1, Change(task.id, 100.0, State.QUEUED, "submitted", "ada")),
+        (2, Change(task.id, 2.0, State.UNDERWAY, "it began", "bo")),
+    ]
+
+
+@pytest.mark.parametrize("final", sorted(FINAL))
+def test_a_final_state_is_final(store: Store, final: State) -> None:
+    task = store.add(a_task())
+    ended = store.change(task.id, [State.QUEUED], final, time=3.0, cause="so", ended=3.0)
+    assert ended is not None
+    assert store.change(task.id, list(State), State.QUEUED, time=4.0) is None
+    assert store.task(task.id) == ended
+    assert len(store.changes()) == 2
+
+
+def test_fields_are_amended_without_a_change(store: Store) -> None:
+    task = store.add(a_task())
+    fields: dict[str, Any] = {"priority": 9, "earliest": 5.0, "labels": ("x",), "saved": "{}", "recording": "a.mcap"}
+    assert store.amend(task.id, **fields) == task.replace(**fields) == store.task(task.id)
+    assert store.amend(task.id) == store.task(task.id)
+    assert store.amend(99, priority=1) is None
+    assert len(store.changes()) == 1
+
+
+@pytest.mark.parametrize("field", ["state", "colour", "priority = 1 --"])
+def test_what_is_no_field_to_amend_is_a_mistake_of_the_program(store: Store, field: str) -> None:
+    task = store.add(a_task())
+    with pytest.raises(TypeError, match="can't be set here"):
+        store.amend(task.id, **{field: "failed"})
+    if field != "state":
+        with pytest.raises(TypeError):
+            store.change(task.id, [State.QUEUED], State.FAILED, time=1.0, colour="red")
+        with pytest.raises(TypeError):
+            store.amend_schedule(1, **{field: 1})
+    assert store.tasks() == [task]
+
+
+def test_the_next_task_is_claimed(store: Store) -> None:
+    store.add(a_task(state=State.DELAYED, token="t", priority=9))
+    store.add(a_task(state=State.BLOCKED, priority=9))
+    store.add(a_task(deadline=9.0, priority=9))
+    later = store.add(a_task(earliest=11.0, priority=9))
+    delayed = store.add(a_task(state=State.DELAYED, priority=1, attempts=2))
+    queued = store.add(a_task(earliest=10.0, deadline=10.0))
+    assert store.peek(10.0) == delayed
+    claimed = store.claim(10.0)
+    assert claimed == delayed.replace(state=State.STANDBY, attempts=3, reason="its turn") == store.task(delayed.id)
+    assert store.changes(delayed.id)[1:] == [(7, Change(delayed.id, 10.0, State.STANDBY, "its turn", ""))]
+    second = store.claim(10.0)
+    assert (second and second.id) == queued.id
+    assert (store.claim(10.0), store.peek(10.0)) == (None, None)
+    third = store.claim(11.0)
+    assert (third and third.id) == later.id
+
+
+def test_changes_are_read_on(store: Store) -> None:
+    for _ in range(3):
+        store.change(store.add(a_task()).id, [State.QUEUED], State.SKIPPED, time=5.0)
+    everything = store.changes()
+    assert [number for number, _ in everything] == [1, 2, 3, 4, 5, 6]
+    assert store.changes(after=4) == everything[4:]
+    assert store.changes(limit=2) == everything[:2]
+    assert store.changes(2) == everything[2:4]
+    assert store.changes(2, after=3, limit=5) == everything[3:4]
+    assert store.changes(9) == []
+
+
+def test_schedules(store: Store) -> None:
+    plan = store.add_schedule(PLAN)
+    assert plan == PLAN.replace(id=1)
+    other = store.add_schedule(PLAN.replace(next=4.0, within=None))
+    done = store.add_schedule(PLAN.replace(next=None))
+    assert [store.schedule(id) for id in (1, 2, 3, 4)] == [plan, other, done, None]
+    assert store.schedules() == [plan, other, done]
+    assert [store.due_schedules(now) for now in (3.9, 4.0, 10.0)] == [[], [other], [other, plan]]
+    moved = store.amend_schedule(2, next=20.0, labels=())
+    assert moved == other.replace(next=20.0, labels=()) == store.schedule(2)
+    assert store.amend_schedule(9, next=1.0) is None
+    assert [store.delete_schedule(2), store.delete_schedule(2)] == [True, False]
+    assert store.add_schedule(PLAN).id == 4
+
+
+def test_the_library_keeps_every_revision(store: Store) -> None:
+    first = store.put_mission("tour", "wave", "ada", 1.0)
+    assert first == Revision("tour", 1, "wave", "ada", 1.0)
+    assert store.put_mission("tour", "wave", "bo", 2.0) == first
+    second = store.put_mission("tour", "nod", "bo", 3.0)
+    store.put_mission("Zoo", "wave", "ada", 4.0)
+    assert store.put_mission("tour", "wave", "ada", 5.0).number == 3
+    assert [revision.text for revision in store.revisions("tour")] == ["wave", "nod", "wave"]
+    assert [store.mission("tour", number) for number in (1, 2, 4)] == [first, second, None]
+    assert [revision.name for revision in store.missions()] == ["Zoo", "tour"]
+    assert store.missions()[1] == store.mission("tour") == Revision("tour", 3, "wave", "ada", 5.0)
+    assert [store.delete_mission(name, "bo", 6.0) for name in ("tour", "tour", "park")] == [True, False, False]
+    assert store.revisions("tour")[3:] == [Revision("tour", 4, "", "bo", 6.0, True)]
+    assert [store.mission("tour"), store.mission("tour", 4), store.mission("tour", 2)] == [None, None, second]
+    assert [revision.name for revision in store.missions()] == ["Zoo"]
+    assert store.put_mission("tour", "wave", "ada", 7.0).number == 5
+
+
+def test_the_audit_trail_and_settings(store: Store) -> None:
+    acts = [Act(time, "ada", "submit", '{"text": "wave"}', f"task {time}") for time in (3.0, 1.0, 2.0)]
+    for act in acts:
+        store.log(act)
+    assert store.acts() == acts[::-1]
+    assert store.acts(limit=1) == acts[2:]
+    assert store.setting("paused") == ""
+    for value in ("yes", "no"):
+        store.set_setting("paused", value)
+    assert (store.setting("paused"), store.setting("Paused")) == ("no", "")
+
+
+def test_cleaning_spares_what_is_not_over_and_the_library(store: Store) -> None:
+    kept = [store.add(a_task(state=state, created=1.0)) for state in State if state not in FINAL]
+    for state in FINAL:
+        store.change(store.add(a_task(created=1.0)).id, [State.QUEUED], state, time=5.0, ended=5.0)
+    unsaid = store.add(a_task(created=1.0))
+    store.change(unsaid.id, [State.QUEUED], State.SKIPPED, time=8.0)
+    late = store.add(a_task(state=State.FAILED, ended=10.0, created=1.0))
+    store.put_mission("tour", "wave", "ada", 1.0)
+    for time in (4.0, 10.0):
+        store.log(Act(time, "ada", "say", "", ""))
+    assert store.clean(5.0) == 0
+    assert store.clean(8.0) == len(FINAL)
+    assert store.clean(10.0) == 1
+    assert store.tasks(newest=True) == [late, *reversed(kept)]
+    assert {change.task for _, change in store.changes()} == {task.id for task in [*kept, late]}
+    assert [act.time for act in store.acts()] == [10.0]
+    assert len(store.missions()) == 1
+    assert store.add(a_task()).id == late.id + 1
+
+
+def test_numbers_are_never_given_again(store: Store) -> None:
+    task = store.add(a_task(state=State.SKIPPED, created=1.0))
+    assert store.clean(2.0) == 1
+    assert (store.add(a_task()).id, store.changes()[0][0]) == (task.id + 1, 2)
+
+
+@pytest.mark.parametrize(
+    ("fields", "told"),
+    [
+        ({"reason": "a\0b"}, "it can't keep a text with a NUL character."),
+        ({"token": "\ud800"}, "it can't keep half a character (a lone surrogate)."),
+        ({"earliest": math.nan}, "it can't keep NaN, which isn't a number."),
+    ],
+)
+def test_what_cannot_be_kept_is_refused(store: Store, fields: dict[str, Any], told: str) -> None:
+    task = store.add(a_task())
+    for call in (lambda: store.add(a_task(**fields)), lambda: store.amend(task.id, **fields)):
+        with pytest.raises(StoreError) as error:
+            call()
+        assert reason(error) == told
+    assert (store.tasks(), len(store.changes())) == ([task], 1)
+    assert store.add(a_task()).id == task.id + 1
+
+
+def test_numbers_and_values_that_are_too_much(store: Store) -> None:
+    deep: list[Any] = []
+    for _ in range(100_000):
+        deep = [deep]
+    for task in (a_task(position=2**70), Task(0, MissionText("wave", values={"x": deep}), "ada", 1.0)):
+        with pytest.raises(StoreError):
+            store.add(task)
+    assert store.tasks() == []
+    assert store.add(a_task(earliest=math.inf, deadline=-math.inf)).id == 1
+    assert [(task.earliest, task.deadline) for task in store.tasks()] == [(math.inf, -math.inf)]
+
+
+def test_a_closed_store_says_so(store: Store) -> None:
+    store.close()
+    store.close()
+    with pytest.raises(StoreError) as error:
+        store.tasks()
+    assert reason(error) == "it has been closed."
+
+
+def test_one_owner(store: Store, place: str) -> None:
+    store.own()
+    store.own()
+    with open_store(place) as other:
+        with pytest.raises(MissionError, match="BT197"):
+            other.own()
+        other.add(a_task())
+        assert other.claim(200.0) is not None
+        store.close()
+        other.own()
+
+
+def test_a_row_that_cannot_be_read_is_damage(store: Store, place: str) -> None:
+    good, bad = store.add(a_task()), store.add(a_task())
+    execute_at(place, f"UPDATE task SET state = 'asleep' WHERE id = {bad.id}")
+    with pytest.raises(StoreError) as error:
+        store.tasks()
+    assert reason(error) == "it's damaged: a task can't be read."
+    assert store.task(good.id) == good
+    with pytest.raises(StoreError):
+        store.amend(bad.id, priority=4)
+    execute_at(place, f"UPDATE task SET state = 'queued' WHERE id = {bad.id}")
+    assert store.task(bad.id) == bad
