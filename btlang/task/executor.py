@@ -22,9 +22,7 @@ from btlang.task.manager import ENDED, Manager, recovered
 from btlang.task.recordings import Recordings
 from btlang.task.store import Store
 from btlang.task.task import ACTIVE, FINAL, Restart, State, Task
-from btlang.task.watch import RunWatch, indices_of
-from btlang.tree.catalogue import CATALOGUE
-from btlang.tree.node import Node
+from btlang.task.watch import RunWatch, commands_of, indices_of, reason_of
 from btlang.vocabulary.values import key_of
 
 TYPE_CHECKING = False
@@ -288,7 +286,7 @@ class Executor:
             run = self._session.prepare(mission, **options)
             for name, value in task.mission.values.items():
                 run.nodes.blackboard.set(key_of(name.lower().split()), value)
-        commands = [index for index, (_, node) in enumerate(run.nodes.nodes) if _is_command(node, mission)]
+        commands = commands_of(run, mission)
         self._watch = RunWatch(indices_of(run, self._rules.reactions), commands, self.wake)
         run.bus.add(self._watch)
         run.after_ticks(partial(self._after_tick, task, run, self._watch))
@@ -347,7 +345,7 @@ class Executor:
             self._change(task, State.BLOCKED, f"a house rule failed: {reason}", saved=self._latest)
             self._ask_for_help(reason)
         elif outcome.failure is not None:
-            self._change(task, State.FAILED, _reason(outcome))
+            self._change(task, State.FAILED, reason_of(outcome))
         elif not outcome.stopped:
             self._change(task, State.COMPLETED, "" if outcome.seconds else "there was nothing to do")
         elif self._emergency.is_latched:
@@ -387,15 +385,3 @@ class Executor:
             except StoreError as error:
                 self._trouble(str(error))
         self._unwritten.append(write)
-
-
-def _is_command(node: Node, mission: Mission) -> bool:
-    kind = CATALOGUE.get(node.id)
-    return mission.is_action(node) if kind is None else kind.kind == "Action"
-
-
-def _reason(outcome: Outcome) -> str:
-    failure = outcome.failure
-    assert failure is not None
-    words = failure.span.text if failure.span is not None else failure.node.id
-    return f"{words}: {failure.reason}"

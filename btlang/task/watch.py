@@ -7,10 +7,13 @@ from collections.abc import Callable, Collection
 from btlang.engine.status import FAILURE, RUNNING, SUCCESS
 from btlang.run.bus import INLINE
 from btlang.run.events import Event, PeriodPassed, StatusesChanged
+from btlang.tree.catalogue import CATALOGUE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from btlang.api import Mission
     from btlang.run.robot_state import RobotState
+    from btlang.run.runner import Outcome
     from btlang.session import Run
 
 
@@ -63,3 +66,21 @@ def indices_of(run: Run, paths: Collection[str]) -> list[int]:
     """The numbers of nodes at these paths."""
     wanted = set(paths)
     return [index for index, (path, _) in enumerate(run.nodes.nodes) if path in wanted] if wanted else []
+
+
+def commands_of(run: Run, mission: Mission) -> list[int]:
+    """The numbers of the nodes that do something: not those that only ask, or only lead others."""
+    found = []
+    for index, (_, node) in enumerate(run.nodes.nodes):
+        kind = CATALOGUE.get(node.id)
+        if mission.is_action(node) if kind is None else kind.kind == "Action":
+            found.append(index)
+    return found
+
+
+def reason_of(outcome: Outcome) -> str:
+    """Why a mission failed, in one line."""
+    failure = outcome.failure
+    assert failure is not None
+    words = failure.span.text if failure.span is not None else failure.node.id
+    return f"{words}: {failure.reason}"

@@ -6,10 +6,16 @@ Reads commands as lines of JSON, and writes what happens as lines: `up`, the num
 from __future__ import annotations
 
 import json
+import os
 import sys
 
 from btlang.run.events import Event, Printed
 from btlang.task.layer import TaskLayer
+
+
+def tell(line: str) -> None:
+    """A line in one piece: several threads write, and the process may be killed."""
+    os.write(1, f"{line}\n".encode())
 
 
 def main() -> None:
@@ -18,14 +24,14 @@ def main() -> None:
 
     def printed(event: Event) -> None:
         if isinstance(event, Printed):
-            print("printed", event.text, flush=True)
+            tell(f"printed {event.text}")
 
     printed.policy = "inline"  # type: ignore[attr-defined]
     with TaskLayer(folder=folder, speed=speed, records=False, sinks=lambda task: [printed]) as layer:
-        print("up", flush=True)
+        tell("up")
         for line in sys.stdin:
             answer = layer.handle(json.loads(line), "ann")
-            print("answer", json.dumps(answer.data.get("task", {}).get("id", 0)), flush=True)
+            tell(f"answer {answer.data['task']['id'] if answer.ok else f'refused: {answer.text}'}")
 
 
 if __name__ == "__main__":

@@ -129,7 +129,9 @@ def test_nothing_acknowledged_is_lost_and_nothing_ends_twice(tmp_path: Path) -> 
             peer.send(command="submit", text=f"print {sent} then wait 0.5 s then nod", restart=restart)
             sent += 1
             time.sleep(draw.uniform(0.0, 0.003))
-        acknowledged |= {int(line.split()[1]) for line in peer.kill() if line.startswith("answer")}
+        answers = [line for line in peer.kill() if line.startswith("answer")]
+        assert not [line for line in answers if "refused" in line]
+        acknowledged |= {int(line.split()[1]) for line in answers}
     peer = Peer(tmp_path)
     with open_store(str(tmp_path / "tasks.db")) as store:
         until = time.monotonic() + 600

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import socket
+import sqlite3
 import tempfile
 import threading
 from collections.abc import Iterator
@@ -17,18 +18,24 @@ from btlang.session import Session
 from btlang.task.house_rules import read_house_rules
 from btlang.task.paths import USUAL_NAME, socket_path
 from btlang.task.socket_server import SocketServer
+from btlang.task.store import open_store
 from btlang.task.task import State
 from tests.task.layers import layer_in, submit, wait_for, wait_until
 
 REFUSALS = ("BT186", "BT187", "BT192")
 """Codes that a robot answers with: `btc` ends with 1 then, and with 2 if it can't read a command."""
 _CODES = ("BT185", "BT190", "BT198", "BT199", *REFUSALS)
+_STORES = {"BT196": "newer.db", "BT197": "busy.db"}
 _SAVED = "wave then nod"
 
 
 @contextmanager
 def robot_for(code: str, patch: pytest.MonkeyPatch) -> Iterator[None]:
     """Puts a robot up for a code that needs one, in folders of its own, and does to it what the code is about."""
+    if code in _STORES:
+        with _store(code, patch):
+            yield
+        return
     if code not in _CODES:
         yield
         return
@@ -54,6 +61,27 @@ def robot_for(code: str, patch: pytest.MonkeyPatch) -> Iterator[None]:
                     yield
             else:
                 yield
+
+
+@contextmanager
+def _store(code: str, patch: pytest.MonkeyPatch) -> Iterator[None]:
+    """A store in this folder: of a newer version, or in use by another process."""
+    with tempfile.TemporaryDirectory() as short:
+        for variable in ("XDG_RUNTIME_DIR", "XDG_DATA_HOME"):
+            patch.setenv(variable, short)
+        place = Path(_STORES[code])
+        try:
+            with open_store(str(place)) as store:
+                if code == "BT197":
+                    store.own()
+                    yield
+                    return
+            with closing(sqlite3.connect(place)) as database, database:
+                database.execute("UPDATE version SET number = number + 1")
+            yield
+        finally:
+            for path in Path().glob(f"{place}*"):
+                path.unlink()
 
 
 @contextmanager
