@@ -161,9 +161,9 @@ class Executor:
         ended = ["the pause"] if self._paused else []
         self._paused = False
         if self._store.setting(_BLOCKED):
-            self._store.set_setting(_BLOCKED, "")
             for task in self._store.tasks({State.BLOCKED}):
                 self._store.change(task.id, {State.BLOCKED}, State.QUEUED, time=self._now(), cause="it may go on")
+            self._store.set_setting(_BLOCKED, "")  # last, so that no other task comes before these
             ended.append("the wait for help")
         run = self._run
         if run is not None:

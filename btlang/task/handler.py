@@ -19,6 +19,7 @@ from btlang.task.manager import Manager
 from btlang.task.messages import Answer, Command
 from btlang.task.moments import shown
 from btlang.task.recurrence import read_moment, read_rule
+from btlang.task.report import report
 from btlang.task.store import Store
 from btlang.task.task import (
     ACTIVE,
@@ -45,6 +46,9 @@ if TYPE_CHECKING:
     from btlang.session import Session
 
     Choice = TypeVar("Choice", bound=StrEnum)
+
+
+_WEEK = 7 * 86_400.0
 
 
 class Handler:
@@ -74,7 +78,7 @@ class Handler:
             messages.PutMission: self._put, messages.DeleteMission: self._delete, messages.Library: self._library,
             messages.Pause: self._pause, messages.Step: self._step, messages.EmergencyStop: self._stop,
             messages.Release: self._release, messages.Say: self._say, messages.Down: self._end_all,
-            messages.Status: self._status, messages.Trail: self._trail,
+            messages.Status: self._status, messages.Report: self._report, messages.Trail: self._trail,
         }  # fmt: skip
 
     def handle(self, command: Command, person: str) -> Answer:
@@ -332,6 +336,14 @@ class Handler:
         lines = [f"{hindrance[0].upper()}{hindrance[1:]}." if hindrance else f"{doing}."]
         lines.append(f"{data['waiting']} waiting." if data["waiting"] else "Nothing waits.")
         return Answer(True, "\n".join(lines), data)
+
+    def _report(self, command: messages.Report, person: str) -> Answer:
+        now = self._now()
+        until = _moment(command.until, now)
+        until = now if until is None else until
+        since = _moment(command.since, now)
+        lines = list(report(self._store, until - _WEEK if since is None else since, until))
+        return Answer(True, "\n".join(lines), {"lines": lines})
 
     def _trail(self, command: messages.Trail, person: str) -> Answer:
         now, found = self._now(), self._store.acts(command.limit)

@@ -216,6 +216,15 @@ class Status(Command):
     changes = False
 
 
+class Report(Command):
+    """What the robot did from `since` to `until`: seconds since 1970 or English; by default in the last seven days."""
+
+    tag = "report"
+    changes = False
+    since: str | float | None = None
+    until: str | float | None = None
+
+
 class Trail(Command):
     """The audit trail: the latest commands, and who gave them."""
 
@@ -228,7 +237,8 @@ COMMANDS: dict[str, type[Command]] = {
     kind.tag: kind
     for kind in (
         Submit, List, Show, Cancel, Kill, Interrupt, Resume, Skip, Reorder, Again, AddSchedule, RemoveSchedule,
-        Schedules, PutMission, DeleteMission, Library, Pause, Step, EmergencyStop, Release, Say, Down, Status, Trail,
+        Schedules, PutMission, DeleteMission, Library, Pause, Step, EmergencyStop, Release, Say, Down, Status, Report,
+        Trail,
     )
 }  # fmt: skip
 """By their names."""

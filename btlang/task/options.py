@@ -7,7 +7,7 @@ import argparse
 from btlang.arguments import duration, speed
 
 ROBOT_ACTS = (
-    "up", "down", "status", "stop", "release", "pause", "resume", "step", "say", "unit", "backup", "restore",
+    "up", "down", "status", "report", "stop", "release", "pause", "resume", "step", "say", "unit", "backup", "restore",
 )  # fmt: skip
 """What `btc robot` does."""
 TASK_ACTS = (
@@ -29,6 +29,7 @@ def add_robot_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--no-recordings", action="store_true", help="don't record what tasks do")
     parser.add_argument("--speed", type=speed, default="real", metavar="SPEED", help="real, max or a factor")
     parser.add_argument("--reason", default="", metavar="TEXT", help="why, for others to read")
+    parser.add_argument("--since", metavar="TIME", help="where a report begins (default: seven days ago)")
     _add_json(parser)
     parser.add_argument("act", choices=ROBOT_ACTS, metavar="ACT", help=", ".join(ROBOT_ACTS))
     parser.add_argument("item", nargs="*", metavar="FILE", help="the file to back up to or to restore, or what to say")

@@ -62,8 +62,9 @@ def serve(options: argparse.Namespace) -> int:
     if act == "say" and not options.item:
         raise MissionError([diagnostic("BT198", NOWHERE, name=act, reason="it needs a text")])
     commands: dict[str, Callable[[], messages.Command]] = {
-        "down": messages.Down, "status": messages.Status, "release": messages.Release, "pause": messages.Pause,
-        "resume": messages.Resume, "step": messages.Step, "say": partial(messages.Say, " ".join(options.item)),
+        "down": messages.Down, "status": messages.Status, "report": partial(messages.Report, options.since),
+        "release": messages.Release, "pause": messages.Pause, "resume": messages.Resume,
+        "step": messages.Step, "say": partial(messages.Say, " ".join(options.item)),
     }  # fmt: skip
     with Client(options.name) as client:
         return tell(client.send(commands[act]()), options.json)

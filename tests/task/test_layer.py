@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from datetime import UTC, datetime
 from pathlib import Path
 
 import pytest
@@ -161,3 +162,61 @@ def test_a_house_rule_that_fails_stops_the_robot_until_somebody_helps(tmp_path: 
         assert wait_for(layer, number, *FINAL).state is State.COMPLETED
         assert wait_for(layer, other, *FINAL).state is State.COMPLETED
     assert printer.texts == ["a", "b", "c"]
+
+
+def test_a_mission_that_is_deleted_while_it_waits_is_still_done(tmp_path: Path) -> None:
+    printer = Printer()
+    with layer_in(tmp_path, sinks=printer.sinks) as layer:
+        ask(layer, "put", name="tour", text="print first")
+        ask(layer, "pause")
+        number = int(ask(layer, "submit", name="tour")["task"]["id"])
+        ask(layer, "put", name="tour", text="print second")
+        ask(layer, "delete", name="tour")
+        ask(layer, "resume")
+        assert wait_for(layer, number, *FINAL).state is State.COMPLETED
+        assert "isn't in the library" in refusal(layer, "submit", name="tour")
+        revisions = ask(layer, "library", name="tour")["missions"]
+        assert [each["text"] for each in revisions if not each["deleted"]] == ["print first", "print second"]
+    assert printer.texts == ["first"]
+
+
+def test_a_cancel_in_the_moment_of_the_end_is_true_or_says_so(tmp_path: Path) -> None:
+    """Each answer agrees with what the store says from then on."""
+    with layer_in(tmp_path) as layer:
+        answers = set()
+        for _ in range(40):
+            number = submit(layer, "wait 0.2 s")
+            wait_for(layer, number, State.UNDERWAY, *FINAL)
+            answer = layer.handle({"command": "cancel", "task": number}, "ann")
+            state = wait_for(layer, number, *FINAL).state
+            assert state in (State.CANCELED, State.COMPLETED)
+            assert answer.ok is (state is State.CANCELED), answer.text
+            answers.add(state)
+        assert answers
+
+
+def test_parameters_are_values_of_the_mission(tmp_path: Path) -> None:
+    printer = Printer()
+    with layer_in(tmp_path, sinks=printer.sinks) as layer:
+        number = submit(
+            layer, 'repeat twice: increase visitors then print "{visitors} for {guide}"',
+            values={"visitors": 3, "guide": "Ann"},
+        )  # fmt: skip
+        assert wait_for(layer, number, *FINAL).state is State.COMPLETED
+        assert "BT010" in refusal(layer, "submit", text="if visitors is 3, wave")
+    assert printer.texts == ["4 for Ann", "5 for Ann"]
+
+
+def test_a_schedule_makes_its_tasks(tmp_path: Path) -> None:
+    """An hour in a moment: the robot's time is simulated."""
+    begins = datetime(2026, 3, 2, 8, 50, tzinfo=UTC).timestamp()
+    with layer_in(tmp_path, speed="max", begins=begins) as layer:
+        rule = "every 10 minutes between 9:00 and 9:30"
+        ask(layer, "schedule", rule=rule, zone="UTC", text="wave", labels=["tour"])
+        wait_until(lambda: layer.now() > begins + 3000)
+        ask(layer, "pause")
+        tours = ask(layer, "list", states=["completed"], label="tour")["tasks"]
+        report = ask(layer, "report", since=begins)["lines"]
+    assert sorted(tour["due"] - begins for tour in tours) == [600, 1200, 1800, 2400]
+    assert all(0 <= tour["started"] - tour["due"] < 5 for tour in tours), tours
+    assert report[2] == "wave (every 10 minutes between 09:00 and 09:30): 4 of 4 done."

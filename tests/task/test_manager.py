@@ -1,0 +1,139 @@
+"""What comes next, by times that the test gives: schedules, deadlines, restarts."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from datetime import UTC, datetime
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from btlang.task.manager import Manager
+from btlang.task.recurrence import read_rule
+from btlang.task.store import Store, open_store
+from btlang.task.task import Missed, MissionText, Overlap, Restart, Schedule, State, Task
+
+DAY = 86_400.0
+NINE = datetime(2026, 3, 2, 9, tzinfo=UTC).timestamp()
+RULE = "every day at 9:00"
+
+
+@pytest.fixture
+def store(tmp_path: Path) -> Iterator[Store]:
+    with open_store(str(tmp_path / "tasks.db")) as opened:
+        yield opened
+
+
+def add_schedule(store: Store, now: float = NINE - 3600, **fields: Any) -> Schedule:
+    first = read_rule(RULE, "UTC").next(now)
+    return store.add_schedule(Schedule(0, RULE, "UTC", MissionText("wave"), "ann", now, first, **fields))
+
+
+def states(store: Store) -> list[State]:
+    return [task.state for task in sorted(store.tasks(), key=lambda task: task.id)]
+
+
+def reasons(store: Store) -> list[str]:
+    return [task.reason for task in sorted(store.tasks(), key=lambda task: task.id)]
+
+
+def test_a_task_is_made_when_its_time_has_come(store: Store) -> None:
+    manager, schedule = Manager(store), add_schedule(store, priority=3, labels=("tour",), within=600.0)
+    manager.refresh(NINE - 1)
+    assert store.tasks() == []
+    assert manager.next_time(NINE - 1) == NINE
+    manager.refresh(NINE + 2)
+    [task] = store.tasks()
+    assert (task.due, task.priority, task.labels, task.deadline) == (NINE, 3, ("tour",), NINE + 600)
+    assert task.schedule == schedule.id
+    manager.refresh(NINE + 3)
+    assert len(store.tasks()) == 1
+    assert manager.next_time(NINE + 3) == NINE + 600
+    manager.refresh(NINE + 601)
+    assert states(store) == [State.SKIPPED]
+    assert reasons(store)[0].startswith("it couldn't begin by ")
+    assert manager.next_time(NINE + 601) == NINE + DAY
+
+
+def test_a_clock_that_is_set_back_brings_no_time_twice(store: Store) -> None:
+    manager = Manager(store)
+    add_schedule(store)
+    for now in (NINE + 1, NINE - 3600, NINE + 1, NINE + 5, NINE + DAY + 1):
+        manager.refresh(now)
+    assert [task.due for task in sorted(store.tasks(), key=lambda task: task.id)] == [NINE, NINE + DAY]
+
+
+@pytest.mark.parametrize(
+    ("overlap", "expected"),
+    [
+        (Overlap.SKIP, [State.QUEUED, State.SKIPPED]),
+        (Overlap.QUEUE, [State.QUEUED, State.QUEUED]),
+        (Overlap.REPLACE, [State.SKIPPED, State.QUEUED]),
+    ],
+)
+def test_the_task_before_is_not_over(store: Store, overlap: Overlap, expected: list[State]) -> None:
+    manager = Manager(store)
+    add_schedule(store, overlap=overlap)
+    manager.refresh(NINE)
+    manager.refresh(NINE + DAY)
+    assert states(store) == expected
+
+
+def test_one_under_way_is_named_where_another_replaces_it(store: Store) -> None:
+    manager = Manager(store)
+    add_schedule(store, overlap=Overlap.REPLACE)
+    manager.refresh(NINE)
+    claimed = manager.claim(NINE)
+    assert claimed is not None
+    assert [task.id for task in manager.refresh(NINE + DAY)] == [claimed.id]
+
+
+@pytest.mark.parametrize(
+    ("missed", "expected"),
+    [
+        (Missed.SKIP, [State.SKIPPED] * 3),
+        (Missed.ONCE, [State.SKIPPED, State.SKIPPED, State.QUEUED]),
+        (Missed.ALL, [State.QUEUED] * 3),
+    ],
+)
+def test_times_that_were_missed(store: Store, missed: Missed, expected: list[State]) -> None:
+    manager = Manager(store)
+    add_schedule(store, missed=missed, overlap=Overlap.QUEUE)
+    manager.refresh(NINE + 2 * DAY + 3600)
+    assert states(store) == expected
+    assert all("was missed" in task.reason for task in store.tasks() if task.state is State.SKIPPED)
+    assert manager.next_time(NINE + 2 * DAY + 3600) == NINE + 3 * DAY
+
+
+@pytest.mark.parametrize(
+    ("restart", "saved", "state", "kept"),
+    [
+        (Restart.GIVE_UP, '{"now": 1}', State.ERROR, '{"now": 1}'),
+        (Restart.AGAIN, '{"now": 1}', State.QUEUED, ""),
+        (Restart.RESUME, '{"now": 1}', State.QUEUED, '{"now": 1}'),
+        (Restart.RESUME, '{"ended": true}', State.COMPLETED, '{"ended": true}'),
+        (Restart.RESUME, '{"ended": false}', State.FAILED, '{"ended": false}'),
+    ],
+)
+def test_what_was_under_way(store: Store, restart: Restart, saved: str, state: State, kept: str) -> None:
+    manager = Manager(store)
+    task = store.add(Task(0, MissionText("wave"), "ann", NINE, restart=restart))
+    assert manager.claim(NINE) is not None
+    store.change(task.id, {State.STANDBY}, State.UNDERWAY, time=NINE)
+    store.amend(task.id, saved=saved)
+    [after] = manager.recover(NINE + 60)
+    assert (after.state, after.saved) == (state, kept)
+    assert "the robot was cut off" in after.reason
+    assert manager.recover(NINE + 61) == []
+
+
+def test_why_a_task_waits(store: Store) -> None:
+    manager = Manager(store)
+    first = store.add(Task(0, MissionText("wave"), "ann", NINE))
+    second = store.add(Task(0, MissionText("wave"), "ann", NINE))
+    later = store.add(Task(0, MissionText("wave"), "ann", NINE, earliest=NINE + 60))
+    assert manager.why_waiting(first, NINE) == "it's next"
+    assert manager.why_waiting(second, NINE) == f"task {first.id} comes first"
+    assert manager.why_waiting(later, NINE).startswith("its time is ")
+    assert manager.why_waiting(first, NINE, "the robot is paused") == "the robot is paused"
