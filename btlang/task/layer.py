@@ -141,7 +141,9 @@ class TaskLayer:
 
     def _compiled(self, text: str, name: str, values: tuple[tuple[str, bool], ...]) -> Mission:
         given = {each: "" if is_text else 0 for each, is_text in values}
-        return parse_tree(Source(text, name or "mission"), keywords=self._keywords, world=self._world, values=given)
+        return parse_tree(
+            Source(text, name or "mission", roots=()), keywords=self._keywords, world=self._world, values=given
+        )
 
     def _admitted(self, text: str, name: str, values: Mapping[str, Any] = {}) -> Mission:
         """The mission of a text, which this robot can do. Raises MissionError with all reasons why it can't."""

@@ -8,6 +8,7 @@ import signal
 import sys
 import threading
 from collections.abc import Callable
+from contextlib import suppress
 from functools import partial
 
 from btlang.diagnostics.diagnostic import diagnostic
@@ -57,6 +58,8 @@ def serve(options: argparse.Namespace) -> int:
         return _copy(options)
     if act == "stop":
         emergency_stop(options.name)
+        with suppress(MissionError), Client(options.name) as client:  # the robot stands already; this is for the trail
+            client.send(messages.EmergencyStop(options.reason))
         show("The robot is stopped. Nothing moves it until: btc robot release")
         return 0
     if act == "say" and not options.item:
@@ -113,6 +116,7 @@ def _unit(options: argparse.Namespace) -> str:
             words += [f"--{option}", os.path.abspath(value) if os.path.exists(value) else value]
     for keywords in options.keywords:
         words += ["--keywords", os.path.abspath(keywords)]
+    words += [] if options.speed == "real" else ["--speed", str(options.speed)]
     words += ["--durable"] * options.durable + ["--no-recordings"] * options.no_recordings
     return _UNIT.format(
         name=options.name or USUAL_NAME, command=shlex.join(words).replace("%", "%%"), folder=os.getcwd()

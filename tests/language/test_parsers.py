@@ -34,7 +34,7 @@ def reading(text: str, parser: str) -> ast.Program | tuple[str, ...]:
         return tuple(problem.code for problem in error.diagnostics)
 
 
-@searches(250, 30000)
+@searches(150, 30000)
 @given(st.one_of(missions, broken_missions()))
 @example("a repeat until p NL")
 @example("not ( p ) NL")
@@ -183,7 +183,7 @@ def ours(node: ast.Ast | None) -> object:
     return (kind, *map(ours, ast.parts(node)))
 
 
-@searches(250, 30000)
+@searches(150, 30000)
 @given(st.one_of(missions, broken_missions()))
 def test_groups_as_the_oracle_does(words: str) -> None:
     """The language takes a little more than the oracle (`then` at the start, empty lines); never anything else."""

@@ -58,7 +58,7 @@ def _placed(fact: ast.Fact) -> tuple[object, ...]:
     return fact.name, fact.x, fact.y, fact.facing
 
 
-@searches(80, 3000)
+@searches(40, 3000)
 @given(st.one_of(sentences.missions, sentences.broken_missions()))
 @example("repeat a until p 3t NL")
 @example("try try a 3t otherwise b NL")
@@ -70,7 +70,7 @@ def test_sentences_keep_their_tree(words: str) -> None:
     keeps_its_tree(mission, letters())
 
 
-@searches(30, 3000)
+@searches(20, 3000)
 @given(trees.missions())
 @example(ast.Program(ast.Every("5", ast.Repeat("1", trees.phrase("u"), trees.SPAN), "", trees.SPAN), (), trees.SPAN))
 @example(ast.Program(ast.Try(trees.phrase("u"), trees.either("v", "w"), trees.SPAN), (), trees.SPAN))
@@ -78,7 +78,7 @@ def test_syntax_trees_keep_their_tree(mission: ast.Program) -> None:
     keeps_its_tree(mission, letters())
 
 
-@searches(30, 2000)
+@searches(20, 2000)
 @given(trees.missions(), st.sampled_from([1, 20, 50]), st.sampled_from(BRACKETS))
 def test_blocks_keep_the_tree(mission: ast.Program, width: int, brackets: str) -> None:
     tree = compile_mission(mission, letters())

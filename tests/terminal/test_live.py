@@ -148,7 +148,7 @@ def test_other_keys_do_nothing(terminal: Open) -> None:
 
 @pytest.mark.parametrize("key", ["q", "Q", "C-c"])
 def test_the_run_can_be_stopped(terminal: Open, key: str) -> None:
-    seen = run(terminal, "-c", f"wave then {FOREVER}")
+    seen = run(terminal, "-c", f"nod then {FOREVER}")
     seen.wait_for("▶ turn")
     seen.press(key)
     assert seen.wait_for_end() == 130
