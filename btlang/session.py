@@ -229,7 +229,7 @@ class Run:
             self.outcome = outcome
             return outcome
         finally:
-            self._runner.answer_requests()
+            self._runner.end_requests()
             self.bus.close()
             self._under_way = False
             self._recent.close()

@@ -218,13 +218,17 @@ class Runner:
         self.controls.wake()
         while not answered.wait(_LOOK):
             if not self._thread:  # it ended meanwhile
-                self.answer_requests()
+                self._answer_requests()
         if problems:
             raise problems[0]
         return answers[0]
 
-    def answer_requests(self) -> None:
-        """Does what `between_ticks` waits for; also after the run."""
+    def end_requests(self) -> None:
+        """The run is over: from now on `between_ticks` calls at once. Does what it still waits for."""
+        self._thread = 0
+        self._answer_requests()
+
+    def _answer_requests(self) -> None:
         while self._requests:
             self._requests.popleft()()
 
@@ -246,7 +250,6 @@ class Runner:
             standstill = self._end(suspends=self.controls.suspends)
         if self.controls.emergency:
             status, stopped = IDLE, "emergency stop"
-        self._thread = 0
         failure = None if stopped else self._engine.failure
         count, worst = (self._overruns.count, self._overruns.worst) if self._overruns is not None else (0, None)
         outcome = Outcome(Status(status), seconds, self.ticks, failure, stopped, count, worst, standstill)
@@ -257,7 +260,7 @@ class Runner:
         controls, stepped = self.controls, False
         self._pace.begin()
         while not controls.stopped:
-            self.answer_requests()
+            self._answer_requests()
             if controls.paused and not controls.take_step():
                 self._stand_still(stepped)
                 self._pace.begin()

@@ -86,7 +86,7 @@ def _first_tick(client: Client) -> float:
 
 def _stops(client: Client, count: int) -> list[float]:
     over = threading.Event()
-    threads = [threading.Thread(target=_flood, args=(over,)) for _ in range(4)]
+    threads = [threading.Thread(target=_flood, args=(over,), daemon=True) for _ in range(4)]
     for thread in threads:
         thread.start()
     times = []
