@@ -75,6 +75,8 @@ def take_away_what_is_missed(code: str, patch: pytest.MonkeyPatch) -> None:
         patch.setitem(sys.modules, "mcap.writer", None)
     if code == "BT085":
         patch.setitem(sys.modules, "msgpack", None)
+    if code == "BT189":
+        patch.setitem(sys.modules, "psycopg", None)
     if code == "BT086":
         _taken(64_998)
     patch.setitem(sys.modules, "btlang_interfaces", None)  # BT110
