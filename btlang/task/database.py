@@ -64,9 +64,9 @@ class Database(ABC):
 
     begin: ClassVar[Mapping[Mode, Sequence[str]]]
     """The statements that begin a transaction."""
-    locks: ClassVar[Sequence[str]]
-    """Endings of a query for a row to be changed, to be tried in turn: the first ones may leave out rows that others
-    are changing, the last one waits for them.
+    row_lock: ClassVar[Mapping[Mode, str]]
+    """What ends a query for rows that nobody else may change until the end of the transaction: one in the mode WRITE
+    leaves out those that others change at this moment, one that is ALONE waits for them.
     """
     is_shared: ClassVar[bool]
     """Whether other programs may have tables beside those of the store."""

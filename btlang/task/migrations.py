@@ -37,7 +37,7 @@ MIGRATIONS: list[tuple[str, ...]] = [
             number BIGINT PRIMARY KEY, task BIGINT NOT NULL, time DOUBLE PRECISION NOT NULL, state TEXT NOT NULL,
             cause TEXT NOT NULL, person TEXT NOT NULL
         )""",
-        "CREATE INDEX change_task ON change (task)",
+        "CREATE INDEX change_task ON change (task, number)",
         """CREATE TABLE schedule (
             id BIGINT PRIMARY KEY, rule TEXT NOT NULL, zone TEXT NOT NULL, mission TEXT NOT NULL, person TEXT NOT NULL,
             created DOUBLE PRECISION NOT NULL, next DOUBLE PRECISION, priority BIGINT NOT NULL, labels TEXT NOT NULL,

@@ -32,6 +32,7 @@ _REASONS = {
     "25006": "it can't be written",
     "28": "the user or the password is wrong",
     "3D": "there's no such database",
+    "40": "others changed it at the same time",
     "42501": "the user may not do this",
     "53100": "the disk is full",
     "53300": "it has too many connections",
@@ -57,7 +58,7 @@ class Postgres(Database):
         Mode.WRITE: ("BEGIN",),
         Mode.ALONE: ("BEGIN", f"SELECT pg_advisory_xact_lock({_CHANGING}, hashtext(current_schema()))"),
     }
-    locks = (" FOR UPDATE SKIP LOCKED", " FOR UPDATE")
+    row_lock: ClassVar = {Mode.WRITE: " FOR UPDATE SKIP LOCKED", Mode.ALONE: " FOR UPDATE"}
     is_shared = True
 
     def __init__(self, place: str, durable: bool = False) -> None:
@@ -99,6 +100,8 @@ class Postgres(Database):
     def _disown(self) -> None:
         if self._owner is not None:
             OWNED.discard(self._owned)
+            with suppress(*self._errors):  # at once, and not when the server has noticed the end
+                self._run(self._owner, "SELECT pg_advisory_unlock_all()")
             self._drop(self._owner)
             self._owner = None
 
@@ -171,14 +174,17 @@ def _defaults() -> dict[str, Any]:
 
 
 def _settings(durable: bool) -> str:
-    """What a connection begins with. The server, too, has to notice that the other end is gone."""
+    """What a connection begins with. The server, too, has to notice that the other end is gone. Where an index has the
+    order that is asked for, it's never slow; sorting all tasks to get one is, which a new table looks small enough for.
+    """
     return f"""
         SET synchronous_commit = {"on" if durable else "off"};
         SET lock_timeout = '{int(PATIENCE * 1000)}ms';
         SET idle_in_transaction_session_timeout = '{_SILENT}s';
         SET tcp_keepalives_idle = {_SILENT // 3};
         SET tcp_keepalives_interval = {_SILENT // 6};
-        SET tcp_keepalives_count = 4
+        SET tcp_keepalives_count = 4;
+        SET enable_sort = off
     """
 
 

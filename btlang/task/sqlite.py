@@ -51,7 +51,7 @@ class Sqlite(Database):
     """
 
     begin: ClassVar = {Mode.READ: ("BEGIN",), Mode.WRITE: ("BEGIN IMMEDIATE",), Mode.ALONE: ("BEGIN IMMEDIATE",)}
-    locks = ("",)  # who writes is alone
+    row_lock: ClassVar = {Mode.WRITE: "", Mode.ALONE: ""}  # who writes is alone
     is_shared = False
 
     def __init__(self, place: str, durable: bool = False, shown: str = "") -> None:

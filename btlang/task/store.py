@@ -138,17 +138,12 @@ class Store:
         """
         if self._is_owner:
             self._database.own()
-        with self._database.transaction() as execute:
-            for lock in self._database.locks:
-                found = self._records(Task, execute(_NEXT + lock, (now, now)))
-                if found:
-                    break
-            else:
-                return None
-            [task] = found
-            noted = Change(task.id, now, State.STANDBY, "its turn", "")
-            fields = {"reason": noted.cause, "attempts": task.attempts + 1}
-            return self._changed(execute, noted, (task.state,), fields)
+        claimed = self._claim(now, Mode.WRITE)
+        if claimed is None and self.peek(now) is not None:
+            # somebody else had it at that moment; one at a time waits, since a lock on a row stays also where the row
+            # has gone to another one meanwhile, and two who wait would wait for each other
+            claimed = self._claim(now, Mode.ALONE)
+        return claimed
 
     def peek(self, now: float) -> Task | None:
         """The task that `claim` would give."""
@@ -274,6 +269,16 @@ class Store:
         """
         write_backup(self._database, path)
 
+    def _claim(self, now: float, mode: Mode) -> Task | None:
+        with self._database.transaction(mode) as execute:
+            found = self._records(Task, execute(_NEXT + self._database.row_lock[mode], (now, now)))
+            if not found:
+                return None
+            [task] = found
+            noted = Change(task.id, now, State.STANDBY, "its turn", "")
+            fields = {"reason": noted.cause, "attempts": task.attempts + 1}
+            return self._changed(execute, noted, (task.state,), fields)
+
     def _latest(self, execute: Execute, name: str) -> Revision | None:
         query = f"SELECT {_REVISION} FROM revision WHERE name = ? ORDER BY number DESC LIMIT 1"
         found = self._records(Revision, execute(query, (name,)))
@@ -315,7 +320,8 @@ class Store:
 
 
 def open_store(place: str, durable: bool = False) -> Store:
-    """The store at a place: a file, which is made if it doesn't exist, or a postgresql:// URL of a database.
+    """The store at a place: a file, which is made if it doesn't exist, or a postgresql:// URL of a database. A file is
+    read once from end to end, in a tenth of a second for 100,000 tasks, to see whether it's damaged.
 
     What a method has changed outlives the process, `kill -9` included; if `durable`, also a loss of power and a crash
     of the server. Raises MissionError: BT189 if the package for PostgreSQL is missing, BT195 if it isn't a store or

@@ -13,8 +13,6 @@ from functools import cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-import pytest
-
 from btlang.task.task import MissionText, Task
 
 if TYPE_CHECKING:
@@ -26,6 +24,8 @@ ROOT = Path(__file__).parent.parent.parent
 @cache
 def server() -> Any:
     """The PostgreSQL server, running."""
+    import pytest  # which the programs of tests/task/programs.py needn't wait for
+
     with warnings.catch_warnings():
         warnings.simplefilter("ignore")  # about a user without a folder for what runs
         servers = pytest.importorskip(
@@ -41,7 +41,10 @@ def connection() -> Any:
     """To the server, for what tests do behind the back of a store."""
     import psycopg
 
-    return psycopg.connect(server().get_uri(), autocommit=True)
+    connected = psycopg.connect(server().get_uri(), autocommit=True)
+    connected.execute("ALTER SYSTEM SET fsync = off")  # nobody cuts the power
+    connected.execute("SELECT pg_reload_conf()")
+    return connected
 
 
 class Schemas:

@@ -21,7 +21,9 @@ def add(store: Store) -> None:
 
 
 def claim(store: Store) -> None:
-    """All that there are."""
+    """All that there are, once the other end of its input is closed."""
+    print("ready", flush=True)
+    sys.stdin.read()
     while (task := store.claim(1_000.0)) is not None:
         print(task.id, flush=True)
 
@@ -51,7 +53,7 @@ def fill(store: Store) -> None:
     """Adds tasks until the file may not grow any more, and one when it may again."""
     soft, hard = resource.getrlimit(resource.RLIMIT_FSIZE)
     store.add(a_task())
-    resource.setrlimit(resource.RLIMIT_FSIZE, (200_000, hard))
+    resource.setrlimit(resource.RLIMIT_FSIZE, (1_000_000, hard))
     accepted = 1
     try:
         while accepted < 10_000:

@@ -235,5 +235,5 @@ class Work(RuleBasedStateMachine):
 @pytest.mark.parametrize("kind", ["sqlite", "postgres"])
 def test_random_work(kind: str) -> None:
     work = type("Work", (Work,), {"kind": kind})
-    much = {"max_examples": amount(12, 150), "stateful_step_count": amount(25, 50)}
+    much = {"max_examples": amount(8, 150), "stateful_step_count": amount(25, 50)}
     run_state_machine_as_test(work, settings=settings(**much))
