@@ -13,18 +13,18 @@ from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.task import messages
 from btlang.task.answers import revision_data, schedule_data, short, task_data, task_line
+from btlang.task.checks import checked_priority, choice, moment, no_mission, refused, wrong
 from btlang.task.emergency import EmergencyStop
 from btlang.task.executor import Ending, Executor
 from btlang.task.manager import Manager
 from btlang.task.messages import Answer, Command
 from btlang.task.moments import shown
-from btlang.task.recurrence import read_moment, read_rule
+from btlang.task.recurrence import read_rule
 from btlang.task.report import report
 from btlang.task.store import Store
 from btlang.task.task import (
     ACTIVE,
     FINAL,
-    PRIORITIES,
     WAITING,
     Act,
     Missed,
@@ -102,9 +102,9 @@ class Handler:
         mission = self._text(command.text, command.name, command.values)
         task = self._store.add(
             Task(
-                0, mission, person, now, priority=_priority(command.priority), labels=command.labels,
-                earliest=_moment(command.at, now), deadline=_moment(command.by, now),
-                restart=_choice(Restart, command.restart, "restart"),
+                0, mission, person, now, priority=checked_priority(command.priority), labels=command.labels,
+                earliest=moment(command.at, now), deadline=moment(command.by, now),
+                restart=choice(Restart, command.restart, "restart"),
             ),
             "it was submitted",
         )  # fmt: skip
@@ -112,7 +112,7 @@ class Handler:
         return Answer(True, f"Task {task.id} is queued.", {"task": task_data(task)})
 
     def _list(self, command: messages.List, person: str) -> Answer:
-        wanted = {_choice(State, state, "state") for state in command.states}
+        wanted = {choice(State, state, "state") for state in command.states}
         states = wanted or WAITING | ACTIVE
         found = self._store.tasks(states, label=command.label, newest=bool(wanted & FINAL), limit=command.limit)
         found.sort(key=lambda task: task.state not in ACTIVE)
@@ -153,7 +153,7 @@ class Handler:
         if ended.state is state:
             return Answer(True, f"Task {task.id} is {state}.", {"task": self._data(ended)})
         if ended.state in FINAL:
-            raise _refused(task.id, f"was already over: {ended.state}")
+            raise refused(task.id, f"was already over: {ended.state}")
         return Answer(True, f"Task {task.id} is about to be {state}.", {"task": self._data(ended)})
 
     def _interrupt(self, command: messages.Interrupt, person: str) -> Answer:
@@ -164,9 +164,9 @@ class Handler:
             run.save()  # raises if it can't be kept
         ended = self._executor.end(task.id, Ending(State.DELAYED, cause, person, token))
         if ended is None:
-            raise _refused(task.id, f"isn't under way: it's {task.state}")
+            raise refused(task.id, f"isn't under way: it's {task.state}")
         if ended.state in FINAL:
-            raise _refused(task.id, f"was already over: {ended.state}")
+            raise refused(task.id, f"was already over: {ended.state}")
         text = f"Task {task.id} is interrupted. To let it go on, use the token {token}."
         return Answer(True, text, {"task": self._data(ended), "token": token})
 
@@ -176,15 +176,15 @@ class Handler:
             return Answer(True, f"That ends {ended}." if ended else "Nothing was paused.", {"ended": ended})
         task = self._open(command.task)
         if task.state is not State.DELAYED or not task.token:
-            raise _refused(task.id, f"wasn't interrupted: it's {task.state}")
+            raise refused(task.id, f"wasn't interrupted: it's {task.state}")
         if command.token != task.token:
-            raise _refused(task.id, "has another token: it was interrupted again, or by somebody else")
+            raise refused(task.id, "has another token: it was interrupted again, or by somebody else")
         cause = f"{person or 'somebody'} lets it go on"
         resumed = self._store.change(
             task.id, {State.DELAYED}, State.QUEUED, time=self._now(), cause=cause, person=person, token=""
         )
         if resumed is None:
-            raise _refused(task.id, "has changed meanwhile")
+            raise refused(task.id, "has changed meanwhile")
         self._executor.wake()
         return Answer(True, f"Task {task.id} goes on when it's its turn.", {"task": self._data(resumed)})
 
@@ -193,14 +193,14 @@ class Handler:
         cause = command.reason or f"{person or 'somebody'} asked for it"
         skipped = self._store.change(task.id, WAITING, State.SKIPPED, time=now, cause=cause, person=person, ended=now)
         if skipped is None:
-            raise _refused(task.id, "has begun, so it can't be skipped: cancel it")
+            raise refused(task.id, "has begun, so it can't be skipped: cancel it")
         self._executor.wake()
         return Answer(True, f"Task {task.id} is skipped.", {"task": self._data(skipped)})
 
     def _reorder(self, command: messages.Reorder, person: str) -> Answer:
         task = self._open(command.task)
         if command.priority is not None:
-            moved = self._store.amend(task.id, priority=_priority(command.priority))
+            moved = self._store.amend(task.id, priority=checked_priority(command.priority))
         elif command.before:
             other = self._open(command.before)
             equal = [each.id for each in self._store.tasks(WAITING) if each.priority == other.priority]
@@ -210,7 +210,7 @@ class Handler:
                 self._store.amend(number, position=position - len(order), priority=other.priority)
             moved = self._store.task(task.id)
         else:
-            raise _wrong("reorder", "it needs 'priority' or 'before'")
+            raise wrong("reorder", "it needs 'priority' or 'before'")
         self._executor.wake()
         assert moved is not None
         return Answer(True, f"Task {task.id} has a new place.", {"task": self._data(moved)})
@@ -231,9 +231,9 @@ class Handler:
         first = recurrence.next(now)
         made = self._store.add_schedule(
             Schedule(
-                0, str(recurrence), command.zone, mission, person, now, first, _priority(command.priority),
-                command.labels, _choice(Restart, command.restart, "restart"),
-                _choice(Overlap, command.overlap, "overlap"), _choice(Missed, command.missed, "missed"), command.within,
+                0, str(recurrence), command.zone, mission, person, now, first, checked_priority(command.priority),
+                command.labels, choice(Restart, command.restart, "restart"),
+                choice(Overlap, command.overlap, "overlap"), choice(Missed, command.missed, "missed"), command.within,
             )
         )  # fmt: skip
         self._executor.wake()
@@ -259,7 +259,7 @@ class Handler:
 
     def _put(self, command: messages.PutMission, person: str) -> Answer:
         if not command.name.strip() or "/" in command.name:
-            raise _wrong("put", "'name' must be a name without '/'")
+            raise wrong("put", "'name' must be a name without '/'")
         self._admit(command.text, command.name, {})
         kept = self._store.put_mission(command.name, command.text, person, self._now())
         text = f"'{one_line(kept.name)}' is in the library, revision {kept.number}."
@@ -267,7 +267,7 @@ class Handler:
 
     def _delete(self, command: messages.DeleteMission, person: str) -> Answer:
         if not self._store.delete_mission(command.name, person, self._now()):
-            raise _no_mission(command.name)
+            raise no_mission(command.name)
         return Answer(True, f"'{one_line(command.name)}' is no longer in the library.", {})
 
     def _library(self, command: messages.Library, person: str) -> Answer:
@@ -339,9 +339,9 @@ class Handler:
 
     def _report(self, command: messages.Report, person: str) -> Answer:
         now = self._now()
-        until = _moment(command.until, now)
+        until = moment(command.until, now)
         until = now if until is None else until
-        since = _moment(command.since, now)
+        since = moment(command.since, now)
         lines = list(report(self._store, until - _WEEK if since is None else since, until))
         return Answer(True, "\n".join(lines), {"lines": lines})
 
@@ -356,10 +356,10 @@ class Handler:
         revision = 0
         if not text:
             if not name:
-                raise _wrong("submit", "it needs 'text' or 'name'")
+                raise wrong("submit", "it needs 'text' or 'name'")
             found = self._store.mission(name)
             if found is None:
-                raise _no_mission(name)
+                raise no_mission(name)
             text, revision = found.text, found.number
         self._admit(text, name, values)
         return MissionText(text, name, revision, dict(values))
@@ -367,45 +367,14 @@ class Handler:
     def _known(self, number: int) -> Task:
         task = self._store.task(number)
         if task is None:
-            raise _refused(number, "isn't known")
+            raise refused(number, "isn't known")
         return task
 
     def _open(self, number: int) -> Task:
         task = self._known(number)
         if task.state in FINAL:
-            raise _refused(number, f"was already over: {task.state}")
+            raise refused(number, f"was already over: {task.state}")
         return task
 
     def _data(self, task: Task) -> dict[str, Any]:
         return task_data(task, self._manager.why_waiting(task, self._now(), self._executor.hindrance()))
-
-
-def _moment(given: str | float | None, now: float) -> float | None:
-    return read_moment(given, now) if isinstance(given, str) else given
-
-
-def _priority(priority: int) -> int:
-    least, most = PRIORITIES
-    if not least <= priority <= most:
-        raise _wrong("submit", f"'priority' must be from {least} to {most}")
-    return priority
-
-
-def _choice(kind: type[Choice], given: str, field: str) -> Choice:
-    try:
-        return kind(given)
-    except ValueError:
-        names = ", ".join(f"'{each}'" for each in kind)
-        raise _wrong(field, f"'{given}' isn't one of {names}") from None
-
-
-def _refused(task: int, reason: str) -> MissionError:
-    return MissionError([diagnostic("BT187", NOWHERE, what=f"Task {task}", reason=reason)])
-
-
-def _no_mission(name: str) -> MissionError:
-    return MissionError([diagnostic("BT187", NOWHERE, what=f"The mission '{name}'", reason="isn't in the library")])
-
-
-def _wrong(name: str, reason: str) -> MissionError:
-    return MissionError([diagnostic("BT198", NOWHERE, name=name, reason=reason)])

@@ -1,0 +1,53 @@
+"""Checks of what a command brings, and the refusals of the message handler."""
+
+from __future__ import annotations
+
+from btlang.diagnostics.diagnostic import diagnostic
+from btlang.diagnostics.errors import MissionError
+from btlang.task.recurrence import read_moment
+from btlang.task.task import PRIORITIES
+from btlang.text.source import NOWHERE
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from enum import StrEnum
+    from typing import TypeVar
+
+    Choice = TypeVar("Choice", bound=StrEnum)
+
+
+def moment(given: str | float | None, now: float) -> float | None:
+    """A time since 1970, given as one or in English. Raises MissionError (BT194)."""
+    return read_moment(given, now) if isinstance(given, str) else given
+
+
+def checked_priority(priority: int) -> int:
+    """The priority. Raises MissionError (BT198) if it is out of range."""
+    least, most = PRIORITIES
+    if not least <= priority <= most:
+        raise wrong("submit", f"'priority' must be from {least} to {most}")
+    return priority
+
+
+def choice(kind: type[Choice], given: str, field: str) -> Choice:
+    """The member of a kind that a text names. Raises MissionError (BT198)."""
+    try:
+        return kind(given)
+    except ValueError:
+        names = ", ".join(f"'{each}'" for each in kind)
+        raise wrong(field, f"'{given}' isn't one of {names}") from None
+
+
+def refused(task: int, reason: str) -> MissionError:
+    """A task can't be changed like that."""
+    return MissionError([diagnostic("BT187", NOWHERE, what=f"Task {task}", reason=reason)])
+
+
+def no_mission(name: str) -> MissionError:
+    """The library has no such mission."""
+    return MissionError([diagnostic("BT187", NOWHERE, what=f"The mission '{name}'", reason="isn't in the library")])
+
+
+def wrong(name: str, reason: str) -> MissionError:
+    """A command isn't complete, or a field of it isn't right."""
+    return MissionError([diagnostic("BT198", NOWHERE, name=name, reason=reason)])
