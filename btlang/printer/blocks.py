@@ -187,7 +187,7 @@ def _definition(node: ast.Definition, printer: Printer) -> Iterator[Section]:
         return
     if isinstance(body, ast.Exact) and body.is_condition:
         return
-    if not isinstance(body, ast.Phrase | ast.Name | ast.Compared | ast.Not):
+    if not isinstance(body, ast.Phrase | ast.Name | ast.Compared | ast.Not | ast.AtLeast):
         yield definition_head(node, printer), statements(body)
 
 

@@ -226,3 +226,12 @@ def test_a_part_of_a_mission() -> None:
     mission = read("u 3 times is v; if p, u 3 times")
     assert mission.body is not None
     assert english(mission.body, letters(), names=["u 3 times"]) == "if p, u 3 times"
+
+
+def test_a_condition_is_never_a_block() -> None:
+    """Also in the narrowest window: the lines of a block are commands."""
+    text = "big dance means at least 1 of p and q\nif big dance, u"
+    mission, _ = compiled(text, letters(), PARSERS[0])
+    [definition] = mission.definitions
+    printer = Printer(PRINTERS, letters(), mission.definitions)
+    assert len(blocks.lines_of(definition, printer, 1, least=0)) == 1
