@@ -181,6 +181,7 @@ def own_soon(store: Store) -> None:
     return store.own()
 
 
+@pytest.mark.filterwarnings("ignore:.*fork:DeprecationWarning")
 def test_a_child_process_has_connections_of_its_own(store: Store) -> None:
     task = store.add(a_task())
     store.own()
