@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import sys
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
@@ -120,12 +121,18 @@ def test_a_store_that_is_locked_for_too_long(place: str, monkeypatch: pytest.Mon
 def test_a_task_that_is_locked_is_not_overlooked(store: Store) -> None:
     """Another one is claimed meanwhile; where there's no other one, `claim` waits."""
     first, second = store.add(a_task()), store.add(a_task())
-    with store._database.transaction() as execute:
-        execute("SELECT id FROM task WHERE id = ? FOR UPDATE", (first.id,))
-        claimed = store.claim(200.0)
-        assert (claimed and claimed.id) == second.id
-    claimed = store.claim(200.0)
-    assert (claimed and claimed.id) == first.id
+    with ThreadPoolExecutor(1) as thread:
+        with store._database.transaction() as execute:
+            execute("UPDATE task SET position = 7 WHERE id = ?", (first.id,))
+            claimed = store.claim(200.0)
+            assert (claimed and claimed.id) == second.id
+            waiting = thread.submit(store.claim, 200.0)
+            named = f"btlang: process {os.getpid()} on %"
+            query = "SELECT 1 FROM pg_stat_activity WHERE wait_event_type = 'Lock' AND application_name LIKE %s"
+            while not (waiting.done() or connection().execute(query, (named,)).fetchone()):
+                pass
+        claimed = waiting.result()
+    assert (claimed and (claimed.id, claimed.position)) == (first.id, 7)
 
 
 def test_a_server_that_cannot_be_reached(tmp_path: Path) -> None:
