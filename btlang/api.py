@@ -116,9 +116,14 @@ def format_mission(
 def _known(values: Mapping[str, object]) -> dict[str, Known]:
     known = {}
     for name, value in values.items():
-        words = tuple(name.lower().split())
-        known[key_of(words)] = Known(key_of(words), words, ("text",) if isinstance(value, str) else ("number",))
+        key, kind = value_key(name), "text" if isinstance(value, str) else "number"
+        known[key] = Known(key, tuple(name.lower().split()), (kind,))
     return known
+
+
+def value_key(name: str) -> str:
+    """The key on the blackboard of a value that a program gives: `name` as it is written in missions."""
+    return key_of(name.lower().split())
 
 
 def mission_vocabulary(

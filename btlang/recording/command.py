@@ -91,7 +91,7 @@ def _replay(options: argparse.Namespace) -> int:
         view = None if options.lines else live_view(mission, controls, keys=partial(_keys, player, controls))
         start = -math.inf if options.start is None else options.start
         if options.failure:
-            start = next(iter(timeline.failures()), -math.inf)
+            start = next(iter(timeline.failures), -math.inf)
             controls.paused = view is not None and start > -math.inf
         speed = {"real": 1.0, "max": math.inf}.get(options.speed, options.speed)
         sinks.append(lines if view is None else view)

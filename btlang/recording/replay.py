@@ -6,6 +6,7 @@ import math
 import time
 from bisect import bisect_right
 from collections.abc import Sequence
+from functools import cached_property
 
 from btlang.engine.status import FAILURE
 from btlang.recording.reader import RecordedNodes
@@ -35,6 +36,7 @@ class Timeline:
         """How many events there are up to a time, in seconds of the mission."""
         return bisect_right(self._times, t)
 
+    @cached_property
     def failures(self) -> list[float]:
         """When nodes failed, in seconds of the mission."""
         found: dict[float, None] = {}
@@ -89,7 +91,7 @@ class Player:
 
     def next_failure(self) -> None:
         """Goes on to the next time at which a node failed, and pauses there; does nothing if none follows."""
-        following = next((t for t in self._timeline.failures() if t > self._now), None)
+        following = next((t for t in self._timeline.failures if t > self._now), None)
         if following is not None:
             self._controls.pause()
             self.seek(following)

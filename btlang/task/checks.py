@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
+from btlang.task.messages import wrong
 from btlang.task.recurrence import read_moment
 from btlang.task.task import PRIORITIES
 from btlang.text.source import NOWHERE
@@ -38,16 +39,7 @@ def choice(kind: type[Choice], given: str, field: str) -> Choice:
         raise wrong(field, f"'{given}' isn't one of {names}") from None
 
 
-def refused(task: int, reason: str) -> MissionError:
-    """A task can't be changed like that."""
-    return MissionError([diagnostic("BT187", NOWHERE, what=f"Task {task}", reason=reason)])
-
-
-def no_mission(name: str) -> MissionError:
-    """The library has no such mission."""
-    return MissionError([diagnostic("BT187", NOWHERE, what=f"The mission '{name}'", reason="isn't in the library")])
-
-
-def wrong(name: str, reason: str) -> MissionError:
-    """A command isn't complete, or a field of it isn't right."""
-    return MissionError([diagnostic("BT198", NOWHERE, name=name, reason=reason)])
+def refused(what: int | str, reason: str) -> MissionError:
+    """BT187: what a command is about can't be changed like that. `what` begins a sentence; a number is a task's."""
+    named = f"Task {what}" if isinstance(what, int) else what
+    return MissionError([diagnostic("BT187", NOWHERE, what=named, reason=reason)])

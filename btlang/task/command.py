@@ -8,15 +8,12 @@ import sys
 import time
 from collections.abc import Callable
 
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source
 from btlang.task import messages
 from btlang.task.client import Client
-from btlang.task.messages import Answer, Command
+from btlang.task.messages import Answer, Command, wrong
 from btlang.task.task import State
 from btlang.text.output import pass_on, show
-from btlang.text.source import NOWHERE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -102,7 +99,7 @@ def _with_mission(options: argparse.Namespace) -> Command:
     if options.act == "add":
         return messages.Submit(**given, at=options.at, by=options.by)
     if not options.every:
-        raise _wrong(options.act, 'it needs --every RULE, such as --every "every day at 9:00"')
+        raise wrong(options.act, 'it needs --every RULE, such as --every "every day at 9:00"')
     return messages.AddSchedule(
         options.every, **given, zone=options.zone, overlap=options.overlap, missed=options.missed, within=options.within
     )
@@ -111,7 +108,7 @@ def _with_mission(options: argparse.Namespace) -> Command:
 def _value(text: str) -> tuple[str, str | float]:
     name, equals, value = text.partition("=")
     if not equals or not name.strip():
-        raise _wrong("--set", "write NAME=VALUE")
+        raise wrong("--set", "write NAME=VALUE")
     try:
         return name.strip(), float(value) if "." in value else int(value)
     except ValueError:
@@ -121,15 +118,11 @@ def _value(text: str) -> tuple[str, str | float]:
 def _number(options: argparse.Namespace) -> int:
     word = _word(options, "the number of a task")
     if not word.isdecimal():
-        raise _wrong(options.act, f"'{word}' isn't the number of a task")
+        raise wrong(options.act, f"'{word}' isn't the number of a task")
     return int(word)
 
 
 def _word(options: argparse.Namespace, wanted: str, at: int = 0) -> str:
     if len(options.item) <= at:
-        raise _wrong(options.act, f"it needs {wanted}")
+        raise wrong(options.act, f"it needs {wanted}")
     return str(options.item[at])
-
-
-def _wrong(act: str, reason: str) -> MissionError:
-    return MissionError([diagnostic("BT198", NOWHERE, name=act, reason=reason)])

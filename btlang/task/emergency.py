@@ -39,9 +39,10 @@ class EmergencyStop:
         """Whether nothing may move the robot."""
         return bool(self.reason)
 
-    def stop(self, reason: str) -> None:
-        """Stops the robot; nothing begins before `release`."""
-        self.reason = reason or "an emergency stop"  # first, so that nothing begins once the robot has been stopped
+    def stop(self, person: str, reason: str = "") -> None:
+        """Stops the robot for a person; nothing begins before `release`."""
+        # first, so that nothing begins once the robot has been stopped
+        self.reason = f"emergency stop by {person or 'somebody'}" + (f": {reason}" if reason else "")
         self._halt()
         self._changed.set()
 

@@ -8,7 +8,7 @@ import threading
 from collections.abc import Callable
 from functools import partial
 
-from btlang.api import Mission
+from btlang.api import Mission, value_key
 from btlang.diagnostics.errors import MissionError
 from btlang.engine.leaves.leaf import described
 from btlang.engine.status import RUNNING
@@ -23,7 +23,6 @@ from btlang.task.recordings import Recordings
 from btlang.task.store import Store
 from btlang.task.task import ACTIVE, FINAL, Restart, State, Task
 from btlang.task.watch import RunWatch, commands_of, indices_of, reason_of
-from btlang.vocabulary.values import key_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -285,7 +284,7 @@ class Executor:
         else:
             run = self._session.prepare(mission, **options)
             for name, value in task.mission.values.items():
-                run.nodes.blackboard.set(key_of(name.lower().split()), value)
+                run.nodes.blackboard.set(value_key(name), value)
         commands = commands_of(run, mission)
         self._watch = RunWatch(indices_of(run, self._rules.reactions), commands, self.wake)
         run.bus.add(self._watch)

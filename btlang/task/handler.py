@@ -13,11 +13,11 @@ from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.task import messages
 from btlang.task.answers import revision_data, schedule_data, short, task_data, task_line
-from btlang.task.checks import checked_priority, choice, moment, no_mission, refused, wrong
+from btlang.task.checks import checked_priority, choice, moment, refused
 from btlang.task.emergency import EmergencyStop
 from btlang.task.executor import Ending, Executor
 from btlang.task.manager import Manager
-from btlang.task.messages import Answer, Command
+from btlang.task.messages import Answer, Command, wrong
 from btlang.task.moments import shown
 from btlang.task.recurrence import read_rule
 from btlang.task.report import report
@@ -40,13 +40,9 @@ from btlang.text.source import NOWHERE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from enum import StrEnum
-    from typing import Any, TypeVar
+    from typing import Any
 
     from btlang.session import Session
-
-    Choice = TypeVar("Choice", bound=StrEnum)
-
 
 _WEEK = 7 * 86_400.0
 
@@ -141,7 +137,7 @@ class Handler:
 
     def _end(self, state: State, command: messages.Cancel | messages.Kill, person: str) -> Answer:
         task = self._open(command.task)
-        cause = command.reason or f"{person or 'somebody'} asked for it"
+        cause = _cause(command.reason, person)
         ended = self._executor.end(task.id, Ending(state, cause, person))
         if ended is None:
             now = self._now()
@@ -158,7 +154,7 @@ class Handler:
 
     def _interrupt(self, command: messages.Interrupt, person: str) -> Answer:
         task = self._open(command.task)
-        token, cause = os.urandom(8).hex(), command.reason or f"{person or 'somebody'} asked for it"
+        token, cause = os.urandom(8).hex(), _cause(command.reason, person)
         run = self._executor.run
         if self._executor.task is not None and self._executor.task.id == task.id and run is not None:
             run.save()  # raises if it can't be kept
@@ -190,7 +186,7 @@ class Handler:
 
     def _skip(self, command: messages.Skip, person: str) -> Answer:
         task, now = self._open(command.task), self._now()
-        cause = command.reason or f"{person or 'somebody'} asked for it"
+        cause = _cause(command.reason, person)
         skipped = self._store.change(task.id, WAITING, State.SKIPPED, time=now, cause=cause, person=person, ended=now)
         if skipped is None:
             raise refused(task.id, "has begun, so it can't be skipped: cancel it")
@@ -242,9 +238,7 @@ class Handler:
 
     def _unschedule(self, command: messages.RemoveSchedule, person: str) -> Answer:
         if not self._store.delete_schedule(command.schedule):
-            raise MissionError(
-                [diagnostic("BT187", NOWHERE, what=f"Schedule {command.schedule}", reason="isn't known")]
-            )
+            raise refused(f"Schedule {command.schedule}", "isn't known")
         return Answer(True, f"Schedule {command.schedule} is removed.", {})
 
     def _schedules(self, command: messages.Schedules, person: str) -> Answer:
@@ -267,7 +261,7 @@ class Handler:
 
     def _delete(self, command: messages.DeleteMission, person: str) -> Answer:
         if not self._store.delete_mission(command.name, person, self._now()):
-            raise no_mission(command.name)
+            raise _unknown(command.name)
         return Answer(True, f"'{one_line(command.name)}' is no longer in the library.", {})
 
     def _library(self, command: messages.Library, person: str) -> Answer:
@@ -287,11 +281,11 @@ class Handler:
 
     def _step(self, command: messages.Step, person: str) -> Answer:
         if not self._executor.step():
-            raise MissionError([diagnostic("BT187", NOWHERE, what="The robot", reason="has no paused mission to step")])
+            raise refused("The robot", "has no paused mission to step")
         return Answer(True, "One tick.", {})
 
     def _stop(self, command: messages.EmergencyStop, person: str) -> Answer:
-        self._emergency.stop(f"emergency stop by {person or 'somebody'}" + f": {command.reason}" * bool(command.reason))
+        self._emergency.stop(person, command.reason)
         self._executor.wake()
         return Answer(True, "The robot is stopped. Nothing moves it until 'release'.", {})
 
@@ -308,7 +302,7 @@ class Handler:
     def _say(self, command: messages.Say, person: str) -> Answer:
         say = getattr(self._session.robot, "say", None)
         if say is None:
-            raise MissionError([diagnostic("BT187", NOWHERE, what="The robot", reason="has no voice")])
+            raise refused("The robot", "has no voice")
         run = self._executor.run
         call = partial(say, command.text)
         if run is not None:
@@ -359,7 +353,7 @@ class Handler:
                 raise wrong("submit", "it needs 'text' or 'name'")
             found = self._store.mission(name)
             if found is None:
-                raise no_mission(name)
+                raise _unknown(name)
             text, revision = found.text, found.number
         self._admit(text, name, values)
         return MissionText(text, name, revision, dict(values))
@@ -378,3 +372,11 @@ class Handler:
 
     def _data(self, task: Task) -> dict[str, Any]:
         return task_data(task, self._manager.why_waiting(task, self._now(), self._executor.hindrance()))
+
+
+def _cause(reason: str, person: str) -> str:
+    return reason or f"{person or 'somebody'} asked for it"
+
+
+def _unknown(mission: str) -> MissionError:
+    return refused(f"The mission '{mission}'", "isn't in the library")

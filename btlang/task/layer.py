@@ -10,7 +10,7 @@ from functools import lru_cache
 from btlang.api import Mission, parse_tree
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
-from btlang.robots.needs import check_body
+from btlang.robots.needs import check_body, needs_of
 from btlang.session import Session
 from btlang.task.emergency import EmergencyStop
 from btlang.task.executor import Executor
@@ -81,21 +81,14 @@ class TaskLayer:
         self.emergency = EmergencyStop(os.path.join(folder, "emergency_stop"), self.session.emergency_stop)
         self.manager = Manager(self.store)
         self.executor = Executor(
-            self.session, self.store, self.manager, self.emergency, self.rules, self._admitted(_IDLE, ""),
+            self.session, self.store, self.manager, self.emergency, self.rules, self._read(_IDLE, "", {}),
             missions=lambda task: self._read(task.mission.text, task.mission.name, task.mission.values),
             now=self.now, trouble=trouble,
             recordings=Recordings(os.path.join(folder, "recordings")) if records else None,
             speed=speed, idle_rate=20.0 if self._real else _SLOW, sinks=sinks,
         )  # fmt: skip
         self.handler = Handler(
-            self.store,
-            self.manager,
-            self.executor,
-            self.emergency,
-            self.session,
-            self._admitted,
-            self.now,
-            down,
+            self.store, self.manager, self.executor, self.emergency, self.session, self._admitted, self.now, down
         )
 
     def now(self) -> float:
@@ -113,7 +106,7 @@ class TaskLayer:
 
     def stop(self, person: str) -> None:
         """The emergency stop, from any thread; nothing delays it."""
-        self.emergency.stop(f"emergency stop by {person or 'somebody'}")
+        self.emergency.stop(person)
 
     def start(self) -> None:
         """Takes up what was left, and begins to work."""
@@ -152,7 +145,7 @@ class TaskLayer:
         body = getattr(self.session.robot, "body", None)
         if body is not None:
             check_body(body, mission.tree, mission.vocabulary)
-        state = self.executor.robot_state if hasattr(self, "executor") else None
+        state = self.executor.robot_state
         battery = None if state is None else state.battery
         if battery is not None and battery < _EMPTY and _drives(mission):
             raise MissionError([diagnostic("BT186", NOWHERE, reason=f"its battery is at {battery:.0f}%")])
@@ -160,6 +153,4 @@ class TaskLayer:
 
 
 def _drives(mission: Mission) -> bool:
-    from btlang.robots.needs import needs_of
-
     return any({"base", "navigation"} & {*needs_of(node, mission.vocabulary)} for node in mission.tree.walk())

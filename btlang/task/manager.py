@@ -30,11 +30,11 @@ class Manager:
     def __init__(self, store: Store) -> None:
         self._store = store
 
-    def recover(self, now: float, reason: str = CUT_OFF) -> list[Task]:
+    def recover(self, now: float) -> list[Task]:
         """After a start: what becomes of the task that was under way when the robot's process ended."""
         found = []
         for task in self._store.tasks(ACTIVE):
-            after = recovered(task, self._store, now, reason)
+            after = recovered(task, self._store, now, CUT_OFF)
             if after is not None:
                 found.append(after)
         return found
@@ -47,9 +47,9 @@ class Manager:
         replaced: list[Task] = []
         for schedule in self._store.due_schedules(now):
             replaced += self._come(schedule, now)
-        for task in self._store.tasks({State.QUEUED}):
-            if task.deadline is not None and task.deadline < now:
-                self._skip(task, now, f"it couldn't begin by {shown(task.deadline, now)}: {task.reason or 'no time'}")
+        for task in self._store.overdue(now):
+            assert task.deadline is not None
+            self._skip(task, now, f"it couldn't begin by {shown(task.deadline, now)}: {task.reason or 'no time'}")
         return replaced
 
     def claim(self, now: float) -> Task | None:
@@ -63,11 +63,7 @@ class Manager:
 
     def next_time(self, now: float) -> float | None:
         """When to look again, if nobody asks for anything before."""
-        times = [schedule.next for schedule in self._store.schedules()]
-        for task in self._store.tasks({State.QUEUED}):
-            times += [task.earliest, task.deadline]
-        coming = [time for time in times if time is not None and time > now]
-        return min(coming, default=None)
+        return self._store.next_time(now)
 
     def why_waiting(self, task: Task, now: float, hindrance: str = "", first: int | None = None) -> str:
         """Why a task that waits hasn't begun yet. `first` is the task that comes first, if known, 0 for none."""

@@ -262,22 +262,22 @@ class Answer(Record):
 def read_command(data: object) -> Command:
     """A command from its JSON. Raises MissionError (BT198) if it isn't one."""
     if not isinstance(data, dict):
-        raise _wrong("", "it must be an object")
+        raise wrong("", "it must be an object")
     name = data.get("command")
     kind = COMMANDS.get(name) if isinstance(name, str) else None
     if kind is None:
         similar = nearest(str(name), COMMANDS, 1)
-        raise _wrong(str(name), "there's no such command" + (f"; did you mean '{similar[0]}'?" if similar else ""))
+        raise wrong(str(name), "there's no such command" + (f"; did you mean '{similar[0]}'?" if similar else ""))
     given: dict[str, Any] = {}
     for field, value in data.items():
         if field == "command":
             continue
         if field not in kind.fields:
-            raise _wrong(kind.tag, f"it has no field '{field}'")
+            raise wrong(kind.tag, f"it has no field '{field}'")
         given[field] = _checked(kind, field, value)
     missing = [field for field in kind.fields if field not in given and field not in kind.field_defaults]
     if missing:
-        raise _wrong(kind.tag, f"the field '{missing[0]}' is missing")
+        raise wrong(kind.tag, f"the field '{missing[0]}' is missing")
     return kind(**given)
 
 
@@ -331,9 +331,10 @@ def _checked(kind: type[Command], field: str, value: Any) -> Any:
     texts = annotation == "tuple[str, ...]"
     fits = isinstance(value, expected) and not isinstance(value, bool)
     if not fits or (texts and not all(isinstance(each, str) for each in value)) or value != value:
-        raise _wrong(kind.tag, f"'{field}' must be of the type {described['type']}")
+        raise wrong(kind.tag, f"'{field}' must be of the type {described['type']}")
     return tuple(value) if texts else value
 
 
-def _wrong(name: str, reason: str) -> MissionError:
+def wrong(name: str, reason: str) -> MissionError:
+    """BT198: a command, or a part of it, isn't as it must be."""
     return MissionError([diagnostic("BT198", NOWHERE, name=name, reason=reason)])

@@ -9,6 +9,7 @@ import tempfile
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
+from btlang.task.messages import wrong
 from btlang.text.source import NOWHERE
 from btlang.user_dirs import user_dir
 
@@ -21,8 +22,7 @@ _LONGEST = 100
 def checked_name(name: str) -> str:
     """The name. Raises MissionError (BT198) if it can't be part of a file name."""
     if _NAME.fullmatch(name) is None:
-        reason = "it must be up to 32 letters, digits, '-' and '_'"
-        raise MissionError([diagnostic("BT198", NOWHERE, name=name, reason=reason)])
+        raise wrong(name, "it must be up to 32 letters, digits, '-' and '_'")
     return name
 
 

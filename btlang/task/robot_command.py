@@ -11,7 +11,6 @@ from collections.abc import Callable
 from contextlib import suppress
 from functools import partial
 
-from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.run.emergency import emergency_signal
 from btlang.task import messages
@@ -24,7 +23,6 @@ from btlang.task.socket_server import SocketServer
 from btlang.task.store import open_store
 from btlang.text.escaping import one_line
 from btlang.text.output import pass_on, show
-from btlang.text.source import NOWHERE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -63,7 +61,7 @@ def serve(options: argparse.Namespace) -> int:
         show("The robot is stopped. Nothing moves it until: btc robot release")
         return 0
     if act == "say" and not options.item:
-        raise MissionError([diagnostic("BT198", NOWHERE, name=act, reason="it needs a text")])
+        raise messages.wrong(act, "it needs a text")
     commands: dict[str, Callable[[], messages.Command]] = {
         "down": messages.Down, "status": messages.Status, "report": partial(messages.Report, options.since),
         "release": messages.Release, "pause": messages.Pause, "resume": messages.Resume,
@@ -126,7 +124,7 @@ def _unit(options: argparse.Namespace) -> str:
 def _copy(options: argparse.Namespace) -> int:
     """A backup of the store, or one brought back."""
     if len(options.item) != 1:
-        raise MissionError([diagnostic("BT198", NOWHERE, name=options.act, reason="it needs a file")])
+        raise messages.wrong(options.act, "it needs a file")
     [path] = options.item
     folder = data_folder(options.name or USUAL_NAME)
     os.makedirs(folder, mode=0o700, exist_ok=True)

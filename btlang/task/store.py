@@ -29,6 +29,12 @@ _NEXT = (
     f" AND token = '') AND (earliest IS NULL OR earliest <= ?)"
     f" AND (deadline IS NULL OR deadline >= ?) ORDER BY {_IN_TURN} LIMIT 1"
 )
+_QUEUED = f"{_NOT_OVER} AND state = '{State.QUEUED}'"
+_TIMES = (
+    "SELECT min(time) FROM (SELECT next AS time FROM schedule WHERE next > ?"
+    f" UNION ALL SELECT earliest FROM task WHERE {_QUEUED} AND earliest > ?"
+    f" UNION ALL SELECT deadline FROM task WHERE {_QUEUED} AND deadline > ?) AS times"
+)
 
 
 class Store:
@@ -148,6 +154,17 @@ class Store:
     def peek(self, now: float) -> Task | None:
         """The task that `claim` would give."""
         return self._one(Task, _NEXT, now, now)
+
+    def overdue(self, now: float) -> list[Task]:
+        """Those that are queued and should have begun by a time that has passed, in the order of their turn."""
+        query = f"SELECT {_TASK} FROM task WHERE {_QUEUED} AND deadline < ? ORDER BY {_IN_TURN}"
+        return self._all(Task, query, now)
+
+    def next_time(self, now: float) -> float | None:
+        """The first time after this one at which a task may begin, or no longer, or a schedule is due; None if none."""
+        with self._database.transaction(Mode.READ) as execute:
+            [[time]] = execute(_TIMES, (now, now, now))
+        return None if time is None else float(time)
 
     def changes(self, task: int | None = None, after: int = 0, limit: int | None = None) -> list[tuple[int, Change]]:
         """The changes of all tasks or of one, the oldest first, each with its number: those with a higher one than

@@ -71,7 +71,8 @@ def indices_of(run: Run, paths: Collection[str]) -> list[int]:
 def commands_of(run: Run, mission: Mission) -> list[int]:
     """The numbers of the nodes that do something: not those that only ask, or only lead others."""
     found = []
-    for index, (_, node) in enumerate(run.nodes.nodes):
+    for index in range(run.nodes.size):
+        node = run.nodes.node(index)
         kind = CATALOGUE.get(node.id)
         if mission.is_action(node) if kind is None else kind.kind == "Action":
             found.append(index)

@@ -137,7 +137,7 @@ def test_pace_pause_step_and_stop(tmp_path: Path) -> None:
 
 def test_it_begins_where_one_wants(tmp_path: Path) -> None:
     timeline = timeline_of("wait 5 s then try to grasp the book then wait 5 s", tmp_path)
-    assert timeline.failures() == [pytest.approx(5.0, abs=0.1)]
+    assert timeline.failures == [pytest.approx(5.0, abs=0.1)]
     seen = list[Event]()
     began = time.monotonic()
     Player(timeline, [seen.append], Controls()).play(20.0, start=9.0)

@@ -163,6 +163,17 @@ def test_the_next_task_is_claimed(store: Store) -> None:
     assert (third and third.id) == later.id
 
 
+def test_what_time_brings(store: Store) -> None:
+    assert (store.overdue(9.0), store.next_time(9.0)) == ([], None)
+    late = [store.add(a_task(deadline=deadline, priority=priority)) for deadline, priority in ((8.0, 0), (8.5, 1))]
+    store.add(a_task(deadline=7.0, state=State.BLOCKED))
+    store.add(a_task(earliest=20.0, deadline=30.0))
+    store.add_schedule(PLAN.replace(next=25.0))
+    assert store.overdue(8.5) == late[:1]
+    assert store.overdue(9.0) == late[::-1]
+    assert [store.next_time(now) for now in (7.0, 8.0, 9.0, 20.0, 25.0, 30.0)] == [8.0, 8.5, 20.0, 25.0, 30.0, None]
+
+
 def test_changes_are_read_on(store: Store) -> None:
     for _ in range(3):
         store.change(store.add(a_task()).id, [State.QUEUED], State.SKIPPED, time=5.0)

@@ -123,6 +123,16 @@ class Work(RuleBasedStateMachine):
             self.note(expected, now, "its turn", "")
         assert self.store.claim(now) == expected
 
+    @rule(now=TIMES)
+    def wait(self, now: float) -> None:
+        queued = [task for task in sorted(self.tasks.values(), key=turn) if task.state is State.QUEUED]
+        assert self.store.overdue(now) == [task for task in queued if task.deadline is not None and task.deadline < now]
+        times = [plan.next for plan in self.schedules.values()]
+        times += [time for task in queued for time in (task.earliest, task.deadline)]
+        assert self.store.next_time(now) == min(
+            (time for time in times if time is not None and time > now), default=None
+        )
+
     @rule(
         states=st.none() | STATES, label=st.just("") | LABELS, schedule=st.integers(0, 2), newest=st.booleans(),
         limit=st.none() | st.integers(0, 3),
