@@ -93,7 +93,8 @@ def _with_mission(options: argparse.Namespace) -> Command:
         if os.path.exists(name) or name.endswith(".txt"):
             text, name = read_source(name).text, os.path.basename(name)
     given: dict[str, Any] = {
-        "text": text, "name": name, "values": dict(map(_value, options.set)), "priority": options.priority or 0,
+        "text": text, "name": name, "values": dict(map(_value, options.set)),
+        "keywords": tuple(map(_keywords, options.keywords)), "priority": options.priority or 0,
         "labels": tuple(options.label), "restart": options.restart,
     }  # fmt: skip
     if options.act == "add":
@@ -113,6 +114,11 @@ def _value(text: str) -> tuple[str, str | float]:
         return name.strip(), float(value) if "." in value else int(value)
     except ValueError:
         return name.strip(), value
+
+
+def _keywords(name: str) -> str:
+    """A keyword file as the robot's process finds it, too; the name of a pack stays."""
+    return os.path.abspath(name) if os.path.exists(name) else name
 
 
 def _number(options: argparse.Namespace) -> int:

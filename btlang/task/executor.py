@@ -12,16 +12,16 @@ from btlang.api import Mission, value_key
 from btlang.diagnostics.errors import MissionError
 from btlang.engine.leaves.leaf import described
 from btlang.engine.status import RUNNING
-from btlang.record import Record
 from btlang.run.runner import SUSPENDED
 from btlang.session import Run, Session
 from btlang.task.database import StoreError
 from btlang.task.emergency import EmergencyStop
 from btlang.task.house_rules import HouseRules
 from btlang.task.manager import ENDED, Manager, recovered
+from btlang.task.outbox import Outbox
 from btlang.task.recordings import Recordings
 from btlang.task.store import Store
-from btlang.task.task import ACTIVE, FINAL, Restart, State, Task
+from btlang.task.task import ACTIVE, FINAL, Ending, MissionText, Restart, State, Task
 from btlang.task.watch import RunWatch, commands_of, indices_of, reason_of
 
 TYPE_CHECKING = False
@@ -34,26 +34,18 @@ if TYPE_CHECKING:
 
 _RETRY = 1.0  # seconds of real time after which a store that could not be written to is tried again
 _LOOK = 0.05  # seconds of real time for which an executor waits that can't do anything
+_END = 8.0  # seconds of real time that a mission gets to halt and to bring the robot to rest
 _ANSWER = 3.0  # seconds of real time that a mission gets to end when it is asked to, before who asked is answered
 _BLOCKED = "house rule"
 """The setting of the store that says why all tasks wait."""
 
 
-class Ending(Record):
-    """What was asked of the run under way: the state that its task gets then, why, by whom, and the token."""
-
-    state: State
-    cause: str
-    person: str
-    token: str = ""
-
-
 class Executor:
-    """Runs tasks in a thread of its own between `start` and `close`; all methods may be called from any thread.
+    """Runs tasks in a thread of its own between `start` and `halt`; all methods may be called from any thread.
 
-    `missions` reads the mission of a task (MissionError if it can't be). `now` gives the time since 1970, `trouble`
+    `missions` reads a mission (MissionError if it can't be). `now` gives the time since 1970, `trouble`
     gets what went wrong, for people. `speed` and `rate` are those of `Session.prepare`, `idle_rate` is the rate between
-    tasks. `sinks` makes sinks for the run of a task.
+    tasks. `sinks` makes sinks for the run of a task that is about to begin.
     """
 
     def __init__(
@@ -65,14 +57,14 @@ class Executor:
         rules: HouseRules,
         idle: Mission,
         *,
-        missions: Callable[[Task], Mission],
+        missions: Callable[[MissionText], Mission],
         now: Callable[[], float],
         trouble: Callable[[str], object],
         recordings: Recordings | None = None,
         speed: float | str = "real",
         rate: float = 20.0,
         idle_rate: float = 20.0,
-        sinks: Callable[[Task], list[Sink]] = lambda task: [],
+        sinks: Callable[[Task, Run], list[Sink]] = lambda task, run: [],
     ) -> None:
         self._session, self._store, self._manager, self._emergency = session, store, manager, emergency
         self._rules, self._idle_mission = rules, rules.idle or idle
@@ -84,27 +76,45 @@ class Executor:
         self._run: Run | None = None
         self._watch: RunWatch | None = None
         self._ending: Ending | None = None
-        self._paused = self._closing = False
-        self._unwritten: list[Callable[[], object]] = []  # changes of states that the store hasn't taken yet
+        self._paused = self._closing = self._hangs = False
+        self._outbox = Outbox(trouble)
         self._next: float | None = None  # when the manager wants to look again
         self._new = True  # somebody has asked for something since the last look
         self._latest = ""  # the run as it was when a command ended or a house rule began to act
-        self._thread = threading.Thread(target=self._work, name="btlang executor", daemon=True)
+        self._thread: threading.Thread | None = None
 
     def start(self) -> None:
-        """Takes up what was left when the robot's process ended, then does what is due."""
+        """Takes up what was left when the robot's process ended, then does what is due, until `halt`."""
         self._manager.recover(self._now())
+        self._closing = self._hangs = False
+        self._thread = threading.Thread(target=self._work, name="btlang executor", daemon=True)
         self._thread.start()
 
-    def close(self) -> None:
-        """Ends the run under way as its task says for a restart, and brings the robot to rest. May be called twice."""
+    def halt(self) -> bool:
+        """Ends the run under way as its task says for a restart, and brings the robot to rest. May be called twice.
+
+        False if a command hangs: then the robot was stopped, and the executor goes on once that command ends.
+        """
         self._closing = True
-        run = self._run
+        run, thread = self._run, self._thread
         if run is not None:
             run.suspend()
         self.wake()
-        if self._thread.is_alive():
-            self._thread.join()
+        if thread is None:
+            return True
+        thread.join(0.0 if self._hangs else _END)
+        if not thread.is_alive():
+            return True
+        self._hangs, self._closing = True, False  # who asks again need not wait again
+        if run is not None:
+            run.emergency_stop()
+        self._trouble("The mission doesn't end because a command hangs; the robot was stopped.")
+        return False
+
+    @property
+    def is_at_work(self) -> bool:
+        """Whether it does what is due: between `start` and `halt`."""
+        return self._thread is not None and self._thread.is_alive()
 
     def wake(self) -> None:
         """Something has been asked for: looks at once what is to be done."""
@@ -136,6 +146,9 @@ class Executor:
 
     def hindrance(self) -> str:
         """Why no task may begin now, "" if one may."""
+        return self._hindrance() or ("" if self.is_at_work else "the robot isn't at work")
+
+    def _hindrance(self) -> str:
         if self._emergency.is_latched:
             return f"the robot is stopped: {self._emergency.reason}"
         if self._paused:
@@ -145,7 +158,7 @@ class Executor:
             return f"a house rule failed: {blocked}"
         if self._task is None and self._acts():
             return "a house rule acts"
-        return "the store can't be written to" if self._unwritten else ""
+        return "the store can't be written to" if self._outbox else ""
 
     def pause(self) -> None:
         """The robot comes to rest; the mission under way waits, and none begins."""
@@ -204,13 +217,14 @@ class Executor:
             except StoreError as error:
                 self._trouble(str(error))
                 self._rest(_RETRY)
+            except Exception as problem:  # nothing may end the executor but `halt`
+                self._trouble(f"An error inside btlang: {described(problem)}")
+                self._rest(_RETRY)
 
     def _turn(self) -> None:
-        while self._unwritten:
-            self._unwritten[0]()
-            self._unwritten.pop(0)
+        self._outbox.flush()
         self._new = False
-        if self.hindrance():
+        if self._hindrance():
             self._rest(_LOOK)
             return
         now = self._now()
@@ -219,7 +233,7 @@ class Executor:
         task = self._manager.claim(now)
         if task is None:
             self._idle()
-        elif (hindrance := self.hindrance()) != "":  # it came meanwhile
+        elif (hindrance := self._hindrance()) != "":  # it came meanwhile
             self._change(task, State.QUEUED, hindrance)
         else:
             self._do(task)
@@ -255,30 +269,26 @@ class Executor:
         try:
             try:
                 run = self._prepared(task)
+                self._change(task, State.UNDERWAY, "it goes on" if task.saved else "it begins", started=self._now())
+                self._latest = task.saved
+                outcome = self._execute(run)
             except MissionError as error:
                 self._change(task, State.ERROR, error.diagnostics[0].message)
-                return
-            self._change(task, State.UNDERWAY, "it goes on" if task.saved else "it begins", started=self._now())
-            self._latest = task.saved
-            try:
-                outcome = self._execute(run)
-            except Exception as problem:  # a word or a sink of the user's is broken
+            except (Exception, SystemExit) as problem:  # a word or a sink of the user's is broken
                 self._change(task, State.ERROR, described(problem))
-                return
-            self._end(task, run, outcome)
+            else:
+                self._end(task, run, outcome)
         finally:
             with self._changed:
                 self._task = None
                 self._changed.notify_all()
 
     def _prepared(self, task: Task) -> Run:
-        mission = self._rules.around(self._missions(task))
-        sinks = self._sinks(task)
+        mission = self._rules.around(self._missions(task.mission))
         recorder = self._recordings.recorder(mission, task.id) if self._recordings is not None else None
         if recorder is not None:
-            sinks.append(recorder)
-            self._store.amend(task.id, recording=os.path.abspath(recorder.path))
-        options: dict[str, Any] = {"speed": self._speed, "rate": self._rate, "sinks": sinks}
+            self._outbox.write(partial(self._store.amend, task.id, recording=os.path.abspath(recorder.path)))
+        options: dict[str, Any] = {"speed": self._speed, "rate": self._rate, "sinks": [recorder] if recorder else []}
         if task.saved:
             run = self._session.restore(mission, json.loads(task.saved), **options)
         else:
@@ -288,6 +298,8 @@ class Executor:
         commands = commands_of(run, mission)
         self._watch = RunWatch(indices_of(run, self._rules.reactions), commands, self.wake)
         run.bus.add(self._watch)
+        for sink in self._sinks(task, run):
+            run.bus.add(sink)
         run.after_ticks(partial(self._after_tick, task, run, self._watch))
         return run
 
@@ -301,8 +313,8 @@ class Executor:
                 return
             if began or ended:
                 self._latest = json.dumps(run.save())
-            if ended and task.restart is Restart.RESUME:
-                self._store.amend(task.id, saved=self._latest)
+                if ended and task.restart is Restart.RESUME:
+                    self._store.amend(task.id, saved=self._latest)
             now = self._now()
             if not self._new and (self._next is None or now < self._next):
                 return
@@ -338,32 +350,37 @@ class Executor:
 
     def _end(self, task: Task, run: Run, outcome: Outcome) -> None:
         """The state of a task whose run is over."""
-        ending = self._ending
+        ending, standstill = self._ending, outcome.standstill
+        warning = f"WARNING: {standstill}" if standstill.alarming else ""
+
+        def change(state: State, cause: str, *person: str, **fields: Any) -> None:
+            self._change(task, state, "; ".join(filter(None, (cause, warning))), *person, **fields)
+
         if outcome.failure is not None and self._rules.is_own(outcome.failure.path):
             reason = outcome.failure.reason
-            self._change(task, State.BLOCKED, f"a house rule failed: {reason}", saved=self._latest)
+            change(State.BLOCKED, f"a house rule failed: {reason}", saved=self._latest)
             self._ask_for_help(reason)
         elif outcome.failure is not None:
-            self._change(task, State.FAILED, reason_of(outcome))
+            change(State.FAILED, reason_of(outcome))
         elif not outcome.stopped:
-            self._change(task, State.COMPLETED, "" if outcome.seconds else "there was nothing to do")
+            change(State.COMPLETED, "" if outcome.seconds else "there was nothing to do")
         elif self._emergency.is_latched:
-            self._change(task, State.KILLED, self._emergency.reason)
+            change(State.KILLED, self._emergency.reason)
         elif ending is not None and ending.state is State.DELAYED:
             saved = json.dumps(run.save())
-            self._change(task, State.DELAYED, ending.cause, ending.person, saved=saved, token=ending.token)
+            change(State.DELAYED, ending.cause, ending.person, saved=saved, token=ending.token)
         elif ending is not None:
-            self._change(task, ending.state, ending.cause, ending.person)
+            change(ending.state, ending.cause, ending.person)
         else:
             saved = json.dumps(run.save()) if outcome.stopped == SUSPENDED and task.restart is Restart.RESUME else ""
             if saved:
-                self._write(partial(self._store.amend, task.id, saved=saved))
+                self._outbox.write(partial(self._store.amend, task.id, saved=saved))
             reason = "the robot was shut down"
-            self._write(partial(recovered, task.replace(saved=saved), self._store, self._now(), reason))
+            self._outbox.write(partial(recovered, task.replace(saved=saved), self._store, self._now(), reason))
 
     def _ask_for_help(self, reason: str) -> None:
         """A house rule failed: the robot stands still, and people are called."""
-        self._write(partial(self._store.set_setting, _BLOCKED, reason))
+        self._outbox.write(partial(self._store.set_setting, _BLOCKED, reason))
         self._trouble(f"The robot needs help: a house rule failed: {reason}. It does nothing until 'resume'.")
         say = getattr(self._session.robot, "say", None)
         if say is not None:
@@ -373,14 +390,6 @@ class Executor:
         now = self._now()
         if state in FINAL:
             fields |= {"ended": now, "saved": ""}
-        self._write(partial(self._store.change, task.id, ACTIVE, state, time=now, cause=cause, person=person, **fields))
-
-    def _write(self, write: Callable[[], object]) -> None:
-        """Now, or as soon as the store can be written to: what has happened is not lost."""
-        if not self._unwritten:
-            try:
-                write()
-                return
-            except StoreError as error:
-                self._trouble(str(error))
-        self._unwritten.append(write)
+        self._outbox.write(
+            partial(self._store.change, task.id, ACTIVE, state, time=now, cause=cause, person=person, **fields)
+        )

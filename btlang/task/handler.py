@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import json
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable
 from contextlib import suppress
 from functools import partial
 
@@ -15,7 +15,7 @@ from btlang.task import messages
 from btlang.task.answers import revision_data, schedule_data, short, task_data, task_line
 from btlang.task.checks import checked_priority, choice, moment, refused
 from btlang.task.emergency import EmergencyStop
-from btlang.task.executor import Ending, Executor
+from btlang.task.executor import Executor
 from btlang.task.manager import Manager
 from btlang.task.messages import Answer, Command, wrong
 from btlang.task.moments import shown
@@ -27,6 +27,7 @@ from btlang.task.task import (
     FINAL,
     WAITING,
     Act,
+    Ending,
     Missed,
     MissionText,
     Overlap,
@@ -48,7 +49,7 @@ _WEEK = 7 * 86_400.0
 
 
 class Handler:
-    """`handle` is for any thread. `admit` compiles a text for this robot and refuses what it can't do, with all
+    """`handle` is for any thread. `admit` reads a mission for this robot and refuses what it can't do, with all
     reasons (MissionError); `now` gives the time since 1970, `down` ends the process.
     """
 
@@ -59,7 +60,7 @@ class Handler:
         executor: Executor,
         emergency: EmergencyStop,
         session: Session,
-        admit: Callable[[str, str, Mapping[str, Any]], Mission],
+        admit: Callable[[MissionText], Mission],
         now: Callable[[], float],
         down: Callable[[], object],
     ) -> None:
@@ -95,7 +96,7 @@ class Handler:
 
     def _submit(self, command: messages.Submit, person: str) -> Answer:
         now = self._now()
-        mission = self._text(command.text, command.name, command.values)
+        mission = self._mission(command)
         task = self._store.add(
             Task(
                 0, mission, person, now, priority=checked_priority(command.priority), labels=command.labels,
@@ -216,14 +217,14 @@ class Handler:
         fresh = Task(
             0, task.mission, person, self._now(), priority=task.priority, labels=task.labels, restart=task.restart
         )
-        self._admit(task.mission.text, task.mission.name, task.mission.values)
+        self._admit(task.mission)
         made = self._store.add(fresh, f"like task {task.id}")
         self._executor.wake()
         return Answer(True, f"Task {made.id} is queued.", {"task": task_data(made)})
 
     def _schedule(self, command: messages.AddSchedule, person: str) -> Answer:
         recurrence, now = read_rule(command.rule, command.zone), self._now()
-        mission = self._text(command.text, command.name, command.values)
+        mission = self._mission(command)
         first = recurrence.next(now)
         made = self._store.add_schedule(
             Schedule(
@@ -254,7 +255,7 @@ class Handler:
     def _put(self, command: messages.PutMission, person: str) -> Answer:
         if not command.name.strip() or "/" in command.name:
             raise wrong("put", "'name' must be a name without '/'")
-        self._admit(command.text, command.name, {})
+        self._admit(MissionText(command.text, command.name))
         kept = self._store.put_mission(command.name, command.text, person, self._now())
         text = f"'{one_line(kept.name)}' is in the library, revision {kept.number}."
         return Answer(True, text, {"mission": revision_data(kept)})
@@ -345,18 +346,19 @@ class Handler:
         data = [{field: getattr(each, field) for field in each.fields} for each in found]
         return Answer(True, "\n".join(lines) or "Nobody has asked for anything.", {"acts": data})
 
-    def _text(self, text: str, name: str, values: Mapping[str, Any]) -> MissionText:
+    def _mission(self, command: messages.Submit | messages.AddSchedule) -> MissionText:
         """The mission of a command, which this robot can do."""
-        revision = 0
+        text, name, revision = command.text, command.name, 0
         if not text:
             if not name:
-                raise wrong("submit", "it needs 'text' or 'name'")
+                raise wrong(command.tag, "it needs 'text' or 'name'")
             found = self._store.mission(name)
             if found is None:
                 raise _unknown(name)
             text, revision = found.text, found.number
-        self._admit(text, name, values)
-        return MissionText(text, name, revision, dict(values))
+        mission = MissionText(text, name, revision, dict(command.values), command.keywords)
+        self._admit(mission)
+        return mission
 
     def _known(self, number: int) -> Task:
         task = self._store.task(number)

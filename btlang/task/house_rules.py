@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
-from btlang.api import Mission, parse_file
+from btlang.api import Mission
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
+from btlang.task.missions import MissionReader
+from btlang.task.task import MissionText
 from btlang.text.source import NOWHERE
 from btlang.tree.catalogue import CATALOGUE, SUBTREE
 from btlang.tree.node import Node, Tree
@@ -63,9 +63,9 @@ def no_house_rules() -> HouseRules:
     return HouseRules(None)
 
 
-def read_house_rules(path: str, keywords: Sequence[str] = (), world: str | None = None) -> HouseRules:
+def read_house_rules(path: str, reader: MissionReader) -> HouseRules:
     """Raises MissionError: as a mission in a file does, and if there is anything but rules in it (BT188)."""
-    mission = parse_file(path, keywords=keywords, world=world)
+    mission = reader.read(MissionText("", file=path))
     node = mission.tree.root
     while _is_rule(node):
         node = node.children[2]

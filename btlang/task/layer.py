@@ -4,24 +4,24 @@ from __future__ import annotations
 
 import os
 import time
-from collections.abc import Callable, Mapping, Sequence
-from functools import lru_cache
+from collections.abc import Callable
 
-from btlang.api import Mission, parse_tree
+from btlang.api import Mission
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.robots.needs import check_body, needs_of
-from btlang.session import Session
+from btlang.session import Run, Session
 from btlang.task.emergency import EmergencyStop
 from btlang.task.executor import Executor
 from btlang.task.handler import Handler
 from btlang.task.house_rules import HouseRules, no_house_rules, read_house_rules
 from btlang.task.manager import Manager
 from btlang.task.messages import Answer, Command, read_command
+from btlang.task.missions import MissionReader
 from btlang.task.recordings import Recordings
 from btlang.task.store import open_store
-from btlang.task.task import Task
-from btlang.text.source import NOWHERE, Source
+from btlang.task.task import MissionText, Task
+from btlang.text.source import NOWHERE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -31,60 +31,57 @@ if TYPE_CHECKING:
     from btlang.robots.registry import Connect
     from btlang.run.events import Sink
 
-_IDLE = "repeat forever: wait 24 h"
-_REMEMBERED = 64  # missions that were compiled last
+_IDLE = MissionText("repeat forever: wait 24 h")
 _SLOW = 1.0  # ticks per second between tasks where no time is lost by waiting
 _EMPTY = 1.0  # percent of the battery below which no mission begins that needs the wheels
 
 
 class TaskLayer:
-    """A robot for many tasks of many people: `handle` takes their commands between `start` and `close`.
+    """A robot for many tasks of many people: `handle` takes their commands until `close`; `start` begins to do them.
 
-    `robot`, `over` and `world` are those of btlang.Session. `folder` keeps what belongs to the robot; `store` is the
-    place of its store (see btlang.task.store), by default a file there. `rules` is the path of its house rules,
-    `keywords` are its keyword files. `speed` is that of all runs: if it isn't "real", time is that of the robot, and
-    begins at the moment `begins` (seconds since 1970). `trouble` gets what goes wrong, for people. `sinks` makes sinks
-    for the run of each task, `down` is what the command of that name calls. Raises MissionError.
+    `robot` and `over` are those of btlang.Session. `reader` has the robot's words and its world, by default those that
+    ship. `folder` keeps what belongs to the robot; `store` is the place of its store (btlang.task.store), by default a
+    file there. `rules` is the path of its house rules. `speed` is that of all runs: if it isn't "real", time is that
+    of the robot, and begins at the moment `begins` (seconds since 1970). `recordings` is the folder for the recordings
+    of tasks, None for none. `trouble` gets what goes wrong, for people. `sinks` makes sinks for the run of each task,
+    `down` is what the command of that name calls. Raises MissionError.
     """
 
     def __init__(
         self,
         robot: str | Connect = "simulated",
+        reader: MissionReader | None = None,
         *,
         folder: str,
         over: str | None = None,
-        world: str | None = None,
         store: str = "",
         rules: str | None = None,
-        keywords: Sequence[str] = (),
         speed: float | str = "real",
         begins: float | None = None,
         durable: bool = False,
-        records: bool = True,
+        recordings: str | None = None,
         trouble: Callable[[str], object] = lambda text: None,
         down: Callable[[], object] = lambda: None,
-        sinks: Callable[[Task], list[Sink]] = lambda task: [],
+        sinks: Callable[[Task, Run], list[Sink]] = lambda task, run: [],
     ) -> None:
         os.makedirs(folder, mode=0o700, exist_ok=True)
-        self._keywords, self._world = tuple(keywords), world
-        self.rules: HouseRules = no_house_rules() if rules is None else read_house_rules(rules, keywords, world)
+        self.reader = reader or MissionReader()
+        self.rules: HouseRules = no_house_rules() if rules is None else read_house_rules(rules, self.reader)
         self.store = open_store(store or os.path.join(folder, "tasks.db"), durable)
         try:
             self.store.own()
-            self.session = Session(robot, world=world, over=over)
+            self.session = Session(robot, world=self.reader.world, over=over)
         except BaseException:
             self.store.close()
             raise
         self._begins = time.time() if begins is None else begins
         self._real = speed == "real"
-        self.compiled = lru_cache(_REMEMBERED)(self._compiled)
         self.emergency = EmergencyStop(os.path.join(folder, "emergency_stop"), self.session.emergency_stop)
         self.manager = Manager(self.store)
         self.executor = Executor(
-            self.session, self.store, self.manager, self.emergency, self.rules, self._read(_IDLE, "", {}),
-            missions=lambda task: self._read(task.mission.text, task.mission.name, task.mission.values),
-            now=self.now, trouble=trouble,
-            recordings=Recordings(os.path.join(folder, "recordings")) if records else None,
+            self.session, self.store, self.manager, self.emergency, self.rules, self.reader.read(_IDLE),
+            missions=self.reader.read, now=self.now, trouble=trouble,
+            recordings=None if recordings is None else Recordings(recordings),
             speed=speed, idle_rate=20.0 if self._real else _SLOW, sinks=sinks,
         )  # fmt: skip
         self.handler = Handler(
@@ -109,15 +106,26 @@ class TaskLayer:
         self.emergency.stop(person)
 
     def start(self) -> None:
-        """Takes up what was left, and begins to work."""
+        """Takes up what was left, and begins to work. May be called again after `halt`."""
         self.executor.start()
 
-    def close(self) -> None:
-        """Ends the mission under way, as its task says for a restart, and lets go of the robot. May be called twice."""
-        self.executor.close()
-        self.session.close()
+    def halt(self) -> bool:
+        """Ends the mission under way, as its task says for a restart; commands are still taken.
+
+        False if a command of the mission hangs: the robot was stopped, but the mission isn't over.
+        """
+        return self.executor.halt()
+
+    def close(self) -> bool:
+        """As `halt`, then lets go of the robot and of the store. May be called twice."""
+        ended = self.executor.halt()
+        if ended:
+            self.session.close()
+        else:
+            self.session.connection.close()  # a session would wait for its run
         self.emergency.close()
         self.store.close()
+        return ended
 
     def __enter__(self) -> TaskLayer:
         self.start()
@@ -128,19 +136,10 @@ class TaskLayer:
     ) -> None:
         self.close()
 
-    def _read(self, text: str, name: str, values: Mapping[str, Any]) -> Mission:
-        """Fast for a mission that was read a moment ago."""
-        return self.compiled(text, name, tuple((each, isinstance(value, str)) for each, value in values.items()))
-
-    def _compiled(self, text: str, name: str, values: tuple[tuple[str, bool], ...]) -> Mission:
-        given = {each: "" if is_text else 0 for each, is_text in values}
-        return parse_tree(
-            Source(text, name or "mission", roots=()), keywords=self._keywords, world=self._world, values=given
-        )
-
-    def _admitted(self, text: str, name: str, values: Mapping[str, Any] = {}) -> Mission:
-        """The mission of a text, which this robot can do. Raises MissionError with all reasons why it can't."""
-        mission = self._read(text, name, values)
+    def _admitted(self, text: MissionText) -> Mission:
+        """A mission that this robot can do. Raises MissionError with all reasons why it can't."""
+        self.reader.check(text.keywords)
+        mission = self.reader.read(text)
         mission.check()
         body = getattr(self.session.robot, "body", None)
         if body is not None:

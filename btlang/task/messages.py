@@ -28,14 +28,16 @@ class Command(Record):
 
 
 class Submit(Command):
-    """A mission to do: a text, or the name of one in the library. `at` and `by` are when it may begin at the earliest
-    and at the latest: seconds since 1970, or English such as "14:30" or "in 10 minutes".
+    """A mission to do: a text, or the name of one in the library. `keywords` are keyword files that it needs; the robot
+    must allow them. `at` and `by` are when it may begin at the earliest and at the latest: seconds since 1970, or
+    English such as "14:30" or "in 10 minutes".
     """
 
     tag = "submit"
     text: str = ""
     name: str = ""
     values: Mapping[str, Any] = {}
+    keywords: tuple[str, ...] = ()
     priority: int = 0
     labels: tuple[str, ...] = ()
     at: str | float | None = None
@@ -126,6 +128,7 @@ class AddSchedule(Command):
     name: str = ""
     zone: str = ""
     values: Mapping[str, Any] = {}
+    keywords: tuple[str, ...] = ()
     priority: int = 0
     labels: tuple[str, ...] = ()
     restart: str = Restart.GIVE_UP

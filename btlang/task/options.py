@@ -22,17 +22,31 @@ def add_robot_options(parser: argparse.ArgumentParser) -> None:
     _add_name(parser)
     parser.add_argument("--robot", default="simulated", metavar="ROBOT", help="robot file (default: simulated)")
     parser.add_argument("--world", metavar="FILE", help="world file")
-    parser.add_argument("--rules", metavar="FILE", help="house rules, which hold during and between missions")
     parser.add_argument("--keywords", action="append", default=[], metavar="FILE", help="keyword file")
-    parser.add_argument("--store", default="", metavar="PLACE", help="where tasks are kept: a file or postgresql://...")
-    parser.add_argument("--durable", action="store_true", help="what was acknowledged survives a loss of power, too")
-    parser.add_argument("--no-recordings", action="store_true", help="don't record what tasks do")
+    add_layer_options(parser)
     parser.add_argument("--speed", type=speed, default="real", metavar="SPEED", help="real, max or a factor")
     parser.add_argument("--reason", default="", metavar="TEXT", help="why, for others to read")
     parser.add_argument("--since", metavar="TIME", help="where a report begins (default: seven days ago)")
     _add_json(parser)
     parser.add_argument("act", choices=ROBOT_ACTS, metavar="ACT", help=", ".join(ROBOT_ACTS))
     parser.add_argument("item", nargs="*", metavar="FILE", help="the file to back up to or to restore, or what to say")
+
+
+def add_layer_options(parser: argparse.ArgumentParser) -> None:
+    """Those of any verb that brings a robot up."""
+    parser.add_argument("--rules", metavar="FILE", help="house rules, which hold during and between missions")
+    parser.add_argument("--store", default="", metavar="PLACE", help="where tasks are kept: a file or postgresql://...")
+    parser.add_argument("--durable", action="store_true", help="what was acknowledged survives a loss of power, too")
+    parser.add_argument("--record", metavar="FOLDER", help="where missions are recorded (default: beside the store)")
+    parser.add_argument("--no-recordings", action="store_true", help="don't record missions")
+    parser.add_argument("--include-root", metavar="DIR", help="let missions include files below this folder")
+    parser.add_argument(
+        "--allow-keywords",
+        action="append",
+        default=[],
+        metavar="NAME|DIR",
+        help="let missions bring this pack, or the keyword files below DIR; these run Python (default: none)",
+    )
 
 
 def add_task_options(parser: argparse.ArgumentParser) -> None:
@@ -47,6 +61,7 @@ def add_task_options(parser: argparse.ArgumentParser) -> None:
         "--restart", default="give up", metavar="WHAT", help="after a crash: 'give up' (default), 'again' or 'resume'"
     )
     parser.add_argument("--set", action="append", default=[], metavar="NAME=VALUE", help="a value of the mission")
+    parser.add_argument("--keywords", action="append", default=[], metavar="FILE", help="keyword file of the mission")
     parser.add_argument("--every", default="", metavar="RULE", help='when a schedule is due: "every day at 9:00"')
     parser.add_argument("--zone", default="", metavar="ZONE", help="its time zone, such as Europe/Berlin")
     parser.add_argument("--overlap", default="skip", metavar="WHAT", help="skip (default), queue or replace")

@@ -18,6 +18,7 @@ from btlang.task.backup import restore_backup
 from btlang.task.client import Client, emergency_stop
 from btlang.task.command import tell
 from btlang.task.layer import TaskLayer
+from btlang.task.missions import MissionReader
 from btlang.task.paths import USUAL_NAME, data_folder
 from btlang.task.socket_server import SocketServer
 from btlang.task.store import open_store
@@ -27,6 +28,7 @@ from btlang.text.output import pass_on, show
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     import argparse
+    from typing import Any
 
 _UNIT = """[Unit]
 Description=The robot '{name}' (btlang)
@@ -71,17 +73,32 @@ def serve(options: argparse.Namespace) -> int:
         return tell(client.send(commands[act]()), options.json)
 
 
+def layer_options(options: argparse.Namespace, name: str) -> dict[str, Any]:
+    """What the options of `add_layer_options` settle for the TaskLayer of a robot."""
+    folder = data_folder(name)
+    recordings = None if options.no_recordings else options.record or os.path.join(folder, "recordings")
+    return {
+        "folder": folder, "store": options.store, "rules": options.rules, "durable": options.durable,
+        "recordings": recordings,
+    }  # fmt: skip
+
+
 def _up(options: argparse.Namespace) -> int:
     """Until `btc robot down`, Ctrl-C or SIGTERM."""
     name, ended = options.name or USUAL_NAME, threading.Event()
     layer: TaskLayer
     door = SocketServer(name, lambda data, person: layer.handle(data, person), lambda person: layer.stop(person))
     try:  # the name is ours before the store and the robot are touched
+        reader = MissionReader(
+            options.keywords,
+            options.world,
+            include_root=options.include_root,
+            allowed_keywords=options.allow_keywords,
+        )
+        trouble, down = (lambda text: show(one_line(text), sys.stderr)), ended.set
         layer = TaskLayer(
-            options.robot, folder=data_folder(name), world=options.world, store=options.store, rules=options.rules,
-            keywords=options.keywords, speed=options.speed, durable=options.durable, records=not options.no_recordings,
-            trouble=lambda text: show(one_line(text), sys.stderr), down=ended.set,
-        )  # fmt: skip
+            options.robot, reader, **layer_options(options, name), speed=options.speed, trouble=trouble, down=down
+        )
     except BaseException:
         door.close()
         raise
@@ -100,20 +117,21 @@ def _up(options: argparse.Namespace) -> int:
         finally:
             door.close()
     finally:
-        layer.close()
+        ended_well = layer.close()
     show(f"The robot '{name}' is down.")
-    return 0
+    return 0 if ended_well else 1
 
 
 def _unit(options: argparse.Namespace) -> str:
     """A unit of systemd that brings the robot up with these options."""
     words = [sys.executable, "-m", "btlang", "robot", "up"]
-    for option in ("name", "robot", "world", "rules", "store"):
+    for option in ("name", "robot", "world", "rules", "store", "record", "include_root"):
         value = getattr(options, option)
         if value and value != "simulated":
-            words += [f"--{option}", os.path.abspath(value) if os.path.exists(value) else value]
-    for keywords in options.keywords:
-        words += ["--keywords", os.path.abspath(keywords)]
+            words += [f"--{option.replace('_', '-')}", os.path.abspath(value) if os.path.exists(value) else value]
+    for option, names in (("--keywords", options.keywords), ("--allow-keywords", options.allow_keywords)):
+        for each in names:
+            words += [option, os.path.abspath(each) if os.path.exists(each) else each]
     words += [] if options.speed == "real" else ["--speed", str(options.speed)]
     words += ["--durable"] * options.durable + ["--no-recordings"] * options.no_recordings
     return _UNIT.format(

@@ -17,7 +17,7 @@ if TYPE_CHECKING:
     R = TypeVar("R", bound=Record)
 
 _READERS: dict[str, Callable[[Any], Any]] = {
-    "MissionText": lambda text: MissionText(**json.loads(text)),
+    "MissionText": lambda text: _mission(**json.loads(text)),
     "tuple[str, ...]": lambda text: tuple(json.loads(text)),
     "bool": bool,
     "float": float,
@@ -62,6 +62,10 @@ def from_row(kind: type[R], row: tuple[Any, ...]) -> R:
     """The record of a row. Raises ValueError or TypeError if it can't be one."""
     pairs = zip(row, _readers(kind), strict=True)
     return kind(*(value if reader is None else reader(value) for value, reader in pairs))
+
+
+def _mission(keywords: list[str] | tuple[()] = (), **fields: Any) -> MissionText:
+    return MissionText(keywords=tuple(keywords), **fields)
 
 
 @cache

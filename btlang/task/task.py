@@ -75,13 +75,16 @@ PRIORITIES = -100, 100
 
 class MissionText(Record):
     """A mission as it was submitted. `name` is that of its file, or in the library if `revision` isn't 0. `values` are
-    the first values of its blackboard, by name: its parameters.
+    the first values of its blackboard, by name: its parameters. `keywords` are further keyword files. `file` is the
+    path of a file that the robot's owner named, which is read instead of the text, as it is then.
     """
 
     text: str
     name: str = ""
     revision: int = 0
     values: Mapping[str, Any] = {}
+    keywords: tuple[str, ...] = ()
+    file: str = ""
 
 
 class Task(Record):
@@ -115,6 +118,15 @@ class Task(Record):
     saved: str = ""
     token: str = ""
     recording: str = ""
+
+
+class Ending(Record):
+    """What was asked of the run under way: the state that its task gets then, why, by whom, and the token."""
+
+    state: State
+    cause: str
+    person: str
+    token: str = ""
 
 
 class Change(Record):

@@ -18,7 +18,7 @@ LONG = 20.0
 @contextmanager
 def layer_in(folder: Path, **options: Any) -> Iterator[TaskLayer]:
     """A robot that is up; simulated, 50 times as fast as real time."""
-    with TaskLayer(folder=str(folder), **{"speed": 50.0, "records": False, **options}) as layer:
+    with TaskLayer(folder=str(folder), **{"speed": 50.0, **options}) as layer:
         yield layer
 
 

@@ -13,6 +13,7 @@ from pathlib import Path
 
 from btlang.task.layer import TaskLayer
 from btlang.task.messages import AddSchedule
+from btlang.task.missions import MissionReader
 from btlang.vocabulary.shipped import DEFAULT_WORLD
 
 TOUR = "say welcome then go to the lab then go to the kitchen then go to the living room then wave"
@@ -35,7 +36,7 @@ def main() -> None:
     )
     world.write_text(Path(DEFAULT_WORLD).read_text() + faults)
     with TaskLayer(
-        folder=str(folder), world=str(world), rules=str(rules), speed="max", begins=begins, records=False,
+        "simulated", MissionReader(world=str(world)), folder=str(folder), rules=str(rules), speed="max", begins=begins,
         trouble=lambda text: print(text, file=sys.stderr),
     ) as layer:  # fmt: skip
         if not layer.store.schedules():

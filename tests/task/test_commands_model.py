@@ -25,7 +25,7 @@ class Commands(RuleBasedStateMachine):
     def __init__(self) -> None:
         super().__init__()
         self.folder = Path(tempfile.mkdtemp())
-        self.layer = TaskLayer(folder=str(self.folder), speed="max", records=False)
+        self.layer = TaskLayer(folder=str(self.folder), speed="max")
         self.tasks: dict[int, list[Any]] = {}
         self.paused = self.stopped = False
 

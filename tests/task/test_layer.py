@@ -4,13 +4,18 @@ from __future__ import annotations
 
 from datetime import UTC, datetime
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 
 from btlang.run.events import Event, Printed
-from btlang.task.task import FINAL, State, Task
+from btlang.session import Run
+from btlang.task.task import FINAL, MissionText, State, Task
 
 from .layers import ask, layer_in, refusal, submit, task, wait_for, wait_until
+
+if TYPE_CHECKING:
+    from btlang.run.events import Sink
 
 RULES = "whenever the battery is below 60%, go to the dock then charge to 90%\n"
 
@@ -25,7 +30,7 @@ class Printer:
         if isinstance(event, Printed):
             self.texts.append(event.text)
 
-    def sinks(self, task: Task) -> list[object]:
+    def sinks(self, task: Task, run: Run) -> list[Sink]:
         return [self]
 
 
@@ -84,7 +89,7 @@ def test_a_cancel_cleans_up_and_a_kill_does_not(act: str, state: State, cleaned:
     printer = Printer()
     tree = f'<root BTCPP_format="4"><BehaviorTree ID="Main">{CLEANS}</BehaviorTree></root>'
     with layer_in(tmp_path, sinks=printer.sinks) as layer:
-        number = submit(layer, tree.replace("PrintText", layer.compiled("print hi", "", ()).tree.root.id))
+        number = submit(layer, tree.replace("PrintText", layer.reader.read(MissionText("print hi")).tree.root.id))
         wait_for(layer, number, State.UNDERWAY)
         ask(layer, act, task=number, reason="too late")
         ended = task(layer, number)

@@ -16,6 +16,7 @@ from btlang.api import parse_tree
 from btlang.diagnostics.errors import MissionError
 from btlang.session import Session
 from btlang.task.house_rules import read_house_rules
+from btlang.task.missions import MissionReader
 from btlang.task.paths import USUAL_NAME, socket_path
 from btlang.task.socket_server import SocketServer
 from btlang.task.store import open_store
@@ -108,7 +109,7 @@ def _mute(name: str) -> Iterator[None]:
 def read_rules(path: str) -> str:
     """What is wrong with a file of house rules, "" for nothing."""
     try:
-        read_house_rules(path)
+        read_house_rules(path, MissionReader())
     except MissionError as error:
         return str(error)
     return ""

@@ -1,0 +1,83 @@
+"""Reads the missions of tasks: what others send may name only files and words that the robot's owner allowed."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from functools import lru_cache
+
+from btlang.api import Mission, parse_tree
+from btlang.diagnostics.diagnostic import diagnostic
+from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.reading import is_below, read_source
+from btlang.engine.leaves.leaf import described
+from btlang.task.task import MissionText
+from btlang.text.source import Source, Span
+from btlang.vocabulary.shipped import DEFAULT_WORLD, ENGLISH
+
+_REMEMBERED = 64  # missions that were read last
+_NOT_ALLOWED = "others can't use it; to allow it, start the robot with --allow-keywords and its name or folder"
+
+
+class MissionReader:
+    """For one robot: its words are those of the keyword files `keywords`, its names those of `world`.
+
+    A text may include files below `include_root`, and bring keyword files of `allowed_keywords` (names of packs, and
+    folders); by default none, since the author of a text may not read these files, and keyword files run Python.
+    """
+
+    def __init__(
+        self,
+        keywords: Sequence[str] = (),
+        world: str | None = None,
+        *,
+        parser: str = "shunting-yard",
+        language: str = ENGLISH,
+        include_root: str | None = None,
+        allowed_keywords: Sequence[str] = (),
+    ) -> None:
+        self.keywords, self.world, self.language = tuple(keywords), world, language
+        self._parser, self._root, self._allowed = parser, include_root, tuple(allowed_keywords)
+        self._remembered = lru_cache(_REMEMBERED)(self._read)
+
+    def read(self, mission: MissionText) -> Mission:
+        """Raises MissionError. Fast for a text that was read a moment ago."""
+        values = tuple((name, isinstance(value, str)) for name, value in mission.values.items())
+        may_change = mission.file or self._root is not None  # what it includes
+        read = self._read if may_change else self._remembered
+        return read(mission.text, mission.name, mission.file, mission.keywords, values)
+
+    def check(self, keywords: Sequence[str]) -> None:
+        """Raises MissionError (BT001) if a text may not bring one of these keyword files."""
+        for name in keywords:
+            if name not in self._allowed and not self._is_in_allowed_folder(name):
+                where = Span(Source("", "keywords"), 0, 0)
+                raise MissionError([diagnostic("BT001", where, file=name, reason=_NOT_ALLOWED)])
+
+    def source(self, text: str, name: str = "") -> Source:
+        """A text that others sent."""
+        root = self._root
+        return Source(text, name or "mission", root or "", () if root is None else (root,), hides_includes=True)
+
+    def _read(
+        self, text: str, name: str, file: str, keywords: tuple[str, ...], values: tuple[tuple[str, bool], ...]
+    ) -> Mission:
+        source = read_source(file, self._root) if file else self.source(text, name)
+        try:
+            return parse_tree(
+                source,
+                keywords=[*self.keywords, *keywords],
+                world=self.world or DEFAULT_WORLD,  # the robot's, not that of the text
+                parser=self._parser,
+                language=self.language,
+                values={each: "" if is_text else 0 for each, is_text in values},
+            )
+        except (SystemExit, RecursionError) as problem:  # of a keyword file, which may be anybody's
+            where = Span(source, 0, 0)
+            raise MissionError([diagnostic("BT001", where, file=source.name, reason=described(problem))]) from None
+
+    def _is_in_allowed_folder(self, name: str) -> bool:
+        if "\0" in name or not os.path.isfile(name):
+            return False
+        folders = [name for name in self._allowed if os.path.isdir(name)]
+        return any(is_below(os.path.realpath(name), folder) for folder in folders)
