@@ -6,6 +6,7 @@ from importlib import import_module
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
+from btlang.ros.interfaces import OWN
 from btlang.text.source import Source, Span
 
 _INSTALL = "Install it: pip install 'btlang[ros]', or source your ROS 2 Jazzy: . /opt/ros/jazzy/setup.bash"
@@ -22,14 +23,20 @@ def require_ros(*packages: str) -> None:
 
 
 def require_interfaces() -> None:
-    """Raises MissionError (BT110) where the interfaces of btlang are not compiled for this Python."""
+    """Raises MissionError (BT110) where the interfaces of btlang are not compiled, or for another Python or btlang."""
+    reason = ""
     try:
-        import_module("btlang_interfaces")
-        import_module("btlang_interfaces.action")  # where it was compiled for another Python, this fails
+        import_module(OWN.name)
+        for path in sorted(OWN.glob("*/*.*")):
+            kinds = import_module(f"{OWN.name}.{path.parent.name}")  # where it is for another Python, this fails
+            if not hasattr(kinds, path.stem):
+                reason = f"there is no {path.stem} in {OWN.name}, which is that of another btlang"
+                break
     except ImportError as error:
-        absent = error.name == "btlang_interfaces"
-        reason = "there is no Python package btlang_interfaces" if absent else str(error)
-        raise MissionError([diagnostic("BT110", Span(Source("", "ROS 2"), 0, 0), reason=reason)]) from None
+        absent = (error.name or "").partition(".")[0] == OWN.name
+        reason = f"there is no Python package {error.name}" if absent else str(error)
+    if reason:
+        raise MissionError([diagnostic("BT110", Span(Source("", "ROS 2"), 0, 0), reason=reason)])
 
 
 def unusable(reason: str, advice: str = "") -> MissionError:

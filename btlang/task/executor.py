@@ -36,6 +36,8 @@ _RETRY = 1.0  # seconds of real time after which a store that could not be writt
 _LOOK = 0.05  # seconds of real time for which an executor waits that can't do anything
 _END = 8.0  # seconds of real time that a mission gets to halt and to bring the robot to rest
 _ANSWER = 3.0  # seconds of real time that a mission gets to end when it is asked to, before who asked is answered
+NOTHING_TO_DO = "there was nothing to do"
+"""The reason of a task whose mission was skipped as a whole."""
 _BLOCKED = "house rule"
 """The setting of the store that says why all tasks wait."""
 
@@ -64,7 +66,7 @@ class Executor:
         speed: float | str = "real",
         rate: float = 20.0,
         idle_rate: float = 20.0,
-        sinks: Callable[[Task, Run], list[Sink]] = lambda task, run: [],
+        sinks: Callable[[Task, Mission, Run], list[Sink]] = lambda task, mission, run: [],
     ) -> None:
         self._session, self._store, self._manager, self._emergency = session, store, manager, emergency
         self._rules, self._idle_mission = rules, rules.idle or idle
@@ -105,10 +107,10 @@ class Executor:
         thread.join(0.0 if self._hangs else _END)
         if not thread.is_alive():
             return True
-        self._hangs, self._closing = True, False  # who asks again need not wait again
-        if run is not None:
+        if run is not None and not self._hangs:
             run.emergency_stop()
-        self._trouble("The mission doesn't end because a command hangs; the robot was stopped.")
+            self._trouble("The mission doesn't end because a command hangs; the robot was stopped.")
+        self._hangs, self._closing = True, False  # who asks again need not wait again
         return False
 
     @property
@@ -298,7 +300,7 @@ class Executor:
         commands = commands_of(run, mission)
         self._watch = RunWatch(indices_of(run, self._rules.reactions), commands, self.wake)
         run.bus.add(self._watch)
-        for sink in self._sinks(task, run):
+        for sink in self._sinks(task, mission, run):
             run.bus.add(sink)
         run.after_ticks(partial(self._after_tick, task, run, self._watch))
         return run
@@ -342,7 +344,7 @@ class Executor:
         try:
             return run.execute()
         finally:
-            self._run = None
+            self._run, self._hangs = None, False
             if self._watch is not None:
                 self._watch.acting.clear()
             for error in run.sink_errors:
@@ -363,7 +365,7 @@ class Executor:
         elif outcome.failure is not None:
             change(State.FAILED, reason_of(outcome))
         elif not outcome.stopped:
-            change(State.COMPLETED, "" if outcome.seconds else "there was nothing to do")
+            change(State.COMPLETED, "" if outcome.seconds else NOTHING_TO_DO)
         elif self._emergency.is_latched:
             change(State.KILLED, self._emergency.reason)
         elif ending is not None and ending.state is State.DELAYED:

@@ -89,6 +89,12 @@ class Handler:
             self._log(command, person, answer)
         return answer
 
+    def add(self, mission: MissionText, person: str, **fields: Any) -> Task:
+        """Queues a mission that was admitted, with these fields of its task. Raises StoreError."""
+        task = self._store.add(Task(0, mission, person, self._now(), **fields), "it was submitted")
+        self._executor.wake()
+        return task
+
     def _log(self, command: Command, person: str, answer: Answer) -> None:
         details = json.dumps(messages.as_json(command), ensure_ascii=False, default=str)
         with suppress(MissionError):  # then the command was refused for the same reason, or needs no store
@@ -96,16 +102,11 @@ class Handler:
 
     def _submit(self, command: messages.Submit, person: str) -> Answer:
         now = self._now()
-        mission = self._mission(command)
-        task = self._store.add(
-            Task(
-                0, mission, person, now, priority=checked_priority(command.priority), labels=command.labels,
-                earliest=moment(command.at, now), deadline=moment(command.by, now),
-                restart=choice(Restart, command.restart, "restart"),
-            ),
-            "it was submitted",
+        task = self.add(
+            self._mission(command), person, priority=checked_priority(command.priority), labels=command.labels,
+            earliest=moment(command.at, now), deadline=moment(command.by, now),
+            restart=choice(Restart, command.restart, "restart"),
         )  # fmt: skip
-        self._executor.wake()
         return Answer(True, f"Task {task.id} is queued.", {"task": task_data(task)})
 
     def _list(self, command: messages.List, person: str) -> Answer:

@@ -62,7 +62,7 @@ class TaskLayer:
         recordings: str | None = None,
         trouble: Callable[[str], object] = lambda text: None,
         down: Callable[[], object] = lambda: None,
-        sinks: Callable[[Task, Run], list[Sink]] = lambda task, run: [],
+        sinks: Callable[[Task, Mission, Run], list[Sink]] = lambda task, mission, run: [],
     ) -> None:
         os.makedirs(folder, mode=0o700, exist_ok=True)
         self.reader = reader or MissionReader()
@@ -94,12 +94,17 @@ class TaskLayer:
 
     def handle(self, command: Command | dict[str, Any], person: str = "") -> Answer:
         """Does a command (see btlang.task.messages), or its JSON, from any thread. A refusal is an answer, too."""
-        if isinstance(command, dict):
+        if not isinstance(command, Command):
             try:
                 command = read_command(command)
             except MissionError as error:
                 return Answer(False, str(error), {}, error.diagnostics[0].code)
         return self.handler.handle(command, person)
+
+    def add(self, mission: MissionText, person: str = "", **fields: Any) -> Task:
+        """Queues a mission of the robot's owner, with these fields of its task. Raises MissionError."""
+        self._admitted(mission)
+        return self.handler.add(mission, person, **fields)
 
     def stop(self, person: str) -> None:
         """The emergency stop, from any thread; nothing delays it."""

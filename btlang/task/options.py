@@ -24,6 +24,7 @@ def add_robot_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--world", metavar="FILE", help="world file")
     parser.add_argument("--keywords", action="append", default=[], metavar="FILE", help="keyword file")
     add_layer_options(parser)
+    parser.add_argument("--include-root", metavar="DIR", help="let missions include files below this folder")
     parser.add_argument("--speed", type=speed, default="real", metavar="SPEED", help="real, max or a factor")
     parser.add_argument("--reason", default="", metavar="TEXT", help="why, for others to read")
     parser.add_argument("--since", metavar="TIME", help="where a report begins (default: seven days ago)")
@@ -39,7 +40,6 @@ def add_layer_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--durable", action="store_true", help="what was acknowledged survives a loss of power, too")
     parser.add_argument("--record", metavar="FOLDER", help="where missions are recorded (default: beside the store)")
     parser.add_argument("--no-recordings", action="store_true", help="don't record missions")
-    parser.add_argument("--include-root", metavar="DIR", help="let missions include files below this folder")
     parser.add_argument(
         "--allow-keywords",
         action="append",

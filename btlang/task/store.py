@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 
 from btlang.record import Record
 from btlang.task.backup import write_backup
@@ -47,6 +47,8 @@ class Store:
     def __init__(self, database: Database) -> None:
         self._database = database
         self._is_owner = False
+        self.listeners: list[Callable[[], object]] = []
+        """Called after a change of a task by this process, in the thread that made it: they must be fast."""
 
     @property
     def place(self) -> str:
@@ -80,6 +82,7 @@ class Store:
             added: Task = task.replace(id=_count(execute, "task"))
             _insert(execute, "task", added)
             _note(execute, Change(added.id, added.created, added.state, cause, added.person))
+        self._tell()
         return added
 
     def task(self, id: int) -> Task | None:
@@ -129,7 +132,10 @@ class Store:
         """
         with self._database.transaction() as execute:
             noted = Change(id, time, state, cause, person)
-            return self._changed(execute, noted, before, {"reason": cause, **fields})
+            changed = self._changed(execute, noted, before, {"reason": cause, **fields})
+        if changed is not None:
+            self._tell()
+        return changed
 
     def amend(self, id: int, **fields: Any) -> Task | None:
         """Sets fields of a task without a change of its state. None if there's no such task."""
@@ -149,6 +155,8 @@ class Store:
             # somebody else had it at that moment; one at a time waits, since a lock on a row stays also where the row
             # has gone to another one meanwhile, and two who wait would wait for each other
             claimed = self._claim(now, Mode.ALONE)
+        if claimed is not None:
+            self._tell()
         return claimed
 
     def peek(self, now: float) -> Task | None:
@@ -180,6 +188,12 @@ class Store:
             rows = execute(query + _limit(limit, values), values)
         found = self._records(Change, [row[:-1] for row in rows])
         return [(row[-1], change) for row, change in zip(rows, found, strict=True)]
+
+    def latest_change(self) -> int:
+        """The number of the last change, 0 if there was none."""
+        with self._database.transaction(Mode.READ) as execute:
+            [[number]] = execute("SELECT max(number) FROM change")
+        return int(number or 0)
 
     def add_schedule(self, schedule: Schedule) -> Schedule:
         """Keeps a new schedule, with an id that no schedule of this store had before."""
@@ -285,6 +299,10 @@ class Store:
         there only once it's complete. Raises StoreError, also if there is such a file already.
         """
         write_backup(self._database, path)
+
+    def _tell(self) -> None:
+        for listener in tuple(self.listeners):
+            listener()
 
     def _claim(self, now: float, mode: Mode) -> Task | None:
         with self._database.transaction(mode) as execute:

@@ -18,7 +18,9 @@ from typing import TYPE_CHECKING, Any
 
 import pytest
 
+from btlang.diagnostics.errors import MissionError
 from btlang.ros import interfaces
+from btlang.ros.available import require_interfaces
 from tests.ros.domains import free_domain
 from tests.ros.processes import REPOSITORY, ROOM, STARTED, Command, end_all
 
@@ -68,7 +70,8 @@ def _interfaces() -> None:
     """Compiles btlang's own and what Nav2 would bring, once for all workers; where that cannot be, tests skip."""
     packages = {_NAV2: str(HERE / "nav2_msgs"), _OWN: "--own"}
     with _lock(Path(sys.prefix, ".btlang-interfaces.lock")):
-        missing = [folder for module, folder in packages.items() if not _found(module)]
+        there = {_NAV2: _found(_NAV2), _OWN: _is_current()}
+        missing = [folder for module, folder in packages.items() if not there[module]]
         if not missing or interfaces.missing_tools() is not None:
             return
         command = [sys.executable, "-m", "btlang.ros.interfaces", *missing]
@@ -146,6 +149,14 @@ def start_sim(tmp_path: Path, domain: int) -> Iterator[Callable[..., Command]]:
 def sim(start_sim: Callable[..., Command]) -> Command:
     """The simulated robot in the room of `room.toml`, at 20 times real time."""
     return start_sim()
+
+
+def _is_current() -> bool:
+    try:
+        require_interfaces()
+    except MissionError:
+        return False
+    return True
 
 
 def _found(module: str) -> bool:

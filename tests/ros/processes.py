@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import os
+import shutil
 import signal
 import subprocess
 import sys
+import tempfile
 import time
 from collections.abc import Callable
 from pathlib import Path
@@ -61,7 +63,11 @@ class Command:
 
     def __init__(self, folder: Path, domain: int, *arguments: str, **environment: str | None) -> None:
         self._out, self._err = folder / "out.txt", folder / "err.txt"
-        changed = {**os.environ, "PYTHONPATH": str(REPOSITORY), "ROS_DOMAIN_ID": str(domain), **environment}
+        self.sockets = tempfile.mkdtemp(prefix="bt")  # their paths have to be short
+        changed = {
+            **os.environ, "PYTHONPATH": str(REPOSITORY), "ROS_DOMAIN_ID": str(domain),
+            "XDG_DATA_HOME": str(folder), "XDG_RUNTIME_DIR": self.sockets, **environment,
+        }  # fmt: skip
         with self._out.open("w") as out, self._err.open("w") as err:
             self.process = start(
                 sys.executable,
@@ -92,4 +98,5 @@ class Command:
             self.process.send_signal(number)
         code = self.process.wait(LONG)
         assert not group_is_alive(self.process)
+        shutil.rmtree(self.sockets, ignore_errors=True)
         return code

@@ -20,7 +20,7 @@ from std_srvs.srv import Trigger
 from btlang.api import parse_tree
 from btlang.cli import main
 from tests.ros.client import LATCHED, Client, Goal, answer
-from tests.ros.processes import Command, wait_until
+from tests.ros.processes import Command
 
 FAR = "move forward 3 meters at 0.2 meters per second"
 
@@ -41,7 +41,7 @@ def test_a_mission_runs(form: str, start_node, client: Client, run_mission: Any)
     assert end.status == GoalStatus.STATUS_SUCCEEDED
     assert (end.result.success, end.result.outcome, end.result.reason) == (True, "success", "")
     assert 2 < end.result.seconds < 6
-    news = goal.feedback.messages
+    news = [message for message in goal.feedback.messages if message.paths]
     assert [message.running for message in news] == ["move forward 1 m", "say done", ""]
     assert (list(news[-1].paths), list(news[-1].statuses)) == (["/1", "/"], [1, 1])
     assert [message.time for message in news] == sorted(message.time for message in news)
@@ -62,7 +62,7 @@ def test_what_it_tells_on_topics(start_node, client: Client, run_mission: Any):
     assert tree["nodes"] == [{"path": "/", "id": "Say", "words": "say hello", "ports": {"text": "hello"}}]
     status = client.hear(TreeStatus, "/btlang/status", LATCHED).wait()
     assert (list(status.paths), list(status.statuses)) == (["/"], [TreeStatus.SUCCESS])
-    log.wait(lambda line: line.data.startswith("the mission succeeded after"))
+    log.wait(lambda line: line.data.startswith("task 1: the mission succeeded after"))
     assert any('says   "hello"' in line.data for line in log.messages)
     found = health.wait(lambda array: array.status[0].message.startswith("the mission succeeded"))
     assert found.status[0].name == "btlang: mission"
@@ -116,16 +116,41 @@ def test_why_it_fails(start_node, client: Client, run_mission: Any):
     assert node.err == ""
 
 
-def test_one_mission_at_a_time(start_node, client: Client, run_mission: Any):
-    node = start_node()
+def test_missions_queue(start_node, client: Client, run_mission: Any):
+    """One at a time, the most urgent first; each goal hears what its task waits for."""
+    from btlang_interfaces.msg import Tasks
+
+    start_node()
+    tasks = client.hear(Tasks, "/btlang/tasks", LATCHED)
     first = mission(client, run_mission, "wait 1 minute")
-    first.feedback.wait()
-    second = mission(client, run_mission, "say hello")
-    assert not second.accepted
-    wait_until(lambda: "mission rejected: another mission is running" in node.err, "the reason on the log")
+    first.feedback.wait(lambda news: news.state == "underway")
+    second = mission(client, run_mission, "wait 0.1 seconds")
+    waiting = second.feedback.wait(lambda news: news.state == "queued")
+    assert (waiting.task, waiting.waits) == (2, "task 1 comes first")
+    third = mission(client, run_mission, "say hello", priority=-1)
+    queue = tasks.wait(lambda message: len(message.tasks) == 3)
+    assert [(task.id, task.state) for task in queue.tasks] == [(1, "underway"), (2, "queued"), (3, "queued")]
+    assert (queue.tasks[2].mission, queue.tasks[2].priority, queue.tasks[2].person) == ("say hello", -1, "ROS 2")
+    assert third.cancel()
+    ended = third.result()
+    assert (ended.status, ended.result.outcome) == (GoalStatus.STATUS_CANCELED, "stopped")
     assert first.cancel()
     assert first.result().status == GoalStatus.STATUS_CANCELED
-    assert mission(client, run_mission, "wait 0.1 seconds").result().result.success
+    result = second.result().result
+    assert (result.success, result.task) == (True, 2)
+    assert not tasks.wait(lambda message: not message.tasks).hindrance
+
+
+def test_an_urgent_mission_suspends_another(start_node, client: Client, run_mission: Any):
+    start_node("--speed", "10")
+    usual = mission(client, run_mission, 'set n to 0\nrepeat 3 times: wait 5 s then increase n\nprint "{n} times"')
+    usual.feedback.wait(lambda news: news.time > 1)
+    urgent = mission(client, run_mission, "wave", priority=5)
+    assert urgent.result().result.success
+    assert usual.result().result.success
+    states = [news.state for news in usual.feedback.messages]
+    assert {"underway", "delayed"} <= {*states}
+    assert states[-1] == "underway"
 
 
 def test_cancelled_half_way_over_ros(start_sim, start_node, client: Client, run_mission: Any, nav2: Any):
@@ -158,9 +183,12 @@ def test_emergency_stop(start_node, client: Client, run_mission: Any):
     assert time.monotonic() - began < 1
     end = goal.result()
     assert end.status == GoalStatus.STATUS_ABORTED
-    assert (end.result.outcome, end.result.reason) == ("stopped", "emergency stop")
+    assert (end.result.outcome, end.result.reason) == ("stopped", "emergency stop by ROS 2")
     assert client.call(Trigger, "/btlang/stop").success  # nothing runs
-    assert mission(client, run_mission, "move forward 10 centimeters then say on").result().result.success
+    goal = mission(client, run_mission, "move forward 10 centimeters then say on")
+    assert goal.feedback.wait().waits == "the robot is stopped: emergency stop by ROS 2"
+    assert client.call(Trigger, "/btlang/release").success
+    assert goal.result().result.success
 
 
 @pytest.mark.parametrize(("number", "code"), [(signal.SIGINT, 130), (signal.SIGTERM, 143)])

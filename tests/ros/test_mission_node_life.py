@@ -50,10 +50,12 @@ def test_all_transitions(start_node, client: Client, run_mission: Any):
         before = node.out.count("start  move forward")
         assert change(client, ACTIVATE)
         wait_until(lambda before=before: node.out.count("start  move forward") > before, "the mission")
-        assert not mission(client, run_mission, "say hello").accepted
+        goal = mission(client, run_mission, "say hello")
+        goal.feedback.wait()
         assert change(client, DEACTIVATE)
         assert state(client) == "inactive"
-        assert node.out.rstrip().endswith(": interrupted")
+        assert goal.result().result.reason == "the node was deactivated"
+        assert node.out.count(": the node was deactivated") == 2 * before + 2
     assert change(client, CLEANUP)
     assert change(client, SHUTDOWN)
     assert state(client) == "finalized"

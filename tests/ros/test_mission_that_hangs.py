@@ -32,31 +32,33 @@ def hang(robot):
 def test_a_command_that_hangs(tmp_path: Path, domain: int, run_mission: Any, monkeypatch: pytest.MonkeyPatch):
     from rclpy.lifecycle import TransitionCallbackReturn
 
-    from btlang.ros.mission import node as module
+    from btlang.ros.mission.node import MissionNode
     from btlang.ros.mission.setup import Setup
     from btlang.ros.node import SpunNode
+    from btlang.task import executor
     from tests.ros.processes import LONG, wait_until
 
     (tmp_path / "words.toml").write_text(WORDS, encoding="utf-8")
     (tmp_path / "a_command_that_hangs.py").write_text(COMMAND, encoding="utf-8")
     (tmp_path / "mission.txt").write_text("hang", encoding="utf-8")
     monkeypatch.syspath_prepend(tmp_path)
-    monkeypatch.setattr(module, "_END", 0.5)
+    monkeypatch.setattr(executor, "_END", 0.5)
     command = importlib.import_module("a_command_that_hangs")
     lines: list[str] = []
-    setup = Setup(file=str(tmp_path / "mission.txt"), keywords=[str(tmp_path / "words.toml")])
-    with SpunNode("btlang", domain_id=domain, make=partial(module.MissionNode, setup, lines.append)) as spun:
+    layer = {"folder": str(tmp_path / "robot")}
+    setup = Setup(file=str(tmp_path / "mission.txt"), keywords=[str(tmp_path / "words.toml")], layer=layer)
+    with SpunNode("btlang", domain_id=domain, make=partial(MissionNode, setup, lines.append, lambda: None)) as spun:
         node: Any = spun.node
         node.trigger_configure()
         node.trigger_activate()
         assert command.entered.wait(LONG)
         assert node.trigger_deactivate() == TransitionCallbackReturn.FAILURE
-        monkeypatch.setattr(module, "_END", LONG)
+        monkeypatch.setattr(executor, "_END", LONG)
         began = time.monotonic()
         assert not node.halt()
         assert time.monotonic() - began < LONG / 2
         command.released.set()
         wait_until(node.halt, "the end of the mission")
         assert node.trigger_deactivate() == TransitionCallbackReturn.SUCCESS
-        assert lines[-1].endswith("emergency stop")
+        assert lines[-1].endswith(": the node was deactivated")
         node.release()

@@ -1,8 +1,7 @@
-"""What a robot that was stopped, and a mission that cannot even be compiled, must not leave behind."""
+"""What a robot that was stopped must not leave behind."""
 
 from __future__ import annotations
 
-import sys
 from types import SimpleNamespace
 from typing import Any
 
@@ -13,7 +12,6 @@ pytest.importorskip("nav2_msgs", reason="nav2_msgs is not installed")
 from btlang.robots.geometry import Pose
 from btlang.robots.robot import RobotError
 from btlang.robots.world_file import load_world
-from btlang.ros.mission.thread import MissionThread, Report
 from btlang.ros.node import SpunNode
 from btlang.ros.robot import RosRobot
 
@@ -36,14 +34,3 @@ def test_a_robot_that_was_stopped_sends_no_goal(domain: int, monkeypatch: pytest
         with pytest.raises(RobotError, match="the robot was stopped"):
             robot.navigate_to("kitchen")
     assert sent == ["kitchen"]
-
-
-def test_a_mission_that_exits_while_it_is_compiled_keeps_no_node_busy() -> None:
-    """As a keyword pack that calls sys.exit where it is imported."""
-    reports: list[Report] = []
-    run = MissionThread(SimpleNamespace(robot=None), sys.exit, lambda mission: [], lambda run: None, reports.append)  # type: ignore[arg-type]
-    assert run.join(10.0)
-    assert run.over
-    assert [(report.outcome, report.reason) for report in reports] == [
-        ("failure", "an error inside btlang: SystemExit()")
-    ]

@@ -27,7 +27,7 @@ def main() -> None:
             tell(f"printed {event.text}")
 
     printed.policy = "inline"  # type: ignore[attr-defined]
-    with TaskLayer(folder=folder, speed=speed, sinks=lambda task, run: [printed]) as layer:
+    with TaskLayer(folder=folder, speed=speed, sinks=lambda task, mission, run: [printed]) as layer:
         tell("up")
         for line in sys.stdin:
             answer = layer.handle(json.loads(line), "ann")

@@ -8,6 +8,7 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from btlang.api import Mission
 from btlang.run.events import Event, Printed
 from btlang.session import Run
 from btlang.task.task import FINAL, MissionText, State, Task
@@ -30,7 +31,7 @@ class Printer:
         if isinstance(event, Printed):
             self.texts.append(event.text)
 
-    def sinks(self, task: Task, run: Run) -> list[Sink]:
+    def sinks(self, task: Task, mission: Mission, run: Run) -> list[Sink]:
         return [self]
 
 

@@ -3,6 +3,9 @@
 from __future__ import annotations
 
 import argparse
+import os
+import signal
+from contextlib import closing
 from functools import partial
 from typing import Any
 
@@ -10,6 +13,7 @@ from btlang.arguments import node_name
 from btlang.ros.available import require_interfaces, require_ros
 from btlang.ros.command import add_body_options, add_namespace, platform_of
 from btlang.ros.ending import EndingSignals, ending_signals
+from btlang.task.options import add_layer_options
 from btlang.text.output import show
 
 PACKAGES = ("diagnostic_msgs", "lifecycle_msgs", "std_msgs", "std_srvs")
@@ -32,14 +36,7 @@ def add_node_options(parser: argparse.ArgumentParser) -> None:
         default=True,
         help="configure and activate the node at once (default), or leave that to a lifecycle manager",
     )
-    parser.add_argument(
-        "--allow-keywords",
-        action="append",
-        default=[],
-        metavar="NAME|DIR",
-        help="let other programs use this pack, or the keyword files below DIR; these run Python (default: none)",
-    )
-    parser.add_argument("--record", metavar="FOLDER", help="record each mission in this folder")
+    add_layer_options(parser)
     parser.add_argument("--ros-args", nargs=argparse.REMAINDER, help="all further arguments are for ROS 2")
 
 
@@ -59,42 +56,54 @@ def _serve(options: argparse.Namespace, came: EndingSignals) -> int:
     require_interfaces()
     require_ros(*PACKAGES)
     from btlang.ros.mission.node import MissionNode
-    from btlang.ros.mission.setup import Setup
+    from btlang.ros.mission.setup import Setup, robot_name
+    from btlang.ros.mission.stop import StopNode
     from btlang.ros.node import SpunNode
     from btlang.run.controls import Controls
     from btlang.run.emergency import emergency_signal
+    from btlang.task.robot_command import layer_options
+    from btlang.task.socket_server import SocketServer
 
+    robot = robot_name(options.namespace, options.name)
     setup = Setup(
         options.name, options.robot, options.over, options.sim_time, options.namespace, options.speed,
         options.mission, options.keywords, options.world, options.parser, options.include_root, options.allow_keywords,
-        options.language, options.record,
+        options.language, layer_options(options, robot),
     )  # fmt: skip
     controls = Controls()
     came.on_arrival = controls.wake
-    spun = SpunNode(
-        options.name,
-        namespace=options.namespace,
-        use_sim_time=options.sim_time,
-        make=partial(MissionNode, setup, show),
+    door = SocketServer(
+        robot, lambda data, person: node.answer(data, person), lambda person: node.emergency_stop(person)
     )
-    node: Any = spun.node
-    try:
-        if options.autostart:
-            node.trigger_configure()
-            if node.error is not None:
-                raise node.error
-            node.trigger_activate()
-        with emergency_signal(node.emergency_stop):
-            spun.start()
-            show(f"btlang ros-node: ready as {node.get_fully_qualified_name()}; Ctrl-C ends it")
-            while not came.numbers:
-                controls.wait(None)
-            node.halt()
-            spun.settle(_ANSWERS)
-    finally:
+    with closing(door):  # the name is ours before the store and the robot are touched
+        spun = SpunNode(
+            options.name,
+            namespace=options.namespace,
+            use_sim_time=options.sim_time,
+            make=partial(MissionNode, setup, show, partial(os.kill, os.getpid(), signal.SIGTERM)),
+        )
+        node: Any = spun.node
+        stop = partial(StopNode, node.resolve_service_name("~/stop"), node.emergency_stop)
+        stopping = SpunNode(f"{options.name}_stop", namespace=options.namespace, make=stop)
         try:
-            node.halt()
-            spun.close()
+            if options.autostart:
+                node.trigger_configure()
+                if node.error is not None:
+                    raise node.error
+                node.trigger_activate()
+            with emergency_signal(partial(node.emergency_stop, "the keyboard")), stopping:
+                spun.start()
+                door.start()
+                show(f"btlang ros-node: ready as {node.get_fully_qualified_name()}; Ctrl-C ends it")
+                while not came.numbers:
+                    controls.wait(None)
+                node.halt()
+                spun.settle(_ANSWERS)
         finally:
-            node.release()
+            try:
+                node.halt()
+                stopping.close()
+                spun.close()
+            finally:
+                node.release()
     return 128 + came.numbers[0]

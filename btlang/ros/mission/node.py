@@ -1,86 +1,103 @@
-"""The lifecycle node that runs missions: its own one, and those that other programs send."""
+"""The lifecycle node of a robot with its task layer: runs its own mission, and those that other programs send."""
 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
-from std_srvs.srv import Trigger
 
 from btlang.api import Mission
 from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import read_included, read_source
 from btlang.ros.mission.progress import News, Progress
-from btlang.ros.mission.server import MissionServer
+from btlang.ros.mission.report import Report, report_of
+from btlang.ros.mission.server import LABEL, MissionServer
+from btlang.ros.mission.services import create_services
 from btlang.ros.mission.setup import Setup
-from btlang.ros.mission.thread import MissionThread, Report, problems
 from btlang.ros.mission.topics import ERROR, OK, WARN, Topics
 from btlang.ros.mission.tree_topic import TreeTopic
 from btlang.run.lines import Lines
-from btlang.text.source import Source
+from btlang.task import messages
+from btlang.task.follower import Follower
+from btlang.task.messages import Answer, Command
+from btlang.task.task import ACTIVE, FINAL, WAITING, Change, MissionText, Task
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from btlang.recording.recorder import Recorder
     from btlang.run.events import Sink
-    from btlang.session import Run, Session
+    from btlang.session import Run
+    from btlang.task.layer import TaskLayer
 
 _SUCCESS, _FAILURE = TransitionCallbackReturn.SUCCESS, TransitionCallbackReturn.FAILURE
-_END = 8.0  # seconds of real time that a mission gets to halt and to bring the robot to rest
+_PERSON = "ROS 2"
+_OWN = "node"
+"""The label of the node's own mission."""
 
 
 class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as untyped
-    """configure compiles the mission of the parameters `mission` or `mission_file` and reaches for the robot; activate
-    runs it; deactivate halts it; cleanup lets go of both.
+    """configure reads the mission of the parameters `mission` or `mission_file` and reaches for the robot; activate
+    runs it, and then the tasks that are due; deactivate halts them; cleanup lets go of the robot.
 
-    All of its callbacks are called in one thread; missions run in their own. `error` is why configuring failed.
+    All of its callbacks are called in one thread; missions run in another. `error` is why configuring failed, `down`
+    ends the process.
     """
 
-    def __init__(self, setup: Setup, show: Callable[[str], object], name: str, **options: Any) -> None:
+    def __init__(
+        self, setup: Setup, show: Callable[[str], object], down: Callable[[], object], name: str, **options: Any
+    ) -> None:
         super().__init__(name, **options)
-        self._setup = setup
-        self._session: Session | None = None
-        self._source: Source | None = None
-        self._run: MissionThread | None = None
+        self._setup, self._down = setup, down
+        self._layer: TaskLayer | None = None
+        self._follower: Follower | None = None
+        self._mission: MissionText | None = None
         self._latest: Report | None = None
+        self._seconds: dict[int, float] = {}
         self._running = ""
         self._active = False
         self.error: MissionError | None = None
         self.declare_parameter("mission", "")
-        self._first_file: str = self.declare_parameter("mission_file", setup.file).value
+        self.declare_parameter("mission_file", setup.file)
         self._topics = Topics(self, show, self._health)
-        self.create_service(Trigger, "~/stop", self._stop)
-        self._server = MissionServer(self, self._hindrance, self._begin_goal, self._topics.complain)
+        create_services(self, self.answer)
+        self._server = MissionServer(self, self._hindrance, self.answer, self._topics.complain)
 
     def on_configure(self, state: LifecycleState) -> TransitionCallbackReturn:
-        """Fails where the mission cannot be compiled or the robot cannot be reached; the log says why."""
+        """Fails where the mission cannot be read or the robot cannot be reached; the log says why."""
+        text, file = (str(self.get_parameter(name).value) for name in ("mission", "mission_file"))
         try:
-            self._source = self._own_mission()
-            if self._source is not None:
-                self._setup.compiled(self._source)
-            self._session = self._setup.session()
+            reader = self._setup.reader()
+            self._mission = self._setup.mission(text, file, reader)
+            if self._mission is not None:
+                reader.read(self._mission)
+            self._layer = self._setup.task_layer(
+                reader, trouble=self._topics.complain, down=self._down, sinks=self._sinks
+            )
         except MissionError as error:
             self.error = error
-            self._topics.complain(problems(error))
+            self._topics.complain(str(error))
             return _FAILURE
+        self._end_tasks("its node ended before it did")
+        self._follower = Follower(self._layer.store, self._changed)
+        self._topics.tasks(self.answer(messages.List()))
         return _SUCCESS
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Runs the mission of the parameters where there is one; from now on takes missions of others."""
+        assert self._layer is not None
+        try:
+            if self._mission is not None:
+                self._layer.add(self._mission, _PERSON, labels=(_OWN,))
+            self._layer.start()
+        except MissionError as error:
+            self._topics.complain(str(error))
+            return _FAILURE
         self._active = True
-        if self._source is not None:
-            self._begin(self._source, (), lambda news: None, lambda report: None)
         return _SUCCESS
 
     def on_deactivate(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Waits until the robot stands still. Fails where a command hangs; the robot is stopped all the same."""
-        self._active = False
-        if self.halt():
-            return _SUCCESS
-        self._active = True
-        return _FAILURE
+        return _SUCCESS if self.halt() else _FAILURE
 
     def on_cleanup(self, state: LifecycleState) -> TransitionCallbackReturn:
         """Lets go of the robot."""
@@ -89,122 +106,101 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
 
     def on_shutdown(self, state: LifecycleState) -> TransitionCallbackReturn:
         """As deactivate and cleanup."""
-        self._active = False
         self.halt()
         self.release()
         return _SUCCESS
 
     def halt(self) -> bool:
-        """Halts the mission and waits a few seconds; whether it ended. From any thread."""
-        if self._run is None:
+        """Cancels all goals and the node's own mission, and halts what else runs; whether it ended. From any thread."""
+        layer, was_active = self._layer, self._active
+        if layer is None:
             return True
-        self._run.stop()
-        if self._run.join(0.0 if self._run.hangs else _END):
-            return True
-        self._run.hangs = True  # who asks again need not wait again
-        self._run.emergency_stop()
-        self._topics.complain("the mission doesn't end because a command hangs; the robot was stopped")
-        return False
+        self._active = False
+        self._end_tasks("the node was deactivated")
+        ended = layer.halt()
+        self._active = was_active and not ended
+        return ended
 
     def release(self) -> None:
         """Lets go of the robot, at rest. May be called twice."""
-        session, self._session = self._session, None
-        if session is not None:
-            session.close()
+        layer, self._layer = self._layer, None
+        if layer is not None:
+            if self._follower is not None:
+                self._follower.close()
+            layer.close()
 
-    def emergency_stop(self) -> bool:
-        """Stops the robot at once and ends the mission, from any thread; False where there is no robot yet."""
-        session, run = self._session, self._run
-        if session is None:
+    def emergency_stop(self, person: str = _PERSON) -> bool:
+        """Stops the robot at once until it is released, from any thread; False where there is no robot yet."""
+        layer = self._layer
+        if layer is None:
             return False
-        if run is not None and not run.over:
-            run.emergency_stop()
-        else:
-            session.emergency_stop()
+        layer.stop(person)
         return True
 
-    def _stop(self, request: Any, response: Any) -> Any:
-        response.success = self.emergency_stop()
-        response.message = "" if response.success else "there is no robot: the node is not configured"
-        return response
+    def answer(self, command: Command | dict[str, Any], person: str = _PERSON) -> Answer:
+        """Does a command. From any thread."""
+        layer = self._layer
+        if layer is None:
+            return Answer(False, "There is no robot: the node is not configured.")
+        return layer.handle(command, person)
 
-    @property
-    def _busy(self) -> bool:
-        return self._run is not None and not self._run.over
+    def _end_tasks(self, reason: str) -> None:
+        """Those that don't outlive the node's work: of goals, and its own."""
+        assert self._layer is not None
+        for label in (LABEL, _OWN):
+            for task in self._layer.store.tasks(WAITING | ACTIVE, label=label):
+                self.answer(messages.Cancel(task.id, reason))
 
     def _hindrance(self) -> str:
-        """Why no mission can begin now; "" where one can."""
-        if not self._active:
-            return "the node is not active"
-        return "another mission is running" if self._busy else ""
+        """Why no mission is taken now; "" where one is."""
+        return "" if self._active else "the node is not active"
 
-    def _begin_goal(
-        self, request: Any, changed: Callable[[News], object], ended: Callable[[Report], object]
-    ) -> MissionThread:
-        return self._begin(self._setup.sent(request.mission), request.keywords, changed, ended)
+    def _sinks(self, task: Task, mission: Mission, run: Run) -> list[Sink]:
+        tree = TreeTopic(mission, run, self._topics.tree, self._topics.tree_changes)
 
-    def _begin(
-        self,
-        source: Source,
-        keywords: Sequence[str],
-        changed: Callable[[News], object],
-        ended: Callable[[Report], object],
-    ) -> MissionThread:
-        assert self._session is not None
+        def changed(news: News) -> None:
+            self._running, self._seconds[task.id] = news.running, news.time
+            tree.changed(news)
+            self._server.news(task.id, news)
 
-        recorders: list[Recorder] = []
+        def reached(news: News) -> None:
+            tree.reached(news, is_last=news.is_last)
+            self._topics.status(news)
 
-        def sinks(mission: Mission) -> list[Sink]:
-            try:
-                recorder = self._setup.recorder(mission, keywords)
-            except MissionError as error:  # a mission runs without its recording, too
-                self._topics.complain(problems(error))
-                recorder = None
-            recorders.extend([recorder] if recorder is not None else [])
-            return [Lines(mission.label, mission.is_action, self._topics.log), *recorders]
+        return [
+            Lines(mission.label, mission.is_action, self._topics.log),
+            Progress(run.snapshot, changed, reached),
+        ]
 
-        def watch(mission: Mission, run: Run) -> None:
-            tree = TreeTopic(mission, run, self._topics.tree, self._topics.tree_changes)
-
-            def told(news: News) -> None:
-                self._running = news.running
-                tree.changed(news)
-                changed(news)
-
-            def reached(news: News) -> None:
-                tree.reached(news, is_last=news.is_last)
-                self._topics.status(news)
-
-            run.bus.add(Progress(run.snapshot, told, reached))
-
-        def over(report: Report) -> None:
-            for recorder in recorders:
-                recorder.close()
-            self._latest, self._running = report, ""
-            self._topics.log(str(report))
-            ended(report)
-
-        def compiled() -> Mission:
-            self._setup.check_keywords(keywords)
-            return self._setup.compiled(source, keywords)
-
-        self._run = MissionThread(self._session, compiled, sinks, watch, over, self._setup.speed)
-        return self._run
-
-    def _own_mission(self) -> Source | None:
-        text, file = (str(self.get_parameter(name).value) for name in ("mission", "mission_file"))
-        if text:
-            return self._setup.sent(text)
-        if file == self._first_file:
-            return read_source(file, self._setup.include_root) if file else None
-        return read_included(file, self._setup.sent(""))  # any program may set a parameter
+    def _changed(self, changes: Sequence[Change]) -> None:
+        """In the thread of the follower."""
+        layer = self._layer
+        if layer is None:
+            return
+        listed = self.answer(messages.List())
+        waits = {task["id"]: task["waits"] for task in listed.data.get("tasks", ())}
+        self._topics.tasks(listed)
+        for change in changes:
+            data = {"id": change.task, "state": change.state, "waits": waits.get(change.task, "")}
+            if change.state not in FINAL:
+                self._server.changed(data, None)
+                continue
+            task = layer.store.task(change.task)
+            if task is not None:
+                self._latest = report_of(task, self._seconds.pop(task.id, 0.0))
+                self._running = ""
+                self._topics.log(f"task {task.id}: {self._latest}")
+                self._server.changed(data, self._latest)
 
     def _health(self) -> tuple[bytes, str, dict[str, str]]:
         values = {"robot": self._setup.robot, "active": str(self._active), "running": self._running}
-        if self._busy:
-            return OK, "a mission is running", values
-        if self._session is None:
+        layer = self._layer
+        if layer is None:
             return WARN, "not configured", values
+        if layer.executor.task is not None:
+            return OK, "a mission is running", values
+        if layer.emergency.is_latched:
+            return ERROR, f"the robot is stopped: {layer.emergency.reason}", values
         if self._latest is None:
             return OK, "no mission has run yet", values
         level = ERROR if self._latest.outcome == "failure" else OK

@@ -1,16 +1,20 @@
-"""The action server that runs the missions of other programs."""
+"""The action server that queues the missions of other programs as tasks."""
 
 from __future__ import annotations
 
+import threading
 from collections.abc import Callable
+from concurrent.futures import ThreadPoolExecutor
 
 from btlang_interfaces.action import RunMission
 from rclpy.node import Node
 
 from btlang.ros.goals import GONE, GoalServer, HeldGoal
 from btlang.ros.lease import Leases
-from btlang.ros.mission.thread import MissionThread, Report
+from btlang.ros.mission.report import Report
 from btlang.ros.mission.topics import filled
+from btlang.task import messages
+from btlang.task.messages import Answer, Command
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -18,44 +22,93 @@ if TYPE_CHECKING:
 
     from btlang.ros.mission.progress import News
 
+LABEL = "goal"
+"""The label of tasks that live as long as their goals."""
+
 
 class MissionServer:
-    """~/run_mission: one goal at a time, none while `hindrance` gives a reason. Callbacks wait for nothing.
+    """~/run_mission: any number of goals, none while `hindrance` gives a reason. Callbacks wait for nothing.
 
-    `begin` runs the mission of a goal; it tells the news of it and, at its end, the report.
+    `handle` does commands. A goal whose client or node ends is cancelled.
     """
 
     def __init__(
         self,
         node: Node,
         hindrance: Callable[[], str],
-        begin: Callable[[Any, Callable[[News], object], Callable[[Report], object]], MissionThread],
-        rejected: Callable[[str], object],
+        handle: Callable[[Command], Answer],
+        complain: Callable[[str], object],
     ) -> None:
-        self._hindrance, self._begin, self._rejected = hindrance, begin, rejected
-        GoalServer(node, RunMission, "~/run_mission", self._run, Leases(node), self._accepts)
+        self._hindrance, self._handle, self._complain = hindrance, handle, complain
+        self._goals: dict[int, HeldGoal] = {}
+        self._tasks: dict[HeldGoal, int] = {}
+        self._adding = threading.Lock()
+        self._worker = ThreadPoolExecutor(1, "btlang goals")  # commands may take a moment
+        GoalServer(node, RunMission, "~/run_mission", self._begin, Leases(node), self._accepts)
+
+    def news(self, task: int, news: News) -> None:
+        """What is new in the run of a task."""
+        goal = self._goals.get(task)
+        if goal is not None:
+            goal.tell(filled(RunMission.Feedback(task=task, state="underway"), news))
+
+    def changed(self, data: dict[str, Any], report: Report | None) -> None:
+        """A task has another state: `data` as answers have it, and the report if it is over."""
+        with self._adding:
+            goal = self._goals.get(data["id"])
+        if goal is None:
+            return
+        if report is None:
+            goal.tell(RunMission.Feedback(task=data["id"], state=data["state"], waits=data["waits"]))
+        else:
+            self._end(data["id"], report)
+
+    def end_all(self, reason: str) -> None:
+        """Cancels all goals."""
+        for task in tuple(self._goals):
+            self._handle(messages.Cancel(task, reason))
+
+    def close(self) -> None:
+        """Waits for commands under way."""
+        self._worker.shutdown()
 
     def _accepts(self) -> bool:
         reason = self._hindrance()
         if reason:
-            self._rejected(f"mission rejected: {reason}")
+            self._complain(f"mission rejected: {reason}")
         return not reason
 
-    def _run(self, goal: HeldGoal) -> Callable[[str], object]:
-        def changed(news: News) -> None:
-            goal.tell(filled(RunMission.Feedback(), news))
+    def _begin(self, goal: HeldGoal) -> Callable[[str], object]:
+        self._worker.submit(self._add, goal)
+        return lambda reason: self._worker.submit(self._cancel, goal, reason)
 
-        def ended(report: Report) -> None:
-            result = RunMission.Result(
-                success=report.success, outcome=report.outcome, reason=report.reason, seconds=report.seconds
-            )
-            goal.end(report.success, result)
+    def _add(self, goal: HeldGoal) -> None:
+        request = goal.request
+        command = messages.Submit(
+            request.mission, keywords=tuple(request.keywords), priority=request.priority, labels=(LABEL,)
+        )
+        with self._adding:  # its end may come before this one has its number
+            answer = self._handle(command)
+            if answer.ok:
+                task = answer.data["task"]["id"]
+                self._goals[task], self._tasks[goal] = goal, task
+        if not answer.ok:
+            goal.end(False, _result(0, Report("failure", answer.text)))
 
-        run = self._begin(goal.request, changed, ended)
-
-        def cancel(reason: str) -> None:
+    def _cancel(self, goal: HeldGoal, reason: str) -> None:
+        task = self._tasks.get(goal)
+        if task is not None:
             if reason == GONE:
-                self._rejected(f"mission halted: {reason}")
-            run.stop()
+                self._complain(f"mission halted: {reason}")
+            self._handle(messages.Cancel(task, reason))
 
-        return cancel
+    def _end(self, task: int, report: Report) -> None:
+        goal = self._goals.pop(task)
+        self._tasks.pop(goal)
+        goal.end(report.success, _result(task, report))
+
+
+def _result(task: int, report: Report) -> Any:
+    return RunMission.Result(
+        success=report.success, outcome=report.outcome, reason=report.reason, seconds=report.seconds, task=task
+    )

@@ -4,13 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from btlang_interfaces.msg import TreeStatus
+from btlang_interfaces.msg import Task, Tasks, TreeStatus
 from diagnostic_msgs.msg import DiagnosticArray, DiagnosticStatus, KeyValue
 from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 from std_msgs.msg import String
 
 from btlang.ros.node import LATCHED
+from btlang.task.messages import Answer
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -19,11 +20,12 @@ if TYPE_CHECKING:
     from btlang.ros.mission.progress import News
 
 OK, WARN, ERROR = DiagnosticStatus.OK, DiagnosticStatus.WARN, DiagnosticStatus.ERROR
+_OF_A_TASK = ("id", "state", "priority", "mission", "person", "labels", "waits")
 _PERIOD = 1.0  # seconds between two diagnostics
 
 
 class Topics:
-    """~/tree, ~/tree_changes, ~/status, ~/log and /diagnostics; may be used from any thread.
+    """~/tree, ~/tree_changes, ~/status, ~/tasks, ~/log and /diagnostics; may be used from any thread.
 
     `show` gets each line of the log.
     `health` says how the node does: level, message and values; it is asked in the thread of the executor.
@@ -36,6 +38,7 @@ class Topics:
         self._tree = node.create_publisher(String, "~/tree", LATCHED)
         self._changes = node.create_publisher(String, "~/tree_changes", 1000)
         self._status = node.create_publisher(TreeStatus, "~/status", LATCHED)
+        self._tasks = node.create_publisher(Tasks, "~/tasks", LATCHED)
         self._log = node.create_publisher(String, "~/log", 100)
         self._diagnostics = node.create_publisher(DiagnosticArray, "/diagnostics", 10)
         # of the machine's time, so that a simulated one that stands still is told of too
@@ -52,6 +55,12 @@ class Topics:
     def status(self, news: News) -> None:
         """The nodes that have been reached."""
         self._status.publish(filled(TreeStatus(), news))
+
+    def tasks(self, listed: Answer) -> None:
+        """The tasks that are not over, as the command `list` answers them."""
+        if listed.ok:
+            tasks = [Task(**{field: task[field] for field in _OF_A_TASK}) for task in listed.data["tasks"]]
+            self._tasks.publish(Tasks(tasks=tasks, hindrance=listed.data["hindrance"]))
 
     def log(self, line: str) -> None:
         """A line of what happens."""

@@ -13,12 +13,13 @@ from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.engine.instance import EngineError
 from btlang.robots.needs import lacking
+from btlang.robots.registry import connector
 from btlang.ros.available import require_interfaces, require_ros
 from btlang.ros.command import add_body_options, add_namespace, platform_of
-from btlang.ros.mission.setup import Setup
 from btlang.ros.serving.names import FOLDER
 from btlang.ros.serving.selection import chosen, servable
 from btlang.run.limits import RATES
+from btlang.session import Session
 from btlang.text.output import show
 from btlang.text.source import NOWHERE
 from btlang.tree.catalogue import SEQUENCE
@@ -72,11 +73,8 @@ def serve(options: argparse.Namespace) -> int:
         options.refuse(str(problem))
     require_ros("std_srvs")
     require_interfaces()
-    setup = Setup(
-        options.name, options.robot, options.over, options.sim_time, options.namespace,
-        keywords=options.keywords, world=options.world,
-    )  # fmt: skip
-    with setup.session() as session:
+    named = {"sim_time": options.sim_time, "namespace": options.namespace, "name": f"{options.name}_robot"}
+    with Session(connector(options.robot, options.over, **named), world=options.world) as session:
         _check(session.connection, ids, vocabulary)
         return _spin(session.connection, ids, vocabulary, options)
 
