@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import shutil
 import sys
 import time
 from collections.abc import Callable
@@ -13,6 +14,7 @@ from btlang.task import messages
 from btlang.task.client import Client
 from btlang.task.messages import Answer, Command, wrong
 from btlang.task.task import State
+from btlang.text.escaping import one_line
 from btlang.text.output import pass_on, show
 
 TYPE_CHECKING = False
@@ -21,7 +23,6 @@ if TYPE_CHECKING:
     from typing import Any
 
 _AGAIN = 0.5  # seconds between two looks of the live list
-_CLEAR = "\x1b[H\x1b[J"
 
 
 def serve(options: argparse.Namespace) -> int:
@@ -45,12 +46,28 @@ def tell(answer: Answer, as_json: bool) -> int:
 
 
 def _live(client: Client, command: Command) -> int:
+    """Until Ctrl-C. Where it isn't a terminal, the list is printed again when it has changed."""
+    from btlang.run.live.screen import Screen
+
+    screen, before = Screen(sys.stdout, shutil.get_terminal_size), ""
+    is_terminal = sys.stdout.isatty()
     try:
+        if is_terminal:
+            screen.begin()
         while True:
-            pass_on(_CLEAR + client.send(messages.Status()).text + "\n\n" + client.send(command).text + "\n")
+            text = client.send(messages.Status()).text + "\n\n" + client.send(command).text
+            if is_terminal:
+                screen.draw([], [((one_line(line), ""),) for line in text.splitlines()])
+            elif text != before:
+                pass_on(text + "\n\n")
+            before = text
             time.sleep(_AGAIN)
     except KeyboardInterrupt:
         return 0
+    finally:
+        if is_terminal:
+            screen.leave()
+            screen.end()
 
 
 def _command(options: argparse.Namespace) -> Command:
