@@ -332,6 +332,8 @@ def _checked(kind: type[Command], field: str, value: Any) -> Any:
     annotation = kind.__annotations__[field]
     expected, described = _TYPES[annotation]
     texts = annotation == "tuple[str, ...]"
+    if annotation in ("int", "int | None") and isinstance(value, float) and value.is_integer():
+        value = int(value)  # JSON knows one kind of number
     fits = isinstance(value, expected) and not isinstance(value, bool)
     if not fits or (texts and not all(isinstance(each, str) for each in value)) or value != value:
         raise wrong(kind.tag, f"'{field}' must be of the type {described['type']}")
