@@ -199,14 +199,12 @@ class Executor:
         with self._changed:
             if self._task is None or self._task.id != task or self._run is None:
                 return None
-            if self._ending is None or self._ending.state is not State.KILLED:
+            if self._ending is None or ending.outranks(self._ending):
                 self._ending = ending
-            if ending.state is State.KILLED:
-                self._run.emergency_stop()
-            elif ending.state is State.DELAYED:
-                self._run.suspend()
-            else:
-                self._run.stop()
+                ends = {State.KILLED: self._run.emergency_stop, State.DELAYED: self._run.suspend}
+                ends.get(ending.state, self._run.stop)()
+            elif ending.state is State.DELAYED:  # it ends already, or has another token
+                return None
             self._changed.wait_for(lambda: self._task is None or self._task.id != task, _ANSWER)
         return self._store.task(task)
 
@@ -375,8 +373,8 @@ class Executor:
             saved = json.dumps(run.save()) if outcome.stopped == SUSPENDED and task.restart is Restart.RESUME else ""
             if saved:
                 self._outbox.write(partial(self._store.amend, task.id, saved=saved))
-            reason = "the robot was shut down"
-            self._outbox.write(partial(recovered, task.replace(saved=saved), self._store, self._now(), reason))
+            begun, reason = task.replace(state=State.UNDERWAY, saved=saved), "the robot was shut down"
+            self._outbox.write(partial(recovered, begun, self._store, self._now(), reason))
 
     def _ask_for_help(self, reason: str) -> None:
         """A house rule failed: the robot stands still, and people are called."""

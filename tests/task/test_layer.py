@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import time
+from concurrent.futures import Future, ThreadPoolExecutor
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -10,6 +12,7 @@ import pytest
 
 from btlang.run.events import Event, Printed
 from btlang.session import Run
+from btlang.task.messages import Answer
 from btlang.task.task import FINAL, MissionText, State, Task
 
 from .layers import ask, layer_in, refusal, submit, task, wait_for, wait_until
@@ -198,6 +201,35 @@ def test_a_cancel_in_the_moment_of_the_end_is_true_or_says_so(tmp_path: Path) ->
             assert answer.ok is (state is State.CANCELED), answer.text
             answers.add(state)
         assert answers
+
+
+def test_a_cancel_of_a_task_that_is_about_to_begin_is_not_lost(tmp_path: Path) -> None:
+    with ThreadPoolExecutor(1) as thread:
+        answers: list[Future[Answer]] = []
+
+        def sinks(task: Task, *_: object) -> list[Sink]:
+            answers.append(thread.submit(layer.handle, {"command": "cancel", "task": task.id}, "ann"))
+            time.sleep(0.1)
+            return []
+
+        with layer_in(tmp_path, sinks=sinks) as layer:
+            number = submit(layer, "wait 100 s")
+            assert wait_for(layer, number, *FINAL).state is State.CANCELED
+            assert answers[0].result().text == f"Task {number} is canceled."
+
+
+@pytest.mark.parametrize(
+    ("restart", "state"), [("give up", State.ERROR), ("again", State.QUEUED), ("resume", State.QUEUED)]
+)
+def test_a_robot_that_goes_down_ends_its_task_as_that_says(restart: str, state: State, tmp_path: Path) -> None:
+    with layer_in(tmp_path) as layer:
+        number = submit(layer, "wait 24 h", restart=restart)
+        wait_for(layer, number, State.UNDERWAY)
+        layer.halt()
+        ended = task(layer, number)
+        assert ended.state is state
+        assert ended.reason.startswith("the robot was shut down")
+        assert bool(ended.saved) is (restart == "resume")
 
 
 def test_parameters_are_values_of_the_mission(tmp_path: Path) -> None:
