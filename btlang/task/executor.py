@@ -80,6 +80,7 @@ class Executor:
         self._outbox = Outbox(trouble)
         self._next: float | None = None  # when the manager wants to look again
         self._new = True  # somebody has asked for something since the last look
+        self._unsure = False  # whether the store may have done what it seemed to refuse
         self._latest = ""  # the run as it was when a command ended or a house rule began to act
         self._thread: threading.Thread | None = None
 
@@ -213,6 +214,7 @@ class Executor:
             try:
                 self._turn()
             except StoreError as error:
+                self._unsure = True
                 self._trouble(str(error))
                 self._rest(_RETRY)
             except Exception as problem:  # nothing may end the executor but `halt`
@@ -221,6 +223,9 @@ class Executor:
 
     def _turn(self) -> None:
         self._outbox.flush()
+        if self._unsure:  # a claim, say, of which nobody was told
+            self._manager.recover(self._now())
+            self._unsure = False
         self._new = False
         if self._hindrance():
             self._rest(_LOOK)

@@ -11,7 +11,6 @@ from typing import TYPE_CHECKING
 import pytest
 
 from btlang.run.events import Event, Printed
-from btlang.session import Run
 from btlang.task.messages import Answer
 from btlang.task.task import FINAL, MissionText, State, Task
 
@@ -33,13 +32,13 @@ class Printer:
         if isinstance(event, Printed):
             self.texts.append(event.text)
 
-    def sinks(self, task: Task, run: Run) -> list[Sink]:
+    def sinks(self, *_: object) -> list[Sink]:
         return [self]
 
 
-def test_the_most_urgent_comes_first_then_the_oldest(tmp_path: Path) -> None:
+def test_the_most_urgent_comes_first_then_the_oldest(tmp_path: Path, place: str) -> None:
     printer = Printer()
-    with layer_in(tmp_path, sinks=printer.sinks) as layer:
+    with layer_in(tmp_path, store=place, sinks=printer.sinks) as layer:
         ask(layer, "pause")
         numbers = [submit(layer, f"print {number}", priority=number % 3) for number in range(6)]
         ask(layer, "reorder", task=numbers[3], before=numbers[0])
@@ -49,9 +48,9 @@ def test_the_most_urgent_comes_first_then_the_oldest(tmp_path: Path) -> None:
     assert printer.texts == ["2", "5", "1", "4", "3", "0"]
 
 
-def test_a_more_urgent_task_interrupts_and_the_other_goes_on(tmp_path: Path) -> None:
+def test_a_more_urgent_task_interrupts_and_the_other_goes_on(tmp_path: Path, place: str) -> None:
     printer = Printer()
-    with layer_in(tmp_path, sinks=printer.sinks) as layer:
+    with layer_in(tmp_path, store=place, sinks=printer.sinks) as layer:
         slow = submit(layer, "print a then wait 20 s then print b then wait 10 s then print c")
         wait_until(lambda: printer.texts == ["a"])
         urgent = submit(layer, "print now", priority=1)
@@ -64,9 +63,9 @@ def test_a_more_urgent_task_interrupts_and_the_other_goes_on(tmp_path: Path) -> 
     ]  # fmt: skip
 
 
-def test_an_interruption_ends_with_its_token(tmp_path: Path) -> None:
+def test_an_interruption_ends_with_its_token(tmp_path: Path, place: str) -> None:
     printer = Printer()
-    with layer_in(tmp_path, sinks=printer.sinks) as layer:
+    with layer_in(tmp_path, store=place, sinks=printer.sinks) as layer:
         number = submit(layer, "print a then wait 100 s then print b")
         wait_until(lambda: printer.texts == ["a"])
         token = ask(layer, "interrupt", task=number, reason="a child is in the way")["token"]
@@ -244,10 +243,10 @@ def test_parameters_are_values_of_the_mission(tmp_path: Path) -> None:
     assert printer.texts == ["4 for Ann", "5 for Ann"]
 
 
-def test_a_schedule_makes_its_tasks(tmp_path: Path) -> None:
+def test_a_schedule_makes_its_tasks(tmp_path: Path, place: str) -> None:
     """An hour in a moment: the robot's time is simulated."""
     begins = datetime(2026, 3, 2, 8, 50, tzinfo=UTC).timestamp()
-    with layer_in(tmp_path, speed="max", begins=begins) as layer:
+    with layer_in(tmp_path, store=place, speed="max", begins=begins) as layer:
         rule = "every 10 minutes between 9:00 and 9:30"
         ask(layer, "schedule", rule=rule, zone="UTC", text="wave", labels=["tour"])
         wait_until(lambda: layer.now() > begins + 3000)
