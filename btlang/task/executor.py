@@ -82,6 +82,7 @@ class Executor:
         self._outbox = Outbox(trouble)
         self._next: float | None = None  # when the manager wants to look again
         self._new = True  # somebody has asked for something since the last look
+        self._unsure = False  # whether the store may have done what it seemed to refuse
         self._latest = ""  # the run as it was when a command ended or a house rule began to act
         self._thread: threading.Thread | None = None
 
@@ -201,14 +202,12 @@ class Executor:
         with self._changed:
             if self._task is None or self._task.id != task or self._run is None:
                 return None
-            if self._ending is None or self._ending.state is not State.KILLED:
+            if self._ending is None or ending.outranks(self._ending):
                 self._ending = ending
-            if ending.state is State.KILLED:
-                self._run.emergency_stop()
-            elif ending.state is State.DELAYED:
-                self._run.suspend()
-            else:
-                self._run.stop()
+                ends = {State.KILLED: self._run.emergency_stop, State.DELAYED: self._run.suspend}
+                ends.get(ending.state, self._run.stop)()
+            elif ending.state is State.DELAYED:  # it ends already, or has another token
+                return None
             self._changed.wait_for(lambda: self._task is None or self._task.id != task, _ANSWER)
         return self._store.task(task)
 
@@ -217,6 +216,7 @@ class Executor:
             try:
                 self._turn()
             except StoreError as error:
+                self._unsure = True
                 self._trouble(str(error))
                 self._rest(_RETRY)
             except Exception as problem:  # nothing may end the executor but `halt`
@@ -225,6 +225,9 @@ class Executor:
 
     def _turn(self) -> None:
         self._outbox.flush()
+        if self._unsure:  # a claim, say, of which nobody was told
+            self._manager.recover(self._now())
+            self._unsure = False
         self._new = False
         if self._hindrance():
             self._rest(_LOOK)
@@ -377,8 +380,8 @@ class Executor:
             saved = json.dumps(run.save()) if outcome.stopped == SUSPENDED and task.restart is Restart.RESUME else ""
             if saved:
                 self._outbox.write(partial(self._store.amend, task.id, saved=saved))
-            reason = "the robot was shut down"
-            self._outbox.write(partial(recovered, task.replace(saved=saved), self._store, self._now(), reason))
+            begun, reason = task.replace(state=State.UNDERWAY, saved=saved), "the robot was shut down"
+            self._outbox.write(partial(recovered, begun, self._store, self._now(), reason))
 
     def _ask_for_help(self, reason: str) -> None:
         """A house rule failed: the robot stands still, and people are called."""

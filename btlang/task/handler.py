@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import time
 from collections.abc import Callable
 from contextlib import suppress
 from functools import partial
@@ -46,6 +47,8 @@ if TYPE_CHECKING:
     from btlang.session import Session
 
 _WEEK = 7 * 86_400.0
+_BEGINNING = 3.0  # seconds of real time that a task may take from its claim to its first tick
+_MOMENT = 0.01
 
 
 class Handler:
@@ -140,13 +143,16 @@ class Handler:
     def _end(self, state: State, command: messages.Cancel | messages.Kill, person: str) -> Answer:
         task = self._open(command.task)
         cause = _cause(command.reason, person)
-        ended = self._executor.end(task.id, Ending(state, cause, person))
-        if ended is None:
+        ended, until = None, time.monotonic() + _BEGINNING
+        while ended is None:
             now = self._now()
-            ended = self._store.change(
+            ended = self._executor.end(task.id, Ending(state, cause, person)) or self._store.change(
                 task.id, WAITING, state, time=now, cause=cause, person=person, ended=now
-            ) or self._executor.end(task.id, Ending(state, cause, person))  # it may have begun meanwhile
-        ended = ended or self._known(task.id)
+            )
+            if ended is None:  # it ends at this moment, or is about to begin
+                time.sleep(_MOMENT)
+                known = self._known(task.id)
+                ended = known if known.state in FINAL or time.monotonic() > until else None
         self._executor.wake()
         if ended.state is state:
             return Answer(True, f"Task {task.id} is {state}.", {"task": self._data(ended)})
@@ -162,7 +168,8 @@ class Handler:
             run.save()  # raises if it can't be kept
         ended = self._executor.end(task.id, Ending(State.DELAYED, cause, person, token))
         if ended is None:
-            raise refused(task.id, f"isn't under way: it's {task.state}")
+            state = self._known(task.id).state
+            raise refused(task.id, "ends already" if state is State.UNDERWAY else f"isn't under way: it's {state}")
         if ended.state in FINAL:
             raise refused(task.id, f"was already over: {ended.state}")
         text = f"Task {task.id} is interrupted. To let it go on, use the token {token}."

@@ -59,7 +59,10 @@ class Manager:
     def is_more_urgent(self, than: Task, now: float) -> bool:
         """Whether a task is due that another one has to make way for."""
         best = self._store.peek(now)
-        return best is not None and best.priority > than.priority
+        if best is None:
+            return False
+        known = self._store.task(than.id) or than  # it may have been moved since it began
+        return best.priority > known.priority
 
     def next_time(self, now: float) -> float | None:
         """When to look again, if nobody asks for anything before."""
@@ -135,7 +138,7 @@ class Manager:
 
 def recovered(task: Task, store: Store, now: float, reason: str) -> Task | None:
     """A task that was under way and is no longer, as it says itself: given up, again from its start, or resumed."""
-    if task.state is State.STANDBY and not task.saved:
+    if task.state is State.STANDBY:
         return store.change(task.id, ACTIVE, State.QUEUED, time=now, cause=f"{reason} before it began")
     if task.restart is Restart.GIVE_UP:
         return store.change(task.id, ACTIVE, State.ERROR, time=now, cause=reason, ended=now)

@@ -27,13 +27,15 @@ _NOT_OVER = "state NOT IN ({})".format(", ".join(f"'{state}'" for state in sorte
 _NEXT = (
     f"SELECT {_TASK} FROM task WHERE {_NOT_OVER} AND (state = '{State.QUEUED}' OR state = '{State.DELAYED}'"
     f" AND token = '') AND (earliest IS NULL OR earliest <= ?)"
-    f" AND (deadline IS NULL OR deadline >= ?) ORDER BY {_IN_TURN} LIMIT 1"
+    f" AND (deadline IS NULL OR deadline >= ? OR started IS NOT NULL) ORDER BY {_IN_TURN} LIMIT 1"
 )
 _QUEUED = f"{_NOT_OVER} AND state = '{State.QUEUED}'"
+_UNBEGUN = f"{_QUEUED} AND started IS NULL"
+"""A task that began in time may go on, or begin again, after its deadline."""
 _TIMES = (
     "SELECT min(time) FROM (SELECT next AS time FROM schedule WHERE next > ?"
     f" UNION ALL SELECT earliest FROM task WHERE {_QUEUED} AND earliest > ?"
-    f" UNION ALL SELECT deadline FROM task WHERE {_QUEUED} AND deadline > ?) AS times"
+    f" UNION ALL SELECT deadline FROM task WHERE {_UNBEGUN} AND deadline > ?) AS times"
 )
 
 
@@ -165,7 +167,7 @@ class Store:
 
     def overdue(self, now: float) -> list[Task]:
         """Those that are queued and should have begun by a time that has passed, in the order of their turn."""
-        query = f"SELECT {_TASK} FROM task WHERE {_QUEUED} AND deadline < ? ORDER BY {_IN_TURN}"
+        query = f"SELECT {_TASK} FROM task WHERE {_UNBEGUN} AND deadline < ? ORDER BY {_IN_TURN}"
         return self._all(Task, query, now)
 
     def next_time(self, now: float) -> float | None:

@@ -128,6 +128,16 @@ class Ending(Record):
     person: str
     token: str = ""
 
+    def outranks(self, other: Ending) -> bool:
+        """Whether it replaces one that was asked for a moment before. Whoever asked for that was told that it happens,
+        so only more does: a token after a suspension without one, the end after that, and a kill after another end.
+        """
+        return self._rank > other._rank
+
+    @property
+    def _rank(self) -> tuple[bool, bool, bool]:
+        return self.state is State.KILLED, self.state in FINAL, bool(self.token)
+
 
 class Change(Record):
     """A task got a state: when, why, and through whom ("" for the robot itself)."""

@@ -1,4 +1,4 @@
-"""A robot that is up in a process of its own, for tests that kill it: `python -m tests.task.peer FOLDER [SPEED]`.
+"""A robot that is up in a process of its own, for tests that kill it: `python -m tests.task.peer FOLDER [STORE]`.
 
 Reads commands as lines of JSON, and writes what happens as lines: `up`, the numbers of new tasks, and what is printed.
 """
@@ -20,14 +20,14 @@ def tell(line: str) -> None:
 
 def main() -> None:
     """Until its input ends."""
-    folder, speed = sys.argv[1], float(sys.argv[2]) if len(sys.argv) > 2 else 50.0
+    folder, store = sys.argv[1], "".join(sys.argv[2:])
 
     def printed(event: Event) -> None:
         if isinstance(event, Printed):
             tell(f"printed {event.text}")
 
     printed.policy = "inline"  # type: ignore[attr-defined]
-    with TaskLayer(folder=folder, speed=speed, sinks=lambda task, mission, run: [printed]) as layer:
+    with TaskLayer(folder=folder, store=store, speed=50.0, sinks=lambda *_: [printed]) as layer:
         tell("up")
         for line in sys.stdin:
             answer = layer.handle(json.loads(line), "ann")

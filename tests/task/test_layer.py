@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import time
+from concurrent.futures import Future, ThreadPoolExecutor
 from datetime import UTC, datetime
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
 
-from btlang.api import Mission
 from btlang.run.events import Event, Printed
-from btlang.session import Run
+from btlang.task.messages import Answer
 from btlang.task.task import FINAL, MissionText, State, Task
 
 from .layers import ask, layer_in, refusal, submit, task, wait_for, wait_until
@@ -31,13 +32,13 @@ class Printer:
         if isinstance(event, Printed):
             self.texts.append(event.text)
 
-    def sinks(self, task: Task, mission: Mission, run: Run) -> list[Sink]:
+    def sinks(self, *_: object) -> list[Sink]:
         return [self]
 
 
-def test_the_most_urgent_comes_first_then_the_oldest(tmp_path: Path) -> None:
+def test_the_most_urgent_comes_first_then_the_oldest(tmp_path: Path, place: str) -> None:
     printer = Printer()
-    with layer_in(tmp_path, sinks=printer.sinks) as layer:
+    with layer_in(tmp_path, store=place, sinks=printer.sinks) as layer:
         ask(layer, "pause")
         numbers = [submit(layer, f"print {number}", priority=number % 3) for number in range(6)]
         ask(layer, "reorder", task=numbers[3], before=numbers[0])
@@ -47,9 +48,9 @@ def test_the_most_urgent_comes_first_then_the_oldest(tmp_path: Path) -> None:
     assert printer.texts == ["2", "5", "1", "4", "3", "0"]
 
 
-def test_a_more_urgent_task_interrupts_and_the_other_goes_on(tmp_path: Path) -> None:
+def test_a_more_urgent_task_interrupts_and_the_other_goes_on(tmp_path: Path, place: str) -> None:
     printer = Printer()
-    with layer_in(tmp_path, sinks=printer.sinks) as layer:
+    with layer_in(tmp_path, store=place, sinks=printer.sinks) as layer:
         slow = submit(layer, "print a then wait 20 s then print b then wait 10 s then print c")
         wait_until(lambda: printer.texts == ["a"])
         urgent = submit(layer, "print now", priority=1)
@@ -62,9 +63,9 @@ def test_a_more_urgent_task_interrupts_and_the_other_goes_on(tmp_path: Path) -> 
     ]  # fmt: skip
 
 
-def test_an_interruption_ends_with_its_token(tmp_path: Path) -> None:
+def test_an_interruption_ends_with_its_token(tmp_path: Path, place: str) -> None:
     printer = Printer()
-    with layer_in(tmp_path, sinks=printer.sinks) as layer:
+    with layer_in(tmp_path, store=place, sinks=printer.sinks) as layer:
         number = submit(layer, "print a then wait 100 s then print b")
         wait_until(lambda: printer.texts == ["a"])
         token = ask(layer, "interrupt", task=number, reason="a child is in the way")["token"]
@@ -201,6 +202,35 @@ def test_a_cancel_in_the_moment_of_the_end_is_true_or_says_so(tmp_path: Path) ->
         assert answers
 
 
+def test_a_cancel_of_a_task_that_is_about_to_begin_is_not_lost(tmp_path: Path) -> None:
+    with ThreadPoolExecutor(1) as thread:
+        answers: list[Future[Answer]] = []
+
+        def sinks(task: Task, *_: object) -> list[Sink]:
+            answers.append(thread.submit(layer.handle, {"command": "cancel", "task": task.id}, "ann"))
+            time.sleep(0.1)
+            return []
+
+        with layer_in(tmp_path, sinks=sinks) as layer:
+            number = submit(layer, "wait 100 s")
+            assert wait_for(layer, number, *FINAL).state is State.CANCELED
+            assert answers[0].result().text == f"Task {number} is canceled."
+
+
+@pytest.mark.parametrize(
+    ("restart", "state"), [("give up", State.ERROR), ("again", State.QUEUED), ("resume", State.QUEUED)]
+)
+def test_a_robot_that_goes_down_ends_its_task_as_that_says(restart: str, state: State, tmp_path: Path) -> None:
+    with layer_in(tmp_path) as layer:
+        number = submit(layer, "wait 24 h", restart=restart)
+        wait_for(layer, number, State.UNDERWAY)
+        layer.halt()
+        ended = task(layer, number)
+        assert ended.state is state
+        assert ended.reason.startswith("the robot was shut down")
+        assert bool(ended.saved) is (restart == "resume")
+
+
 def test_parameters_are_values_of_the_mission(tmp_path: Path) -> None:
     printer = Printer()
     with layer_in(tmp_path, sinks=printer.sinks) as layer:
@@ -213,10 +243,10 @@ def test_parameters_are_values_of_the_mission(tmp_path: Path) -> None:
     assert printer.texts == ["4 for Ann", "5 for Ann"]
 
 
-def test_a_schedule_makes_its_tasks(tmp_path: Path) -> None:
+def test_a_schedule_makes_its_tasks(tmp_path: Path, place: str) -> None:
     """An hour in a moment: the robot's time is simulated."""
     begins = datetime(2026, 3, 2, 8, 50, tzinfo=UTC).timestamp()
-    with layer_in(tmp_path, speed="max", begins=begins) as layer:
+    with layer_in(tmp_path, store=place, speed="max", begins=begins) as layer:
         rule = "every 10 minutes between 9:00 and 9:30"
         ask(layer, "schedule", rule=rule, zone="UTC", text="wave", labels=["tour"])
         wait_until(lambda: layer.now() > begins + 3000)

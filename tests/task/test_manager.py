@@ -128,6 +128,37 @@ def test_what_was_under_way(store: Store, restart: Restart, saved: str, state: S
     assert manager.recover(NINE + 61) == []
 
 
+@pytest.mark.parametrize("restart", list(Restart))
+def test_one_that_had_not_yet_begun_to_go_on_stays_in_the_queue(store: Store, restart: Restart) -> None:
+    manager = Manager(store)
+    store.add(Task(0, MissionText("wave"), "ann", NINE, State.DELAYED, restart=restart, saved='{"now": 1}'))
+    assert manager.claim(NINE) is not None
+    [after] = manager.recover(NINE + 60)
+    assert (after.state, after.saved) == (State.QUEUED, '{"now": 1}')
+
+
+def test_a_task_under_way_counts_with_the_priority_that_it_has_now(store: Store) -> None:
+    manager = Manager(store)
+    task = store.add(Task(0, MissionText("wave"), "ann", NINE, priority=2))
+    claimed = manager.claim(NINE)
+    assert claimed is not None
+    store.add(Task(0, MissionText("wave"), "ann", NINE, priority=1))
+    assert not manager.is_more_urgent(claimed, NINE)
+    store.amend(task.id, priority=0)
+    assert manager.is_more_urgent(claimed, NINE)
+
+
+@pytest.mark.parametrize("state", [State.QUEUED, State.DELAYED])
+def test_a_deadline_is_for_the_beginning_alone(store: Store, state: State) -> None:
+    """Who was interrupted, or cut off, may go on after it."""
+    manager = Manager(store)
+    task = store.add(Task(0, MissionText("wave"), "ann", NINE, state, deadline=NINE + 60, started=NINE))
+    assert manager.next_time(NINE) is None
+    manager.refresh(NINE + 61)
+    claimed = manager.claim(NINE + 61)
+    assert (claimed and claimed.id) == task.id
+
+
 def test_why_a_task_waits(store: Store) -> None:
     manager = Manager(store)
     first = store.add(Task(0, MissionText("wave"), "ann", NINE))

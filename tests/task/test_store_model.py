@@ -31,6 +31,7 @@ FIELDS = st.fixed_dictionaries(
         "position": st.integers(-(2**63), 2**63 - 1) | st.integers(0, 2),
         "earliest": SOMETIMES,
         "deadline": SOMETIMES,
+        "started": SOMETIMES,
         "token": st.sampled_from(["", "t"]),
         "labels": st.lists(LABELS, max_size=3).map(tuple),
         "saved": TEXTS,
@@ -80,7 +81,8 @@ class Work(RuleBasedStateMachine):
     def ready(self, task: Task, now: float) -> bool:
         if task.state != State.QUEUED and (task.state != State.DELAYED or task.token):
             return False
-        return (task.earliest or 0) <= now and (task.deadline is None or task.deadline >= now)
+        in_time = task.started is not None or task.deadline is None or task.deadline >= now
+        return (task.earliest or 0) <= now and in_time
 
     @rule(fields=FIELDS, state=st.just(State.QUEUED) | st.sampled_from(State), text=TEXTS, values=VALUES, time=TIMES)
     def add(self, fields: dict[str, Any], state: State, text: str, values: dict[str, Any], time: float) -> None:
@@ -126,9 +128,11 @@ class Work(RuleBasedStateMachine):
     @rule(now=TIMES)
     def wait(self, now: float) -> None:
         queued = [task for task in sorted(self.tasks.values(), key=turn) if task.state is State.QUEUED]
-        assert self.store.overdue(now) == [task for task in queued if task.deadline is not None and task.deadline < now]
+        unbegun = [task for task in queued if task.started is None]
+        overdue = [task for task in unbegun if task.deadline is not None and task.deadline < now]
+        assert self.store.overdue(now) == overdue
         times = [plan.next for plan in self.schedules.values()]
-        times += [time for task in queued for time in (task.earliest, task.deadline)]
+        times += [task.earliest for task in queued] + [task.deadline for task in unbegun]
         assert self.store.next_time(now) == min(
             (time for time in times if time is not None and time > now), default=None
         )

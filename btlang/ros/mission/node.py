@@ -19,7 +19,7 @@ from btlang.run.lines import Lines
 from btlang.task import messages
 from btlang.task.follower import Follower
 from btlang.task.messages import Answer, Command
-from btlang.task.task import ACTIVE, FINAL, WAITING, Change, MissionText, Task
+from btlang.task.task import ACTIVE, FINAL, WAITING, Change, MissionText, State, Task
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -77,7 +77,7 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
             self.error = error
             self._topics.complain(str(error))
             return _FAILURE
-        self._end_tasks("its node ended before it did")
+        self._end_tasks(WAITING, "its node ended before it did")
         self._follower = Follower(self._layer.store, self._changed)
         self._topics.tasks(self.answer(messages.List()))
         return _SUCCESS
@@ -116,7 +116,7 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
         if layer is None:
             return True
         self._active = False
-        self._end_tasks("the node was deactivated")
+        self._end_tasks(WAITING | ACTIVE, "the node was deactivated")
         ended = layer.halt()
         self._active = was_active and not ended
         return ended
@@ -144,11 +144,11 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
             return Answer(False, "There is no robot: the node is not configured.")
         return layer.handle(command, person)
 
-    def _end_tasks(self, reason: str) -> None:
+    def _end_tasks(self, states: frozenset[State], reason: str) -> None:
         """Those that don't outlive the node's work: of goals, and its own."""
         assert self._layer is not None
         for label in (LABEL, _OWN):
-            for task in self._layer.store.tasks(WAITING | ACTIVE, label=label):
+            for task in self._layer.store.tasks(states, label=label):
                 self.answer(messages.Cancel(task.id, reason))
 
     def _hindrance(self) -> str:
