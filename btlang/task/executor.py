@@ -45,9 +45,9 @@ _BLOCKED = "house rule"
 class Executor:
     """Runs tasks in a thread of its own between `start` and `halt`; all methods may be called from any thread.
 
-    `missions` reads a mission (MissionError if it can't be). `now` gives the time since 1970, `trouble`
-    gets what went wrong, for people. `speed` and `rate` are those of `Session.prepare`, `idle_rate` is the rate between
-    tasks. `sinks` makes sinks for the run of a task that is about to begin.
+    `missions` reads a mission (MissionError if it can't be). `now` gives the time since 1970, `trouble` gets what went
+    wrong, for people. `speed` and `rate` are those of `Session.prepare`, `idle_rate` is the rate between tasks. `sinks`
+    makes sinks for the run of a task that is about to begin.
     """
 
     def __init__(
@@ -225,14 +225,14 @@ class Executor:
 
     def _turn(self) -> None:
         self._outbox.flush()
+        now = self._now()
         if self._unsure:  # a claim, say, of which nobody was told
-            self._manager.recover(self._now())
-            self._unsure = False
-        self._new = False
+            self._manager.recover(now)
+        self._new = self._unsure = False
         if self._hindrance():
             self._rest(_LOOK)
             return
-        now = self._now()
+        self._manager.tidy(now)
         self._manager.refresh(now)
         self._next = self._manager.next_time(now)
         task = self._manager.claim(now)

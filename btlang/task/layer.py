@@ -15,7 +15,7 @@ from btlang.task.emergency import EmergencyStop
 from btlang.task.executor import Executor
 from btlang.task.handler import Handler
 from btlang.task.house_rules import HouseRules, no_house_rules, read_house_rules
-from btlang.task.manager import Manager
+from btlang.task.manager import DAY, Manager
 from btlang.task.messages import Answer, Command, read_command
 from btlang.task.missions import MissionReader
 from btlang.task.recordings import Recordings
@@ -32,6 +32,8 @@ if TYPE_CHECKING:
     from btlang.run.events import Sink
 
 _IDLE = MissionText("repeat forever: wait 24 h")
+KEPT = 90 * DAY
+"""Seconds for which tasks that are over are kept, where nobody says something else."""
 _SLOW = 1.0  # ticks per second between tasks where no time is lost by waiting
 _EMPTY = 1.0  # percent of the battery below which no mission begins that needs the wheels
 
@@ -41,10 +43,10 @@ class TaskLayer:
 
     `robot` and `over` are those of btlang.Session. `reader` has the robot's words and its world, by default those that
     ship. `folder` keeps what belongs to the robot; `store` is the place of its store (btlang.task.store), by default a
-    file there. `rules` is the path of its house rules. `speed` is that of all runs: if it isn't "real", time is that
-    of the robot, and begins at the moment `begins` (seconds since 1970). `recordings` is the folder for the recordings
-    of tasks, None for none. `trouble` gets what goes wrong, for people. `sinks` makes sinks for the run of each task,
-    `down` is what the command of that name calls. Raises MissionError.
+    file there. `rules` is the path of its house rules. `speed` is that of all runs: if it isn't "real", time is that of
+    the robot, and begins at the moment `begins` (seconds since 1970). `recordings` is the folder for the recordings of
+    tasks, None for none. Tasks that are over are kept for `keeps` seconds. `trouble` gets what goes wrong, for people.
+    `sinks` makes sinks for the run of each task, `down` is what the command of that name calls. Raises MissionError.
     """
 
     def __init__(
@@ -59,6 +61,7 @@ class TaskLayer:
         speed: float | str = "real",
         begins: float | None = None,
         durable: bool = False,
+        keeps: float = KEPT,
         recordings: str | None = None,
         trouble: Callable[[str], object] = lambda text: None,
         down: Callable[[], object] = lambda: None,
@@ -77,7 +80,7 @@ class TaskLayer:
         self._begins = time.time() if begins is None else begins
         self._real = speed == "real"
         self.emergency = EmergencyStop(os.path.join(folder, "emergency_stop"), self.session.emergency_stop)
-        self.manager = Manager(self.store)
+        self.manager = Manager(self.store, keeps)
         self.executor = Executor(
             self.session, self.store, self.manager, self.emergency, self.rules, self.reader.read(_IDLE),
             missions=self.reader.read, now=self.now, trouble=trouble,

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import math
 from collections.abc import Iterator
 
 from btlang.engine.status import FAILURE
@@ -15,6 +16,7 @@ if TYPE_CHECKING:
     from btlang.task.store import Store
 
 _PUNCTUAL = 60.0  # seconds after its time from which one that was missed counts as missed
+DAY = 86_400.0
 _MOST_LATE = 1000  # tasks that a schedule makes at most of the times that were missed
 CUT_OFF = "the robot was cut off"
 ENDED = "ended"
@@ -27,8 +29,10 @@ class Manager:
     A task is due if it is queued, or was suspended for a more urgent one, and its earliest time has come.
     """
 
-    def __init__(self, store: Store) -> None:
-        self._store = store
+    def __init__(self, store: Store, keeps: float = math.inf) -> None:
+        """`keeps` is for how many seconds tasks that are over stay in the store."""
+        self._store, self._keeps = store, keeps
+        self._tidied = -math.inf
 
     def recover(self, now: float) -> list[Task]:
         """After a start: what becomes of the task that was under way when the robot's process ended."""
@@ -51,6 +55,12 @@ class Manager:
             assert task.deadline is not None
             self._skip(task, now, f"it couldn't begin by {shown(task.deadline, now)}: {task.reason or 'no time'}")
         return replaced
+
+    def tidy(self, now: float) -> None:
+        """Deletes what is too old, once a day at most."""
+        if self._keeps < math.inf and not self._tidied <= now < self._tidied + DAY:
+            self._store.clean(now - self._keeps)
+            self._tidied = now
 
     def claim(self, now: float) -> Task | None:
         """The next task, which is then the executor's."""

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from btlang.arguments import duration, speed
+from btlang.arguments import between, duration, speed
 
 ROBOT_ACTS = (
     "up", "down", "status", "report", "stop", "release", "pause", "resume", "step", "say", "unit", "backup", "restore",
@@ -38,6 +38,9 @@ def add_layer_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--rules", metavar="FILE", help="house rules, which hold during and between missions")
     parser.add_argument("--store", default="", metavar="PLACE", help="where tasks are kept: a file or postgresql://...")
     parser.add_argument("--durable", action="store_true", help="what was acknowledged survives a loss of power, too")
+    parser.add_argument(
+        "--keep", type=between(0.0, 100_000.0), metavar="DAYS", help="how long ended tasks are kept (default: 90)"
+    )
     parser.add_argument("--record", metavar="FOLDER", help="where missions are recorded (default: beside the store)")
     parser.add_argument("--no-recordings", action="store_true", help="don't record missions")
     parser.add_argument(

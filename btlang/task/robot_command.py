@@ -17,7 +17,8 @@ from btlang.task import messages
 from btlang.task.backup import restore_backup
 from btlang.task.client import Client, emergency_stop
 from btlang.task.command import tell
-from btlang.task.layer import TaskLayer
+from btlang.task.layer import KEPT, TaskLayer
+from btlang.task.manager import DAY
 from btlang.task.missions import MissionReader
 from btlang.task.paths import USUAL_NAME, data_folder
 from btlang.task.socket_server import SocketServer
@@ -79,7 +80,7 @@ def layer_options(options: argparse.Namespace, name: str) -> dict[str, Any]:
     recordings = None if options.no_recordings else options.record or os.path.join(folder, "recordings")
     return {
         "folder": folder, "store": options.store, "rules": options.rules, "durable": options.durable,
-        "recordings": recordings,
+        "recordings": recordings, "keeps": KEPT if options.keep is None else options.keep * DAY,
     }  # fmt: skip
 
 

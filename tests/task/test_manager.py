@@ -168,3 +168,18 @@ def test_why_a_task_waits(store: Store) -> None:
     assert manager.why_waiting(second, NINE) == f"task {first.id} comes first"
     assert manager.why_waiting(later, NINE).startswith("its time is ")
     assert manager.why_waiting(first, NINE, "the robot is paused") == "the robot is paused"
+
+
+def test_old_tasks_are_deleted_once_a_day(store: Store) -> None:
+    manager = Manager(store, keeps=10 * DAY)
+    over = store.add(Task(0, MissionText("wave"), "ann", NINE - 20 * DAY, State.COMPLETED, ended=NINE - 11 * DAY))
+    waiting = store.add(Task(0, MissionText("wave"), "ann", NINE - 20 * DAY))
+    recent = store.add(Task(0, MissionText("wave"), "ann", NINE, State.COMPLETED, ended=NINE - 9.5 * DAY))
+    manager.tidy(NINE)
+    assert [store.task(each.id) is None for each in (over, waiting, recent)] == [True, False, False]
+    manager.tidy(NINE + 0.9 * DAY)
+    assert store.task(recent.id) is not None
+    manager.tidy(NINE + DAY)
+    assert (store.task(recent.id), store.task(waiting.id)) == (None, waiting)
+    Manager(store).tidy(NINE + 999 * DAY)
+    assert store.changes()
