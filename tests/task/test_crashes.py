@@ -42,6 +42,10 @@ class Peer:
         self._thread.start()
         assert self.lines.get(timeout=LONG) == "up"
 
+    @property
+    def pid(self) -> int:
+        return self._process.pid
+
     def _read(self) -> None:
         assert self._process.stdout is not None
         for line in self._process.stdout:
