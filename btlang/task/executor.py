@@ -279,6 +279,8 @@ class Executor:
             else:
                 self._end(task, run, outcome)
         finally:
+            if self._recordings is not None:
+                self._recordings.end()
             with self._changed:
                 self._task = None
                 self._changed.notify_all()
