@@ -53,7 +53,7 @@ if TYPE_CHECKING:
         def close(self, patience: float = 0.0) -> list[Failure]: ...
 
 
-SUSPENDED = "suspended"
+SUSPENDED, EMERGENCY = "suspended", "emergency stop"
 _LOOK = 0.5  # seconds of real time after which who waits for a tick looks whether the run goes on
 _REST = 2.0  # seconds of the mission that a robot gets to come to rest
 _PATIENCE = 2.0  # seconds of real time that background leaves get to end after the last halt
@@ -249,7 +249,7 @@ class Runner:
             seconds = self._clock.now - self._began
             standstill = self._end(suspends=self.controls.suspends)
         if self.controls.emergency:
-            status, stopped = IDLE, "emergency stop"
+            status, stopped = IDLE, EMERGENCY
         failure = None if stopped else self._engine.failure
         count, worst = (self._overruns.count, self._overruns.worst) if self._overruns is not None else (0, None)
         outcome = Outcome(Status(status), seconds, self.ticks, failure, stopped, count, worst, standstill)

@@ -25,6 +25,8 @@ class EmergencyStop:
         self._path, self._halt = path, halt
         self.reason = _read(path)
         """Why the robot is stopped, "" if it isn't."""
+        self.stops: list[str] = []
+        """The reasons of all stops of this process: one may be released before anybody has taken notice of it."""
         self._kept = self.reason
         self._changed = threading.Event()
         self._writing = threading.Lock()  # which `stop` doesn't take
@@ -41,8 +43,9 @@ class EmergencyStop:
 
     def stop(self, person: str, reason: str = "") -> None:
         """Stops the robot for a person; nothing begins before `release`."""
-        # first, so that nothing begins once the robot has been stopped
-        self.reason = f"emergency stop by {person or 'somebody'}" + (f": {reason}" if reason else "")
+        reason = f"emergency stop by {person or 'somebody'}" + (f": {reason}" if reason else "")
+        self.stops.append(reason)
+        self.reason = reason  # before the robot stops, so that nothing begins once it has
         self._halt()
         self._changed.set()
 

@@ -12,7 +12,7 @@ from btlang.api import Mission, value_key
 from btlang.diagnostics.errors import MissionError
 from btlang.engine.leaves.leaf import described
 from btlang.engine.status import RUNNING
-from btlang.run.runner import SUSPENDED
+from btlang.run.runner import EMERGENCY, SUSPENDED
 from btlang.session import Run, Session
 from btlang.task.database import StoreError
 from btlang.task.emergency import EmergencyStop
@@ -82,13 +82,13 @@ class Executor:
         self._outbox = Outbox(trouble)
         self._next: float | None = None  # when the manager wants to look again
         self._new = True  # somebody has asked for something since the last look
-        self._unsure = False  # whether the store may have done what it seemed to refuse
+        self._stops = 0  # emergency stops before the turn under way
         self._latest = ""  # the run as it was when a command ended or a house rule began to act
         self._thread: threading.Thread | None = None
 
     def start(self) -> None:
         """Takes up what was left when the robot's process ended, then does what is due, until `halt`."""
-        self._manager.recover(self._now())
+        self._manager.recover(self._now(), self._emergency.reason)
         self._closing = self._hangs = False
         self._thread = threading.Thread(target=self._work, name="btlang executor", daemon=True)
         self._thread.start()
@@ -216,7 +216,6 @@ class Executor:
             try:
                 self._turn()
             except StoreError as error:
-                self._unsure = True
                 self._trouble(str(error))
                 self._rest(_RETRY)
             except Exception as problem:  # nothing may end the executor but `halt`
@@ -226,12 +225,11 @@ class Executor:
     def _turn(self) -> None:
         self._outbox.flush()
         now = self._now()
-        if self._unsure:  # a claim, say, of which nobody was told
-            self._manager.recover(now)
-        self._new = self._unsure = False
+        self._new, self._stops = False, len(self._emergency.stops)
         if self._hindrance():
             self._rest(_LOOK)
             return
+        self._manager.recover(now)  # a task whose claim was kept although the answer to it was lost
         self._manager.tidy(now)
         self._manager.refresh(now)
         self._next = self._manager.next_time(now)
@@ -284,6 +282,8 @@ class Executor:
             else:
                 self._end(task, run, outcome)
         finally:
+            if self._recordings is not None:
+                self._recordings.end()
             with self._changed:
                 self._task = None
                 self._changed.notify_all()
@@ -369,8 +369,8 @@ class Executor:
             change(State.FAILED, reason_of(outcome))
         elif not outcome.stopped:
             change(State.COMPLETED, "" if outcome.seconds else NOTHING_TO_DO)
-        elif self._emergency.is_latched:
-            change(State.KILLED, self._emergency.reason)
+        elif outcome.stopped == EMERGENCY and len(self._emergency.stops) > self._stops:  # perhaps it's released already
+            change(State.KILLED, self._emergency.stops[-1])
         elif ending is not None and ending.state is State.DELAYED:
             saved = json.dumps(run.save())
             change(State.DELAYED, ending.cause, ending.person, saved=saved, token=ending.token)

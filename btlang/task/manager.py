@@ -34,11 +34,16 @@ class Manager:
         self._store, self._keeps = store, keeps
         self._tidied = -math.inf
 
-    def recover(self, now: float) -> list[Task]:
-        """After a start: what becomes of the task that was under way when the robot's process ended."""
+    def recover(self, now: float, stopped: str = "") -> list[Task]:
+        """After a start: what becomes of the task that was under way when the robot's process ended. `stopped` is why
+        the robot was stopped: an emergency stop kills it also if the process ended before that was written down.
+        """
         found = []
         for task in self._store.tasks(ACTIVE):
-            after = recovered(task, self._store, now, CUT_OFF)
+            if stopped and task.state is State.UNDERWAY:
+                after = self._store.change(task.id, ACTIVE, State.KILLED, time=now, cause=stopped, ended=now)
+            else:
+                after = recovered(task, self._store, now, CUT_OFF)
             if after is not None:
                 found.append(after)
         return found

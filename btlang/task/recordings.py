@@ -21,17 +21,24 @@ class Recordings:
         self._folder, self._most = folder, most_bytes
         self.problem = ""
         """Why there are no recordings, "" if there are."""
+        self._latest: Recorder | None = None
 
     def recorder(self, mission: Mission, task: int) -> Recorder | None:
-        """For a run of a task that begins now."""
+        """For a run of a task that begins now, until `end`."""
         self._make_room()
         try:
             recorder = recorder_in(self._folder, mission, (), {"task": str(task)}, _EACH)
         except MissionError as error:
             self.problem = error.diagnostics[0].message
             return None
-        self.problem = ""
+        self.problem, self._latest = "", recorder
         return recorder
+
+    def end(self) -> None:
+        """The run is over: closes its file."""
+        if self._latest is not None:
+            self._latest.close()
+            self._latest = None
 
     def _make_room(self) -> None:
         found: list[tuple[float, int, str]] = []

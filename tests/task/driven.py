@@ -83,7 +83,7 @@ class Driven:
     def _up(self, begins: float) -> TaskLayer:
         layer = TaskLayer(folder=str(self._folder), store=self._place, speed="max", begins=begins, sinks=self._listen)
         layer.executor._idle = lambda: None  # type: ignore[method-assign]  # a turn without a task is over at once
-        layer.manager.recover(layer.now())
+        layer.manager.recover(layer.now(), layer.emergency.reason)
         return layer
 
     def _listen(self, task: Task, *_: object) -> list[Any]:

@@ -31,7 +31,8 @@ def main() -> None:
         tell("up")
         for line in sys.stdin:
             answer = layer.handle(json.loads(line), "ann")
-            tell(f"answer {answer.data['task']['id'] if answer.ok else f'refused: {answer.text}'}")
+            done = answer.data["task"]["id"] if "task" in answer.data else answer.text
+            tell(f"answer {done if answer.ok else f'refused: {answer.text}'}")
 
 
 if __name__ == "__main__":

@@ -51,7 +51,7 @@ class Model:
         self.after_tick: list[Act] = []
         self.crash_at = ""
         self.asked = self.token = ""
-        self.goes_down = False
+        self.goes_down = self.was_stopped = False
 
     def order(self, *, ready: bool = False) -> list[int]:
         """Of the tasks that wait, or of those that may begin."""
@@ -151,7 +151,8 @@ class Model:
 
     def work(self, meanwhile: list[Act], crashes_first: bool = False) -> None:
         self.running, self.meanwhile, self.after_tick = 0, list(meanwhile), []
-        self.asked, self.token, self.goes_down = "", "", False
+        self.asked = self.token = ""
+        self.goes_down = self.was_stopped = False
         self.crash_at = "standby" if crashes_first else ""
         if not (self.paused or self.stopped):
             self.skip_the_late()
@@ -177,11 +178,13 @@ class Model:
         """What becomes of the task that was under way."""
         if self.crash_at == "standby":
             task.state = State.QUEUED
+        elif self.robot.has_crashed and self.stopped:
+            task.state = State.KILLED
         elif self.robot.has_crashed:
             self.cut_off(task)
             if task.restart is Restart.RESUME and self.crash_at == "tick":
                 task.prints -= 1  # what the tick of a crash did is not in the store
-        elif self.stopped:
+        elif self.was_stopped:
             task.state = State.KILLED
         elif self.asked in ENDS:
             task.state = ENDS[self.asked]
@@ -230,7 +233,10 @@ class Model:
             if answer.ok:
                 self.asked, self.token = "interrupt", answer.data["token"]
         elif act == "stop":
+            self.was_stopped = True
             self.stop(True)
+            if priority > 0:
+                self.stop(False)
         elif act == "down":
             self.goes_down = True
             self.robot.layer.halt()
@@ -249,7 +255,7 @@ class Model:
         elif act == "move another":
             self.move(number + 1, priority)
         self.check()
-        if not (self.asked or self.stopped or self.goes_down):
+        if not (self.asked or self.was_stopped or self.goes_down):
             self.skip_the_late()
             if any(self.tasks[other].priority > task.priority for other in self.order(ready=True)):
                 self.asked = "more urgent"

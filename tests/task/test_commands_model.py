@@ -7,7 +7,7 @@ from random import Random
 
 import pytest
 
-from btlang.task.task import State
+from btlang.task.task import Restart, State
 from tests.profiles import amount
 
 from .driven import Driven
@@ -66,3 +66,29 @@ def test_two_who_ask_in_the_same_tick(robot: Driven, first: str, second: str, ac
     task = robot.layer.store.task(number)
     assert task is not None
     assert (task.state, task.token) == (state, answers[0].data["token"] if state is State.DELAYED else "")
+
+
+@pytest.mark.parametrize("restart", list(Restart))
+def test_a_stop_that_is_released_at_once_kills_the_task(robot: Driven, restart: Restart) -> None:
+    """Also if the robot isn't yet at rest when it may move again."""
+    robot.printed = lambda task, text: [robot.ask(act) for act in ("emergency_stop", "release")]
+    number = robot.ask("submit", text=MISSION, restart=restart).data["task"]["id"]
+    robot.turn()
+    task = robot.layer.store.task(number)
+    assert task is not None
+    assert (task.state, task.reason) == (State.KILLED, "emergency stop by ann")
+
+
+@pytest.mark.parametrize("restart", list(Restart))
+def test_a_crash_right_after_a_stop_does_not_undo_it(robot: Driven, restart: Restart) -> None:
+    def stop(task: int, text: str) -> None:
+        robot.ask("emergency_stop")
+        robot.crash()
+
+    robot.printed = stop
+    number = robot.ask("submit", text=MISSION, restart=restart).data["task"]["id"]
+    robot.turn()
+    robot.restart()
+    task = robot.layer.store.task(number)
+    assert task is not None
+    assert (task.state, task.reason) == (State.KILLED, "emergency stop by ann")

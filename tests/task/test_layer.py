@@ -2,7 +2,10 @@
 
 from __future__ import annotations
 
+import gc
+import threading
 import time
+import weakref
 from concurrent.futures import Future, ThreadPoolExecutor
 from datetime import UTC, datetime
 from pathlib import Path
@@ -229,6 +232,30 @@ def test_a_robot_that_goes_down_ends_its_task_as_that_says(restart: str, state: 
         assert ended.state is state
         assert ended.reason.startswith("the robot was shut down")
         assert bool(ended.saved) is (restart == "resume")
+
+
+def test_a_layer_that_is_closed_leaves_nothing(tmp_path: Path) -> None:
+    """No thread, no open file and no memory: a process may make many."""
+    left: list[weakref.ref[object]] = []
+
+    def up_and_down() -> None:
+        with layer_in(tmp_path, recordings=str(tmp_path)) as layer:
+            number = submit(layer, "wave")
+            wait_for(layer, number, *FINAL)
+            left.extend(map(weakref.ref, (layer, layer.store, layer.session, layer.executor)))
+
+    up_and_down()
+    before = threading.active_count(), open_files()
+    for _ in range(3):
+        up_and_down()
+    gc.collect()
+    assert [each() for each in left] == [None] * 16
+    assert (threading.active_count(), open_files()) == before
+
+
+def open_files() -> int:
+    folder = Path("/proc/self/fd")
+    return len(list(folder.iterdir())) if folder.exists() else 0
 
 
 def test_parameters_are_values_of_the_mission(tmp_path: Path) -> None:
