@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import gc
+import importlib
 import threading
 import time
 import weakref
@@ -14,7 +15,10 @@ from typing import TYPE_CHECKING
 import pytest
 
 from btlang.run.events import Event, Printed
+from btlang.task import executor
+from btlang.task.layer import TaskLayer
 from btlang.task.messages import Answer
+from btlang.task.missions import MissionReader
 from btlang.task.task import FINAL, MissionText, State, Task
 
 from .layers import ask, layer_in, refusal, submit, task, wait_for, wait_until
@@ -283,3 +287,25 @@ def test_a_schedule_makes_its_tasks(tmp_path: Path, place: str) -> None:
     assert sorted(tour["due"] - begins for tour in tours) == [600, 1200, 1800, 2400]
     assert all(0 <= tour["started"] - tour["due"] < 5 for tour in tours), tours
     assert report[2] == "wave (every 10 minutes between 09:00 and 09:30): 4 of 4 done."
+
+
+def test_a_command_that_hangs_keeps_no_robot_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    (tmp_path / "words.toml").write_text('[[action]]\nphrase = "hang"\nid = "Hang"\ncall = "hangs:hang"\n')
+    (tmp_path / "hangs.py").write_text(
+        "from threading import Event\nreleased = Event()\n"
+        "def hang(robot):\n    robot.drive(0.5, 0.0)\n    released.wait(60)\n"
+    )
+    monkeypatch.syspath_prepend(tmp_path)
+    monkeypatch.setattr(executor, "_END", 0.3)
+    told: list[str] = []
+    layer = TaskLayer(
+        "simulated", MissionReader([str(tmp_path / "words.toml")]), folder=str(tmp_path), trouble=told.append
+    )
+    layer.start()
+    number = submit(layer, "hang")
+    wait_for(layer, number, State.UNDERWAY)
+    assert not layer.halt()
+    assert told == ["The mission doesn't end because a command hangs; the robot was stopped."]
+    assert not layer.close()
+    assert not layer.session.robot.moving
+    importlib.import_module("hangs").released.set()

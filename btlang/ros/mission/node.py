@@ -31,6 +31,7 @@ if TYPE_CHECKING:
 
 _SUCCESS, _FAILURE = TransitionCallbackReturn.SUCCESS, TransitionCallbackReturn.FAILURE
 _PERSON = "ROS 2"
+_MOST = 1000  # tasks on ~/tasks
 _OWN = "node"
 """The label of the node's own mission."""
 
@@ -79,7 +80,7 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
             return _FAILURE
         self._end_tasks(WAITING, "its node ended before it did")
         self._follower = Follower(self._layer.store, self._changed)
-        self._topics.tasks(self.answer(messages.List()))
+        self._topics.tasks(self.answer(messages.List(limit=_MOST)))
         return _SUCCESS
 
     def on_activate(self, state: LifecycleState) -> TransitionCallbackReturn:
@@ -88,6 +89,9 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
         try:
             if self._mission is not None:
                 self._layer.add(self._mission, _PERSON, labels=(_OWN,))
+        except MissionError as error:  # the missions of others may do better
+            self._topics.complain(str(error))
+        try:
             self._layer.start()
         except MissionError as error:
             self._topics.complain(str(error))
@@ -177,7 +181,7 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
         layer = self._layer
         if layer is None:
             return
-        listed = self.answer(messages.List())
+        listed = self.answer(messages.List(limit=_MOST))
         waits = {task["id"]: task["waits"] for task in listed.data.get("tasks", ())}
         self._topics.tasks(listed)
         for change in changes:

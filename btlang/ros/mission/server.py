@@ -68,10 +68,6 @@ class MissionServer:
         for task in tuple(self._goals):
             self._handle(messages.Cancel(task, reason))
 
-    def close(self) -> None:
-        """Waits for commands under way."""
-        self._worker.shutdown()
-
     def _accepts(self) -> bool:
         reason = self._hindrance()
         if reason:
