@@ -38,7 +38,8 @@ def stands(odometry: Odometry) -> bool:
     return (odometry.twist.twist.linear.x, odometry.twist.twist.angular.z) == (0.0, 0.0)
 
 
-def test_the_clock_never_goes_back_and_stamps_are_of_it(sim, client: Client):
+def test_the_clock_never_goes_back_and_stamps_are_of_it(resting):
+    _, client = resting
     clock = client.hear(Clock, "/clock")
     odometry = client.hear(Odometry, "/odom")
     clock.wait(lambda _: len(clock.messages) >= 100)
@@ -103,7 +104,8 @@ def test_while_commands_come_it_drives_until_it_bumps(start_sim, client: Client)
     assert at.header.frame_id == "map"
 
 
-def test_the_scan_is_that_of_the_simulated_robot(sim, client: Client):
+def test_the_scan_is_that_of_the_simulated_robot(resting):
+    _, client = resting
     scan = client.hear(LaserScan, "/scan", qos_profile_sensor_data).wait()
     assert np.allclose(scan.ranges, SimulatedRobot(load_world(ROOM)).scan(), atol=1e-5)
     assert (scan.angle_min, scan.header.frame_id) == (0.0, "base_link")
@@ -157,7 +159,8 @@ def test_joints_go_where_the_last_point_says_and_freeze_without_one(start_sim, c
     assert at(end, "head_turn") == pytest.approx(-0.5)
 
 
-def test_hands(sim, client: Client):
+def test_hands(resting):
+    _, client = resting
     holding = client.hear(String, "/left_hand/holding", LATCHED)
     assert holding.wait().data == ""
     wrong = client.call(SetBool, "/right_hand/close", data=True)
@@ -173,7 +176,8 @@ def test_hands(sim, client: Client):
     assert client.call(SetBool, "/left_hand/close", data=False).success
 
 
-def test_speech(sim, client: Client):
+def test_speech(resting):
+    sim, client = resting
     speaking = client.hear(Bool, "/speaking", LATCHED)
     assert speaking.wait().data is False
     voice = client.publisher(String, "/speech")
@@ -218,7 +222,8 @@ def test_namespace_and_the_time_of_the_system(start_sim, client: Client):
     assert "/robots/anna/left_hand/holding" in topics
 
 
-def test_two_clients_do_not_leave_threads(sim, client: Client):
+def test_two_clients_do_not_leave_threads(resting):
+    _, client = resting
     client.hear(Clock, "/clock").wait()
     before = threading.active_count()
     other = Client(client.node.context.get_domain_id())
@@ -228,7 +233,8 @@ def test_two_clients_do_not_leave_threads(sim, client: Client):
     assert threading.active_count() == before
 
 
-def test_the_table_of_the_documentation_is_complete(nav2, sim, client: Client):
+def test_the_table_of_the_documentation_is_complete(nav2, resting):
+    _, client = resting
     page = (REPOSITORY / "docs" / "ros.md").read_text(encoding="utf-8")
     told = dict(re.findall(r"^\| `(/[\w/]+)` \| `(\w+/(?:msg|srv|action)/\w+)` \|", page, re.M))
     wait_until(lambda: "btlang_sim" in client.node.get_node_names(), "the node")
