@@ -159,8 +159,7 @@ def test_joints_go_where_the_last_point_says_and_freeze_without_one(start_sim, c
     assert at(end, "head_turn") == pytest.approx(-0.5)
 
 
-def test_hands(resting):
-    _, client = resting
+def test_hands(sim, client: Client):
     holding = client.hear(String, "/left_hand/holding", LATCHED)
     assert holding.wait().data == ""
     wrong = client.call(SetBool, "/right_hand/close", data=True)
