@@ -267,13 +267,20 @@ def test_what_is_missing_is_told_before_the_run(btc: Callable[..., Command], nav
     )
 
 
-def test_preflight(robot: Callable[..., Script], btc: Callable[..., Command], client: Client) -> None:
+def test_preflight(
+    robot: Callable[..., Script],
+    btc: Callable[..., Command],
+    run: Run,
+    client: Client,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
     script = robot("base", "speech")
-    lacking = btc("move forward until there is a wall in front", "--preflight")
-    assert code_of(lacking) == 1
-    assert re.search(r"^topic   /scan +sensor_msgs/msg/LaserScan +missing: nobody publishes /scan$", lacking.out, re.M)
-    assert lacking.out.splitlines()[-1] == "Missing: 1 of 3."
-    assert "warning" not in lacking.out
+    monkeypatch.setattr("btlang.ros.connection._DISCOVERY", 3.0)  # nodes of tests announce themselves every 0.1 s
+    code, out, _ = run("move forward until there is a wall in front", "--preflight")
+    assert code == 1
+    assert re.search(r"^topic   /scan +sensor_msgs/msg/LaserScan +missing: nobody publishes /scan$", out, re.M)
+    assert out.splitlines()[-1] == "Missing: 1 of 3."
+    assert "warning" not in out
     client.publisher(Twist, "/cmd_vel")
     ready = btc("move forward then say done", "--preflight")
     assert code_of(ready) == 0, ready.err
