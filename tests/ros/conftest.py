@@ -11,7 +11,7 @@ import os
 import subprocess
 import sys
 from collections.abc import Callable, Iterator
-from contextlib import closing, contextmanager
+from contextlib import contextmanager
 from importlib.util import find_spec
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -122,12 +122,13 @@ def client(domain: int) -> Iterator[Client]:
     client.close()
 
 
-@contextmanager
-def _simulators(place: Path, domain: int) -> Iterator[Callable[..., Command]]:
+@pytest.fixture
+def start_sim(tmp_path: Path, domain: int) -> Iterator[Callable[..., Command]]:
+    """Starts `btc sim-ros` in a process of its own; it has to end as asked, and to complain of nothing."""
     started: list[Command] = []
 
     def start(*options: str, **environment: str | None) -> Command:
-        folder = place / f"sim{len(started)}"
+        folder = tmp_path / f"sim{len(started)}"
         folder.mkdir()
         arguments = ["sim-ros", "--world", str(ROOM), "--speed", "20", *options]
         command = Command(folder, domain, *arguments, **environment)
@@ -142,27 +143,9 @@ def _simulators(place: Path, domain: int) -> Iterator[Callable[..., Command]]:
 
 
 @pytest.fixture
-def start_sim(tmp_path: Path, domain: int) -> Iterator[Callable[..., Command]]:
-    """Starts `btc sim-ros` in a process of its own; it has to end as asked, and to complain of nothing."""
-    with _simulators(tmp_path, domain) as start:
-        yield start
-
-
-@pytest.fixture
 def sim(start_sim: Callable[..., Command]) -> Command:
     """The simulated robot in the room of `room.toml`, at 20 times real time."""
     return start_sim()
-
-
-@pytest.fixture(scope="module")
-def resting(tmp_path_factory: pytest.TempPathFactory) -> Iterator[tuple[Command, Client]]:
-    """One like that and a user's program, shared by the tests of a module that leave the robot as it was."""
-    from tests.ros.client import Client
-
-    with free_domain() as domain, _simulators(tmp_path_factory.mktemp("resting"), domain) as start:
-        sim = start()
-        with closing(Client(domain)) as client:
-            yield sim, client
 
 
 def _found(module: str) -> bool:

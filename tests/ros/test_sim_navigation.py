@@ -130,10 +130,8 @@ def test_a_new_goal_takes_the_place_of_the_one_under_way(nav2, send, odometry: H
         (nan, 2.0, "", "the goal is no pose: one of its numbers is infinite, or not a number"),
     ],
 )
-def test_why_it_does_not_arrive(nav2, resting, x: float, y: float, frame: str, reason: str):
-    _, client = resting
-    sent = Goal(client, client.action(nav2, "/navigate_to_pose"), goal(nav2, x, y, frame=frame))
-    status, code, told = ended(sent)
+def test_why_it_does_not_arrive(nav2, send, x: float, y: float, frame: str, reason: str):
+    status, code, told = ended(send(goal(nav2, x, y, frame=frame)))
     assert (status, told) == (GoalStatus.STATUS_ABORTED, reason)
     assert code != nav2.Result.NONE
 

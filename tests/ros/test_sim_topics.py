@@ -38,8 +38,7 @@ def stands(odometry: Odometry) -> bool:
     return (odometry.twist.twist.linear.x, odometry.twist.twist.angular.z) == (0.0, 0.0)
 
 
-def test_the_clock_never_goes_back_and_stamps_are_of_it(resting):
-    _, client = resting
+def test_the_clock_never_goes_back_and_stamps_are_of_it(sim, client: Client):
     clock = client.hear(Clock, "/clock")
     odometry = client.hear(Odometry, "/odom")
     clock.wait(lambda _: len(clock.messages) >= 100)
@@ -104,8 +103,7 @@ def test_while_commands_come_it_drives_until_it_bumps(start_sim, client: Client)
     assert at.header.frame_id == "map"
 
 
-def test_the_scan_is_that_of_the_simulated_robot(resting):
-    _, client = resting
+def test_the_scan_is_that_of_the_simulated_robot(sim, client: Client):
     scan = client.hear(LaserScan, "/scan", qos_profile_sensor_data).wait()
     assert np.allclose(scan.ranges, SimulatedRobot(load_world(ROOM)).scan(), atol=1e-5)
     assert (scan.angle_min, scan.header.frame_id) == (0.0, "base_link")
@@ -175,8 +173,7 @@ def test_hands(sim, client: Client):
     assert client.call(SetBool, "/left_hand/close", data=False).success
 
 
-def test_speech(resting):
-    sim, client = resting
+def test_speech(sim, client: Client):
     speaking = client.hear(Bool, "/speaking", LATCHED)
     assert speaking.wait().data is False
     voice = client.publisher(String, "/speech")
@@ -221,8 +218,7 @@ def test_namespace_and_the_time_of_the_system(start_sim, client: Client):
     assert "/robots/anna/left_hand/holding" in topics
 
 
-def test_two_clients_do_not_leave_threads(resting):
-    _, client = resting
+def test_two_clients_do_not_leave_threads(sim, client: Client):
     client.hear(Clock, "/clock").wait()
     before = threading.active_count()
     other = Client(client.node.context.get_domain_id())
@@ -232,8 +228,7 @@ def test_two_clients_do_not_leave_threads(resting):
     assert threading.active_count() == before
 
 
-def test_the_table_of_the_documentation_is_complete(nav2, resting):
-    _, client = resting
+def test_the_table_of_the_documentation_is_complete(nav2, sim, client: Client):
     page = (REPOSITORY / "docs" / "ros.md").read_text(encoding="utf-8")
     told = dict(re.findall(r"^\| `(/[\w/]+)` \| `(\w+/(?:msg|srv|action)/\w+)` \|", page, re.M))
     wait_until(lambda: "btlang_sim" in client.node.get_node_names(), "the node")
