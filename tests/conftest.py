@@ -22,6 +22,8 @@ settings.register_profile(
 )
 for variable in ("FORCE_COLOR", "CLICOLOR_FORCE"):  # what is compared is plain text
     os.environ.pop(variable, None)
+os.environ.pop("PYTHONDONTWRITEBYTECODE", None)  # hundreds of commands are started: each would compile btlang anew
+sys.dont_write_bytecode = False  # and each worker the tests
 
 
 def pytest_configure(config: pytest.Config) -> None:

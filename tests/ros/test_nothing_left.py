@@ -13,7 +13,7 @@ from tests.profiles import amount
 from tests.ros.client import check_nodes
 from tests.ros.processes import LONG, Command
 
-RUNS = amount(3, 20)
+RUNS = amount(2, 20)
 
 
 def segments(process: int) -> set[str]:

@@ -12,6 +12,7 @@ import pytest
 import btlang
 from btlang.engine.status import SUCCESS
 from btlang.ros.command import connect_ros
+from tests.profiles import amount
 from tests.ros.processes import LONG, Command, wait_until
 
 
@@ -20,10 +21,11 @@ def _here(domain: int, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setenv("ROS_DOMAIN_ID", str(domain))
 
 
+@pytest.mark.long
 def test_runs_leave_no_thread_behind(sim: Command) -> None:
     tree = btlang.parse_tree("print done")
     before = set(threading.enumerate())
-    for _ in range(5):
+    for _ in range(amount(2, 5)):
         assert tree.run(robot="ros").status == SUCCESS
     assert set(threading.enumerate()) == before
 

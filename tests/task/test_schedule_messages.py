@@ -147,7 +147,7 @@ def codes(read: Callable[[], object]) -> list[str]:
     return []
 
 
-@searches(150, 20_000)
+@searches(80, 20_000)
 @given(text=_TEXTS, zone=st.sampled_from(("", BERLIN)))
 def test_any_text_is_read_or_refused(text: str, zone: str) -> None:
     assert codes(lambda: read_rule(text, zone)) in ([], ["BT194"])

@@ -125,11 +125,10 @@ def test_s_makes_single_steps(terminal: Open) -> None:
     seen = run(terminal, "-c", DRIVE)
     seen.wait_for("▶ move forward")
     seen.press("s")
-    seen.wait_for("paused")
-    paused = ticks(at_rest(seen))  # on a busy machine the tick of this step may still be to come
+    paused = ticks(seen.wait_for("paused"))
     seen.press("s")
     seen.wait_until(lambda screen: ticks(screen) > paused)
-    first = ticks(at_rest(seen))
+    first = ticks(at_rest(seen))  # on a busy machine the ticks of these steps may still be to come
     for step in range(1, 4):
         seen.press("s")
         seen.wait_until(lambda screen, wanted=first + step: ticks(screen) == wanted, "one more tick")
