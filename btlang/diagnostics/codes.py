@@ -190,8 +190,8 @@ _ALL = (
     Code("BT192", "The run can't be saved: {reason}."),
     Code("BT193", "The mission can't go on from what was saved: {reason}.", "Start it again from its beginning."),
     Code("BT194", "{what} {problem}.", "{advice}"),
-    Code("BT195", "The task store {place} can't be used: {reason}."),
-    Code("BT196", "The task store {place} belongs to a newer btlang: it has version {version}, and this one knows versions "
+    Code("BT195", "The store {place} can't be used: {reason}."),
+    Code("BT196", "The store {place} belongs to a newer btlang: it has version {version}, and this one knows versions "
          "up to {known}.", "Update btlang: pip install --upgrade btlang"),
     Code("BT197", "The tasks of {place} are run already by {owner}.", "End that first, or use another store."),
     Code("BT198", "The command '{name}' can't be read: {reason}."),

@@ -50,7 +50,7 @@ def restore_backup(path: str, place: str) -> None:
             backup.check()
             with backup.transaction(Mode.READ) as execute:
                 if not stored_version(backup, execute):
-                    raise store_error(path, "it isn't a task store")
+                    raise store_error(path, "it isn't a store of btlang")
             backup.copy(copied.path)
             migrate(copied)
             with copied.transaction(Mode.READ) as read, target.transaction(Mode.ALONE) as write:
@@ -75,7 +75,7 @@ def _write(database: Database, part: str, path: str) -> None:
 
 def _filled() -> dict[str, list[str]]:
     """The tables, with their columns, that have no rows before a store is used."""
-    tables = tables_of(len(MIGRATIONS))
+    tables = tables_of(MIGRATIONS)
     return {table: columns for table, columns in tables.items() if table not in ("version", "counter")}
 
 

@@ -17,7 +17,9 @@ if TYPE_CHECKING:
 
     from btlang.task.database import Execute
 
-MIGRATIONS: list[tuple[str, ...]] = [
+    Step = tuple[str, ...]
+
+MIGRATIONS: list[Step] = [
     (
         "CREATE TABLE version (number BIGINT NOT NULL)",
         "INSERT INTO version (number) VALUES (0)",
@@ -84,48 +86,51 @@ def _database(place: str, durable: bool) -> Database:
     return Postgres(place, durable)
 
 
-def migrate(database: Database) -> None:
-    """Brings a store to the version of this btlang, in one transaction. Raises MissionError, and changes nothing: BT195
-    if it isn't a store, BT196 if its version is newer.
+def migrate(database: Database, steps: Sequence[Step] | None = None) -> None:
+    """Brings a store to the version of this btlang, in one transaction: with these steps, by default those of tasks.
+
+    Raises MissionError, and changes nothing: BT195 if it isn't a store of btlang, BT196 if its version is newer.
     """
+    steps = MIGRATIONS if steps is None else steps
     with database.transaction(Mode.READ) as execute:
-        version = stored_version(database, execute)
+        version = stored_version(database, execute, steps)
     database.prepare()
-    if version == len(MIGRATIONS):
+    if version == len(steps):
         return
     with database.transaction(Mode.ALONE) as execute:
-        for step in MIGRATIONS[stored_version(database, execute) :]:  # another process may have been here before
+        for step in steps[stored_version(database, execute, steps) :]:  # another process may have been here before
             for statement in step:
                 execute(statement)
-        execute("UPDATE version SET number = ?", (len(MIGRATIONS),))
+        execute("UPDATE version SET number = ?", (len(steps),))
 
 
-def stored_version(database: Database, execute: Execute) -> int:
+def stored_version(database: Database, execute: Execute, steps: Sequence[Step] | None = None) -> int:
     """The version of a store that may be used, 0 where there is none yet. Raises MissionError (BT195, BT196)."""
+    steps = MIGRATIONS if steps is None else steps
     found = database.tables(execute)
     if "version" not in found:
-        if found and (not database.is_shared or found.keys() & tables_of(len(MIGRATIONS)).keys()):
-            raise store_error(database.place, "it has tables, but it isn't a task store")
+        if found and (not database.is_shared or found.keys() & tables_of(steps).keys()):
+            raise store_error(database.place, "it has tables, but it isn't a store of btlang")
         return 0
     rows = execute("SELECT number FROM version") if found["version"] == ["number"] else []
     if len(rows) != 1 or not isinstance(rows[0][0], int) or rows[0][0] < 1:
-        raise store_error(database.place, "its version can't be read; perhaps it isn't a task store")
+        raise store_error(database.place, "its version can't be read; perhaps it isn't a store of btlang")
     version = rows[0][0]
-    if version > len(MIGRATIONS):
-        known = str(len(MIGRATIONS))
+    if version > len(steps):
+        known = str(len(steps))
         raise MissionError([diagnostic("BT196", NOWHERE, place=database.place, version=str(version), known=known)])
-    for table, expected in tables_of(version).items():
+    for table, expected in tables_of(steps[:version]).items():
         if sorted(found.get(table, ())) != sorted(expected):
             problem = "has other columns than it should" if table in found else "is missing"
             raise store_error(database.place, f"its table '{table}' {problem}")
     return version
 
 
-def tables_of(version: int) -> dict[str, list[str]]:
-    """The columns of each table of a version."""
+def tables_of(steps: Sequence[Step]) -> dict[str, list[str]]:
+    """The columns of each table that these steps make."""
     connection = sqlite3.connect(":memory:")
     try:
-        for step in MIGRATIONS[:version]:
+        for step in steps:
             for statement in step:
                 connection.execute(statement)
 

@@ -31,7 +31,7 @@ else:
 
 
 _REASONS = {
-    "SQLITE_NOTADB": "it isn't a task store",
+    "SQLITE_NOTADB": "it isn't a store of btlang",
     "SQLITE_CORRUPT": "it's damaged",
     "SQLITE_FULL": "the disk is full",
     "SQLITE_BUSY": "another process has locked it for too long",

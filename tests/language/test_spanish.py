@@ -17,7 +17,7 @@ from btlang.frontends.mission.reader import PARSERS
 from btlang.printer.mission import english
 from btlang.repl.draft import MissionDraft
 from btlang.ros.mission.setup import Setup
-from btlang.text.source import Source
+from btlang.task.task import MissionText
 from btlang.text.words import without_accents
 from btlang.vocabulary.load import load_vocabulary
 from btlang.vocabulary.shipped import ENGLISH, language_folder, languages
@@ -233,7 +233,7 @@ def test_the_prompt_and_the_ros_node_read_it() -> None:
     draft = MissionDraft(language="es")
     draft.use_world(None)
     assert draft.compile("¡saluda!").mission.tree == btlang.parse_tree("wave").tree
-    assert Setup(language="es").compiled(Source("saluda")).tree == btlang.parse_tree("wave").tree
+    assert Setup(language="es").reader().read(MissionText("saluda")).tree == btlang.parse_tree("wave").tree
 
 
 def test_a_slip_is_corrected_in_spanish(capsys: pytest.CaptureFixture[str]) -> None:

@@ -37,13 +37,13 @@ def why_not(place: str | Path) -> str:
 def test_a_file_that_is_no_store(tmp_path: Path) -> None:
     text = tmp_path / "mission.txt"
     text.write_text("wave then nod\n" * 100, encoding="utf-8")
-    assert why_not(text) == "it isn't a task store."
+    assert why_not(text) == "it isn't a store of btlang."
     assert text.read_text(encoding="utf-8") == "wave then nod\n" * 100
     other = tmp_path / "other.db"
     execute_at(str(other), "CREATE TABLE photo (name TEXT)")
-    assert why_not(other) == "it has tables, but it isn't a task store."
+    assert why_not(other) == "it has tables, but it isn't a store of btlang."
     execute_at(str(other), "CREATE TABLE version (major TEXT)")
-    assert why_not(other) == "its version can't be read; perhaps it isn't a task store."
+    assert why_not(other) == "its version can't be read; perhaps it isn't a store of btlang."
 
 
 def test_no_file_can_be_there(tmp_path: Path) -> None:
@@ -84,7 +84,7 @@ def test_a_damaged_file(tmp_path: Path, damage: str) -> None:
     else:
         middle = whole[:size] + bytes(range(256)) * 16 + whole[size + 4096 :]
         place.write_bytes({"head": b"\0" * 64 + whole[64:], "middle": middle, "cut": whole[:size]}[damage])
-    assert why_not(place) == ("it isn't a task store." if damage == "head" else "it's damaged.")
+    assert why_not(place) == ("it isn't a store of btlang." if damage == "head" else "it's damaged.")
     place.write_bytes(whole)
     with open_store(str(place)) as store:
         assert len(store.tasks()) == 40
@@ -102,9 +102,9 @@ def test_no_version(store: Store, place: str) -> None:
     store.add(a_task())
     store.close()
     execute_at(place, "UPDATE version SET number = 0")
-    assert why_not(place) == "its version can't be read; perhaps it isn't a task store."
+    assert why_not(place) == "its version can't be read; perhaps it isn't a store of btlang."
     execute_at(place, "DROP TABLE version")
-    assert why_not(place) == "it has tables, but it isn't a task store."
+    assert why_not(place) == "it has tables, but it isn't a store of btlang."
 
 
 def test_a_newer_store_is_left_alone(store: Store, place: str) -> None:
@@ -181,7 +181,7 @@ def test_an_older_store_is_migrated(place: str, monkeypatch: pytest.MonkeyPatch,
 def test_a_migration_that_fails_changes_nothing(place: str, monkeypatch: pytest.MonkeyPatch) -> None:
     execute_at(place, VERSION_1)
     monkeypatch.setattr(migrations, "MIGRATIONS", [*migrations.MIGRATIONS, (*NEXT, "UPDATE colour SET red = 1")])
-    monkeypatch.setattr(migrations, "tables_of", lambda version: {})  # the step can't be made in any database
+    monkeypatch.setattr(migrations, "tables_of", lambda steps: {})  # the step can't be made in any database
     with pytest.raises(StoreError, match="colour"):
         open_store(place)
     monkeypatch.undo()
@@ -258,8 +258,8 @@ def test_what_is_no_backup_is_not_restored(store: Store, place: str, tmp_path: P
     text.write_text("wave\n" * 200, encoding="utf-8")
     empty.touch()
     for path, told in (
-        (text, "it isn't a task store."),
-        (empty, "it isn't a task store."),
+        (text, "it isn't a store of btlang."),
+        (empty, "it isn't a store of btlang."),
         (tmp_path / "no", "there's no such file."),
     ):
         with pytest.raises(StoreError) as error:
