@@ -27,6 +27,8 @@ class EmergencyStop:
         """Why the robot is stopped, "" if it isn't."""
         self.stops: list[str] = []
         """The reasons of all stops of this process: one may be released before anybody has taken notice of it."""
+        self.listeners: list[Callable[[], object]] = []
+        """Called a moment after a stop or a release, in another thread."""
         self._kept = self.reason
         self._changed = threading.Event()
         self._writing = threading.Lock()  # which `stop` doesn't take
@@ -54,6 +56,7 @@ class EmergencyStop:
         with self._writing:
             _write(self._path, "")
             self._kept = self.reason = ""
+        self._changed.set()
 
     def close(self) -> None:
         """Waits until the file has what it should have, a second at most."""
@@ -65,6 +68,8 @@ class EmergencyStop:
         while not self._closed or self._kept != self.reason:
             self._changed.wait(None if self._kept == self.reason else _AGAIN)
             self._changed.clear()
+            for listener in self.listeners:
+                listener()
             with self._writing, suppress(OSError):
                 reason = self.reason
                 if reason and reason != self._kept:

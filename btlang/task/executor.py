@@ -22,7 +22,7 @@ from btlang.task.outbox import Outbox
 from btlang.task.recordings import Recordings
 from btlang.task.store import Store
 from btlang.task.task import ACTIVE, FINAL, Ending, MissionText, Restart, State, Task
-from btlang.task.watch import RunWatch, commands_of, indices_of, reason_of
+from btlang.task.watch import RunWatch, add_sinks, commands_of, indices_of, reason_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -47,7 +47,7 @@ class Executor:
 
     `missions` reads a mission (MissionError if it can't be). `now` gives the time since 1970, `trouble` gets what went
     wrong, for people. `speed` and `rate` are those of `Session.prepare`, `idle_rate` is the rate between tasks. `sinks`
-    makes sinks for the run of a task that is about to begin.
+    makes sinks for a run that is about to begin: of a task, or None for the house rules between tasks.
     """
 
     def __init__(
@@ -66,7 +66,7 @@ class Executor:
         speed: float | str = "real",
         rate: float = 20.0,
         idle_rate: float = 20.0,
-        sinks: Callable[[Task, Mission, Run], list[Sink]] = lambda task, mission, run: [],
+        sinks: Callable[[Task | None, Mission, Run], list[Sink]] = lambda task, mission, run: [],
     ) -> None:
         self._session, self._store, self._manager, self._emergency = session, store, manager, emergency
         self._rules, self._idle_mission = rules, rules.idle or idle
@@ -249,7 +249,7 @@ class Executor:
         """Follows the house rules until there is something to do."""
         run = self._session.prepare(self._idle_mission, speed=self._speed, rate=self._idle_rate)
         self._watch = RunWatch(indices_of(run, self._rules.reactions), (), self._leave_idle)
-        run.bus.add(self._watch)
+        add_sinks(run, self._watch, *self._sinks(None, self._idle_mission, run))
         run.after_ticks(self._leave_idle)
         outcome = self._execute(run)
         if outcome.failure is not None:
@@ -302,9 +302,7 @@ class Executor:
                 run.nodes.blackboard.set(value_key(name), value)
         commands = commands_of(run, mission)
         self._watch = RunWatch(indices_of(run, self._rules.reactions), commands, self.wake)
-        run.bus.add(self._watch)
-        for sink in self._sinks(task, mission, run):
-            run.bus.add(sink)
+        add_sinks(run, self._watch, *self._sinks(task, mission, run))
         run.after_ticks(partial(self._after_tick, task, run, self._watch))
         return run
 

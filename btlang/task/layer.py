@@ -13,6 +13,7 @@ from btlang.robots.needs import check_body, needs_of
 from btlang.session import Run, Session
 from btlang.task.emergency import EmergencyStop
 from btlang.task.executor import Executor
+from btlang.task.feed import Feed
 from btlang.task.handler import Handler
 from btlang.task.house_rules import HouseRules, no_house_rules, read_house_rules
 from btlang.task.manager import DAY, Manager
@@ -46,7 +47,8 @@ class TaskLayer:
     file there. `rules` is the path of its house rules. `speed` is that of all runs: if it isn't "real", time is that of
     the robot, and begins at the moment `begins` (seconds since 1970). `recordings` is the folder for the recordings of
     tasks, None for none. Tasks that are over are kept for `keeps` seconds. `trouble` gets what goes wrong, for people.
-    `sinks` makes sinks for the run of each task, `down` is what the command of that name calls. Raises MissionError.
+    `sinks` makes sinks for each run (None: of the house rules between tasks), `down` is what the command of that name
+    calls. Raises MissionError.
     """
 
     def __init__(
@@ -65,7 +67,7 @@ class TaskLayer:
         recordings: str | None = None,
         trouble: Callable[[str], object] = lambda text: None,
         down: Callable[[], object] = lambda: None,
-        sinks: Callable[[Task, Mission, Run], list[Sink]] = lambda task, mission, run: [],
+        sinks: Callable[[Task | None, Mission, Run], list[Sink]] = lambda task, mission, run: [],
     ) -> None:
         os.makedirs(folder, mode=0o700, exist_ok=True)
         self.reader = reader or MissionReader()
@@ -80,12 +82,15 @@ class TaskLayer:
         self._begins = time.time() if begins is None else begins
         self._real = speed == "real"
         self.emergency = EmergencyStop(os.path.join(folder, "emergency_stop"), self.session.emergency_stop)
+        self.feed = Feed(self.store, self._hindrances)
+        self.emergency.listeners.append(self.feed.wake)
         self.manager = Manager(self.store, keeps)
         self.executor = Executor(
             self.session, self.store, self.manager, self.emergency, self.rules, self.reader.read(_IDLE),
             missions=self.reader.read, now=self.now, trouble=trouble,
             recordings=None if recordings is None else Recordings(recordings),
-            speed=speed, idle_rate=20.0 if self._real else _SLOW, sinks=sinks,
+            speed=speed, idle_rate=20.0 if self._real else _SLOW,
+            sinks=lambda *run: [*self.feed.sinks(*run), *sinks(*run)],
         )  # fmt: skip
         self.handler = Handler(
             self.store, self.manager, self.executor, self.emergency, self.session, self._admitted, self.now, down
@@ -102,7 +107,9 @@ class TaskLayer:
                 command = read_command(command)
             except MissionError as error:
                 return Answer(False, str(error), {}, error.diagnostics[0].code)
-        return self.handler.handle(command, person)
+        answer = self.handler.handle(command, person)
+        self.feed.wake()
+        return answer
 
     def add(self, mission: MissionText, person: str = "", **fields: Any) -> Task:
         """Queues a mission of the robot's owner, with these fields of its task. Raises MissionError."""
@@ -143,6 +150,12 @@ class TaskLayer:
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
         self.close()
+
+    def _hindrances(self) -> dict[str, Any]:
+        return {
+            "stopped": self.emergency.reason, "paused": self.executor.is_paused,
+            "hindrance": self.executor.hindrance(),
+        }  # fmt: skip
 
     def _admitted(self, text: MissionText) -> Mission:
         """A mission that this robot can do. Raises MissionError with all reasons why it can't."""

@@ -88,7 +88,12 @@ def _up(options: argparse.Namespace) -> int:
     """Until `btc robot down`, Ctrl-C or SIGTERM."""
     name, ended = options.name or USUAL_NAME, threading.Event()
     layer: TaskLayer
-    door = SocketServer(name, lambda data, person: layer.handle(data, person), lambda person: layer.stop(person))
+    door = SocketServer(
+        name,
+        lambda data, person: layer.handle(data, person),
+        lambda person: layer.stop(person),
+        lambda *wanted: layer.feed.watch(*wanted),
+    )
     try:  # the name is ours before the store and the robot are touched
         reader = MissionReader(
             options.keywords,

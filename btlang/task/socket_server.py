@@ -11,8 +11,8 @@ import os
 import socket
 import struct
 import threading
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager, suppress
+from collections.abc import Callable, Generator, Iterator
+from contextlib import closing, contextmanager, suppress
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
@@ -24,21 +24,30 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    Handle = Callable[[dict[str, Any], str], Answer]
+    Handle = Callable[[Any, str], Answer]
 
 MOST_BYTES = 4_000_000
 """Of one message: a line without an end would fill the memory."""
 _LEAVE = 2.0  # seconds that the last answers get
+_RATE = 20.0  # messages of one kind in a second, if nobody says another one
+_UNREADABLE = object()
 _WAITING = 128  # connections that may wait to be taken
 
 
 class SocketServer:
     """Serves a robot's name until `close`. `handle` does a command in JSON for a person: the user of the process that
-    sent it. `stop` is the emergency stop. Raises MissionError (BT190) if a robot of this name is up.
+    sent it, or who that says, as "as". `stop` is the emergency stop, `watch` what happens (btlang.task.feed), for who
+    sends {"watch": {...}}. Raises MissionError (BT190) if a robot of this name is up.
     """
 
-    def __init__(self, name: str, handle: Handle, stop: Callable[[str], object]) -> None:
-        self._handle, self._stop = handle, stop
+    def __init__(
+        self,
+        name: str,
+        handle: Handle,
+        stop: Callable[[str], object],
+        watch: Callable[..., Generator[dict[str, Any]]] | None = None,
+    ) -> None:
+        self._handle, self._stop, self._watch = handle, stop, watch
         self._busy, self._answered = 0, threading.Condition()
         self._paths = [socket_path(name), socket_path(name, stop=True)]
         self._lock = os.open(f"{self._paths[0]}.lock", os.O_RDWR | os.O_CREAT, 0o600)
@@ -95,8 +104,12 @@ class SocketServer:
         person = _person(connection)
         with suppress(OSError), connection, connection.makefile("rb") as lines:
             while line := lines.readline(MOST_BYTES):
+                data = _read(line)
+                if isinstance(data, dict) and "watch" in data and self._watch is not None:
+                    self._tell(connection, data["watch"])
+                    return
                 with self._at_work():
-                    answer = self._answer(line, person)
+                    answer = self._answer(data, person)
                     connection.sendall(json.dumps(answer.as_json(), default=str).encode() + b"\n")
                 if not line.endswith(b"\n"):
                     return
@@ -112,14 +125,33 @@ class SocketServer:
                 self._busy -= 1
                 self._answered.notify_all()
 
-    def _answer(self, line: bytes, person: str) -> Answer:
-        try:
-            data = json.loads(line)
-        except (ValueError, RecursionError):
+    def _tell(self, connection: socket.socket, wanted: object) -> None:
+        """Until one of both ends."""
+        assert self._watch is not None
+        known = wanted if isinstance(wanted, dict) else {}
+        rate, after = known.get("rate", _RATE), known.get("after")
+        if not isinstance(rate, int | float) or not isinstance(after, int | None):
+            rate, after = _RATE, None
+        with closing(self._watch(rate, after)) as messages, suppress(MissionError):
+            for message in messages:
+                connection.sendall(json.dumps(message, default=str).encode() + b"\n")
+
+    def _answer(self, data: object, person: str) -> Answer:
+        if data is _UNREADABLE:
             return Answer(False, "That isn't a line of JSON.", {}, "BT198")
-        if isinstance(data, dict) and data.get("command") == EmergencyStop.tag:
-            self._stop(person)  # first of all; what follows writes it down
+        if isinstance(data, dict):
+            other = data.pop("as", "")
+            person = other if isinstance(other, str) and other else person
+            if data.get("command") == EmergencyStop.tag:
+                self._stop(person)  # first of all; what follows writes it down
         return self._handle(data, person)
+
+
+def _read(line: bytes) -> object:
+    try:
+        return json.loads(line)
+    except (ValueError, RecursionError):
+        return _UNREADABLE
 
 
 def _listening(path: str) -> socket.socket:

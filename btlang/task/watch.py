@@ -12,6 +12,7 @@ from btlang.tree.catalogue import CATALOGUE
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.api import Mission
+    from btlang.run.events import Sink
     from btlang.run.robot_state import RobotState
     from btlang.run.runner import Outcome
     from btlang.session import Run
@@ -60,6 +61,12 @@ class RunWatch:
         """Whether a rule has begun to act since the last call."""
         began, self.began = self.began, False
         return began
+
+
+def add_sinks(run: Run, *sinks: Sink) -> None:
+    """They hear of a run that is about to begin."""
+    for sink in sinks:
+        run.bus.add(sink)
 
 
 def indices_of(run: Run, paths: Collection[str]) -> list[int]:

@@ -86,7 +86,8 @@ class Driven:
         layer.manager.recover(layer.now(), layer.emergency.reason)
         return layer
 
-    def _listen(self, task: Task, *_: object) -> list[Any]:
+    def _listen(self, task: Task | None, *_: object) -> list[Any]:
+        assert task is not None
         self.heed(self.prepared)
         return [_Ear(task, self)]
 

@@ -159,7 +159,9 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
         """Why no mission is taken now; "" where one is."""
         return "" if self._active else "the node is not active"
 
-    def _sinks(self, task: Task, mission: Mission, run: Run) -> list[Sink]:
+    def _sinks(self, task: Task | None, mission: Mission, run: Run) -> list[Sink]:
+        if task is None:
+            return []
         tree = TreeTopic(mission, run, self._topics.tree, self._topics.tree_changes)
 
         def changed(news: News) -> None:

@@ -1,0 +1,173 @@
+"""What happens on a robot, for any number of watchers: none of them can delay it, and each gets the newest."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Generator, Iterator
+from contextlib import suppress
+
+from btlang.api import Mission
+from btlang.engine.status import IDLE, NAMES
+from btlang.record import Record
+from btlang.run.bus import INLINE
+from btlang.run.events import LOGGED, Event, PeriodPassed, StatusesChanged
+from btlang.run.json_log import as_json
+from btlang.session import Run
+from btlang.task.database import StoreError
+from btlang.task.store import Store
+from btlang.task.task import Task
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+    from btlang.run.events import Sink
+    from btlang.run.robot_state import RobotState
+
+RATES = 0.1, 100.0
+"""The least and the most messages of one kind in a second."""
+_ALIVE = 5.0  # seconds after which a watcher of a robot on which nothing happens gets a word nevertheless
+_MOST_EVENTS, _MOST_RUNS, _MOST_CHANGES = 1000, 16, 1000
+
+
+class _Watched(Record):
+    """A run with its task, 0 for the house rules between tasks."""
+
+    task: int
+    mission: Mission
+    run: Run
+
+
+class Feed:
+    """`sinks` makes the sinks of a run; `watch` tells what happens, beginning with what is now.
+
+    `robot` gives what keeps the robot from working. Methods may be called from any thread.
+    """
+
+    def __init__(self, store: Store, robot: Callable[[], dict[str, Any]]) -> None:
+        self._store, self._robot = store, robot
+        self._watchers: list[_Watcher] = []
+        self._current: _Watched | None = None
+        self._state: RobotState | None = None
+        store.listeners.append(self.wake)
+
+    def sinks(self, task: Task | None, mission: Mission, run: Run) -> list[Sink]:
+        """Those of a run that is about to begin."""
+        watched = _Watched(0 if task is None else task.id, mission, run)
+        self._current = watched
+        for watcher in tuple(self._watchers):
+            watcher.runs.append(watched)
+        return [_Tap(self, watched)]
+
+    def wake(self) -> None:
+        """Something may have changed."""
+        for watcher in tuple(self._watchers):
+            watcher.news.set()
+
+    def watch(self, rate: float = 10.0, after: int | None = None) -> Generator[dict[str, Any]]:
+        """Messages, each with its "type", until it is closed or the robot goes down; the caller waits for the next one.
+
+        `after` is the number of the last change of a task that is known: those that came since are told, all of them.
+        """
+        least, most = RATES
+        watcher = _Watcher(self._store.latest_change() if after is None else after)
+        if self._current is not None:
+            watcher.runs.append(self._current)
+        self._watchers.append(watcher)
+        try:
+            yield {"type": "hello", "change": watcher.change}
+            with suppress(StoreError):  # it is closed, or can't be read
+                yield from self._messages(watcher, 1.0 / min(max(rate, least), most))
+        finally:
+            self._watchers.remove(watcher)
+
+    def take(self, watched: _Watched, event: Event) -> None:
+        """In the thread of the run."""
+        if isinstance(event, PeriodPassed):
+            self._state = event.state
+        for watcher in tuple(self._watchers):
+            if isinstance(event, LOGGED):
+                watcher.events.append((watched, event))
+            watcher.news.set()
+
+    def _messages(self, watcher: _Watcher, period: float) -> Iterator[dict[str, Any]]:
+        while True:
+            began = time.monotonic()
+            yield from self._new(watcher)
+            if not watcher.news.wait(_ALIVE):
+                yield {"type": "alive"}
+            watcher.news.clear()
+            time.sleep(max(0.0, began + period - time.monotonic()))
+
+    def _new(self, watcher: _Watcher) -> Iterator[dict[str, Any]]:
+        found = self._store.changes(after=watcher.change, limit=_MOST_CHANGES)
+        for number, change in found:
+            watcher.change = number
+            yield {"type": "change", "number": number, **{name: getattr(change, name) for name in change.fields}}
+        while watcher.runs:
+            watched = watcher.runs[0]
+            yield from _statuses(watcher, watched)
+            if watched is self._current or len(watcher.runs) == 1:
+                break
+            watcher.runs.popleft()
+        while watcher.events:
+            watched, event = watcher.events.popleft()
+            yield {"type": "event", "task": watched.task, "event": as_json(event, watched.mission.label)}
+        robot = {**self._robot(), **_state(self._state)}
+        if robot != watcher.robot:
+            watcher.robot = robot
+            yield {"type": "robot", **robot}
+
+
+class _Watcher:
+    """What somebody knows, and what happened since."""
+
+    def __init__(self, change: int) -> None:
+        self.change = change
+        self.news = threading.Event()
+        self.runs: deque[_Watched] = deque(maxlen=_MOST_RUNS)
+        self.events: deque[tuple[_Watched, Event]] = deque(maxlen=_MOST_EVENTS)
+        self.robot: dict[str, Any] = {}
+        self.run = ""
+        self.codes = b""
+
+
+class _Tap:
+    """The sink of a run."""
+
+    policy = INLINE
+
+    def __init__(self, feed: Feed, watched: _Watched) -> None:
+        self._feed, self._watched = feed, watched
+
+    def __call__(self, event: Event) -> None:
+        if isinstance(event, (StatusesChanged, PeriodPassed, *LOGGED)):
+            self._feed.take(self._watched, event)
+
+
+def _statuses(watcher: _Watcher, watched: _Watched) -> Iterator[dict[str, Any]]:
+    """The tree of a run, if it is a new one, and the statuses that are new: those between are left out."""
+    run = watched.run
+    if watcher.run != run.id:
+        watcher.run, watcher.codes = run.id, bytes([IDLE]) * run.nodes.size
+        mission = watched.mission
+        nodes = [[path, node.id, mission.label(node)] for path, node in run.nodes.nodes]
+        yield {"type": "run", "run": run.id, "task": watched.task, "outline": str(mission), "nodes": nodes}
+    codes = run.follower.codes() or watcher.codes
+    if codes != watcher.codes:
+        pairs = enumerate(zip(watcher.codes, codes, strict=True))
+        changes = [[index, NAMES[min(after, IDLE)]] for index, (before, after) in pairs if before != after]
+        watcher.codes = codes
+        yield {"type": "statuses", "run": run.id, "changes": changes}
+
+
+def _state(state: RobotState | None) -> dict[str, Any]:
+    """Rounded, so that a robot at rest has nothing new."""
+    if state is None:
+        return {"pose": None, "battery": None, "left": None, "right": None}
+    pose = state.pose
+    place = None if pose is None else [round(pose.x, 3), round(pose.y, 3), round(pose.heading, 1)]
+    battery = None if state.battery is None else round(state.battery, 1)
+    return {"pose": place, "battery": battery, "left": state.left, "right": state.right}

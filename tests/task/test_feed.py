@@ -1,0 +1,142 @@
+"""What watchers of a robot hear: the newest, without gaps where there may be none, and never at the robot's cost."""
+
+from __future__ import annotations
+
+import itertools
+import json
+import socket
+import tempfile
+import threading
+from collections.abc import Iterator
+from contextlib import closing
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from btlang.task.layer import TaskLayer
+from btlang.task.paths import USUAL_NAME, socket_path
+from btlang.task.socket_server import SocketServer
+from btlang.task.task import FINAL, State
+
+from .layers import ask, layer_in, submit, wait_for
+
+
+class Watcher:
+    """Somebody who reads all messages, in a thread of its own."""
+
+    def __init__(self, layer: TaskLayer, **wanted: Any) -> None:
+        self.messages: list[dict[str, Any]] = []
+        self._news = threading.Condition()
+        self._source = layer.feed.watch(**{"rate": 100.0, **wanted})
+        threading.Thread(target=self._read, daemon=True).start()
+        self.wait(lambda message: message["type"] == "hello")
+
+    def _read(self) -> None:
+        for message in self._source:
+            with self._news:
+                self.messages.append(message)
+                self._news.notify_all()
+
+    def wait(self, wanted: Any) -> dict[str, Any]:
+        """The first message that is as wanted."""
+        with self._news:
+            assert self._news.wait_for(lambda: any(map(wanted, self.messages)), 10)
+            return next(filter(wanted, self.messages))
+
+    def of(self, kind: str) -> list[dict[str, Any]]:
+        return [message for message in self.messages if message["type"] == kind]
+
+
+def test_a_task_is_followed(tmp_path: Path) -> None:
+    with layer_in(tmp_path) as layer:
+        watcher = Watcher(layer)
+        number = submit(layer, "wave then say hello")
+        watcher.wait(lambda message: message.get("state") == State.COMPLETED)
+        run = watcher.wait(lambda message: message["type"] == "run" and message["task"] == number)
+        assert [node[:2] for node in run["nodes"]] == [["/", "Sequence"], ["/0", "Wave"], ["/1", "Say"]]
+        watcher.wait(lambda message: message.get("event", {}).get("event") == "end" and message["task"] == number)
+        statuses: dict[int, str] = {}
+        for message in watcher.of("statuses"):
+            if message["run"] == run["run"]:
+                statuses |= dict(message["changes"])
+        assert statuses == {0: "SUCCESS", 1: "SUCCESS", 2: "SUCCESS"}
+        assert [each["event"]["text"] for each in watcher.of("event") if each["event"]["event"] == "say"] == ["hello"]
+        states = [message["state"] for message in watcher.of("change")]
+        assert states == [State.QUEUED, State.STANDBY, State.UNDERWAY, State.COMPLETED]
+
+
+def test_who_comes_back_misses_no_change(tmp_path: Path) -> None:
+    with layer_in(tmp_path) as layer:
+        ask(layer, "pause")
+        for _ in range(3):
+            submit(layer, "wave")
+        first = Watcher(layer, after=1)
+        assert [first.wait(lambda m, n=n: m.get("number") == n)["task"] for n in (2, 3)] == [2, 3]
+        late = Watcher(layer)
+        ask(layer, "cancel", task=2)
+        assert late.wait(lambda message: message["type"] == "change")["number"] == 4
+        assert len(late.of("change")) == 1
+
+
+def test_stops_and_pauses_are_told(tmp_path: Path) -> None:
+    with layer_in(tmp_path) as layer:
+        watcher = Watcher(layer)
+        layer.stop("ann")
+        told = watcher.wait(lambda message: message.get("stopped"))
+        assert told["stopped"] == "emergency stop by ann"
+        ask(layer, "release")
+        ask(layer, "pause")
+        assert not watcher.wait(lambda message: message.get("paused"))["stopped"]
+        assert watcher.wait(lambda message: message.get("pose"))["battery"] == 100.0
+
+
+def test_who_reads_nothing_delays_nobody_and_fills_no_memory(tmp_path: Path) -> None:
+    with layer_in(tmp_path) as layer:
+        silent = layer.feed.watch()
+        next(silent)
+        numbers = [submit(layer, f"repeat 300 times: print {number}") for number in range(20)]
+        for number in numbers:
+            assert wait_for(layer, number, *FINAL).state is State.COMPLETED
+        [watcher] = layer.feed._watchers
+        assert len(watcher.events) == watcher.events.maxlen
+        assert len(watcher.runs) == watcher.runs.maxlen
+        messages = list(itertools.takewhile(lambda message: message["type"] != "robot", silent))
+        assert [m["number"] for m in messages if m["type"] == "change"] == list(range(1, 81))
+        silent.close()
+        assert layer.feed._watchers == []
+
+
+@pytest.fixture
+def door(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[TaskLayer]:
+    """A robot with its sockets."""
+    with tempfile.TemporaryDirectory() as short:
+        monkeypatch.setenv("XDG_RUNTIME_DIR", short)
+        with (
+            layer_in(tmp_path) as layer,
+            closing(SocketServer(USUAL_NAME, layer.handle, layer.stop, layer.feed.watch)) as sockets,
+        ):
+            sockets.start()
+            yield layer
+
+
+@pytest.mark.parametrize("wanted", [{}, {"rate": 50, "after": 0}, {"rate": "x", "after": []}, [], None, {"rate": -1e9}])
+def test_over_the_socket(door: TaskLayer, wanted: object) -> None:
+    with socket.socket(socket.AF_UNIX) as connection:
+        connection.settimeout(10)
+        connection.connect(socket_path(USUAL_NAME))
+        connection.sendall(json.dumps({"watch": wanted}).encode() + b"\n")
+        with connection.makefile("rb") as lines:
+            assert json.loads(lines.readline())["type"] == "hello"
+            assert json.loads(lines.readline())["type"] in ("run", "robot")
+
+
+def test_somebody_else_is_named(door: TaskLayer) -> None:
+    with socket.socket(socket.AF_UNIX) as connection:
+        connection.connect(socket_path(USUAL_NAME))
+        connection.sendall(b'{"command": "pause", "as": "bo"}\n{"command": "pause", "as": 7}\n')
+        with connection.makefile("rb") as lines:
+            assert all(json.loads(lines.readline())["ok"] for _ in range(2))
+    acts = door.store.acts()
+    assert acts[1].person == "bo"
+    assert acts[0].person not in ("bo", "7", "")
