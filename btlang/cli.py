@@ -359,6 +359,8 @@ _ELSEWHERE = {
     "mcp": "btlang.mcp_server",
     "robot": "btlang.task.robot_command",
     "task": "btlang.task.command",
+    "serve": "btlang.server.command",
+    "user": "btlang.server.user_command",
     "sim-ros": "btlang.ros.simulator.command",
     "ros-node": "btlang.ros.mission.command",
     "serve-actions": "btlang.ros.serving.command",

@@ -344,9 +344,11 @@ _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "grammar": ("write a grammar of missions, for language models", _grammar_options),
     "robot": ("keep a robot up for many tasks of many people", _elsewhere("btlang.task.options", "add_robot_options")),
     "task": (
-        "give work to a robot that is up, and ask about it",
+        "give work to a robot that is up",
         _elsewhere("btlang.task.options", "add_task_options"),
     ),
+    "serve": ("let others reach the robots that are up", _elsewhere("btlang.server.options", "add_serve_options")),
+    "user": ("say who may come in through btc serve", _elsewhere("btlang.server.options", "add_user_options")),
     "mcp": ("let language models write and simulate missions, as an MCP server", _words_options),
     "examples": ("list, print or copy the example missions", _examples_options),
     "explain": ("show how a mission is understood, or explain a message code", _explain_options),

@@ -77,6 +77,8 @@ def take_away_what_is_missed(code: str, patch: pytest.MonkeyPatch) -> None:
         patch.setitem(sys.modules, "mcap.writer", None)
     if code == "BT085":
         patch.setitem(sys.modules, "msgpack", None)
+    if code == "BT200":
+        patch.setitem(sys.modules, "argon2", None)
     if code == "BT189":
         patch.setitem(sys.modules, "psycopg", None)
     if code == "BT086":

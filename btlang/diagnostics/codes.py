@@ -196,6 +196,9 @@ _ALL = (
     Code("BT197", "The tasks of {place} are run already by {owner}.", "End that first, or use another store."),
     Code("BT198", "The command '{name}' can't be read: {reason}."),
     Code("BT199", "The robot '{name}' doesn't answer.", "See whether it is up: btc robot status"),
+    Code("BT200", "btc serve needs the Python package {package}, which isn't installed.",
+         "Install it: pip install 'btlang[server]'"),
+    Code("BT201", "The server can't listen at {place}: {reason}."),
 )  # fmt: skip
 
 CODES = {entry.code: entry for entry in _ALL}

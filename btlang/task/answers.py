@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from difflib import unified_diff
 
+from btlang.task.checks import refused
+from btlang.task.messages import Answer, PutMission
 from btlang.task.task import MissionText, Revision, Schedule, Task
 from btlang.text.escaping import one_line
 
@@ -43,3 +46,15 @@ def schedule_data(schedule: Schedule) -> dict[str, Any]:
 def revision_data(revision: Revision) -> dict[str, Any]:
     """A revision without its text."""
     return {field: getattr(revision, field) for field in revision.fields if field != "text"}
+
+
+def outdated(command: PutMission, latest: Revision | None) -> Answer:
+    """The refusal of a text that was made from another revision than the latest one, with what differs from that."""
+    before = "" if latest is None else latest.text
+    lines = unified_diff(before.splitlines(), command.text.splitlines(), "latest", "yours", lineterm="")
+    number = 0 if latest is None else latest.number
+    problem = refused(
+        f"The mission '{command.name}'", f"has changed since revision {command.revision}: it has {number}"
+    )
+    data = {"revision": number, "text": before, "diff": "\n".join(lines)}
+    return Answer(False, str(problem), data, problem.diagnostics[0].code)

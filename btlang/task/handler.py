@@ -10,10 +10,11 @@ from contextlib import suppress
 from functools import partial
 
 from btlang.api import Mission
+from btlang.diagnostics.crash import crashed
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.task import messages
-from btlang.task.answers import revision_data, schedule_data, short, task_data, task_line
+from btlang.task.answers import outdated, revision_data, schedule_data, short, task_data, task_line
 from btlang.task.checks import checked_priority, choice, moment, refused
 from btlang.task.emergency import EmergencyStop
 from btlang.task.executor import Executor
@@ -88,6 +89,10 @@ class Handler:
         except MissionError as error:
             first = error.diagnostics[0]
             answer = Answer(False, str(error), {}, first.code)
+        except Exception as problem:  # whoever asked gets an answer, and the others go on
+            if os.environ.get("BTC_DEBUG"):
+                raise
+            answer = Answer(False, crashed(problem), {}, "BT099")
         if command.changes:
             self._log(command, person, answer)
         return answer
@@ -261,10 +266,12 @@ class Handler:
         return Answer(True, text, {"schedules": [schedule_data(each) for each in found]})
 
     def _put(self, command: messages.PutMission, person: str) -> Answer:
-        if not command.name.strip() or "/" in command.name:
-            raise wrong("put", "'name' must be a name without '/'")
+        if not command.name.strip() or "/" in command.name or not command.name.isprintable():
+            raise wrong("put", "'name' must be a name without '/' that can be shown")
         self._admit(MissionText(command.text, command.name))
-        kept = self._store.put_mission(command.name, command.text, person, self._now())
+        kept = self._store.put_mission(command.name, command.text, person, self._now(), command.revision)
+        if kept is None:
+            return outdated(command, self._store.mission(command.name))
         text = f"'{one_line(kept.name)}' is in the library, revision {kept.number}."
         return Answer(True, text, {"mission": revision_data(kept)})
 

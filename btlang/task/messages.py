@@ -152,11 +152,14 @@ class Schedules(Command):
 
 
 class PutMission(Command):
-    """Keeps a mission in the library under a name. Every earlier revision stays."""
+    """Keeps a mission in the library under a name. Every earlier revision stays. With the `revision` that the text was
+    made from, 0 for a new mission, it is refused if there is another one by now: the answer has the `diff` to that.
+    """
 
     tag = "put"
     name: str
     text: str
+    revision: int | None = None
 
 
 class DeleteMission(Command):

@@ -12,6 +12,7 @@ from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import is_below, read_source
 from btlang.engine.leaves.leaf import described
 from btlang.task.task import MissionText
+from btlang.text.escaping import one_line
 from btlang.text.source import Source, Span
 from btlang.vocabulary.shipped import DEFAULT_WORLD, ENGLISH
 
@@ -56,8 +57,8 @@ class MissionReader:
 
     def source(self, text: str, name: str = "") -> Source:
         """A text that others sent."""
-        root = self._root
-        return Source(text, name or "mission", root or "", () if root is None else (root,), hides_includes=True)
+        root, shown = self._root, one_line(name) or "mission"
+        return Source(text, shown, root or "", () if root is None else (root,), hides_includes=True)
 
     def _read(
         self, text: str, name: str, file: str, keywords: tuple[str, ...], values: tuple[tuple[str, bool], ...]

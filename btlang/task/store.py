@@ -227,10 +227,14 @@ class Store:
         with self._database.transaction() as execute:
             return bool(execute("DELETE FROM schedule WHERE id = ? RETURNING id", (id,)))
 
-    def put_mission(self, name: str, text: str, person: str, time: float) -> Revision:
-        """The revision of a mission that has this text: the latest one, or else a new one."""
+    def put_mission(self, name: str, text: str, person: str, time: float, base: int | None = None) -> Revision | None:
+        """The revision of a mission that has this text: the latest one, or else a new one. None, and no change, if it
+        was made from another one, `base`, than the latest, 0 where there is none.
+        """
         with self._database.transaction(Mode.ALONE) as execute:
             latest = self._latest(execute, name)
+            if base not in (None, 0 if latest is None or latest.deleted else latest.number):
+                return None
             if latest is not None and not latest.deleted and latest.text == text:
                 return latest
             put = Revision(name, latest.number + 1 if latest else 1, text, person, time)

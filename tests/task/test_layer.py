@@ -309,3 +309,12 @@ def test_a_command_that_hangs_keeps_no_robot_up(tmp_path: Path, monkeypatch: pyt
     assert not layer.close()
     assert not layer.session.robot.moving
     importlib.import_module("hangs").released.set()
+
+
+@pytest.mark.parametrize("name", ["\0", "a\nb", "\x1b[2J", "x" * 5000, "../../x", "🤖"])
+def test_any_name(tmp_path: Path, name: str) -> None:
+    with layer_in(tmp_path) as layer:
+        assert wait_for(layer, submit(layer, "wave", name=name), *FINAL).state is State.COMPLETED or "\0" in name
+        answer = layer.handle({"command": "put", "name": name, "text": "wave"}, "ann")
+        assert answer.ok or answer.code in ("BT195", "BT198")
+        assert "\x1b" not in answer.text

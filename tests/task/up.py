@@ -25,7 +25,7 @@ from tests.task.layers import layer_in, submit, wait_for, wait_until
 
 REFUSALS = ("BT186", "BT187", "BT192")
 """Codes that a robot answers with: `btc` ends with 1 then, and with 2 if it can't read a command."""
-_CODES = ("BT185", "BT190", "BT198", "BT199", *REFUSALS)
+_CODES = ("BT185", "BT190", "BT198", "BT199", "BT200", *REFUSALS)
 _STORES = {"BT196": "newer.db", "BT197": "busy.db"}
 _SAVED = "wave then nod"
 

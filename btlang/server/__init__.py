@@ -1,0 +1,1 @@
+"""The representative server: the door to robots for everything outside this computer."""

@@ -1,0 +1,112 @@
+"""Who may come in over HTTP: log-in, sessions with their CSRF tokens, tokens of programs."""
+
+from __future__ import annotations
+
+from http.cookies import CookieError, SimpleCookie
+from urllib.parse import urlsplit
+
+from itsdangerous import BadSignature, Signer
+
+from btlang.server.accounts import Accounts, Identity
+from btlang.server.passwords import BusyError, Verifier
+from btlang.server.throttle import Throttle
+from btlang.text.escaping import one_line
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Mapping
+
+COOKIE = "__Host-btlang"
+"""Its prefix makes browsers take it from this host over TLS alone, and send it nowhere else."""
+CSRF = "x-csrf-token"
+
+
+class AccessError(Exception):
+    """Nobody comes in: the HTTP status, a reason in words, and the seconds to wait before the next try."""
+
+    def __init__(self, status: int, reason: str, wait: float = 0.0) -> None:
+        super().__init__(reason)
+        self.status, self.reason, self.wait = status, reason, wait
+
+
+class Access:
+    """Decides by the accounts. `key` signs CSRF tokens."""
+
+    def __init__(self, accounts: Accounts, key: str) -> None:
+        self.accounts = accounts
+        self._verifier = Verifier()
+        self._signer = Signer(key, salt="csrf")
+        self._by_account, self._by_address = Throttle(), Throttle()
+
+    async def log_in(self, name: str, password: str, address: str) -> tuple[Identity, str]:
+        """Who it is, and the secret for a cookie. Raises AccessError, an unknown user's after as long as others."""
+        wait = max(self._by_account.wait(name), self._by_address.wait(address))
+        if wait:
+            raise AccessError(429, f"Too many wrong passwords. Try again in {wait:.0f} s.", wait)
+        user = self.accounts.user(name) if name and "\0" not in name else None
+        try:
+            fits = await self._verifier.fits(password, None if user is None else user.password)
+        except BusyError:
+            raise AccessError(503, "Too many people log in at this moment.", 1.0) from None
+        if not fits or user is None:
+            self._by_account.wrong(name)
+            self._by_address.wrong(address)
+            self.accounts.log(one_line(name)[:100], address, "log in", "wrong")
+            raise AccessError(401, "The name or the password is wrong.")
+        self._by_account.right(name)
+        self._by_address.right(address)
+        secret = self.accounts.log_in(user.name, address)
+        self.accounts.log(user.name, address, "log in", "ok")
+        identity = self.accounts.identity(secret)
+        assert identity is not None
+        return identity, secret
+
+    def identify(self, headers: Mapping[str, str], *, changes: bool) -> Identity:
+        """Who sends a request: by a token (Authorization: Bearer) or a cookie; with a cookie, what `changes` anything
+        needs the CSRF token too. Raises AccessError (401, 403).
+        """
+        kind, _, token = headers.get("authorization", "").partition(" ")
+        if kind:
+            identity = self.accounts.identity(token.strip()) if kind.casefold() == "bearer" else None
+            if identity is None or identity.is_session:
+                raise AccessError(401, "This token isn't valid.")
+            return identity
+        identity = self.accounts.identity(_cookie(headers.get("cookie", "")))
+        if identity is None or not identity.is_session:
+            raise AccessError(401, "Log in first.")
+        if changes and not (is_same_site(headers) and self._is_csrf(identity, headers.get(CSRF, ""))):
+            raise AccessError(403, "This request doesn't come from the page of this server.")
+        return identity
+
+    def by_token(self, token: str) -> Identity | None:
+        """Who brings a token, None for nobody."""
+        identity = self.accounts.identity(token) if token else None
+        return None if identity is None or identity.is_session else identity
+
+    def csrf(self, identity: Identity) -> str:
+        """What a page sends with each request that changes something."""
+        return self._signer.get_signature(identity.id).decode()
+
+    def close(self) -> None:
+        """Ends its threads."""
+        self._verifier.close()
+
+    def _is_csrf(self, identity: Identity, given: str) -> bool:
+        try:
+            return bool(self._signer.unsign(f"{identity.id}.{given}".encode()))
+        except (BadSignature, UnicodeEncodeError):
+            return False
+
+
+def is_same_site(headers: Mapping[str, str]) -> bool:
+    """Whether a browser sent a request from a page of this host. Programs send no Origin."""
+    origin = headers.get("origin")
+    return origin is None or (origin != "null" and urlsplit(origin).netloc == headers.get("host"))
+
+
+def _cookie(header: str) -> str:
+    try:
+        morsel = SimpleCookie(header).get(COOKIE)
+    except CookieError:
+        return ""
+    return morsel.value if morsel is not None else ""

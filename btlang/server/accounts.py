@@ -1,0 +1,264 @@
+"""Who may come in: users, their sessions and tokens, and the trail of what they did, in one SQLite file."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import secrets
+import time
+from collections.abc import Callable
+
+from btlang.record import Record
+from btlang.server.roles import Role
+from btlang.task.checks import refused
+from btlang.task.database import Mode
+from btlang.task.migrations import migrate
+from btlang.task.rows import columns_of, from_row, marks, to_row
+from btlang.task.sqlite import Sqlite
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any, TypeVar
+
+    R = TypeVar("R", bound=Record)
+
+IDLE, LONGEST = 8 * 3600.0, 7 * 86_400.0
+"""Seconds after which a session ends that nobody uses, and after which every one does."""
+_NOTED = 60.0  # seconds between two notes that a session or token is used
+_TOKEN = "btl_"
+_STEPS = [
+    (
+        "CREATE TABLE version (number BIGINT NOT NULL)",
+        "INSERT INTO version (number) VALUES (0)",
+        """CREATE TABLE user (
+            name TEXT PRIMARY KEY, role TEXT NOT NULL, password TEXT NOT NULL, created DOUBLE PRECISION NOT NULL
+        )""",
+        """CREATE TABLE session (
+            id TEXT PRIMARY KEY, user TEXT NOT NULL, address TEXT NOT NULL, created DOUBLE PRECISION NOT NULL,
+            used DOUBLE PRECISION NOT NULL
+        )""",
+        """CREATE TABLE token (
+            id TEXT PRIMARY KEY, name TEXT NOT NULL, user TEXT NOT NULL, created DOUBLE PRECISION NOT NULL,
+            used DOUBLE PRECISION
+        )""",
+        """CREATE TABLE entry (
+            number INTEGER PRIMARY KEY, time DOUBLE PRECISION NOT NULL, user TEXT NOT NULL, address TEXT NOT NULL,
+            what TEXT NOT NULL, outcome TEXT NOT NULL
+        )""",
+    )
+]
+
+
+class User(Record):
+    """`password` is a hash. `created` is in seconds since 1970."""
+
+    name: str
+    role: Role
+    password: str
+    created: float
+
+
+class Login(Record):
+    """A session of a page. `id` is the hash of what its cookie has."""
+
+    id: str
+    user: str
+    address: str
+    created: float
+    used: float
+
+
+class Token(Record):
+    """Lets a program in. `id` is the hash of what it sends, `used` when it did so last."""
+
+    id: str
+    name: str
+    user: str
+    created: float
+    used: float | None = None
+
+
+class Entry(Record):
+    """What somebody did or tried."""
+
+    time: float
+    user: str
+    address: str
+    what: str
+    outcome: str
+
+
+class Identity(Record):
+    """Who asks: `id` is that of a session or token, which ends when it is revoked."""
+
+    user: str
+    role: Role
+    id: str
+    is_session: bool
+
+
+class Accounts:
+    """In a folder of the server. From any thread and several processes at once; methods raise StoreError (BT195).
+
+    `changed` is called after a change that may end somebody's access. `clock` gives seconds since 1970.
+    """
+
+    def __init__(
+        self,
+        folder: str,
+        changed: Callable[[], object] = lambda: None,
+        clock: Callable[[], float] = time.time,
+    ) -> None:
+        os.makedirs(folder, mode=0o700, exist_ok=True)
+        self._database = Sqlite(os.path.join(folder, "accounts.db"), durable=True)
+        self._database.check()
+        migrate(self._database, _STEPS)
+        self._changed, self._clock = changed, clock
+
+    def close(self) -> None:
+        """Ends its connections."""
+        self._database.close()
+
+    def users(self) -> list[User]:
+        """All, by name."""
+        return [user.replace(role=Role(user.role)) for user in self._all(User, "user", "1 = 1 ORDER BY name")]
+
+    def user(self, name: str) -> User | None:
+        """None if there is no such user."""
+        user = self._one(User, "user", "name = ?", name)
+        return None if user is None else user.replace(role=Role(user.role))
+
+    def add(self, name: str, role: Role, password: str) -> User:
+        """A new user with the hash of a password. Raises MissionError (BT187) if there is one of that name."""
+        added = User(name, role, password, self._clock())
+        with self._database.transaction(Mode.ALONE) as execute:
+            if execute("SELECT 1 FROM user WHERE name = ?", (name,)):
+                raise refused(f"The user '{name}'", "exists already")
+            _insert(execute, "user", added)
+        return added
+
+    def set_password(self, name: str, password: str) -> None:
+        """Another hash; whoever is logged in with the password before is no longer. Raises MissionError (BT187)."""
+        self._change(name, "UPDATE user SET password = ? WHERE name = ? RETURNING name", password)
+        self.log_out(name)
+
+    def set_role(self, name: str, role: Role) -> None:
+        """Raises MissionError (BT187), also for the last administrator."""
+        if role is not Role.ADMINISTRATOR:
+            self._keep_an_administrator(name)
+        self._change(name, "UPDATE user SET role = ? WHERE name = ? RETURNING name", role.value)
+        self._changed()
+
+    def remove(self, name: str) -> None:
+        """Ends all that a user has. Raises MissionError (BT187), also for the last administrator."""
+        self._keep_an_administrator(name)
+        self._change(name, "DELETE FROM user WHERE name = ? RETURNING name")
+        with self._database.transaction() as execute:
+            execute("DELETE FROM token WHERE user = ?", (name,))
+        self.log_out(name)
+
+    def log_in(self, user: str, address: str) -> str:
+        """Begins a session; returns what its cookie has."""
+        secret, now = secrets.token_urlsafe(32), self._clock()
+        with self._database.transaction() as execute:
+            execute("DELETE FROM session WHERE used < ? OR created < ?", (now - IDLE, now - LONGEST))
+            _insert(execute, "session", Login(_hash(secret), user, address, now, now))
+        return secret
+
+    def log_out(self, user: str, id: str = "") -> None:
+        """Ends a session of a user, or all."""
+        with self._database.transaction() as execute:
+            execute("DELETE FROM session WHERE user = ? AND (id = ? OR ? = '')", (user, id, id))
+        self._changed()
+
+    def add_token(self, user: str, name: str) -> str:
+        """Makes a token; returns what a program sends. Raises MissionError (BT187): no such user, or a name in use."""
+        if self.user(user) is None:
+            raise refused(f"The user '{user}'", "isn't known")
+        secret = _TOKEN + secrets.token_urlsafe(32)
+        with self._database.transaction(Mode.ALONE) as execute:
+            if execute("SELECT 1 FROM token WHERE user = ? AND name = ?", (user, name)):
+                raise refused(f"The token '{name}' of '{user}'", "exists already")
+            _insert(execute, "token", Token(_hash(secret), name, user, self._clock()))
+        return secret
+
+    def tokens(self, user: str) -> list[Token]:
+        """Those of a user, by name."""
+        return self._all(Token, "token", "user = ? ORDER BY name", user)
+
+    def revoke(self, user: str, name: str) -> None:
+        """Ends a token. Raises MissionError (BT187)."""
+        with self._database.transaction() as execute:
+            if not execute("DELETE FROM token WHERE user = ? AND name = ? RETURNING name", (user, name)):
+                raise refused(f"The token '{name}' of '{user}'", "isn't known")
+        self._changed()
+
+    def identity(self, secret: str) -> Identity | None:
+        """Who brings a secret, of a cookie or of a program; None for nobody."""
+        now, id = self._clock(), _hash(secret)
+        if secret.startswith(_TOKEN):
+            token = self._one(Token, "token", "id = ?", id)
+            if token is None:
+                return None
+            if token.used is None or token.used < now - _NOTED:
+                self._note("token", id, now)
+            return self._identified(token.user, id, is_session=False)
+        login = self._one(Login, "session", "id = ?", id)
+        if login is None or login.used < now - IDLE or login.created < now - LONGEST:
+            return None
+        if login.used < now - _NOTED:
+            self._note("session", id, now)
+        return self._identified(login.user, id, is_session=True)
+
+    def still(self, identity: Identity) -> Identity | None:
+        """The same one as it is now, perhaps with another role; None if it was revoked."""
+        table = "session" if identity.is_session else "token"
+        with self._database.transaction(Mode.READ) as execute:
+            found = execute(f"SELECT 1 FROM {table} WHERE id = ?", (identity.id,))
+        return self._identified(identity.user, identity.id, is_session=identity.is_session) if found else None
+
+    def log(self, user: str, address: str, what: str, outcome: str) -> None:
+        """Adds to the trail."""
+        with self._database.transaction() as execute:
+            _insert(execute, "entry", Entry(self._clock(), user, address, what, outcome))
+
+    def entries(self, limit: int = 100) -> list[Entry]:
+        """The trail, the newest first."""
+        return self._all(Entry, "entry", "1 = 1 ORDER BY number DESC LIMIT ?", limit)
+
+    def _identified(self, name: str, id: str, *, is_session: bool) -> Identity | None:
+        user = self.user(name)
+        return None if user is None else Identity(user.name, user.role, id, is_session)
+
+    def _keep_an_administrator(self, name: str) -> None:
+        others = [user for user in self.users() if user.role is Role.ADMINISTRATOR and user.name != name]
+        if not others and self.user(name) is not None:
+            raise refused(f"The user '{name}'", "is the only administrator")
+
+    def _change(self, name: str, sql: str, *values: object) -> None:
+        with self._database.transaction() as execute:
+            if not execute(sql, (*values, name)):
+                raise refused(f"The user '{name}'", "isn't known")
+
+    def _note(self, table: str, id: str, now: float) -> None:
+        with self._database.transaction() as execute:
+            execute(f"UPDATE {table} SET used = ? WHERE id = ?", (now, id))
+
+    def _one(self, kind: type[R], table: str, condition: str, *values: object) -> R | None:
+        found = self._all(kind, table, condition, *values)
+        return found[0] if found else None
+
+    def _all(self, kind: type[R], table: str, condition: str, *values: object) -> list[R]:
+        with self._database.transaction(Mode.READ) as execute:
+            rows = execute(f"SELECT {columns_of(kind)} FROM {table} WHERE {condition}", values)
+        return [from_row(kind, row) for row in rows]
+
+
+def _insert(execute: Any, table: str, record: Record) -> None:
+    values = to_row(record)
+    execute(f"INSERT INTO {table} ({', '.join(record.fields)}) VALUES ({marks(len(values))})", values)
+
+
+def _hash(secret: str) -> str:
+    """Fast, since nobody guesses 256 random bits."""
+    return hashlib.sha256(secret.encode("utf-8", "surrogatepass")).hexdigest()

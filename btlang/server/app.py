@@ -1,0 +1,213 @@
+"""The server's routes: log-in, commands to robots, missions, and the WebSocket."""
+
+from __future__ import annotations
+
+import asyncio
+from collections.abc import AsyncIterator, Awaitable, Callable
+from contextlib import asynccontextmanager, suppress
+
+from starlette.applications import Starlette
+from starlette.requests import Request
+from starlette.responses import JSONResponse, PlainTextResponse, Response
+from starlette.routing import Route, WebSocketRoute
+from starlette.types import ASGIApp, Message, Receive, Scope, Send
+
+from btlang.diagnostics.errors import MissionError
+from btlang.server.access import COOKIE, Access, AccessError
+from btlang.server.accounts import LONGEST, Accounts, Identity
+from btlang.server.bodies import json_object, text_in
+from btlang.server.clients import Clients
+from btlang.server.links import RobotLink, Robots
+from btlang.server.roles import NEEDED
+from btlang.task import messages
+from btlang.task.messages import Answer, Command, read_command
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+VERSION = "1"
+_HEADERS = {
+    "content-security-policy": "default-src 'none'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'",
+    "x-frame-options": "DENY",
+    "x-content-type-options": "nosniff",
+    "referrer-policy": "no-referrer",
+    "cross-origin-resource-policy": "same-origin",
+    "cross-origin-opener-policy": "same-origin",
+    "cache-control": "no-store",
+}
+
+
+class Api:
+    """What the routes do. `robots` are those of this computer."""
+
+    def __init__(self, accounts: Accounts, key: str, robots: Robots | None = None) -> None:
+        self.accounts, self.robots = accounts, robots or Robots()
+        self.access = Access(accounts, key)
+        self.clients = Clients(self.access, self.robots, self.send)
+
+    def app(self) -> ASGIApp:
+        """The ASGI application."""
+        routes = [
+            self._route("/api/login", self._log_in, "POST"),
+            self._route("/api/logout", self._log_out, "POST"),
+            self._route("/api/me", self._me, "GET"),
+            self._route("/api/robots", self._robots, "GET"),
+            self._route("/api/stop", self._stop, "POST"),
+            self._route("/api/commands", self._command, "POST"),
+            self._route("/api/missions", self._missions, "GET"),
+            self._route("/api/missions/{name:path}", self._mission, "GET"),
+            self._route("/api/missions/{name:path}", self._put_mission, "PUT"),
+            self._route("/api/missions/{name:path}", self._delete_mission, "DELETE"),
+            Route("/live", _word("live")),
+            Route("/ready", _word("ready")),
+            WebSocketRoute("/api/ws", self.clients.serve),
+        ]
+        return _Headers(Starlette(routes=routes, lifespan=self._life, exception_handlers={404: _not_found}))
+
+    async def send(self, identity: Identity, robot: str, command: Command, address: str) -> Answer:
+        """A command to a robot, by somebody who may. Raises AccessError."""
+        if not identity.role.covers(NEEDED[type(command)]):
+            self.accounts.log(identity.user, address, command.tag, "refused")
+            raise AccessError(403, f"Only {NEEDED[type(command)]}s may do this.")
+        link = self.link(robot)
+        try:
+            if isinstance(command, messages.EmergencyStop):
+                await link.stop()  # at once; what follows says who, and why
+            return await link.send(command, identity.user)
+        except ConnectionError as error:
+            raise AccessError(503, str(error)) from None
+
+    def link(self, robot: str) -> RobotLink:
+        """Raises AccessError (404, 409) if there is no such robot, or several where none was named."""
+        link = self.robots.get(robot)
+        if link is None and robot:
+            raise AccessError(404, f"There's no robot '{robot}'.")
+        if link is None:
+            up = [link.name for link in self.robots.links.values() if link.is_up]
+            raise AccessError(409, f"Say which robot: {', '.join(up)}." if up else "No robot is up.")
+        return link
+
+    @asynccontextmanager
+    async def _life(self, app: Starlette) -> AsyncIterator[None]:
+        following = asyncio.create_task(self.robots.follow())
+        try:
+            yield
+        finally:
+            following.cancel()
+            with suppress(asyncio.CancelledError):
+                await following
+            self.access.close()
+
+    def _route(self, path: str, do: Callable[[Request], Awaitable[Response]], method: str) -> Route:
+        async def answered(request: Request) -> Response:
+            try:
+                return await do(request)
+            except AccessError as error:
+                headers = {"retry-after": f"{error.wait + 1:.0f}"} if error.wait else None
+                return JSONResponse({"ok": False, "text": error.reason, "code": ""}, error.status, headers)
+            except MissionError as error:
+                first = error.diagnostics[0]
+                return JSONResponse({"ok": False, "text": str(error), "code": first.code}, 400)
+
+        return Route(path, answered, methods=[method])
+
+    def _who(self, request: Request) -> Identity:
+        return self.access.identify(request.headers, changes=request.method not in ("GET", "HEAD"))
+
+    async def _log_in(self, request: Request) -> Response:
+        data = await json_object(request)
+        address = _address(request)
+        identity, secret = await self.access.log_in(text_in(data, "name"), text_in(data, "password"), address)
+        response = JSONResponse(self._described(identity))
+        response.set_cookie(COOKIE, secret, int(LONGEST), secure=True, httponly=True, samesite="strict")
+        return response
+
+    async def _log_out(self, request: Request) -> Response:
+        identity = self._who(request)
+        data = await json_object(request)
+        self.accounts.log_out(identity.user, "" if data.get("everywhere") is True else identity.id)
+        self.clients.check()
+        response = JSONResponse({"ok": True})
+        response.delete_cookie(COOKIE, secure=True, httponly=True, samesite="strict")
+        return response
+
+    async def _me(self, request: Request) -> Response:
+        return JSONResponse(self._described(self._who(request)))
+
+    async def _robots(self, request: Request) -> Response:
+        self._who(request)
+        links = self.robots.links.values()
+        return JSONResponse({"robots": [{"name": each.name, "up": each.is_up, "seen": each.seen} for each in links]})
+
+    async def _stop(self, request: Request) -> Response:
+        identity = self._who(request)
+        data = await json_object(request)
+        robot, reason = data.get("robot", ""), data.get("reason", "")
+        command = messages.EmergencyStop(reason if isinstance(reason, str) else "")
+        return _answer(await self.send(identity, str(robot), command, _address(request)))
+
+    async def _command(self, request: Request) -> Response:
+        identity = self._who(request)
+        data = await json_object(request)
+        robot = data.pop("robot", "")
+        return _answer(await self.send(identity, str(robot), read_command(data), _address(request)))
+
+    async def _missions(self, request: Request) -> Response:
+        return await self._of_library(request, messages.Library())
+
+    async def _mission(self, request: Request) -> Response:
+        return await self._of_library(request, messages.Library(request.path_params["name"]))
+
+    async def _put_mission(self, request: Request) -> Response:
+        identity = self._who(request)
+        data = await json_object(request)
+        revision = data.get("revision")
+        if revision is not None and not isinstance(revision, int):
+            raise AccessError(400, "'revision' must be a number.")
+        command = messages.PutMission(request.path_params["name"], text_in(data, "text"), revision)
+        robot = request.query_params.get("robot", "")
+        return _answer(await self.send(identity, robot, command, _address(request)))
+
+    async def _delete_mission(self, request: Request) -> Response:
+        return await self._of_library(request, messages.DeleteMission(request.path_params["name"]))
+
+    async def _of_library(self, request: Request, command: Command) -> Response:
+        robot = request.query_params.get("robot", "")
+        return _answer(await self.send(self._who(request), robot, command, _address(request)))
+
+    def _described(self, identity: Identity) -> dict[str, Any]:
+        described = {"ok": True, "user": identity.user, "role": identity.role, "version": VERSION}
+        return {**described, "csrf": self.access.csrf(identity)} if identity.is_session else described
+
+
+class _Headers:
+    """What every answer says to browsers, also one that went wrong."""
+
+    def __init__(self, app: ASGIApp) -> None:
+        self._app = app
+
+    async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
+        async def said(message: Message) -> None:
+            if message["type"] == "http.response.start":
+                own = [(name.encode(), value.encode()) for name, value in _HEADERS.items()]
+                message = {**message, "headers": [*message.get("headers", ()), *own]}
+            await send(message)
+
+        await self._app(scope, receive, said)
+
+
+def _answer(answer: Answer) -> Response:
+    return JSONResponse(answer.as_json(), 200 if answer.ok else 409)
+
+
+def _address(request: Request) -> str:
+    return request.client.host if request.client is not None else ""
+
+
+def _word(word: str) -> Callable[[Request], Response]:
+    return lambda request: PlainTextResponse(word)
+
+
+def _not_found(request: Request, error: Exception) -> Response:
+    return JSONResponse({"ok": False, "text": "There's nothing at this address.", "code": ""}, 404)

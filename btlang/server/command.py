@@ -1,0 +1,132 @@
+"""What `btc serve` does: the door to the robots that are up on this computer."""
+
+from __future__ import annotations
+
+import os
+import ssl
+from ipaddress import ip_address
+
+from btlang.diagnostics.diagnostic import diagnostic
+from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.reading import reason_of
+from btlang.task.paths import socket_folder
+from btlang.text.output import show
+from btlang.text.source import NOWHERE
+from btlang.user_dirs import user_dir
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    import argparse
+
+    from btlang.server.accounts import Accounts
+    from btlang.server.certificate import Certificate
+
+_ADMINISTRATOR = "admin"
+
+
+def server_folder() -> str:
+    """Where users, the certificate and the server's secret are."""
+    return os.path.join(user_dir("data"), "server")
+
+
+def control_path() -> str:
+    """The Unix socket over which `btc user` tells a server that is up."""
+    return os.path.join(socket_folder(), "server.control")
+
+
+def require_server() -> None:
+    """Raises MissionError (BT200) if a package of the extra `server` isn't installed."""
+    try:
+        import argon2  # noqa: F401
+        import cryptography  # noqa: F401
+        import itsdangerous  # noqa: F401
+        import starlette  # noqa: F401
+        import uvicorn  # noqa: F401
+        import websockets  # noqa: F401
+    except ImportError as error:
+        raise MissionError([diagnostic("BT200", NOWHERE, package=error.name or "")]) from None
+
+
+def serve(options: argparse.Namespace) -> int:
+    """Does the verb `serve` until SIGINT or SIGTERM; returns the exit code."""
+    require_server()
+    from btlang.server.accounts import Accounts
+    from btlang.server.app import Api
+    from btlang.server.door import kept_key, listening
+    from btlang.server.door import serve as serve_door
+
+    if (options.cert is None) != (options.key is None):
+        options.refuse("--cert and --key go together")
+    if options.no_tls and options.cert is not None:
+        options.refuse("--no-tls needs no certificate")
+    if options.no_tls and not _is_loopback(options.host):
+        raise _refused(options, "without TLS it listens on this computer alone")
+    accounts = Accounts(server_folder())
+    if not accounts.users() and not _is_loopback(options.host):
+        reason = f"there are no users yet; make one first: btc user add {_ADMINISTRATOR} --role administrator"
+        raise _refused(options, reason)
+    certificate = None if options.no_tls else _certificate(options)
+    door = listening(options.host, options.port)
+    password = _first_password(accounts)
+    port = door.getsockname()[1]
+    scheme = "http" if certificate is None else "https"
+
+    def ready() -> None:
+        show(f"The server is up: {scheme}://{_shown(options.host)}:{port}")
+        if certificate is not None:
+            show(f"Fingerprint (SHA-256): {certificate.fingerprint}")
+        if password:
+            show(f"Log in as '{_ADMINISTRATOR}' with the password {password}")
+            show(f"It is shown this once. For another one: btc user passwd {_ADMINISTRATOR}")
+
+    try:
+        serve_door(Api(accounts, kept_key(server_folder())), door, certificate, control_path(), ready)
+    except (OSError, ssl.SSLError) as error:
+        raise _refused(options, reason_of(error)) from None
+    finally:
+        accounts.close()
+    return 0
+
+
+def _is_loopback(host: str) -> bool:
+    try:
+        return ip_address(host).is_loopback
+    except ValueError:
+        return host == "localhost"
+
+
+def _certificate(options: argparse.Namespace) -> Certificate:
+    from btlang.server.certificate import Certificate, fingerprint_of, own_certificate
+    from btlang.server.door import tls
+
+    try:
+        if options.cert is None:
+            return own_certificate(server_folder(), options.host)
+        given = Certificate(options.cert, options.key, fingerprint_of(options.cert))
+        tls(given)
+        return given
+    except (OSError, ssl.SSLError) as error:
+        raise _refused(options, f"its certificate can't be used: {reason_of(error)}") from None
+    except ValueError:
+        raise _refused(options, "its certificate can't be read: it must be in PEM") from None
+
+
+def _first_password(accounts: Accounts) -> str:
+    """That of the administrator who is made where there is no user; "" where there is one."""
+    from btlang.server.passwords import hashed, random_password
+    from btlang.server.roles import Role
+
+    if accounts.users():
+        return ""
+    password = random_password()
+    accounts.add(_ADMINISTRATOR, Role.ADMINISTRATOR, hashed(password))
+    return password
+
+
+def _refused(options: argparse.Namespace, reason: str) -> MissionError:
+    place = f"{_shown(options.host)}:{options.port}"
+    return MissionError([diagnostic("BT201", NOWHERE, place=place, reason=reason)])
+
+
+def _shown(host: str) -> str:
+    return f"[{host}]" if ":" in host else host

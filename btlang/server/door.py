@@ -1,0 +1,125 @@
+"""The server's process: TLS, the socket it listens on, and connections that say nothing."""
+
+from __future__ import annotations
+
+import asyncio
+import os
+import secrets
+import socket
+import ssl
+from collections.abc import Callable
+from contextlib import suppress
+
+import uvicorn
+from uvicorn.protocols.http.h11_impl import H11Protocol
+
+from btlang.diagnostics.diagnostic import diagnostic
+from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.reading import reason_of
+from btlang.server.app import Api
+from btlang.server.certificate import Certificate
+from btlang.text.source import NOWHERE
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+_HEAD = 10.0  # seconds for the head of the first request
+_MOST_CONNECTIONS = 4000
+_MOST_HEAD, _MOST_FRAME = 16 * 1024, 256 * 1024  # bytes
+
+
+class _Protocol(H11Protocol):
+    """Hangs up on who connects and says nothing: uvicorn would wait for ever."""
+
+    def connection_made(self, transport: Any) -> None:
+        super().connection_made(transport)
+        self._silence = self.loop.call_later(_HEAD, self._hang_up)
+
+    def connection_lost(self, exc: Exception | None) -> None:
+        self._silence.cancel()
+        super().connection_lost(exc)
+
+    def handle_events(self) -> None:
+        super().handle_events()
+        if self.cycle is not None or self.transport.get_protocol() is not self:
+            self._silence.cancel()
+
+    def _hang_up(self) -> None:
+        if self.cycle is None and self.transport.get_protocol() is self:
+            self.transport.close()
+
+
+def listening(host: str, port: int) -> socket.socket:
+    """A socket that others can connect to. Raises MissionError (BT201)."""
+    try:
+        family = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0][0]
+        return socket.create_server((host, port), family=family, backlog=1024)
+    except (OSError, UnicodeError, OverflowError) as error:
+        reason = reason_of(error) if isinstance(error, OSError) else str(error)
+        raise MissionError([diagnostic("BT201", NOWHERE, place=f"{host}:{port}", reason=reason)]) from None
+
+
+def serve(
+    api: Api, door: socket.socket, certificate: Certificate | None, control: str, ready: Callable[[], object]
+) -> None:
+    """Until SIGINT or SIGTERM. Whoever connects to the Unix socket `control` says that the accounts have changed."""
+    config = uvicorn.Config(
+        api.app(), http=_Protocol, ws="websockets-sansio", lifespan="on", access_log=False, log_level="error",
+        server_header=False, proxy_headers=False, limit_concurrency=_MOST_CONNECTIONS, timeout_keep_alive=10,
+        h11_max_incomplete_event_size=_MOST_HEAD, ws_max_size=_MOST_FRAME, ws_per_message_deflate=False,
+        ws_ping_interval=20, ws_ping_timeout=20, timeout_graceful_shutdown=3,
+        ssl_context_factory=None if certificate is None else lambda config, usual: tls(certificate),
+    )  # fmt: skip
+    server = uvicorn.Server(config)
+    asyncio.run(_serve(api, server, door, control, ready))
+
+
+async def _serve(
+    api: Api, server: uvicorn.Server, door: socket.socket, control: str, ready: Callable[[], object]
+) -> None:
+    def changed(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        writer.close()
+        api.clients.check()
+
+    with suppress(FileNotFoundError):
+        os.unlink(control)
+    told = await asyncio.start_unix_server(changed, control)
+    os.chmod(control, 0o600)
+    serving = asyncio.create_task(server.serve([door]))
+    while not server.started and not serving.done():
+        await asyncio.sleep(0.01)
+    ready()
+    try:
+        await serving
+    finally:
+        told.close()
+        with suppress(FileNotFoundError):
+            os.unlink(control)
+
+
+def tell_changes(control: str) -> None:
+    """Lets a server that is up look again who may come in; does nothing where there is none."""
+    with suppress(OSError), socket.socket(socket.AF_UNIX) as connection:
+        connection.settimeout(2.0)
+        connection.connect(control)
+        connection.recv(1)
+
+
+def tls(certificate: Certificate) -> ssl.SSLContext:
+    """TLS 1.2 and later. Raises OSError or ssl.SSLError for files that can't be used."""
+    context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
+    context.minimum_version = ssl.TLSVersion.TLSv1_2
+    context.load_cert_chain(certificate.certificate, certificate.key)
+    return context
+
+
+def kept_key(folder: str) -> str:
+    """A secret of the server, made when it is first asked for. Raises OSError."""
+    path = os.path.join(folder, "secret.key")
+    with suppress(FileExistsError):
+        descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
+        with os.fdopen(descriptor, "w") as file:
+            file.write(secrets.token_hex(32))
+    with open(path, encoding="ascii") as kept:
+        return kept.read()

@@ -1,0 +1,162 @@
+"""The robots that are up on this computer: commands to them, and what happens on them for any number of clients."""
+
+from __future__ import annotations
+
+import asyncio
+import json
+import time
+from collections.abc import Callable
+from contextlib import suppress
+
+from btlang.server.outlet import News, Outlet
+from btlang.task.messages import Answer, Command, as_json
+from btlang.task.paths import names_up, socket_path
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+_AGAIN = 0.5  # seconds between two looks whether a robot is there
+_SILENT = 15.0  # seconds without a word after which a robot counts as gone
+_PATIENCE = 35.0  # seconds for an answer
+_LONGEST = 32_000_000  # bytes of a line
+RATE = 20.0
+
+
+class RobotLink:
+    """One robot. In one event loop."""
+
+    def __init__(self, name: str) -> None:
+        self.name = name
+        self.is_up = False
+        self.seen: float | None = None
+        """When it last said something, in seconds since 1970."""
+        self.outlets: set[Outlet] = set()
+        self._change: int | None = None
+        self._run: dict[str, Any] | None = None
+        self._statuses: dict[int, str] = {}
+        self._robot: dict[str, Any] | None = None
+
+    @property
+    def _silence(self) -> str:
+        return f"The robot '{self.name}' isn't up, or doesn't answer."
+
+    async def send(self, command: Command, person: str) -> Answer:
+        """What it answers. Raises ConnectionError if it isn't up, or doesn't answer."""
+        message = {**as_json(command), "as": person}
+        try:
+            async with asyncio.timeout(_PATIENCE):
+                reader, writer = await asyncio.open_unix_connection(socket_path(self.name), limit=_LONGEST)
+                try:
+                    writer.write(json.dumps(message).encode() + b"\n")
+                    answer = json.loads(await reader.readline())
+                    return Answer(answer["ok"], answer["text"], answer["data"], answer["code"])
+                finally:
+                    writer.close()
+        except (OSError, ValueError, KeyError, TypeError, TimeoutError) as error:
+            raise ConnectionError(self._silence) from error
+
+    async def stop(self) -> None:
+        """The emergency stop, over the socket that is for nothing else. Raises ConnectionError."""
+        try:
+            async with asyncio.timeout(_PATIENCE):
+                reader, writer = await asyncio.open_unix_connection(socket_path(self.name, stop=True))
+                try:
+                    if not await reader.read(16):
+                        raise ConnectionError(self._silence)
+                finally:
+                    writer.close()
+        except (OSError, TimeoutError) as error:
+            raise ConnectionError(self._silence) from error
+
+    def add(self, outlet: Outlet) -> None:
+        """A client that is told what is now, and from now on all that happens."""
+        for message in self._snapshot():
+            outlet.put(News(self.name, message))
+        self.outlets.add(outlet)
+
+    async def follow(self) -> None:
+        """Reads what happens, until it is cancelled; goes on after the last change when the robot is up again."""
+        while True:
+            with suppress(OSError, ValueError):
+                await self._read()
+            if self.is_up:
+                self.is_up = False
+                self._tell({"type": "away"})
+            await asyncio.sleep(_AGAIN)
+
+    async def _read(self) -> None:
+        reader, writer = await asyncio.open_unix_connection(socket_path(self.name), limit=_LONGEST)
+        try:
+            writer.write(json.dumps({"watch": {"rate": RATE, "after": self._change}}).encode() + b"\n")
+            while line := await asyncio.wait_for(reader.readline(), _SILENT):
+                self._take(json.loads(line))
+        except TimeoutError:
+            return
+        finally:
+            writer.close()
+
+    def _take(self, message: dict[str, Any]) -> None:
+        self.seen = time.time()
+        kind = message["type"]
+        if kind == "hello":
+            self.is_up = True
+            self._change = message["change"] if self._change is None else self._change
+            self._tell({"type": "up"})
+            return
+        if kind == "alive":
+            return
+        if kind == "change":
+            self._change = message["number"]
+        elif kind == "run":
+            self._run, self._statuses = message, {}
+        elif kind == "statuses":
+            self._statuses.update(message["changes"])
+        elif kind == "robot":
+            self._robot = message
+        self._tell(message)
+
+    def _tell(self, message: dict[str, Any]) -> None:
+        news = News(self.name, message)
+        for outlet in self.outlets:
+            outlet.put(news)
+
+    def _snapshot(self) -> list[dict[str, Any]]:
+        if not self.is_up:
+            return [{"type": "away"}]
+        messages: list[dict[str, Any]] = [{"type": "up"}]
+        if self._run is not None:
+            messages.append(self._run)
+            changes = [[index, status] for index, status in self._statuses.items()]
+            messages.append({"type": "statuses", "run": self._run["run"], "changes": changes})
+        return [*messages, *filter(None, [self._robot])]
+
+
+class Robots:
+    """All that are up on this computer, as long as `follow` goes on. `came` is called with one that is new."""
+
+    def __init__(self, came: Callable[[RobotLink], object] = lambda link: None) -> None:
+        self.links: dict[str, RobotLink] = {}
+        self.came = came
+        self._tasks: list[asyncio.Task[None]] = []
+
+    def get(self, name: str) -> RobotLink | None:
+        """That of a name; "" for the only one that is up."""
+        if name:
+            return self.links.get(name)
+        up = [link for link in self.links.values() if link.is_up]
+        return up[0] if len(up) == 1 else None
+
+    async def follow(self) -> None:
+        """Looks for robots, until it is cancelled."""
+        try:
+            while True:
+                for name in names_up():
+                    if name not in self.links:
+                        link = self.links[name] = RobotLink(name)
+                        self._tasks.append(asyncio.create_task(link.follow()))
+                        self.came(link)
+                await asyncio.sleep(_AGAIN)
+        finally:
+            for task in self._tasks:
+                task.cancel()

@@ -1,0 +1,30 @@
+"""The options of `btc serve` and `btc user`."""
+
+from __future__ import annotations
+
+import argparse
+
+from btlang.arguments import port
+
+PORT = 8443
+USER_ACTS = ("list", "add", "passwd", "role", "remove", "token", "tokens", "revoke", "logout", "trail")
+"""What `btc user` does."""
+
+
+def add_serve_options(parser: argparse.ArgumentParser) -> None:
+    """Those of `btc serve`."""
+    parser.add_argument(
+        "--host", default="127.0.0.1", metavar="ADDRESS", help="where to listen (default: this computer alone)"
+    )
+    parser.add_argument("--port", type=port, default=PORT, metavar="PORT", help="which port (default: %(default)s)")
+    parser.add_argument("--cert", metavar="FILE", help="a certificate (PEM) instead of its own; needs --key")
+    parser.add_argument("--key", metavar="FILE", help="the key of the certificate")
+    parser.add_argument("--no-tls", action="store_true", help="plain HTTP, on this computer alone")
+
+
+def add_user_options(parser: argparse.ArgumentParser) -> None:
+    """Those of `btc user`."""
+    parser.add_argument("--role", default="viewer", metavar="ROLE", help="viewer, operator, editor or administrator")
+    parser.add_argument("act", choices=USER_ACTS, metavar="ACT", help=", ".join(USER_ACTS))
+    parser.add_argument("name", nargs="?", default="", metavar="NAME", help="the name of a user")
+    parser.add_argument("item", nargs="?", default="", metavar="WHAT", help="the name of a token, or a role")

@@ -1,0 +1,148 @@
+"""A server in a process of its own, and a robot in this one; its clients know http.client and websockets alone."""
+
+from __future__ import annotations
+
+import http.client
+import json
+import os
+import socket
+import ssl
+import subprocess
+import sys
+import time
+from collections.abc import Iterator
+from contextlib import closing, contextmanager, suppress
+from pathlib import Path
+from typing import Any
+
+from websockets.exceptions import ConnectionClosed
+from websockets.sync.client import ClientConnection, connect
+
+from btlang.task.layer import TaskLayer
+from btlang.task.paths import USUAL_NAME
+from btlang.task.socket_server import SocketServer
+from tests.task.layers import LONG, layer_in
+
+PASSWORD = "correct horse battery"
+
+
+class Door:
+    """`btc serve` on a free port, over TLS unless `options` say otherwise. `folder` has to have a short path."""
+
+    def __init__(self, folder: Path, *options: str) -> None:
+        self.folder = folder
+        self.environment = {**os.environ, "XDG_DATA_HOME": str(folder), "XDG_RUNTIME_DIR": str(folder)}
+        self.port = free_port()
+        command = [sys.executable, "-m", "btlang", "serve", "--port", str(self.port), *options]
+        self.process = subprocess.Popen(
+            command, env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+        )
+        assert self.process.stdout is not None
+        self.lines = [self.process.stdout.readline()]
+        assert self.lines[0].startswith("The server is up"), self.lines + self.process.stdout.readlines()
+        self.tls = None if "--no-tls" in options else trusting()
+
+    def user(self, *words: str, password: str = PASSWORD) -> str:
+        """What `btc user` prints."""
+        done = subprocess.run(
+            [sys.executable, "-m", "btlang", "user", *words], env=self.environment, input=f"{password}\n",
+            capture_output=True, text=True, timeout=LONG,
+        )  # fmt: skip
+        assert done.returncode == 0, done.stderr
+        return done.stdout.strip()
+
+    def connection(self) -> http.client.HTTPConnection:
+        if self.tls is None:
+            return http.client.HTTPConnection("127.0.0.1", self.port, timeout=LONG)
+        return http.client.HTTPSConnection("127.0.0.1", self.port, context=self.tls, timeout=LONG)
+
+    def ask(self, method: str, path: str, data: object = None, **headers: str) -> Reply:
+        """One request; underscores in the names of headers are dashes."""
+        body = data if isinstance(data, bytes) else None if data is None else json.dumps(data).encode()
+        named = {
+            "content-type": "application/json",
+            **{name.replace("_", "-"): value for name, value in headers.items()},
+        }
+        with closing(self.connection()) as connection:
+            connection.request(method, path, body, named)
+            answer = connection.getresponse()
+            return Reply(answer.status, dict(answer.getheaders()), answer.read())
+
+    def log_in(self, name: str = "ann", password: str = PASSWORD) -> dict[str, str]:
+        """The headers of somebody who is logged in."""
+        reply = self.ask("POST", "/api/login", {"name": name, "password": password})
+        assert reply.status == 200, reply.body
+        return {"cookie": reply.headers["set-cookie"].partition(";")[0], "x_csrf_token": reply.data["csrf"]}
+
+    def socket(self, **headers: str) -> ClientConnection:
+        """A WebSocket to /api/ws."""
+        scheme = "ws" if self.tls is None else "wss"
+        address = f"{scheme}://127.0.0.1:{self.port}/api/ws"
+        return connect(address, ssl=self.tls, additional_headers=headers, proxy=None, open_timeout=LONG)
+
+    def close(self) -> None:
+        self.process.terminate()
+        self.process.wait(LONG)
+        assert self.process.stdout is not None
+        self.lines += self.process.stdout.readlines()
+        self.process.stdout.close()
+
+
+class Reply:
+    """The answer to a request."""
+
+    def __init__(self, status: int, headers: dict[str, str], body: bytes) -> None:
+        self.status, self.headers, self.body = status, headers, body
+
+    @property
+    def data(self) -> Any:
+        return json.loads(self.body)
+
+
+@contextmanager
+def robot_in(folder: Path, **options: Any) -> Iterator[TaskLayer]:
+    """A robot that is up, for a server that looks for its sockets in the same folder."""
+    before = os.environ.get("XDG_RUNTIME_DIR")
+    os.environ["XDG_RUNTIME_DIR"] = str(folder)
+    try:
+        with (
+            layer_in(folder / "robot", **options) as layer,
+            closing(SocketServer(USUAL_NAME, layer.handle, layer.stop, layer.feed.watch)) as sockets,
+        ):
+            sockets.start()
+            yield layer
+    finally:
+        if before is None:
+            del os.environ["XDG_RUNTIME_DIR"]
+        else:
+            os.environ["XDG_RUNTIME_DIR"] = before
+
+
+def trusting() -> ssl.SSLContext:
+    """For tests that are not about whom one speaks to."""
+    context = ssl.SSLContext(ssl.PROTOCOL_TLS_CLIENT)
+    context.check_hostname, context.verify_mode = False, ssl.CERT_NONE
+    return context
+
+
+def free_port() -> int:
+    with socket.create_server(("127.0.0.1", 0)) as listening:
+        return int(listening.getsockname()[1])
+
+
+def received(connection: ClientConnection, **wanted: Any) -> dict[str, Any]:
+    """The next message with these fields."""
+    until = time.monotonic() + LONG
+    while time.monotonic() < until:
+        message: dict[str, Any] = json.loads(connection.recv(LONG))
+        if wanted.items() <= message.items():
+            return message
+    raise AssertionError(wanted)
+
+
+def close_code(connection: ClientConnection) -> int | None:
+    """That with which the server ends a socket, after what it still says."""
+    with suppress(ConnectionClosed):
+        while True:
+            connection.recv(LONG)
+    return connection.close_code

@@ -1,0 +1,26 @@
+"""The program in docs/server.md, as it stands there."""
+
+from __future__ import annotations
+
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+from btlang.task.layer import TaskLayer
+from tests.server.doors import Door
+
+PAGE = Path(__file__).parents[2] / "docs" / "server.md"
+
+
+def test_the_client_of_the_page(door: Door, robot: TaskLayer, tmp_path: Path) -> None:
+    [program] = re.findall(r"```py\n(.*?)```", PAGE.read_text(encoding="utf-8"), re.S)
+    (tmp_path / "client.py").write_text(program)
+    assert door.process.stdout is not None
+    fingerprint = door.process.stdout.readline().partition(": ")[2].strip()
+    token = door.user("token", "olga", "page")
+    for given, code in ((fingerprint, 0), ("AB:" + fingerprint[3:], 1)):
+        words = [sys.executable, tmp_path / "client.py", str(door.port), given, token]
+        done = subprocess.run(words, capture_output=True, text=True, timeout=30)
+        assert done.returncode == code, done.stderr
+        assert code or {"result", "run", "statuses", "change"} <= {*done.stdout.split()}
