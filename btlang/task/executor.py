@@ -223,9 +223,9 @@ class Executor:
                 self._rest(_RETRY)
 
     def _turn(self) -> None:
+        self._new, self._stops = False, len(self._emergency.stops)  # first: who waits for the store looks no more often
         self._outbox.flush()
         now = self._now()
-        self._new, self._stops = False, len(self._emergency.stops)
         if self._hindrance():
             self._rest(_LOOK)
             return

@@ -289,6 +289,19 @@ def test_a_schedule_makes_its_tasks(tmp_path: Path, place: str) -> None:
     assert report[2] == "wave (every 10 minutes between 09:00 and 09:30): 4 of 4 done."
 
 
+def test_a_store_that_refuses_is_not_asked_all_the_time(tmp_path: Path) -> None:
+    troubles: list[str] = []
+    with layer_in(tmp_path, trouble=troubles.append) as layer:
+        number = submit(layer, "wait 5 s")
+        wait_for(layer, number, State.UNDERWAY)
+        wait_until(lambda: layer.executor.run is not None)
+        layer.store.close()
+        wait_until(lambda: layer.executor.task is None)
+        layer.executor.wake()
+        time.sleep(0.3)
+        assert len(troubles) < 10
+
+
 def test_a_command_that_hangs_keeps_no_robot_up(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "words.toml").write_text('[[action]]\nphrase = "hang"\nid = "Hang"\ncall = "hangs:hang"\n')
     (tmp_path / "hangs.py").write_text(
