@@ -54,7 +54,15 @@ def read_included(path: str, source: Source) -> Source:
 def included_path(path: str, source: Source) -> tuple[str, str]:
     """Where a file that a text names is looked for, and where that really is. Reads nothing."""
     where = os.path.join(source.folder, path)
-    return where, where if "\0" in where else os.path.realpath(where)
+    return where, real_path(where)
+
+
+def real_path(path: str) -> str:
+    """Without links; as it is where no file can have such a name."""
+    try:
+        return os.path.realpath(path)
+    except ValueError:
+        return path
 
 
 OUTSIDE = "it is outside the folder of the mission; to allow another folder, use --include-root"

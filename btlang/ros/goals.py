@@ -8,6 +8,7 @@ from functools import partial
 from rclpy.action import ActionServer, CancelResponse, GoalResponse
 from rclpy.action.server import GoalEvent, ServerGoalHandle
 from rclpy.node import Node
+from rclpy.qos import QoSProfile
 
 from btlang.ros.lease import Leases
 
@@ -15,6 +16,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+_MANY = QoSProfile(depth=1000)  # of requests at once; more than ten get lost by default
 GONE = "its client is gone"
 """Why a goal is cancelled whose client has died."""
 
@@ -64,6 +66,9 @@ class GoalServer:
             goal_callback=lambda request: GoalResponse.ACCEPT if accepts() else GoalResponse.REJECT,
             handle_accepted_callback=self._accept,
             cancel_callback=self._cancel,
+            goal_service_qos_profile=_MANY,
+            result_service_qos_profile=_MANY,
+            cancel_service_qos_profile=_MANY,
         )
 
     def _accept(self, handle: ServerGoalHandle) -> None:

@@ -30,6 +30,13 @@ def checked_priority(priority: int) -> int:
     return priority
 
 
+def checked_within(seconds: float | None) -> float | None:
+    """The time after which a task of a schedule isn't worth beginning. Raises MissionError (BT198) if it isn't one."""
+    if seconds is not None and seconds <= 0:
+        raise wrong("schedule", "'within' must be more than 0")
+    return seconds
+
+
 def choice(kind: type[Choice], given: str, field: str) -> Choice:
     """The member of a kind that a text names. Raises MissionError (BT198)."""
     try:

@@ -2,14 +2,18 @@
 
 from __future__ import annotations
 
+import getpass
 import json
+import os
 import socket
 from contextlib import suppress
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
-from btlang.task.messages import Answer, Command, as_json
-from btlang.task.paths import USUAL_NAME, names_up, socket_path
+from btlang.diagnostics.reading import reason_of
+from btlang.task.emergency import latch_path, shut_latch
+from btlang.task.messages import Answer, Command, EmergencyStop, as_json
+from btlang.task.paths import USUAL_NAME, data_folder, names_up, robots_known, socket_path
 from btlang.text.source import NOWHERE
 
 _PATIENCE = 30.0  # seconds for an answer
@@ -46,29 +50,54 @@ class Client:
         self.close()
 
 
-def emergency_stop(name: str = "") -> None:
-    """Stops a robot at once, over the socket that is for nothing else. Raises MissionError (BT185, BT199)."""
-    name = name or _only_name()
-    with _connected(name, socket_path(name, stop=True)) as connection:
-        try:
-            done = connection.recv(16)
-        except OSError:
-            done = b""
-    if not done:
-        raise MissionError([diagnostic("BT199", NOWHERE, name=name)])
+def emergency_stop(name: str = "", reason: str = "") -> list[str]:
+    """Stops a robot at once, over the socket that is for nothing else; without a name all that are up. One that doesn't
+    answer, and that was up some time, is stopped by its latch: at once if its process lives, else from its next start.
+
+    Returns a line for each. Raises MissionError (BT185) if there is no such robot, BT195 if a latch can't be written.
+    """
+    names = [name] if name else _listening() or robots_known()
+    told = [_stopped(each, reason) for each in names]
+    if not names or None in told:
+        raise _nobody(name or USUAL_NAME)
+    return [each for each in told if each is not None]
+
+
+def _stopped(name: str, reason: str) -> str | None:
+    """What to say; None where there never was such a robot."""
+    for stop in (True, False):
+        with suppress(MissionError, OSError), _connected(name, socket_path(name, stop=stop)) as connection:
+            if not stop:
+                connection.sendall(json.dumps(as_json(EmergencyStop(reason))).encode() + b"\n")
+            if connection.recv(16):
+                return f"The robot '{name}' is stopped. Nothing moves it until: btc robot release"
+    folder = data_folder(name)
+    if not os.path.isdir(folder):
+        return None
+    try:
+        shut_latch(folder, getpass.getuser(), reason)
+    except OSError as error:
+        raise MissionError([diagnostic("BT195", NOWHERE, place=latch_path(folder), reason=reason_of(error))]) from None
+    return f"The robot '{name}' doesn't answer. If it is up, it stops in a moment; it stays stopped when it comes up."
 
 
 def _only_name() -> str:
-    listening = []
-    for name in names_up():
-        with suppress(MissionError):
-            _connected(name, socket_path(name)).close()
-            listening.append(name)
+    listening = _listening()
     if len(listening) > 1:
         names = ", ".join(listening)
         what = f"Several robots are up: {names}"
         raise MissionError([diagnostic("BT185", NOWHERE, what=what, advice="Say which: --name NAME")])
     return listening[0] if listening else USUAL_NAME
+
+
+def _listening() -> list[str]:
+    """The robots that are up."""
+    found = []
+    for name in names_up():
+        with suppress(MissionError):
+            _connected(name, socket_path(name)).close()
+            found.append(name)
+    return found
 
 
 def _connected(name: str, path: str) -> socket.socket:
@@ -78,7 +107,11 @@ def _connected(name: str, path: str) -> socket.socket:
         connection.connect(path)
     except OSError:
         connection.close()
-        what = "No robot is up" if name == USUAL_NAME else f"No robot '{name}' is up"
-        start = "btc robot up" if name == USUAL_NAME else f"btc robot up --name {name}"
-        raise MissionError([diagnostic("BT185", NOWHERE, what=what, advice=f"Start it with: {start}")]) from None
+        raise _nobody(name) from None
     return connection
+
+
+def _nobody(name: str) -> MissionError:
+    what = "No robot is up" if name == USUAL_NAME else f"No robot '{name}' is up"
+    start = "btc robot up" if name == USUAL_NAME else f"btc robot up --name {name}"
+    return MissionError([diagnostic("BT185", NOWHERE, what=what, advice=f"Start it with: {start}")])

@@ -6,6 +6,7 @@ import threading
 import time
 from collections.abc import Callable, Sequence
 
+from btlang.engine.leaves.leaf import described
 from btlang.task.database import StoreError
 from btlang.task.store import Store
 from btlang.task.task import Change
@@ -18,11 +19,16 @@ class Follower:
     """Hands the changes of this process's tasks to `changed`, each once and in order, in a thread of its own.
 
     It begins with the changes that come after it was made, until `close`. `changed` may raise StoreError: then it gets
-    the same changes again.
+    the same changes again. `trouble` gets what else it raises, for people.
     """
 
-    def __init__(self, store: Store, changed: Callable[[Sequence[Change]], object]) -> None:
-        self._store, self._changed = store, changed
+    def __init__(
+        self,
+        store: Store,
+        changed: Callable[[Sequence[Change]], object],
+        trouble: Callable[[str], object] = lambda text: None,
+    ) -> None:
+        self._store, self._changed, self._trouble = store, changed, trouble
         self._last = store.latest_change()
         self._closed = threading.Event()
         self._news = threading.Event()
@@ -53,5 +59,8 @@ class Follower:
             except StoreError:
                 self._news.set()
                 self._closed.wait(_RETRY)
+            except Exception as problem:  # the next ones may do better
+                self._last = found[-1][0]
+                self._trouble(f"An error inside btlang: {described(problem)}")
             else:
                 self._closed.wait(_REST * (time.monotonic() - began))

@@ -15,7 +15,7 @@ from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.task import messages
 from btlang.task.answers import outdated, revision_data, schedule_data, short, task_data, task_line
-from btlang.task.checks import checked_priority, choice, moment, refused
+from btlang.task.checks import checked_priority, checked_within, choice, moment, refused
 from btlang.task.emergency import EmergencyStop
 from btlang.task.executor import Executor
 from btlang.task.manager import Manager
@@ -243,7 +243,8 @@ class Handler:
             Schedule(
                 0, str(recurrence), command.zone, mission, person, now, first, checked_priority(command.priority),
                 command.labels, choice(Restart, command.restart, "restart"),
-                choice(Overlap, command.overlap, "overlap"), choice(Missed, command.missed, "missed"), command.within,
+                choice(Overlap, command.overlap, "overlap"), choice(Missed, command.missed, "missed"),
+                checked_within(command.within),
             )
         )  # fmt: skip
         self._executor.wake()

@@ -11,13 +11,13 @@ from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.robots.needs import check_body, needs_of
 from btlang.session import Run, Session
-from btlang.task.emergency import EmergencyStop
+from btlang.task.emergency import EmergencyStop, latch_path
 from btlang.task.executor import Executor
 from btlang.task.feed import Feed
 from btlang.task.handler import Handler
 from btlang.task.house_rules import HouseRules, no_house_rules, read_house_rules
 from btlang.task.manager import DAY, Manager
-from btlang.task.messages import Answer, Command, read_command
+from btlang.task.messages import Answer, Command, as_json, read_command
 from btlang.task.missions import MissionReader
 from btlang.task.recordings import Recordings
 from btlang.task.store import open_store
@@ -81,14 +81,14 @@ class TaskLayer:
             raise
         self._begins = time.time() if begins is None else begins
         self._real = speed == "real"
-        self.emergency = EmergencyStop(os.path.join(folder, "emergency_stop"), self.session.emergency_stop)
+        self.emergency = EmergencyStop(latch_path(folder), self.session.emergency_stop)
         self.feed = Feed(self.store, self._hindrances)
         self.emergency.listeners.append(self.feed.wake)
         self.manager = Manager(self.store, keeps)
         self.executor = Executor(
             self.session, self.store, self.manager, self.emergency, self.rules, self.reader.read(_IDLE),
             missions=self.reader.read, now=self.now, trouble=trouble,
-            recordings=None if recordings is None else Recordings(recordings),
+            recordings=None if recordings is None else Recordings(recordings, trouble),
             speed=speed, idle_rate=20.0 if self._real else _SLOW,
             sinks=lambda *run: [*self.feed.sinks(*run), *sinks(*run)],
         )  # fmt: skip
@@ -102,11 +102,10 @@ class TaskLayer:
 
     def handle(self, command: Command | dict[str, Any], person: str = "") -> Answer:
         """Does a command (see btlang.task.messages), or its JSON, from any thread. A refusal is an answer, too."""
-        if not isinstance(command, Command):
-            try:
-                command = read_command(command)
-            except MissionError as error:
-                return Answer(False, str(error), {}, error.diagnostics[0].code)
+        try:  # also one that is a command already, since its texts may be anything
+            command = read_command(as_json(command) if isinstance(command, Command) else command)
+        except MissionError as error:
+            return Answer(False, str(error), {}, error.diagnostics[0].code)
         answer = self.handler.handle(command, person)
         self.feed.wake()
         return answer

@@ -5,6 +5,7 @@ As JSON a command is an object with its name under "command" and its fields; `sc
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 
 from btlang.diagnostics.diagnostic import diagnostic
@@ -340,7 +341,31 @@ def _checked(kind: type[Command], field: str, value: Any) -> Any:
     fits = isinstance(value, expected) and not isinstance(value, bool)
     if not fits or (texts and not all(isinstance(each, str) for each in value)) or value != value:
         raise wrong(kind.tag, f"'{field}' must be of the type {described['type']}")
+    if not _can_be_kept(value):
+        raise wrong(kind.tag, f"'{field}' has a NUL or half a character (a lone surrogate), or a number without end")
     return tuple(value) if texts else value
+
+
+def _can_be_kept(value: Any) -> bool:
+    """Whether stores, files and messages of ROS 2 take all texts and numbers in a value of JSON."""
+    waiting = [value]
+    while waiting:
+        each = waiting.pop()
+        if isinstance(each, dict):
+            waiting += [*each.keys(), *each.values()]
+        elif isinstance(each, list | tuple):
+            waiting += each
+        elif (isinstance(each, float) and not math.isfinite(each)) or (isinstance(each, str) and not _is_whole(each)):
+            return False
+    return True
+
+
+def _is_whole(text: str) -> bool:
+    try:
+        text.encode()
+    except UnicodeEncodeError:
+        return False
+    return "\0" not in text
 
 
 def wrong(name: str, reason: str) -> MissionError:

@@ -31,6 +31,13 @@ def data_folder(name: str) -> str:
     return os.path.join(user_dir("data"), "robots", checked_name(name))
 
 
+def robots_known() -> list[str]:
+    """Names of robots that were up some time."""
+    folder = os.path.join(user_dir("data"), "robots")
+    names = os.listdir(folder) if os.path.isdir(folder) else []
+    return sorted(name for name in names if _NAME.fullmatch(name))
+
+
 def socket_folder() -> str:
     """A folder of this user alone for sockets. Raises MissionError (BT195) if there can't be one."""
     runtime = os.environ.get("XDG_RUNTIME_DIR", "")

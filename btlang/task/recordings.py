@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Callable
 from contextlib import suppress
 
 from btlang.api import Mission
@@ -15,10 +16,14 @@ _EACH = 200_000_000  # bytes of one, which then goes on in another file
 
 
 class Recordings:
-    """A recorder for each task, in `folder`; none if the package mcap isn't installed, which `problem` then says."""
+    """A recorder for each task, in `folder`; none if the package mcap isn't installed or the folder can't be written,
+    which `trouble` is told once.
+    """
 
-    def __init__(self, folder: str, most_bytes: int = MOST_BYTES) -> None:
-        self._folder, self._most = folder, most_bytes
+    def __init__(
+        self, folder: str, trouble: Callable[[str], object] = lambda text: None, most_bytes: int = MOST_BYTES
+    ) -> None:
+        self._folder, self._trouble, self._most = folder, trouble, most_bytes
         self.problem = ""
         """Why there are no recordings, "" if there are."""
         self._latest: Recorder | None = None
@@ -29,6 +34,8 @@ class Recordings:
         try:
             recorder = recorder_in(self._folder, mission, (), {"task": str(task)}, _EACH)
         except MissionError as error:
+            if not self.problem:
+                self._trouble(str(error))
             self.problem = error.diagnostics[0].message
             return None
         self.problem, self._latest = "", recorder

@@ -58,10 +58,10 @@ def serve(options: argparse.Namespace) -> int:
     if act in ("backup", "restore"):
         return _copy(options)
     if act == "stop":
-        emergency_stop(options.name)
+        for line in emergency_stop(options.name, options.reason):
+            show(line)
         with suppress(MissionError), Client(options.name) as client:  # the robot stands already; this is for the trail
             client.send(messages.EmergencyStop(options.reason))
-        show("The robot is stopped. Nothing moves it until: btc robot release")
         return 0
     if act == "say" and not options.item:
         raise messages.wrong(act, "it needs a text")

@@ -17,7 +17,7 @@ from contextlib import closing, contextmanager, suppress
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.task.messages import Answer, EmergencyStop
-from btlang.task.paths import socket_path
+from btlang.task.paths import socket_folder, socket_path
 from btlang.text.source import NOWHERE
 
 TYPE_CHECKING = False
@@ -31,6 +31,7 @@ MOST_BYTES = 4_000_000
 _LEAVE = 2.0  # seconds that the last answers get
 _RATE = 20.0  # messages of one kind in a second, if nobody says another one
 _UNREADABLE = object()
+_LOOK = 0.5  # seconds between two looks whether a socket is still there
 _WAITING = 128  # connections that may wait to be taken
 
 
@@ -56,10 +57,11 @@ class SocketServer:
         except OSError:
             os.close(self._lock)
             raise MissionError([diagnostic("BT190", NOWHERE, name=name)]) from None
+        self._closed = False
         self._sockets = [_listening(path) for path in self._paths]
         self._threads = [
-            threading.Thread(target=self._accept, args=(self._sockets[0],), daemon=True, name="btlang door"),
-            threading.Thread(target=self._accept_stops, args=(self._sockets[1],), daemon=True, name="btlang stop"),
+            threading.Thread(target=self._accept, args=(0, self._begin), daemon=True, name="btlang door"),
+            threading.Thread(target=self._accept, args=(1, self._be_stopped), daemon=True, name="btlang stop"),
         ]
 
     def start(self) -> None:
@@ -71,6 +73,7 @@ class SocketServer:
         """Takes no more commands; those under way are answered first. May be called twice."""
         with self._answered:
             self._answered.wait_for(lambda: not self._busy, _LEAVE)
+        self._closed = True
         for each, path in zip(self._sockets, self._paths, strict=True):
             with suppress(OSError):
                 each.shutdown(socket.SHUT_RDWR)
@@ -80,25 +83,34 @@ class SocketServer:
         with suppress(OSError):
             os.close(self._lock)
 
-    def _accept(self, listening: socket.socket) -> None:
-        while True:
+    def _accept(self, which: int, take: Callable[[socket.socket], object]) -> None:
+        """Hands on who connects. A socket that somebody took away is made anew: the robot can always be reached."""
+        while not self._closed:
             try:
-                connection, _ = listening.accept()
+                connection, _ = self._sockets[which].accept()
+            except TimeoutError:
+                if not os.path.exists(self._paths[which]):
+                    with suppress(OSError, MissionError):
+                        socket_folder()
+                        self._sockets[which].close()
+                        self._sockets[which] = _listening(self._paths[which])
+                continue
             except OSError:
-                return
-            threading.Thread(target=self._serve, args=(connection,), daemon=True, name="btlang caller").start()
+                if self._closed:
+                    return
+                continue
+            connection.settimeout(None)
+            take(connection)
 
-    def _accept_stops(self, listening: socket.socket) -> None:
+    def _begin(self, connection: socket.socket) -> None:
+        threading.Thread(target=self._serve, args=(connection,), daemon=True, name="btlang caller").start()
+
+    def _be_stopped(self, connection: socket.socket) -> None:
         """Whoever connects here wants a stop, and nothing that he then does or doesn't do delays it."""
-        while True:
-            try:
-                connection, _ = listening.accept()
-            except OSError:
-                return
-            self._stop(_person(connection))
-            with suppress(OSError), connection:
-                connection.settimeout(0.0)
-                connection.sendall(b"stopped\n")
+        self._stop(_person(connection))
+        with suppress(OSError), connection:
+            connection.settimeout(0.0)
+            connection.sendall(b"stopped\n")
 
     def _serve(self, connection: socket.socket) -> None:
         person = _person(connection)
@@ -164,6 +176,7 @@ def _listening(path: str) -> socket.socket:
     finally:
         os.umask(before)
     listening.listen(_WAITING)
+    listening.settimeout(_LOOK)
     return listening
 
 

@@ -37,13 +37,15 @@ def set_mission(client: Client, text: str) -> None:
 def test_all_transitions(start_node, client: Client, run_mission: Any):
     node = start_node("--no-autostart")
     assert state(client) == "unconfigured"
-    assert not client.call(Trigger, "/btlang/stop").success
+    assert client.call(Trigger, "/btlang/stop").success  # for when there is a robot
     set_mission(client, "move forwarrd")
     assert not change(client, CONFIGURE)
     assert state(client) == "unconfigured"
     wait_until(lambda: "mission:1:1: error BT010" in node.err, "why it is not configured")
     set_mission(client, FAR)
     assert change(client, CONFIGURE)
+    assert client.call(Trigger, "/btlang/status").message.startswith("The robot is stopped: emergency stop by ROS 2")
+    assert client.call(Trigger, "/btlang/release").success
     assert not mission(client, run_mission, "say hello").accepted
     wait_until(lambda: "mission rejected: the node is not active" in node.err, "why it is rejected")
     for _ in range(2):  # each activation runs the mission from its start

@@ -68,9 +68,8 @@ def test_a_task_is_followed(tmp_path: Path) -> None:
 
 def test_who_comes_back_misses_no_change(tmp_path: Path) -> None:
     with layer_in(tmp_path) as layer:
-        ask(layer, "pause")
         for _ in range(3):
-            submit(layer, "wave")
+            submit(layer, "wave", at="in 2 hours")
         first = Watcher(layer, after=1)
         assert [first.wait(lambda m, n=n: m.get("number") == n)["task"] for n in (2, 3)] == [2, 3]
         late = Watcher(layer)

@@ -14,10 +14,12 @@ from typing import TYPE_CHECKING
 
 import pytest
 
+from btlang.api import parse_tree
+from btlang.diagnostics.errors import MissionError
 from btlang.run.events import Event, Printed
 from btlang.task import executor
 from btlang.task.layer import TaskLayer
-from btlang.task.messages import Answer
+from btlang.task.messages import Answer, Submit
 from btlang.task.missions import MissionReader
 from btlang.task.task import FINAL, MissionText, State, Task
 
@@ -327,7 +329,43 @@ def test_a_command_that_hangs_keeps_no_robot_up(tmp_path: Path, monkeypatch: pyt
 @pytest.mark.parametrize("name", ["\0", "a\nb", "\x1b[2J", "x" * 5000, "../../x", "🤖"])
 def test_any_name(tmp_path: Path, name: str) -> None:
     with layer_in(tmp_path) as layer:
-        assert wait_for(layer, submit(layer, "wave", name=name), *FINAL).state is State.COMPLETED or "\0" in name
+        if "\0" not in name:
+            assert wait_for(layer, submit(layer, "wave", name=name), *FINAL).state is State.COMPLETED
         answer = layer.handle({"command": "put", "name": name, "text": "wave"}, "ann")
         assert answer.ok or answer.code in ("BT195", "BT198")
         assert "\x1b" not in answer.text
+
+
+@pytest.mark.parametrize("text", ["\ud800", "a\0b"])
+def test_texts_that_nothing_can_keep(tmp_path: Path, text: str) -> None:
+    with layer_in(tmp_path) as layer:
+        number = submit(layer, "wave", at="23:59")
+        for command in (
+            {"command": "submit", "text": "wave", "labels": [text]},
+            {"command": "submit", "text": f'include "{text}"'},
+            {"command": "submit", "text": "wave", "values": {"n": [{"m": text}]}},
+            {"command": "cancel", "task": number, "reason": text},
+            {"command": "put", "name": text, "text": "wave"},
+            Submit("wave", labels=(text,)),
+        ):
+            answer = layer.handle(command, "ann")
+            assert (answer.ok, answer.code) == (False, "BT198")
+    with pytest.raises(MissionError):
+        parse_tree(f'include "{text}"')
+
+
+@pytest.mark.parametrize("within", [float("inf"), float("nan"), 1e400, 0, -5])
+def test_times_that_are_none(tmp_path: Path, within: float) -> None:
+    with layer_in(tmp_path) as layer:
+        fields = {"command": "schedule", "text": "wave", "rule": "every minute", "within": within}
+        assert layer.handle(fields, "ann").code == "BT198"
+
+
+def test_recordings_that_cannot_be_written_are_told_once(tmp_path: Path) -> None:
+    (tmp_path / "file").write_text("")
+    troubles: list[str] = []
+    with layer_in(tmp_path, recordings=str(tmp_path / "file"), trouble=troubles.append) as layer:
+        for _ in range(2):
+            assert wait_for(layer, submit(layer, "wave"), *FINAL).state is State.COMPLETED
+    assert len(troubles) == 1
+    assert "BT009" in troubles[0]

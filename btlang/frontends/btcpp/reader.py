@@ -7,7 +7,7 @@ from collections.abc import Collection, Sequence
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import MOST_DEEP, TOO_DEEP, included_path, read_included
+from btlang.diagnostics.reading import MOST_DEEP, TOO_DEEP, included_path, read_included, real_path
 from btlang.frontends.btcpp.file import TreeHead, XmlFile
 from btlang.frontends.btcpp.models import MODEL_KINDS, nav2_models, subtree_defaults
 from btlang.frontends.btcpp.origin import XmlOrigin
@@ -43,7 +43,7 @@ class _Reader:
         self._read: set[str] = set()
 
     def read(self, source: Source) -> Tree:
-        self._add(source, (os.path.realpath(source.name),))
+        self._add(source, (real_path(source.name),))
         self._stop_where_wrong()
         file = self._files[0]
         heads = self._distinct()

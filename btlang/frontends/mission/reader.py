@@ -8,7 +8,7 @@ from importlib import import_module
 
 from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.reading import MOST_DEEP, TOO_DEEP, included_path, read_included
+from btlang.diagnostics.reading import MOST_DEEP, TOO_DEEP, included_path, read_included, real_path
 from btlang.frontends.mission.grouping.grouping import Grouped, group
 from btlang.frontends.mission.parsers.build import Builder
 from btlang.frontends.mission.symbols.includes import Included
@@ -55,7 +55,7 @@ def read_mission(
     if parser not in PARSERS:
         raise ValueError(f"no parser '{parser}'; there are {', '.join(PARSERS)}")
     reader = _Reader(vocabulary, parser, known or {}, errors_of)
-    included = reader.read(source, (os.path.realpath(source.name),))
+    included = reader.read(source, (real_path(source.name),))
     if any(problem.is_error for problem in reader.problems):
         raise MissionError(reader.problems)
     return Reading(included.mission, tuple(reader.problems))
@@ -64,7 +64,7 @@ def read_mission(
 def lexed(source: Source, vocabulary: Lexicon) -> Lexer:
     """The tokens of a text, with the names of what it includes; nothing is said of what is wrong."""
     reader = _Reader(vocabulary, DEFAULT_PARSER, {}, None)
-    return Lexer(source, vocabulary, explain=False, load=reader.loader(source, (os.path.realpath(source.name),)))
+    return Lexer(source, vocabulary, explain=False, load=reader.loader(source, (real_path(source.name),)))
 
 
 class _Reader:

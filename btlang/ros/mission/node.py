@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
 
@@ -17,6 +19,7 @@ from btlang.ros.mission.topics import ERROR, OK, WARN, Topics
 from btlang.ros.mission.tree_topic import TreeTopic
 from btlang.run.lines import Lines
 from btlang.task import messages
+from btlang.task.emergency import shut_latch
 from btlang.task.follower import Follower
 from btlang.task.messages import Answer, Command
 from btlang.task.task import ACTIVE, FINAL, WAITING, Change, MissionText, State, Task
@@ -79,7 +82,7 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
             self._topics.complain(str(error))
             return _FAILURE
         self._end_tasks(WAITING, "its node ended before it did")
-        self._follower = Follower(self._layer.store, self._changed)
+        self._follower = Follower(self._layer.store, self._changed, self._topics.complain)
         self._topics.tasks(self.answer(messages.List(limit=_MOST)))
         return _SUCCESS
 
@@ -134,12 +137,19 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
             layer.close()
 
     def emergency_stop(self, person: str = _PERSON) -> bool:
-        """Stops the robot at once until it is released, from any thread; False where there is no robot yet."""
+        """Stops the robot at once until it is released, from any thread, or keeps it stopped from when it is configured
+        on; False where even that can't be written down.
+        """
         layer = self._layer
-        if layer is None:
-            return False
-        layer.stop(person)
-        return True
+        if layer is not None:
+            layer.stop(person)
+            return True
+        folder = self._setup.layer["folder"]
+        with suppress(OSError):
+            os.makedirs(folder, mode=0o700, exist_ok=True)
+            shut_latch(folder, person)
+            return True
+        return False
 
     def answer(self, command: Command | dict[str, Any], person: str = _PERSON) -> Answer:
         """Does a command. From any thread."""

@@ -22,5 +22,5 @@ class StopNode(Node):  # type: ignore[misc]  # rclpy is seen as untyped
 
     def _stop(self, request: Any, response: Any) -> Any:
         response.success = self._do()
-        response.message = "" if response.success else "there is no robot: the node is not configured"
+        response.message = "" if response.success else "there is no robot, and its latch can't be written"
         return response
