@@ -141,6 +141,19 @@ def test_missions_queue(start_node, client: Client, run_mission: Any):
     assert not tasks.wait(lambda message: not message.tasks).hindrance
 
 
+def test_many_goals_at_once(start_node, client: Client, run_mission: Any):
+    """By default services of ROS 2 lose all but ten."""
+    start_node("--speed", "10")
+    server = client.action(run_mission, "/btlang/run_mission")
+    goal = run_mission.Goal(mission="say hello")
+    sent: list[Any] = []
+    answer(client.node.executor.create_task(lambda: sent.extend(server.send_goal_async(goal) for _ in range(60))))
+    handles = [answer(future) for future in sent]
+    assert all(handle.accepted for handle in handles)
+    ends = [answer(client.begin(handle.get_result_async)).result for handle in handles]
+    assert [end.outcome for end in ends] == ["success"] * 60
+
+
 def test_an_urgent_mission_suspends_another(start_node, client: Client, run_mission: Any):
     start_node("--speed", "10")
     usual = mission(client, run_mission, 'set n to 0\nrepeat 3 times: wait 5 s then increase n\nprint "{n} times"')

@@ -37,6 +37,7 @@ def set_mission(client: Client, text: str) -> None:
 def test_all_transitions(start_node, client: Client, run_mission: Any):
     node = start_node("--no-autostart")
     assert state(client) == "unconfigured"
+    assert not any(change(client, number) for number in (ACTIVATE, DEACTIVATE, CLEANUP, 99))
     assert client.call(Trigger, "/btlang/stop").success  # for when there is a robot
     set_mission(client, "move forwarrd")
     assert not change(client, CONFIGURE)
@@ -57,7 +58,8 @@ def test_all_transitions(start_node, client: Client, run_mission: Any):
         assert change(client, DEACTIVATE)
         assert state(client) == "inactive"
         assert goal.result().result.reason == "the node was deactivated"
-        assert node.out.count(": the node was deactivated") == 2 * before + 2
+        told = 2 * before + 2
+        wait_until(lambda told=told: node.out.count(": the node was deactivated") == told, "both ends on the log")
     assert change(client, CLEANUP)
     assert change(client, SHUTDOWN)
     assert state(client) == "finalized"

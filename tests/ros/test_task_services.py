@@ -74,7 +74,14 @@ def test_tasks_are_led_by_services(start_node, client: Client, run_mission: Any)
 
 @pytest.mark.parametrize(
     ("sent", "code"),
-    [("{", "BT198"), ("[]", "BT198"), ('{"command": "submti"}', "BT198"), ('{"command": "show", "task": 9}', "BT187")],
+    [
+        ("{", "BT198"),
+        ("[]", "BT198"),
+        ('{"command": "submti"}', "BT198"),
+        ('{"command": "show", "task": 9}', "BT187"),
+        ('{"command": "submit", "text": "wave", "labels": ["\\ud800"]}', "BT198"),
+        ('{"command": "put", "name": "a\\u0000", "text": "wave"}', "BT198"),
+    ],
 )
 def test_a_wrong_command(sent: str, code: str, run_mission: Any, tmp_path: Path):
     """The service's own function, with real requests and answers."""

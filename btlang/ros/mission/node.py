@@ -117,6 +117,15 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
         self.release()
         return _SUCCESS
 
+    def _LifecycleNodeMixin__on_change_state(self, request: Any, response: Any) -> Any:
+        """rclpy's own one answers nothing where there is no such transition, and a lifecycle manager waits for ever."""
+        try:
+            return super()._LifecycleNodeMixin__on_change_state(request, response)
+        except RuntimeError as error:
+            self._topics.complain(f"no such transition now: {str(error).partition(',')[0]}")
+            response.success = False
+            return response
+
     def halt(self) -> bool:
         """Cancels all goals and the node's own mission, and halts what else runs; whether it ended. From any thread."""
         layer, was_active = self._layer, self._active
