@@ -2,14 +2,19 @@
 
 from __future__ import annotations
 
+import asyncio
+import time
+from contextlib import suppress
 from http.cookies import CookieError, SimpleCookie
 from urllib.parse import urlsplit
 
 from itsdangerous import BadSignature, Signer
 
+from btlang.diagnostics.errors import MissionError
 from btlang.server.accounts import Accounts, Identity
 from btlang.server.passwords import BusyError, Verifier
 from btlang.server.throttle import Throttle
+from btlang.task.messages import is_whole
 from btlang.text.escaping import one_line
 
 TYPE_CHECKING = False
@@ -19,6 +24,8 @@ if TYPE_CHECKING:
 COOKIE = "__Host-btlang"
 """Its prefix makes browsers take it from this host over TLS alone, and send it nowhere else."""
 CSRF = "x-csrf-token"
+_KNOWN = 10.0  # seconds for which somebody who was looked up is known
+_MOST_KNOWN = 2000
 
 
 class AccessError(Exception):
@@ -30,10 +37,15 @@ class AccessError(Exception):
 
 
 class Access:
-    """Decides by the accounts. `key` signs CSRF tokens."""
+    """Decides by the accounts. `key` signs CSRF tokens.
+
+    The disk is only touched in threads, and not for somebody who was here a moment ago: it may be slow, and everybody
+    may stop the robot at any time.
+    """
 
     def __init__(self, accounts: Accounts, key: str) -> None:
         self.accounts = accounts
+        self._known: dict[str, tuple[Identity | None, float]] = {}
         self._verifier = Verifier()
         self._signer = Signer(key, salt="csrf")
         self._by_account, self._by_address = Throttle(), Throttle()
@@ -43,7 +55,7 @@ class Access:
         wait = max(self._by_account.wait(name), self._by_address.wait(address))
         if wait:
             raise AccessError(429, f"Too many wrong passwords. Try again in {wait:.0f} s.", wait)
-        user = self.accounts.user(name) if name and "\0" not in name else None
+        user = await asyncio.to_thread(self.accounts.user, name) if name and is_whole(name) else None
         try:
             fits = await self._verifier.fits(password, None if user is None else user.password)
         except BusyError:
@@ -51,36 +63,46 @@ class Access:
         if not fits or user is None:
             self._by_account.wrong(name)
             self._by_address.wrong(address)
-            self.accounts.log(one_line(name)[:100], address, "log in", "wrong")
+            await self.note(one_line(name)[:100], address, "log in", "wrong")
             raise AccessError(401, "The name or the password is wrong.")
         self._by_account.right(name)
         self._by_address.right(address)
-        secret = self.accounts.log_in(user.name, address)
-        self.accounts.log(user.name, address, "log in", "ok")
-        identity = self.accounts.identity(secret)
-        assert identity is not None
+        secret = await asyncio.to_thread(self.accounts.log_in, user.name, address)
+        await self.note(user.name, address, "log in", "ok")
+        identity = await self._identity(secret)
+        if identity is None:
+            raise AccessError(401, "The name or the password is wrong.")
         return identity, secret
 
-    def identify(self, headers: Mapping[str, str], *, changes: bool) -> Identity:
+    async def note(self, user: str, address: str, what: str, outcome: str) -> None:
+        """Adds to the trail, as soon as the disk takes it."""
+        with suppress(MissionError):
+            await asyncio.to_thread(self.accounts.log, user, address, what, outcome)
+
+    def forget(self) -> None:
+        """Something has changed: everybody is looked up again."""
+        self._known.clear()
+
+    async def identify(self, headers: Mapping[str, str], *, changes: bool) -> Identity:
         """Who sends a request: by a token (Authorization: Bearer) or a cookie; with a cookie, what `changes` anything
         needs the CSRF token too. Raises AccessError (401, 403).
         """
         kind, _, token = headers.get("authorization", "").partition(" ")
         if kind:
-            identity = self.accounts.identity(token.strip()) if kind.casefold() == "bearer" else None
+            identity = await self._identity(token.strip()) if kind.casefold() == "bearer" else None
             if identity is None or identity.is_session:
                 raise AccessError(401, "This token isn't valid.")
             return identity
-        identity = self.accounts.identity(_cookie(headers.get("cookie", "")))
+        identity = await self._identity(_cookie(headers.get("cookie", "")))
         if identity is None or not identity.is_session:
             raise AccessError(401, "Log in first.")
         if changes and not (is_same_site(headers) and self._is_csrf(identity, headers.get(CSRF, ""))):
             raise AccessError(403, "This request doesn't come from the page of this server.")
         return identity
 
-    def by_token(self, token: str) -> Identity | None:
+    async def by_token(self, token: str) -> Identity | None:
         """Who brings a token, None for nobody."""
-        identity = self.accounts.identity(token) if token else None
+        identity = await self._identity(token)
         return None if identity is None or identity.is_session else identity
 
     def csrf(self, identity: Identity) -> str:
@@ -90,6 +112,17 @@ class Access:
     def close(self) -> None:
         """Ends its threads."""
         self._verifier.close()
+
+    async def _identity(self, secret: str) -> Identity | None:
+        known, until = self._known.get(secret, (None, 0.0))
+        if known is not None and time.monotonic() < until:
+            return known
+        found = await asyncio.to_thread(self.accounts.identity, secret) if secret and is_whole(secret) else None
+        if len(self._known) >= _MOST_KNOWN:
+            self._known.clear()
+        if found is not None:
+            self._known[secret] = found, time.monotonic() + _KNOWN
+        return found
 
     def _is_csrf(self, identity: Identity, given: str) -> bool:
         try:

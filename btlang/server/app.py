@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 from collections.abc import AsyncIterator, Awaitable, Callable
 from contextlib import asynccontextmanager, suppress
+from functools import partial
 
 from starlette.applications import Starlette
 from starlette.requests import Request
@@ -16,8 +17,11 @@ from btlang.diagnostics.errors import MissionError
 from btlang.server.access import COOKIE, Access, AccessError
 from btlang.server.accounts import LONGEST, Accounts, Identity
 from btlang.server.bodies import json_object, text_in
+from btlang.server.checking import DOES, Checker, Words
 from btlang.server.clients import Clients
 from btlang.server.links import RobotLink, Robots
+from btlang.server.metrics import metrics
+from btlang.server.openapi import VERSION, document
 from btlang.server.roles import NEEDED
 from btlang.task import messages
 from btlang.task.messages import Answer, Command, read_command
@@ -26,7 +30,6 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-VERSION = "1"
 _HEADERS = {
     "content-security-policy": "default-src 'none'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'",
     "x-frame-options": "DENY",
@@ -43,7 +46,7 @@ class Api:
 
     def __init__(self, accounts: Accounts, key: str, robots: Robots | None = None) -> None:
         self.accounts, self.robots = accounts, robots or Robots()
-        self.access = Access(accounts, key)
+        self.access, self.checker = Access(accounts, key), Checker()
         self.clients = Clients(self.access, self.robots, self.send)
 
     def app(self) -> ASGIApp:
@@ -59,6 +62,9 @@ class Api:
             self._route("/api/missions/{name:path}", self._mission, "GET"),
             self._route("/api/missions/{name:path}", self._put_mission, "PUT"),
             self._route("/api/missions/{name:path}", self._delete_mission, "DELETE"),
+            *(self._route(f"/api/{kind}", partial(self._text, kind), "POST") for kind in DOES),
+            self._route("/metrics", self._metrics, "GET"),
+            Route("/openapi.json", lambda request: JSONResponse(document())),
             Route("/live", _word("live")),
             Route("/ready", _word("ready")),
             WebSocketRoute("/api/ws", self.clients.serve),
@@ -68,7 +74,7 @@ class Api:
     async def send(self, identity: Identity, robot: str, command: Command, address: str) -> Answer:
         """A command to a robot, by somebody who may. Raises AccessError."""
         if not identity.role.covers(NEEDED[type(command)]):
-            self.accounts.log(identity.user, address, command.tag, "refused")
+            await self.access.note(identity.user, address, command.tag, "refused")
             raise AccessError(403, f"Only {NEEDED[type(command)]}s may do this.")
         link = self.link(robot)
         try:
@@ -98,6 +104,7 @@ class Api:
             with suppress(asyncio.CancelledError):
                 await following
             self.access.close()
+            self.checker.close()
 
     def _route(self, path: str, do: Callable[[Request], Awaitable[Response]], method: str) -> Route:
         async def answered(request: Request) -> Response:
@@ -112,8 +119,8 @@ class Api:
 
         return Route(path, answered, methods=[method])
 
-    def _who(self, request: Request) -> Identity:
-        return self.access.identify(request.headers, changes=request.method not in ("GET", "HEAD"))
+    async def _who(self, request: Request) -> Identity:
+        return await self.access.identify(request.headers, changes=request.method not in ("GET", "HEAD"))
 
     async def _log_in(self, request: Request) -> Response:
         data = await json_object(request)
@@ -124,34 +131,46 @@ class Api:
         return response
 
     async def _log_out(self, request: Request) -> Response:
-        identity = self._who(request)
+        identity = await self._who(request)
         data = await json_object(request)
-        self.accounts.log_out(identity.user, "" if data.get("everywhere") is True else identity.id)
-        self.clients.check()
+        ended = "" if data.get("everywhere") is True else identity.id
+        await asyncio.to_thread(self.accounts.log_out, identity.user, ended)
+        await self.clients.check()
         response = JSONResponse({"ok": True})
         response.delete_cookie(COOKIE, secure=True, httponly=True, samesite="strict")
         return response
 
     async def _me(self, request: Request) -> Response:
-        return JSONResponse(self._described(self._who(request)))
+        return JSONResponse(self._described(await self._who(request)))
 
     async def _robots(self, request: Request) -> Response:
-        self._who(request)
+        await self._who(request)
         links = self.robots.links.values()
         return JSONResponse({"robots": [{"name": each.name, "up": each.is_up, "seen": each.seen} for each in links]})
 
     async def _stop(self, request: Request) -> Response:
-        identity = self._who(request)
+        identity = await self._who(request)
         data = await json_object(request)
         robot, reason = data.get("robot", ""), data.get("reason", "")
         command = messages.EmergencyStop(reason if isinstance(reason, str) else "")
         return _answer(await self.send(identity, str(robot), command, _address(request)))
 
     async def _command(self, request: Request) -> Response:
-        identity = self._who(request)
+        identity = await self._who(request)
         data = await json_object(request)
         robot = data.pop("robot", "")
         return _answer(await self.send(identity, str(robot), read_command(data), _address(request)))
+
+    async def _text(self, kind: str, request: Request) -> Response:
+        await self._who(request)
+        data = await json_object(request)
+        robot = data.get("robot", "")
+        words = self.link(str(robot)).words if robot or self.robots.links else Words()
+        return JSONResponse(await self.checker.answer(kind, text_in(data, "text"), words))
+
+    async def _metrics(self, request: Request) -> Response:
+        await self._who(request)
+        return PlainTextResponse(metrics(self.robots.links.values(), len(self.clients)))
 
     async def _missions(self, request: Request) -> Response:
         return await self._of_library(request, messages.Library())
@@ -160,7 +179,7 @@ class Api:
         return await self._of_library(request, messages.Library(request.path_params["name"]))
 
     async def _put_mission(self, request: Request) -> Response:
-        identity = self._who(request)
+        identity = await self._who(request)
         data = await json_object(request)
         revision = data.get("revision")
         if revision is not None and not isinstance(revision, int):
@@ -174,7 +193,7 @@ class Api:
 
     async def _of_library(self, request: Request, command: Command) -> Response:
         robot = request.query_params.get("robot", "")
-        return _answer(await self.send(self._who(request), robot, command, _address(request)))
+        return _answer(await self.send(await self._who(request), robot, command, _address(request)))
 
     def _described(self, identity: Identity) -> dict[str, Any]:
         described = {"ok": True, "user": identity.user, "role": identity.role, "version": VERSION}

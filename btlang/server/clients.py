@@ -68,10 +68,14 @@ class Clients:
         except (WebSocketDisconnect, RuntimeError, TimeoutError):
             return
 
-    def check(self) -> None:
+    def __len__(self) -> int:
+        return len(self._clients)
+
+    async def check(self) -> None:
         """Ends the sockets of those who may no longer be here, and gives the others their present role."""
+        self._access.forget()
         for client in tuple(self._clients):
-            now = self._access.accounts.still(client.identity)
+            now = await asyncio.to_thread(self._access.accounts.still, client.identity)
             if now is None:
                 self._forget(client)
                 task = asyncio.ensure_future(_closed(client.socket))
@@ -81,7 +85,7 @@ class Clients:
 
     async def _log_in(self, socket: WebSocket) -> Identity | None:
         with suppress(AccessError):
-            identity = self._access.identify(socket.headers, changes=False)
+            identity = await self._access.identify(socket.headers, changes=False)
             await socket.send_json({"type": "auth_ok", "user": identity.user, "role": identity.role})
             return identity
         await socket.send_json({"type": "auth_required"})
@@ -90,7 +94,8 @@ class Clients:
         with suppress(AccessError):
             data = read_object(text)
             token = data.get("token")
-            found = self._access.by_token(token) if data.get("type") == "auth" and isinstance(token, str) else None
+            is_auth = data.get("type") == "auth" and isinstance(token, str)
+            found = await self._access.by_token(str(token)) if is_auth else None
             if found is not None:
                 await socket.send_json({"type": "auth_ok", "user": found.user, "role": found.role})
                 return found

@@ -78,9 +78,9 @@ def serve(
 async def _serve(
     api: Api, server: uvicorn.Server, door: socket.socket, control: str, ready: Callable[[], object]
 ) -> None:
-    def changed(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        writer.close()
-        api.clients.check()
+    async def changed(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
+        await api.clients.check()
+        writer.close()  # now who told it knows that it holds
 
     with suppress(FileNotFoundError):
         os.unlink(control)

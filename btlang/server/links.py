@@ -8,6 +8,7 @@ import time
 from collections.abc import Callable
 from contextlib import suppress
 
+from btlang.server.checking import Words
 from btlang.server.outlet import News, Outlet
 from btlang.task.messages import Answer, Command, as_json
 from btlang.task.paths import names_up, socket_path
@@ -31,11 +32,17 @@ class RobotLink:
         self.is_up = False
         self.seen: float | None = None
         """When it last said something, in seconds since 1970."""
+        self.words = Words()
         self.outlets: set[Outlet] = set()
         self._change: int | None = None
         self._run: dict[str, Any] | None = None
         self._statuses: dict[int, str] = {}
         self._robot: dict[str, Any] | None = None
+
+    @property
+    def latest(self) -> dict[str, Any]:
+        """What is known of the robot itself: pose, battery, what keeps it from working."""
+        return self._robot or {}
 
     @property
     def _silence(self) -> str:
@@ -101,6 +108,8 @@ class RobotLink:
         kind = message["type"]
         if kind == "hello":
             self.is_up = True
+            words = message["words"]
+            self.words = Words(tuple(words["keywords"]), words["world"], words["language"])
             self._change = message["change"] if self._change is None else self._change
             self._tell({"type": "up"})
             return

@@ -43,11 +43,12 @@ class _Watched(Record):
 class Feed:
     """`sinks` makes the sinks of a run; `watch` tells what happens, beginning with what is now.
 
-    `robot` gives what keeps the robot from working. Methods may be called from any thread.
+    `robot` gives what keeps the robot from working, `words` are where its words and its world are. Methods may be
+    called from any thread.
     """
 
-    def __init__(self, store: Store, robot: Callable[[], dict[str, Any]]) -> None:
-        self._store, self._robot = store, robot
+    def __init__(self, store: Store, robot: Callable[[], dict[str, Any]], words: dict[str, Any]) -> None:
+        self._store, self._robot, self._words = store, robot, words
         self._watchers: list[_Watcher] = []
         self._current: _Watched | None = None
         self._state: RobotState | None = None
@@ -77,7 +78,7 @@ class Feed:
             watcher.runs.append(self._current)
         self._watchers.append(watcher)
         try:
-            yield {"type": "hello", "change": watcher.change}
+            yield {"type": "hello", "change": watcher.change, "words": self._words}
             with suppress(StoreError):  # it is closed, or can't be read
                 yield from self._messages(watcher, 1.0 / min(max(rate, least), most))
         finally:

@@ -82,7 +82,7 @@ class TaskLayer:
         self._begins = time.time() if begins is None else begins
         self._real = speed == "real"
         self.emergency = EmergencyStop(latch_path(folder), self.session.emergency_stop)
-        self.feed = Feed(self.store, self._hindrances)
+        self.feed = Feed(self.store, self._hindrances, self.reader.words)
         self.emergency.listeners.append(self.feed.wake)
         self.manager = Manager(self.store, keeps)
         self.executor = Executor(

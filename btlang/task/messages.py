@@ -355,12 +355,13 @@ def _can_be_kept(value: Any) -> bool:
             waiting += [*each.keys(), *each.values()]
         elif isinstance(each, list | tuple):
             waiting += each
-        elif (isinstance(each, float) and not math.isfinite(each)) or (isinstance(each, str) and not _is_whole(each)):
+        elif (isinstance(each, float) and not math.isfinite(each)) or (isinstance(each, str) and not is_whole(each)):
             return False
     return True
 
 
-def _is_whole(text: str) -> bool:
+def is_whole(text: str) -> bool:
+    """Whether it has no NUL and no half of a character."""
     try:
         text.encode()
     except UnicodeEncodeError:

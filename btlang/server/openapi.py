@@ -1,0 +1,83 @@
+"""The API as an OpenAPI document, made from the classes of commands and a table of the routes."""
+
+from __future__ import annotations
+
+from functools import cache
+
+from btlang.task.messages import schema
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+VERSION = "1"
+_TEXT: dict[str, Any] = {"type": "string"}
+_ROBOT: dict[str, Any] = {
+    "name": "robot",
+    "in": "query",
+    "description": "Which robot, if several are up.",
+    "schema": _TEXT,
+}
+_NAME: dict[str, Any] = {"name": "name", "in": "path", "required": True, "schema": _TEXT}
+
+
+def _object(*required: str, **properties: dict[str, Any]) -> dict[str, Any]:
+    return {"type": "object", "properties": properties, "required": list(required)}
+
+
+_WRITTEN = _object("text", text=_TEXT, robot=_TEXT)
+ROUTES: dict[tuple[str, str], tuple[str, dict[str, Any] | None]] = {
+    ("POST", "/api/login"): ("Begins a session.", _object("name", "password", name=_TEXT, password=_TEXT)),
+    ("POST", "/api/logout"): ("Ends a session, or all of a user.", _object(everywhere={"type": "boolean"})),
+    ("GET", "/api/me"): ("Who asks.", None),
+    ("GET", "/api/robots"): ("The robots, and whether they are up.", None),
+    ("POST", "/api/stop"): ("The emergency stop.", _object(robot=_TEXT, reason=_TEXT)),
+    ("POST", "/api/commands"): ("A command for a robot.", {"$ref": "#/components/schemas/Command"}),
+    ("GET", "/api/missions"): ("The library.", None),
+    ("GET", "/api/missions/{name}"): ("All revisions of a mission.", None),
+    ("PUT", "/api/missions/{name}"): (
+        "Keeps a mission; with the revision it was made from, 0 for a new one, nothing newer is overwritten.",
+        _object("text", text=_TEXT, revision={"type": "integer"}),
+    ),
+    ("DELETE", "/api/missions/{name}"): ("Takes a mission out of the library.", None),
+    ("POST", "/api/check"): ("What is wrong with a mission.", _WRITTEN),
+    ("POST", "/api/complete"): ("What may follow a text.", _WRITTEN),
+    ("POST", "/api/explain"): ("How a mission is understood.", _WRITTEN),
+    ("POST", "/api/format"): ("A mission in the usual layout.", _WRITTEN),
+    ("GET", "/metrics"): ("Figures for Prometheus.", None),
+    ("GET", "/live"): ("Whether the server is alive; without log-in.", None),
+    ("GET", "/ready"): ("Whether it takes requests; without log-in.", None),
+    ("GET", "/openapi.json"): ("This document; without log-in.", None),
+}
+_OPEN = ("/api/login", "/live", "/ready", "/openapi.json")
+
+
+@cache
+def document() -> dict[str, Any]:
+    """OpenAPI 3.1."""
+    commands = {key: value for key, value in schema().items() if key != "$schema"}
+    for each in commands["oneOf"]:
+        each["properties"]["robot"] = _TEXT
+    paths: dict[str, dict[str, Any]] = {}
+    for (method, path), (summary, body) in ROUTES.items():
+        described: dict[str, Any] = {"summary": summary, "responses": {"default": {"description": "JSON"}}}
+        if body is not None:
+            described["requestBody"] = {"required": True, "content": {"application/json": {"schema": body}}}
+        parameters = [_NAME] if "{name}" in path else []
+        parameters += [_ROBOT] if "missions" in path else []
+        if parameters:
+            described["parameters"] = parameters
+        if path in _OPEN:
+            described["security"] = []
+        paths.setdefault(path, {})[method.lower()] = described
+    schemes = {
+        "token": {"type": "http", "scheme": "bearer"},
+        "session": {"type": "apiKey", "in": "cookie", "name": "__Host-btlang"},
+    }
+    return {
+        "openapi": "3.1.0",
+        "info": {"title": "Robots of btlang", "version": VERSION},
+        "paths": paths,
+        "components": {"schemas": {"Command": commands}, "securitySchemes": schemes},
+        "security": [{"token": []}, {"session": []}],
+    }
