@@ -76,13 +76,13 @@ def _command(options: argparse.Namespace) -> Command:
     if act in ("add", "schedule", "put"):
         return _with_mission(options)
     if act == "list":
-        return messages.List(tuple(State) if options.all else (), options.label[0] if options.label else "")
+        return _list(options)
     if act == "schedules":
         return messages.Schedules()
     if act == "library":
         return messages.Library(_word(options, "") if options.item else "")
     if act == "trail":
-        return messages.Trail()
+        return messages.Trail() if options.limit is None else messages.Trail(options.limit)
     if act == "delete":
         return messages.DeleteMission(_word(options, "the name of a mission"))
     number = _number(options)
@@ -96,6 +96,13 @@ def _command(options: argparse.Namespace) -> Command:
     if act in ends:
         return ends[act](number, reason)
     return {"show": messages.Show, "again": messages.Again, "unschedule": messages.RemoveSchedule}[act](number)
+
+
+def _list(options: argparse.Namespace) -> Command:
+    wanted: dict[str, Any] = {"states": tuple(State) if options.all else ()}
+    if options.limit is not None or (options.all and not options.live):  # a live list is asked for again and again
+        wanted["limit"] = options.limit
+    return messages.List(**wanted, label=options.label[0] if options.label else "")
 
 
 def _with_mission(options: argparse.Namespace) -> Command:

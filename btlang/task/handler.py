@@ -14,30 +14,17 @@ from btlang.diagnostics.crash import crashed
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.task import messages
-from btlang.task.answers import outdated, revision_data, schedule_data, short, task_data, task_line
+from btlang.task.answers import outdated, revision_data, task_data, task_line
 from btlang.task.checks import checked_priority, choice, moment, refused
 from btlang.task.emergency import EmergencyStop
 from btlang.task.executor import Executor
 from btlang.task.manager import Manager
 from btlang.task.messages import Answer, Command, wrong
 from btlang.task.moments import shown
-from btlang.task.recurrence import read_rule
 from btlang.task.report import report
+from btlang.task.schedule_handler import ScheduleHandler
 from btlang.task.store import Store
-from btlang.task.task import (
-    ACTIVE,
-    FINAL,
-    WAITING,
-    Act,
-    Ending,
-    Missed,
-    MissionText,
-    Overlap,
-    Restart,
-    Schedule,
-    State,
-    Task,
-)
+from btlang.task.task import ACTIVE, FINAL, WAITING, Act, Ending, MissionText, Restart, State, Task
 from btlang.text.escaping import one_line
 from btlang.text.source import NOWHERE
 
@@ -70,12 +57,13 @@ class Handler:
     ) -> None:
         self._store, self._manager, self._executor, self._emergency = store, manager, executor, emergency
         self._session, self._admit, self._now, self._down = session, admit, now, down
+        schedules = ScheduleHandler(store, executor.wake, self._mission, now)
         self._does: dict[type[Command], Callable[[Any, str], Answer]] = {
             messages.Submit: self._submit, messages.List: self._list, messages.Show: self._show,
             messages.Cancel: partial(self._end, State.CANCELED), messages.Kill: partial(self._end, State.KILLED),
             messages.Interrupt: self._interrupt, messages.Resume: self._resume, messages.Skip: self._skip,
-            messages.Reorder: self._reorder, messages.Again: self._again, messages.AddSchedule: self._schedule,
-            messages.RemoveSchedule: self._unschedule, messages.Schedules: self._schedules,
+            messages.Reorder: self._reorder, messages.Again: self._again, messages.AddSchedule: schedules.add,
+            messages.RemoveSchedule: schedules.remove, messages.Schedules: schedules.list,
             messages.PutMission: self._put, messages.DeleteMission: self._delete, messages.Library: self._library,
             messages.Pause: self._pause, messages.Step: self._step, messages.EmergencyStop: self._stop,
             messages.Release: self._release, messages.Say: self._say, messages.Down: self._end_all,
@@ -122,12 +110,14 @@ class Handler:
         states = wanted or WAITING | ACTIVE
         found = self._store.tasks(states, label=command.label, newest=bool(wanted & FINAL), limit=command.limit)
         found.sort(key=lambda task: task.state not in ACTIVE)
-        hindrance, now, tasks, first = self._executor.hindrance(), self._now(), [], 0
-        for task in found:
-            tasks.append(task_data(task, self._manager.why_waiting(task, now, hindrance, first)))
-            first = first or task.id
-        text = "\n".join(map(task_line, tasks)) or "There are no tasks."
-        return Answer(True, text, {"tasks": tasks, "hindrance": hindrance})
+        is_cut = command.limit is not None and len(found) >= command.limit
+        more = max(self._store.count_tasks(states, label=command.label) - len(found), 0) if is_cut else 0
+        hindrance, now = self._executor.hindrance(), self._now()
+        first = self._manager.first(now)
+        tasks = [task_data(task, self._manager.why_waiting(task, now, hindrance, first)) for task in found]
+        lines = [task_line(task) for task in tasks] or ["There are no tasks."]
+        lines += [f"and {more} more: --limit N lists so many, --all every one"] if more else []
+        return Answer(True, "\n".join(lines), {"tasks": tasks, "more": more, "hindrance": hindrance})
 
     def _show(self, command: messages.Show, person: str) -> Answer:
         task = self._known(command.task)
@@ -234,36 +224,6 @@ class Handler:
         made = self._store.add(fresh, f"like task {task.id}")
         self._executor.wake()
         return Answer(True, f"Task {made.id} is queued.", {"task": task_data(made)})
-
-    def _schedule(self, command: messages.AddSchedule, person: str) -> Answer:
-        recurrence, now = read_rule(command.rule, command.zone), self._now()
-        mission = self._mission(command)
-        first = recurrence.next(now)
-        made = self._store.add_schedule(
-            Schedule(
-                0, str(recurrence), command.zone, mission, person, now, first, checked_priority(command.priority),
-                command.labels, choice(Restart, command.restart, "restart"),
-                choice(Overlap, command.overlap, "overlap"), choice(Missed, command.missed, "missed"), command.within,
-            )
-        )  # fmt: skip
-        self._executor.wake()
-        when = "never" if first is None else f"next at {shown(first, now)}"
-        return Answer(True, f"Schedule {made.id}: {made.rule}; {when}.", {"schedule": schedule_data(made)})
-
-    def _unschedule(self, command: messages.RemoveSchedule, person: str) -> Answer:
-        if not self._store.delete_schedule(command.schedule):
-            raise refused(f"Schedule {command.schedule}", "isn't known")
-        return Answer(True, f"Schedule {command.schedule} is removed.", {})
-
-    def _schedules(self, command: messages.Schedules, person: str) -> Answer:
-        now, found = self._now(), self._store.schedules()
-        lines = [
-            f"{each.id:>4}  {each.rule}: {short(each.mission)}"
-            + ("" if each.next is None else f"; next at {shown(each.next, now)}")
-            for each in found
-        ]
-        text = "\n".join(lines) or "There are no schedules."
-        return Answer(True, text, {"schedules": [schedule_data(each) for each in found]})
 
     def _put(self, command: messages.PutMission, person: str) -> Answer:
         if not command.name.strip() or "/" in command.name or not command.name.isprintable():

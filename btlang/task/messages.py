@@ -46,13 +46,15 @@ class Submit(Command):
 
 
 class List(Command):
-    """The tasks that are not over, in the order of their turn; or those in these `states`, newest first."""
+    """The tasks that are not over, in the order of their turn; or those in these `states`, newest first. The answer has
+    at most `limit` of them (None: all), and says how many `more` there are.
+    """
 
     tag = "list"
     changes = False
     states: tuple[str, ...] = ()
     label: str = ""
-    limit: int = 100
+    limit: int | None = 100
 
 
 class Show(Command):

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from btlang.arguments import between, duration, speed
+from btlang.arguments import at_least, between, duration, speed
 
 ROBOT_ACTS = (
     "up", "down", "status", "report", "stop", "release", "pause", "resume", "step", "say", "unit", "backup", "restore",
@@ -73,7 +73,8 @@ def add_task_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--before", type=int, default=0, metavar="TASK", help="move it before this task")
     parser.add_argument("--token", default="", metavar="TOKEN", help="of the interruption that resume ends")
     parser.add_argument("--reason", default="", metavar="TEXT", help="why, for others to read")
-    parser.add_argument("--all", action="store_true", help="list tasks that are over, too")
+    parser.add_argument("--all", action="store_true", help="list every task, also those that are over")
+    parser.add_argument("--limit", type=at_least(1), metavar="N", help="list at most so many (default: 100)")
     parser.add_argument("--live", action="store_true", help="go on showing the list")
     _add_json(parser)
     parser.add_argument("act", choices=TASK_ACTS, metavar="ACT", help=", ".join(TASK_ACTS))
