@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from difflib import unified_diff
 
 from btlang.task.checks import refused
+from btlang.task.days import joined
 from btlang.task.messages import Answer, PutMission
 from btlang.task.task import MissionText, Revision, Schedule, Task
 from btlang.text.escaping import one_line
@@ -46,6 +47,16 @@ def schedule_data(schedule: Schedule) -> dict[str, Any]:
 def revision_data(revision: Revision) -> dict[str, Any]:
     """A revision without its text."""
     return {field: getattr(revision, field) for field in revision.fields if field != "text"}
+
+
+def deleted(name: str, schedules: Sequence[int]) -> str:
+    """What is said of a mission that is no longer in the library, while some schedules have its text."""
+    text = f"'{one_line(name)}' is no longer in the library."
+    if not schedules:
+        return text
+    numbers = joined([str(number) for number in schedules])
+    who, it = (f"Schedule {numbers} goes", "it") if len(schedules) == 1 else (f"Schedules {numbers} go", "them")
+    return f"{text} {who} on with its text. To end {it}: btc task unschedule"
 
 
 def outdated(command: PutMission, latest: Revision | None) -> Answer:

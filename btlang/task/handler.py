@@ -14,7 +14,7 @@ from btlang.diagnostics.crash import crashed
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.task import messages
-from btlang.task.answers import outdated, revision_data, task_data, task_line
+from btlang.task.answers import deleted, outdated, revision_data, task_data, task_line
 from btlang.task.checks import checked_priority, choice, moment, refused
 from btlang.task.emergency import EmergencyStop
 from btlang.task.executor import Executor
@@ -238,7 +238,10 @@ class Handler:
     def _delete(self, command: messages.DeleteMission, person: str) -> Answer:
         if not self._store.delete_mission(command.name, person, self._now()):
             raise _unknown(command.name)
-        return Answer(True, f"'{one_line(command.name)}' is no longer in the library.", {})
+        left = [
+            each.id for each in self._store.schedules() if each.mission.revision and each.mission.name == command.name
+        ]
+        return Answer(True, deleted(command.name, left), {"schedules": left})
 
     def _library(self, command: messages.Library, person: str) -> Answer:
         found = self._store.revisions(command.name) if command.name else self._store.missions()

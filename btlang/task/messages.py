@@ -165,7 +165,9 @@ class PutMission(Command):
 
 
 class DeleteMission(Command):
-    """Takes a mission out of the library; its revisions stay, and tasks that have its text still run."""
+    """Takes a mission out of the library; its revisions stay, and tasks and schedules that have its text still run.
+    The answer has the numbers of these `schedules`.
+    """
 
     tag = "delete"
     name: str

@@ -77,3 +77,17 @@ def test_a_list_says_which_task_comes_first_also_where_it_is_not_in_it(robot: Ta
     submit(robot, "nod", labels=["tour"])
     ask(robot, "resume")
     assert btc("task", "list", "--label", "tour")[1] == "   3  queued     nod  [task 2 comes first]\n"
+
+
+def test_a_deleted_mission_says_which_schedules_have_its_text(robot: TaskLayer, btc: Btc) -> None:
+    for name in ("tour", "other"):
+        btc("task", "put", name, "-c", "wave")
+    ask(robot, "schedule", rule="every day at 9:00", name="tour")
+    ask(robot, "schedule", rule="every day at 9:00", name="tour", text="nod")  # the name of a file
+    gone = "is no longer in the library."
+    one = f"'tour' {gone} Schedule 1 goes on with its text. To end it: btc task unschedule\n"
+    assert btc("task", "delete", "tour") == (0, one)
+    assert btc("task", "delete", "other") == (0, f"'other' {gone}\n")
+    btc("task", "put", "tour", "-c", "wave")
+    ask(robot, "schedule", rule="every day at 9:00", name="tour")
+    assert data(btc, "task", "delete", "tour") == {"schedules": [1, 3]}
