@@ -15,7 +15,7 @@ from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.task import messages
 from btlang.task.answers import deleted, outdated, revision_data, task_data, task_line
-from btlang.task.checks import checked_priority, choice, moment, refused
+from btlang.task.checks import checked_priority, choice, moment, refused, report_times
 from btlang.task.emergency import EmergencyStop
 from btlang.task.executor import Executor
 from btlang.task.manager import Manager
@@ -34,7 +34,6 @@ if TYPE_CHECKING:
 
     from btlang.session import Session
 
-_WEEK = 7 * 86_400.0
 _BEGINNING = 3.0  # seconds of real time that a task may take from its claim to its first tick
 _MOMENT = 0.01
 
@@ -311,11 +310,8 @@ class Handler:
         return Answer(True, "\n".join(lines), data)
 
     def _report(self, command: messages.Report, person: str) -> Answer:
-        now = self._now()
-        until = moment(command.until, now)
-        until = now if until is None else until
-        since = moment(command.since, now)
-        lines = list(report(self._store, until - _WEEK if since is None else since, until))
+        since, until = report_times(command.since, command.until, self._now())
+        lines = list(report(self._store, since, until))
         return Answer(True, "\n".join(lines), {"lines": lines})
 
     def _trail(self, command: messages.Trail, person: str) -> Answer:

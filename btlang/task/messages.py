@@ -227,7 +227,9 @@ class Status(Command):
 
 
 class Report(Command):
-    """What the robot did from `since` to `until`: seconds since 1970 or English; by default in the last seven days."""
+    """What the robot did from `since` to `until`: seconds since 1970, or English for the past such as "2 hours ago"; by
+    default in the last seven days.
+    """
 
     tag = "report"
     changes = False

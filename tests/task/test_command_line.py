@@ -16,7 +16,7 @@ from btlang.task.layer import TaskLayer
 from btlang.task.paths import USUAL_NAME
 from btlang.task.socket_server import SocketServer
 
-from .layers import ask, layer_in, submit
+from .layers import ask, layer_in, refusal, submit, task, wait_until
 
 Btc = Callable[..., tuple[int, str]]
 
@@ -91,3 +91,18 @@ def test_a_deleted_mission_says_which_schedules_have_its_text(robot: TaskLayer, 
     btc("task", "put", "tour", "-c", "wave")
     ask(robot, "schedule", rule="every day at 9:00", name="tour")
     assert data(btc, "task", "delete", "tour") == {"schedules": [1, 3]}
+
+
+def test_a_report_begins_in_the_past(robot: TaskLayer, btc: Btc) -> None:
+    ask(robot, "resume")
+    number = submit(robot, "wave", at="in 20 h")
+    wait_until(lambda: robot.now() > task(robot, number).created)
+    for since in ("0:00", "yesterday at 9:00", "2 hours ago"):
+        code, text = btc("robot", "report", "--since", since)
+        assert code == 0
+        assert "0 of 1 done, 1 not over yet" in text
+    code, text = btc("robot", "report", "--since", "tomorrow at 9:00")
+    assert code == 1
+    assert "yesterday at 9:00" in text
+    assert "would begin at" in refusal(robot, "report", since=4e9)
+    assert "would begin at" in refusal(robot, "report", since="1 hour ago", until="2 hours ago")
