@@ -15,7 +15,16 @@ from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.task import messages
 from btlang.task.answers import deleted, outdated, revision_data, task_data, task_line
-from btlang.task.checks import checked_priority, choice, moment, refused, report_times
+from btlang.task.checks import (
+    HIGHEST,
+    check_values,
+    checked_labels,
+    checked_priority,
+    choice,
+    refused,
+    report_times,
+    task_times,
+)
 from btlang.task.emergency import EmergencyStop
 from btlang.task.executor import Executor
 from btlang.task.manager import Manager
@@ -96,16 +105,16 @@ class Handler:
             self._store.log(Act(self._now(), person, command.tag, details, answer.text))
 
     def _submit(self, command: messages.Submit, person: str) -> Answer:
-        now = self._now()
+        earliest, deadline = task_times(command, self._now())
         task = self.add(
-            self._mission(command), person, priority=checked_priority(command.priority), labels=command.labels,
-            earliest=moment(command.at, now), deadline=moment(command.by, now),
-            restart=choice(Restart, command.restart, "restart"),
+            self._mission(command), person, priority=checked_priority(command.priority, command.tag),
+            labels=checked_labels(command.labels, command.tag), earliest=earliest, deadline=deadline,
+            restart=choice(Restart, command.restart, "restart", command.tag),
         )  # fmt: skip
         return Answer(True, f"Task {task.id} is queued.", {"task": task_data(task)})
 
     def _list(self, command: messages.List, person: str) -> Answer:
-        wanted = {choice(State, state, "state") for state in command.states}
+        wanted = {choice(State, state, "states", command.tag) for state in command.states}
         states = wanted or WAITING | ACTIVE
         found = self._store.tasks(states, label=command.label, newest=bool(wanted & FINAL), limit=command.limit)
         found.sort(key=lambda task: task.state not in ACTIVE)
@@ -176,6 +185,8 @@ class Handler:
         task = self._open(command.task)
         if task.state is not State.DELAYED or not task.token:
             raise refused(task.id, f"wasn't interrupted: it's {task.state}")
+        if not command.token:
+            raise refused(task.id, "was interrupted, and only the token of that lets it go on: --token TOKEN")
         if command.token != task.token:
             raise refused(task.id, "has another token: it was interrupted again, or by somebody else")
         cause = f"{person or 'somebody'} lets it go on"
@@ -198,21 +209,28 @@ class Handler:
 
     def _reorder(self, command: messages.Reorder, person: str) -> Answer:
         task = self._open(command.task)
+        if (command.priority is None) is (command.before == 0):
+            raise wrong("reorder", "it needs either 'priority' or 'before'")
         if command.priority is not None:
-            moved = self._store.amend(task.id, priority=checked_priority(command.priority))
-        elif command.before:
-            other = self._open(command.before)
-            equal = [each.id for each in self._store.tasks(WAITING) if each.priority == other.priority]
-            order = [each for each in equal if each != task.id]
-            order.insert(order.index(other.id) if other.id in order else 0, task.id)
-            for position, number in enumerate(order):
-                self._store.amend(number, position=position - len(order), priority=other.priority)
-            moved = self._store.task(task.id)
+            moved = self._store.amend(task.id, priority=checked_priority(command.priority, command.tag))
         else:
-            raise wrong("reorder", "it needs 'priority' or 'before'")
+            moved = self._moved_before(task, self._open(command.before))
         self._executor.wake()
         assert moved is not None
         return Answer(True, f"Task {task.id} has a new place.", {"task": self._data(moved)})
+
+    def _moved_before(self, task: Task, other: Task) -> Task | None:
+        if task.id == other.id:
+            raise refused(task.id, "can't come before itself")
+        for each in (task, other):
+            if each.state in ACTIVE:
+                raise refused(each.id, f"has begun: it's {each.state}")
+        equal = [each.id for each in self._store.tasks(WAITING) if each.priority == other.priority]
+        order = [each for each in equal if each != task.id]
+        order.insert(order.index(other.id) if other.id in order else 0, task.id)
+        for position, number in enumerate(order):
+            self._store.amend(number, position=position - len(order), priority=other.priority)
+        return self._store.task(task.id)
 
     def _again(self, command: messages.Again, person: str) -> Answer:
         task = self._known(command.task)
@@ -251,6 +269,8 @@ class Handler:
             for each in found
         ]
         data = [{**revision_data(each), "text": each.text} for each in found]
+        if command.name and not found:
+            raise _unknown(command.name)
         return Answer(True, "\n".join(lines) or "The library is empty.", {"missions": data})
 
     def _pause(self, command: messages.Pause, person: str) -> Answer:
@@ -331,11 +351,11 @@ class Handler:
                 raise _unknown(name)
             text, revision = found.text, found.number
         mission = MissionText(text, name, revision, dict(command.values), command.keywords)
-        self._admit(mission)
+        check_values(self._admit(mission), mission.values)
         return mission
 
     def _known(self, number: int) -> Task:
-        task = self._store.task(number)
+        task = self._store.task(number) if abs(number) <= HIGHEST else None
         if task is None:
             raise refused(number, "isn't known")
         return task

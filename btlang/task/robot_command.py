@@ -14,6 +14,7 @@ from functools import partial
 from btlang.diagnostics.errors import MissionError
 from btlang.run.emergency import emergency_signal
 from btlang.task import messages
+from btlang.task.applicable import check_robot_words
 from btlang.task.backup import restore_backup
 from btlang.task.client import Client, emergency_stop
 from btlang.task.command import tell
@@ -50,6 +51,7 @@ WantedBy=default.target
 def serve(options: argparse.Namespace) -> int:
     """Does the verb `robot`; returns the exit code."""
     act = options.act
+    check_robot_words(options)
     if act == "up":
         return _up(options)
     if act == "unit":

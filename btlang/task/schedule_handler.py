@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 from btlang.task import messages
 from btlang.task.answers import schedule_data, short
-from btlang.task.checks import checked_priority, choice, refused
+from btlang.task.checks import HIGHEST, checked_labels, checked_priority, choice, refused
 from btlang.task.messages import Answer
 from btlang.task.moments import shown
 from btlang.task.recurrence import read_rule
@@ -33,20 +33,24 @@ class ScheduleHandler:
         recurrence, now = read_rule(command.rule, command.zone), self._now()
         mission = self._mission_of(command)
         first = recurrence.next(now)
+        if first is None:
+            raise refused(f"The schedule '{recurrence}'", "would never be due: its time has passed")
         made = self._store.add_schedule(
             Schedule(
-                0, str(recurrence), command.zone, mission, person, now, first, checked_priority(command.priority),
-                command.labels, choice(Restart, command.restart, "restart"),
-                choice(Overlap, command.overlap, "overlap"), choice(Missed, command.missed, "missed"), command.within,
+                0, str(recurrence), command.zone, mission, person, now, first,
+                checked_priority(command.priority, command.tag), checked_labels(command.labels, command.tag),
+                choice(Restart, command.restart, "restart", command.tag),
+                choice(Overlap, command.overlap, "overlap", command.tag),
+                choice(Missed, command.missed, "missed", command.tag), command.within,
             )
         )  # fmt: skip
         self._wake()
-        when = "never" if first is None else f"next at {shown(first, now)}"
-        return Answer(True, f"Schedule {made.id}: {made.rule}; {when}.", {"schedule": schedule_data(made)})
+        text = f"Schedule {made.id}: {made.rule}; next at {shown(first, now)}."
+        return Answer(True, text, {"schedule": schedule_data(made)})
 
     def remove(self, command: messages.RemoveSchedule, person: str) -> Answer:
         """Ends one."""
-        if not self._store.delete_schedule(command.schedule):
+        if command.schedule > HIGHEST or not self._store.delete_schedule(command.schedule):
             raise refused(f"Schedule {command.schedule}", "isn't known")
         return Answer(True, f"Schedule {command.schedule} is removed.", {})
 

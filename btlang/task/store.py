@@ -375,5 +375,5 @@ def _check(kind: type[Record], fields: Mapping[str, Any], *fixed: str) -> None:
 def _limit(limit: int | None, values: list[object]) -> str:
     if limit is None:
         return ""
-    values.append(max(limit, 0))
+    values.append(min(max(limit, 0), 2**63 - 1))
     return " LIMIT ?"

@@ -15,8 +15,9 @@ from btlang.cli import main
 from btlang.task.layer import TaskLayer
 from btlang.task.paths import USUAL_NAME
 from btlang.task.socket_server import SocketServer
+from btlang.task.task import State
 
-from .layers import ask, layer_in, refusal, submit, task, wait_until
+from .layers import ask, layer_in, refusal, submit, task, wait_for, wait_until
 
 Btc = Callable[..., tuple[int, str]]
 
@@ -73,9 +74,10 @@ def test_a_long_list_says_what_it_leaves_out(robot: TaskLayer, btc: Btc) -> None
 
 def test_a_list_says_which_task_comes_first_also_where_it_is_not_in_it(robot: TaskLayer, btc: Btc) -> None:
     submit(robot, "wave", at="in 20 h", priority=5)
-    submit(robot, "wait 10 h", priority=1)
+    begun = submit(robot, "wait 10 h", priority=1)
     submit(robot, "nod", labels=["tour"])
     ask(robot, "resume")
+    wait_for(robot, begun, State.UNDERWAY)
     assert btc("task", "list", "--label", "tour")[1] == "   3  queued     nod  [task 2 comes first]\n"
 
 
@@ -106,3 +108,119 @@ def test_a_report_begins_in_the_past(robot: TaskLayer, btc: Btc) -> None:
     assert "yesterday at 9:00" in text
     assert "would begin at" in refusal(robot, "report", since=4e9)
     assert "would begin at" in refusal(robot, "report", since="1 hour ago", until="2 hours ago")
+
+
+@pytest.mark.parametrize(
+    ("words", "reason"),
+    [
+        ("task add -c wave --zone UTC", "'add' can't be read: --zone doesn't apply to it"),
+        ("task add -c wave --overlap skip", "--overlap doesn't apply to it"),
+        ("task schedule -c wave --every daily --at 9:00", "--at doesn't apply to it"),
+        ("task show 1 2", "'2' is more than it takes"),
+        ("task cancel 4 5", "'5' is more than it takes"),
+        ("task unschedule 8 9", "'9' is more than it takes"),
+        ("task list 1", "'1' is more than it takes"),
+        ("task put a b c", "'c' is more than it takes"),
+        ("task add tour.txt -c wave", "it takes -c TEXT or 'tour.txt', but not both"),
+        ("task put tour tour.txt -c wave", "it takes -c TEXT or 'tour.txt', but not both"),
+        ("task move 1 --priority 2 --before 3", "it takes --priority or --before, but not both"),
+        ("task list --live --json", "it takes --live or --json, but not both"),
+        ("task list --label a --label b", "it takes one --label"),
+        ("task list --label=", "--label needs a text"),
+        ("task add -c wave --label=", "--label needs a text"),
+        ("task add -c wave --set cups", "'add' can't be read: --set needs NAME=VALUE, not 'cups'"),
+        ("task add -c wave --restart never", "'restart' must be one of 'give up', 'again', 'resume', not 'never'"),
+        (
+            "task schedule -c wave --every hourly --overlap no",
+            "'schedule' can't be read: 'overlap' must be one of 'skip'",
+        ),
+        ("task schedule -c wave --every hourly --priority 101", "'schedule' can't be read: 'priority' must be from"),
+        ("task add -c wave --set cups=1", "The mission has no value 'cups'"),
+        ("task show ../x", "'../x' isn't the number of a task"),
+        ("task unschedule x", "'x' isn't the number of a schedule"),
+        ("task --name ../x list", "--name: expected up to 32 letters, digits, '-' and '_', not '../x'"),
+        ("task", "required: ACT\n"),
+        ("robot", "required: ACT\n"),
+        ("robot status --speed max", "--speed doesn't apply to it"),
+        ("robot status now", "'now' is more than it takes"),
+        ("robot unit --json", "--json doesn't apply to it"),
+        ("robot up --reason x", "--reason doesn't apply to it"),
+        ("robot backup a b", "'b' is more than it takes"),
+        ("robot say", "it needs a text"),
+    ],
+)
+def test_what_does_not_apply_is_refused(words: str, reason: str, robot: TaskLayer, btc: Btc) -> None:
+    code, text = btc(*words.split())
+    assert code in (1, 2)
+    assert reason in text
+    assert robot.store.tasks() == []
+
+
+@pytest.mark.parametrize("words", ["stop now --speed max --json", "stop"])
+def test_nothing_that_is_typed_keeps_the_robot_from_stopping(words: str, robot: TaskLayer, btc: Btc) -> None:
+    assert btc("robot", *words.split())[0] == 0
+    assert robot.emergency.is_latched
+
+
+def test_options_may_stand_anywhere(robot: TaskLayer, btc: Btc) -> None:
+    number = str(submit(robot, "wave"))
+    for words in (["show", "--name", "robot", number], ["--name", "robot", "show", number], ["show", number, "--json"]):
+        assert btc("task", *words)[0] == 0
+    said = list[str]()
+    robot.session.robot.say = said.append
+    assert btc("robot", "say", "--json", "hi", "there")[0] == 0
+    assert btc("robot", "say", "--", "--json")[0] == 0
+    assert said == ["hi there", "--json"]
+
+
+def test_values_that_the_mission_has_are_given(robot: TaskLayer, btc: Btc) -> None:
+    mission = 'repeat twice: increase my visitors then print "{my visitors} for {guide}"'
+    assert btc("task", "add", "-c", mission, "--set", "My Visitors=3", "--set", "guide=Ann")[0] == 0
+    values = {"my visitors": 1, "guide": "Ann", "guests": 2}
+    assert "has no value 'guests'" in refusal(robot, "submit", text=mission, values=values)
+
+
+def test_what_could_never_happen_is_refused(robot: TaskLayer) -> None:
+    now = robot.now()
+    assert "its deadline" in refusal(robot, "submit", text="wave", by=now - 1)
+    assert "its deadline" in refusal(robot, "submit", text="wave", by="2020-01-01 9:00")
+    told = refusal(robot, "submit", text="wave", at="in 2 hours", by="in 1 hour")
+    assert "its earliest time" in told
+    assert "is after its deadline" in told
+    never = refusal(robot, "schedule", rule="on 24 December 2020 at 9:00", text="wave")
+    assert "The schedule 'on 24 December 2020 at 09:00' would never be due: its time has passed." in never
+    assert robot.store.tasks() == []
+    assert robot.store.schedules() == []
+
+
+def test_what_is_not_there_is_called_so(robot: TaskLayer, btc: Btc) -> None:
+    huge = "9" * 26
+    for words in (f"show {huge}", f"cancel {huge}", f"unschedule {huge}", "library nosuch", "delete nosuch"):
+        code, text = btc("task", *words.split())
+        assert code == 1
+        assert "isn't known" in text or "The mission 'nosuch' isn't in the library" in text
+    assert btc("task", "list", "--limit", huge) == (0, "There are no tasks.\n")
+    assert btc("task", "library") == (0, "The library is empty.\n")
+    assert "isn't the number of a task" in btc("task", "show", "9" * 5000)[1]
+
+
+def test_a_token_that_is_not_given_is_asked_for(robot: TaskLayer, btc: Btc) -> None:
+    ask(robot, "resume")
+    number = submit(robot, "wait 10 h")
+    wait_for(robot, number, State.UNDERWAY)
+    ask(robot, "interrupt", task=number)
+    assert "only the token of that lets it go on: --token TOKEN" in btc("task", "resume", str(number))[1]
+
+
+def test_only_what_waits_gets_another_place(robot: TaskLayer) -> None:
+    waiting = submit(robot, "nod")
+    ask(robot, "resume")
+    begun = submit(robot, "wait 10 h", priority=1)
+    wait_for(robot, begun, State.UNDERWAY)
+    assert "can't come before itself" in refusal(robot, "reorder", task=waiting, before=waiting)
+    for number, before in ((begun, waiting), (waiting, begun)):
+        assert f"Task {begun} has begun" in refusal(robot, "reorder", task=number, before=before)
+    assert "either 'priority' or 'before'" in refusal(robot, "reorder", task=waiting)
+    assert "either 'priority' or 'before'" in refusal(robot, "reorder", task=waiting, priority=1, before=begun)
+    assert "a label must have a text" in refusal(robot, "submit", text="wave", labels=["tour", " "])
+    assert "a label must have a text" in refusal(robot, "schedule", rule="hourly", text="wave", labels=[""])
