@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from btlang.task import messages
-from btlang.task.answers import schedule_data, short
+from btlang.task.answers import schedule_data, schedule_line
 from btlang.task.checks import HIGHEST, checked_labels, checked_priority, choice, refused
 from btlang.task.messages import Answer
 from btlang.task.moments import shown
@@ -57,10 +57,6 @@ class ScheduleHandler:
     def list(self, command: messages.Schedules, person: str) -> Answer:
         """All of them."""
         now, found = self._now(), self._store.schedules()
-        lines = [
-            f"{each.id:>4}  {each.rule}: {short(each.mission)}"
-            + ("" if each.next is None else f"; next at {shown(each.next, now)}")
-            for each in found
-        ]
+        lines = [schedule_line(each, now) for each in found]
         text = "\n".join(lines) or "There are no schedules."
         return Answer(True, text, {"schedules": [schedule_data(each) for each in found]})

@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import json
+import re
+import stat
 import tempfile
 from collections.abc import Callable, Iterator
 from contextlib import closing
@@ -210,6 +212,39 @@ def test_a_token_that_is_not_given_is_asked_for(robot: TaskLayer, btc: Btc) -> N
     wait_for(robot, number, State.UNDERWAY)
     ask(robot, "interrupt", task=number)
     assert "only the token of that lets it go on: --token TOKEN" in btc("task", "resume", str(number))[1]
+
+
+def test_a_schedule_shows_what_is_not_as_usual(robot: TaskLayer, btc: Btc) -> None:
+    ask(robot, "schedule", rule="every day at 9:00", text="wave")
+    ask(
+        robot, "schedule", rule="every day at 9:00", text="print n", values={"n": 1}, zone="Asia/Tokyo", priority=-2,
+        overlap="queue", missed="once", within=600, labels=["tour", "early"], restart="again",
+    )  # fmt: skip
+    usual, other = btc("task", "schedules")[1].splitlines()
+    assert re.fullmatch(r" {3}1  every day at 09:00: wave; next at [-\d: ]+", usual)
+    unusual = "overlap queue, missed once, restart again, priority -2, within 10 min, label tour, label early, n=1"
+    assert re.fullmatch(rf" {{3}}2  every day at 09:00 in Asia/Tokyo: print n; next at [-\d: ]+  \[{unusual}\]", other)
+
+
+def test_a_backup_is_for_its_owner_alone(robot: TaskLayer, btc: Btc, tmp_path: Path) -> None:
+    file = tmp_path / "backup.db"
+    assert btc("robot", "backup", str(file), "--store", robot.store.place)[0] == 0
+    assert stat.S_IMODE(file.stat().st_mode) == 0o600
+    assert [path.name for path in tmp_path.iterdir()] == ["backup.db"]
+
+
+def test_a_unit_keeps_its_lines(btc: Btc, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    code, text = btc("robot", "unit", "--world", "a\nExecStartPre=/bin/rm")
+    assert code == 2
+    assert "'a\\nExecStartPre=/bin/rm' can't stand in a unit" in text
+    code, text = btc("robot", "unit", "--keep", "7", "--rules", 'a "b" $c 5%')
+    assert code == 0
+    assert 'robot up --rules "a \\"b\\" $$c 5%%" --keep 7\n' in text
+    assert text.startswith("[Unit]\n")
+    for store in ("postgresql://u:secret@h/db", "postgresql://h/db?user=u&password=secret"):
+        assert btc("robot", "unit", "--store", store)[1].startswith("# The password of the store is in this file")
+    assert btc("robot", "unit", "--store", "postgresql://u@h/db")[1].startswith("[Unit]\n")
 
 
 def test_only_what_waits_gets_another_place(robot: TaskLayer) -> None:
