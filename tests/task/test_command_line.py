@@ -248,9 +248,8 @@ def test_a_unit_keeps_its_lines(btc: Btc, tmp_path: Path, monkeypatch: pytest.Mo
 
 
 def test_only_what_waits_gets_another_place(robot: TaskLayer) -> None:
-    waiting = submit(robot, "nod")
+    waiting, begun = submit(robot, "nod"), submit(robot, "wait 10 h", priority=1)
     ask(robot, "resume")
-    begun = submit(robot, "wait 10 h", priority=1)
     wait_for(robot, begun, State.UNDERWAY)
     assert "can't come before itself" in refusal(robot, "reorder", task=waiting, before=waiting)
     for number, before in ((begun, waiting), (waiting, begun)):

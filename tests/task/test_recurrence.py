@@ -391,6 +391,10 @@ def test_the_page_is_true() -> None:
         assert read_rule(text, BERLIN).next(NOW)
     for text in shown_times:
         assert read_moment(text, NOW, BERLIN) >= NOW - 3600
+    orders = re.findall(r"`([^`]*\d[^`]*)`", rules.partition("in any order, with")[2].replace("\n", " "))
+    instead = [cell for line in refused.partition("These sound")[2].splitlines() for cell in line.split("|")[2:3]]
+    for text in (*orders, *re.findall(r"`(.+?)`", "\n".join(instead))):
+        assert read_rule(text, BERLIN).next(NOW)
     for text in shown_refused:
         with pytest.raises(MissionError):
             read_rule(text, BERLIN)
