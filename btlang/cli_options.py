@@ -34,7 +34,8 @@ def parsed(arguments: Sequence[str] | None) -> argparse.Namespace:
     for word in takewhile(lambda word: word != "--", words):
         if word.startswith("--") and " " not in word:
             parser.check_option(word.partition("=")[0])
-    options, unknown = parser.parse_known_args(words)
+    read = parser.parse_known_intermixed_args if verb in ("robot", "task") else parser.parse_known_args
+    options, unknown = read(words)
     if unknown:
         parser.refuse(f"unexpected argument '{unknown[0]}'")
     return options
@@ -343,10 +344,7 @@ _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "words": ("list what missions can say", _listing_options),
     "grammar": ("write a grammar of missions, for language models", _grammar_options),
     "robot": ("keep a robot up for many tasks of many people", _elsewhere("btlang.task.options", "add_robot_options")),
-    "task": (
-        "give work to a robot that is up",
-        _elsewhere("btlang.task.options", "add_task_options"),
-    ),
+    "task": ("give work to a robot that is up", _elsewhere("btlang.task.options", "add_task_options")),
     "serve": ("let others reach the robots that are up", _elsewhere("btlang.server.options", "add_serve_options")),
     "user": ("say who may come in through btc serve", _elsewhere("btlang.server.options", "add_user_options")),
     "mcp": ("let language models write and simulate missions, as an MCP server", _words_options),

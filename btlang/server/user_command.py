@@ -63,13 +63,13 @@ def _changed(options: argparse.Namespace, accounts: Accounts) -> str:
     act, name, item = options.act, options.name, options.item
     if act == "add":
         _check_name(name)
-        accounts.add(name, _role(options.role), hashed(_asked_password(name)))
+        accounts.add(name, _role(options.role, act), hashed(_asked_password(name)))
         return f"'{one_line(name)}' may come in as {options.role}."
     if act == "passwd":
         accounts.set_password(name, hashed(_asked_password(name)))
         return f"'{one_line(name)}' has another password, and is logged out everywhere."
     if act == "role":
-        accounts.set_role(name, _role(item or options.role))
+        accounts.set_role(name, _role(item or options.role, act))
         return f"'{one_line(name)}' is {item or options.role}."
     if act == "remove":
         accounts.remove(name)
@@ -90,11 +90,11 @@ def _check_name(name: str) -> None:
         raise wrong("add", "a name must have up to 64 characters that can be shown")
 
 
-def _role(role: str) -> Role:
+def _role(role: str, act: str) -> Role:
     from btlang.server.roles import Role
     from btlang.task.checks import choice
 
-    return choice(Role, role, "role")
+    return choice(Role, role, "role", act)
 
 
 def _asked_password(name: str) -> str:

@@ -2,11 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from difflib import unified_diff
 
 from btlang.task.checks import refused
+from btlang.task.days import joined
 from btlang.task.messages import Answer, PutMission
+from btlang.task.moments import length, shown
 from btlang.task.task import MissionText, Revision, Schedule, Task
 from btlang.text.escaping import one_line
 
@@ -43,9 +45,36 @@ def schedule_data(schedule: Schedule) -> dict[str, Any]:
     return {**data, "mission": short(schedule.mission)}
 
 
+def schedule_line(schedule: Schedule, now: float) -> str:
+    """A schedule in one line: id, rule, mission, when it is due, and what isn't as usual."""
+    zone = f" in {schedule.zone}" if schedule.zone else ""
+    when = "" if schedule.next is None else f"; next at {shown(schedule.next, now)}"
+    line = f"{schedule.id:>4}  {schedule.rule}{zone}: {short(schedule.mission)}{when}"
+    unusual = [
+        f"{field} {getattr(schedule, field)}"
+        for field in ("overlap", "missed", "restart")
+        if getattr(schedule, field) != schedule.field_defaults[field]
+    ]
+    unusual += [f"priority {schedule.priority:+d}"] if schedule.priority else []
+    unusual += [] if schedule.within is None else [f"within {length(schedule.within)}"]
+    unusual += [f"label {one_line(label)}" for label in schedule.labels]
+    unusual += [f"{one_line(name)}={one_line(str(value))}" for name, value in schedule.mission.values.items()]
+    return f"{line}  [{', '.join(unusual)}]" if unusual else line
+
+
 def revision_data(revision: Revision) -> dict[str, Any]:
     """A revision without its text."""
     return {field: getattr(revision, field) for field in revision.fields if field != "text"}
+
+
+def deleted(name: str, schedules: Sequence[int]) -> str:
+    """What is said of a mission that is no longer in the library, while some schedules have its text."""
+    text = f"'{one_line(name)}' is no longer in the library."
+    if not schedules:
+        return text
+    numbers = joined([str(number) for number in schedules])
+    who, it = (f"Schedule {numbers} goes", "it") if len(schedules) == 1 else (f"Schedules {numbers} go", "them")
+    return f"{text} {who} on with its text. To end {it}: btc task unschedule"
 
 
 def outdated(command: PutMission, latest: Revision | None) -> Answer:

@@ -63,6 +63,8 @@ def restore_backup(path: str, place: str) -> None:
 
 
 def _write(database: Database, part: str, path: str) -> None:
+    with suppress(FileNotFoundError):  # of the folder, which the database tells better
+        os.close(os.open(part, os.O_CREAT | os.O_EXCL | os.O_WRONLY, 0o600))  # it has all that the store has
     target = Sqlite(part, durable=True, shown=path)
     try:
         migrate(target)

@@ -11,6 +11,7 @@ from collections.abc import Callable
 
 from btlang.diagnostics.reading import read_source
 from btlang.task import messages
+from btlang.task.applicable import check_task_words
 from btlang.task.client import Client
 from btlang.task.messages import Answer, Command, wrong
 from btlang.task.task import State
@@ -22,11 +23,13 @@ if TYPE_CHECKING:
     import argparse
     from typing import Any
 
+_LONGEST = 100  # figures of a number
 _AGAIN = 0.5  # seconds between two looks of the live list
 
 
 def serve(options: argparse.Namespace) -> int:
     """Does the verb `task`; returns the exit code: 1 if the robot refuses."""
+    check_task_words(options)
     command = _command(options)
     with Client(options.name) as client:
         if options.live:
@@ -76,13 +79,13 @@ def _command(options: argparse.Namespace) -> Command:
     if act in ("add", "schedule", "put"):
         return _with_mission(options)
     if act == "list":
-        return messages.List(tuple(State) if options.all else (), options.label[0] if options.label else "")
+        return _list(options)
     if act == "schedules":
         return messages.Schedules()
     if act == "library":
         return messages.Library(_word(options, "") if options.item else "")
     if act == "trail":
-        return messages.Trail()
+        return messages.Trail() if options.limit is None else messages.Trail(options.limit)
     if act == "delete":
         return messages.DeleteMission(_word(options, "the name of a mission"))
     number = _number(options)
@@ -98,6 +101,13 @@ def _command(options: argparse.Namespace) -> Command:
     return {"show": messages.Show, "again": messages.Again, "unschedule": messages.RemoveSchedule}[act](number)
 
 
+def _list(options: argparse.Namespace) -> Command:
+    wanted: dict[str, Any] = {"states": tuple(State) if options.all else ()}
+    if options.limit is not None or (options.all and not options.live):  # a live list is asked for again and again
+        wanted["limit"] = options.limit
+    return messages.List(**wanted, label=options.label[0] if options.label else "")
+
+
 def _with_mission(options: argparse.Namespace) -> Command:
     text, name = options.code or "", ""
     if options.act == "put":
@@ -110,7 +120,7 @@ def _with_mission(options: argparse.Namespace) -> Command:
         if os.path.exists(name) or name.endswith(".txt"):
             text, name = read_source(name).text, os.path.basename(name)
     given: dict[str, Any] = {
-        "text": text, "name": name, "values": dict(map(_value, options.set)),
+        "text": text, "name": name, "values": dict(_value(options.act, each) for each in options.set),
         "keywords": tuple(map(_keywords, options.keywords)), "priority": options.priority or 0,
         "labels": tuple(options.label), "restart": options.restart,
     }  # fmt: skip
@@ -123,10 +133,10 @@ def _with_mission(options: argparse.Namespace) -> Command:
     )
 
 
-def _value(text: str) -> tuple[str, str | float]:
+def _value(act: str, text: str) -> tuple[str, str | float]:
     name, equals, value = text.partition("=")
     if not equals or not name.strip():
-        raise wrong("--set", "write NAME=VALUE")
+        raise wrong(act, f"--set needs NAME=VALUE, not '{text}'")
     try:
         return name.strip(), float(value) if "." in value else int(value)
     except ValueError:
@@ -139,9 +149,10 @@ def _keywords(name: str) -> str:
 
 
 def _number(options: argparse.Namespace) -> int:
-    word = _word(options, "the number of a task")
-    if not word.isdecimal():
-        raise wrong(options.act, f"'{word}' isn't the number of a task")
+    kind = "schedule" if options.act == "unschedule" else "task"
+    word = _word(options, f"the number of a {kind}")
+    if not word.isdecimal() or len(word) > _LONGEST:
+        raise wrong(options.act, f"'{word}' isn't the number of a {kind}")
     return int(word)
 
 

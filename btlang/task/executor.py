@@ -384,7 +384,7 @@ class Executor:
     def _ask_for_help(self, reason: str) -> None:
         """A house rule failed: the robot stands still, and people are called."""
         self._outbox.write(partial(self._store.set_setting, _BLOCKED, reason))
-        self._trouble(f"The robot needs help: a house rule failed: {reason}. It does nothing until 'resume'.")
+        self._trouble(f"The robot needs help: a house rule failed: {reason}. It does nothing until 'btc robot resume'.")
         say = getattr(self._session.robot, "say", None)
         if say is not None:
             say("I need help.")

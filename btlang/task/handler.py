@@ -14,30 +14,26 @@ from btlang.diagnostics.crash import crashed
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.task import messages
-from btlang.task.answers import outdated, revision_data, schedule_data, short, task_data, task_line
-from btlang.task.checks import checked_priority, checked_within, choice, moment, refused
+from btlang.task.answers import deleted, outdated, revision_data, task_data, task_line
+from btlang.task.checks import (
+    HIGHEST,
+    check_values,
+    checked_labels,
+    checked_priority,
+    choice,
+    refused,
+    report_times,
+    task_times,
+)
 from btlang.task.emergency import EmergencyStop
 from btlang.task.executor import Executor
 from btlang.task.manager import Manager
 from btlang.task.messages import Answer, Command, wrong
 from btlang.task.moments import shown
-from btlang.task.recurrence import read_rule
 from btlang.task.report import report
+from btlang.task.schedule_handler import ScheduleHandler
 from btlang.task.store import Store
-from btlang.task.task import (
-    ACTIVE,
-    FINAL,
-    WAITING,
-    Act,
-    Ending,
-    Missed,
-    MissionText,
-    Overlap,
-    Restart,
-    Schedule,
-    State,
-    Task,
-)
+from btlang.task.task import ACTIVE, FINAL, WAITING, Act, Ending, MissionText, Restart, State, Task
 from btlang.text.escaping import one_line
 from btlang.text.source import NOWHERE
 
@@ -47,7 +43,6 @@ if TYPE_CHECKING:
 
     from btlang.session import Session
 
-_WEEK = 7 * 86_400.0
 _BEGINNING = 3.0  # seconds of real time that a task may take from its claim to its first tick
 _MOMENT = 0.01
 
@@ -70,12 +65,13 @@ class Handler:
     ) -> None:
         self._store, self._manager, self._executor, self._emergency = store, manager, executor, emergency
         self._session, self._admit, self._now, self._down = session, admit, now, down
+        schedules = ScheduleHandler(store, executor.wake, self._mission, now)
         self._does: dict[type[Command], Callable[[Any, str], Answer]] = {
             messages.Submit: self._submit, messages.List: self._list, messages.Show: self._show,
             messages.Cancel: partial(self._end, State.CANCELED), messages.Kill: partial(self._end, State.KILLED),
             messages.Interrupt: self._interrupt, messages.Resume: self._resume, messages.Skip: self._skip,
-            messages.Reorder: self._reorder, messages.Again: self._again, messages.AddSchedule: self._schedule,
-            messages.RemoveSchedule: self._unschedule, messages.Schedules: self._schedules,
+            messages.Reorder: self._reorder, messages.Again: self._again, messages.AddSchedule: schedules.add,
+            messages.RemoveSchedule: schedules.remove, messages.Schedules: schedules.list,
             messages.PutMission: self._put, messages.DeleteMission: self._delete, messages.Library: self._library,
             messages.Pause: self._pause, messages.Step: self._step, messages.EmergencyStop: self._stop,
             messages.Release: self._release, messages.Say: self._say, messages.Down: self._end_all,
@@ -109,25 +105,27 @@ class Handler:
             self._store.log(Act(self._now(), person, command.tag, details, answer.text))
 
     def _submit(self, command: messages.Submit, person: str) -> Answer:
-        now = self._now()
+        earliest, deadline = task_times(command, self._now())
         task = self.add(
-            self._mission(command), person, priority=checked_priority(command.priority), labels=command.labels,
-            earliest=moment(command.at, now), deadline=moment(command.by, now),
-            restart=choice(Restart, command.restart, "restart"),
+            self._mission(command), person, priority=checked_priority(command.priority, command.tag),
+            labels=checked_labels(command.labels, command.tag), earliest=earliest, deadline=deadline,
+            restart=choice(Restart, command.restart, "restart", command.tag),
         )  # fmt: skip
         return Answer(True, f"Task {task.id} is queued.", {"task": task_data(task)})
 
     def _list(self, command: messages.List, person: str) -> Answer:
-        wanted = {choice(State, state, "state") for state in command.states}
+        wanted = {choice(State, state, "states", command.tag) for state in command.states}
         states = wanted or WAITING | ACTIVE
         found = self._store.tasks(states, label=command.label, newest=bool(wanted & FINAL), limit=command.limit)
         found.sort(key=lambda task: task.state not in ACTIVE)
-        hindrance, now, tasks, first = self._executor.hindrance(), self._now(), [], 0
-        for task in found:
-            tasks.append(task_data(task, self._manager.why_waiting(task, now, hindrance, first)))
-            first = first or task.id
-        text = "\n".join(map(task_line, tasks)) or "There are no tasks."
-        return Answer(True, text, {"tasks": tasks, "hindrance": hindrance})
+        is_cut = command.limit is not None and len(found) >= command.limit
+        more = max(self._store.count_tasks(states, label=command.label) - len(found), 0) if is_cut else 0
+        hindrance, now = self._executor.hindrance(), self._now()
+        first = self._manager.first(now)
+        tasks = [task_data(task, self._manager.why_waiting(task, now, hindrance, first)) for task in found]
+        lines = [task_line(task) for task in tasks] or ["There are no tasks."]
+        lines += [f"and {more} more: --limit N lists so many, --all every one"] if more else []
+        return Answer(True, "\n".join(lines), {"tasks": tasks, "more": more, "hindrance": hindrance})
 
     def _show(self, command: messages.Show, person: str) -> Answer:
         task = self._known(command.task)
@@ -187,6 +185,8 @@ class Handler:
         task = self._open(command.task)
         if task.state is not State.DELAYED or not task.token:
             raise refused(task.id, f"wasn't interrupted: it's {task.state}")
+        if not command.token:
+            raise refused(task.id, "was interrupted, and only the token of that lets it go on: --token TOKEN")
         if command.token != task.token:
             raise refused(task.id, "has another token: it was interrupted again, or by somebody else")
         cause = f"{person or 'somebody'} lets it go on"
@@ -209,21 +209,28 @@ class Handler:
 
     def _reorder(self, command: messages.Reorder, person: str) -> Answer:
         task = self._open(command.task)
+        if (command.priority is None) is (command.before == 0):
+            raise wrong("reorder", "it needs either 'priority' or 'before'")
         if command.priority is not None:
-            moved = self._store.amend(task.id, priority=checked_priority(command.priority))
-        elif command.before:
-            other = self._open(command.before)
-            equal = [each.id for each in self._store.tasks(WAITING) if each.priority == other.priority]
-            order = [each for each in equal if each != task.id]
-            order.insert(order.index(other.id) if other.id in order else 0, task.id)
-            for position, number in enumerate(order):
-                self._store.amend(number, position=position - len(order), priority=other.priority)
-            moved = self._store.task(task.id)
+            moved = self._store.amend(task.id, priority=checked_priority(command.priority, command.tag))
         else:
-            raise wrong("reorder", "it needs 'priority' or 'before'")
+            moved = self._moved_before(task, self._open(command.before))
         self._executor.wake()
         assert moved is not None
         return Answer(True, f"Task {task.id} has a new place.", {"task": self._data(moved)})
+
+    def _moved_before(self, task: Task, other: Task) -> Task | None:
+        if task.id == other.id:
+            raise refused(task.id, "can't come before itself")
+        for each in (task, other):
+            if each.state in ACTIVE:
+                raise refused(each.id, f"has begun: it's {each.state}")
+        equal = [each.id for each in self._store.tasks(WAITING) if each.priority == other.priority]
+        order = [each for each in equal if each != task.id]
+        order.insert(order.index(other.id) if other.id in order else 0, task.id)
+        for position, number in enumerate(order):
+            self._store.amend(number, position=position - len(order), priority=other.priority)
+        return self._store.task(task.id)
 
     def _again(self, command: messages.Again, person: str) -> Answer:
         task = self._known(command.task)
@@ -234,37 +241,6 @@ class Handler:
         made = self._store.add(fresh, f"like task {task.id}")
         self._executor.wake()
         return Answer(True, f"Task {made.id} is queued.", {"task": task_data(made)})
-
-    def _schedule(self, command: messages.AddSchedule, person: str) -> Answer:
-        recurrence, now = read_rule(command.rule, command.zone), self._now()
-        mission = self._mission(command)
-        first = recurrence.next(now)
-        made = self._store.add_schedule(
-            Schedule(
-                0, str(recurrence), command.zone, mission, person, now, first, checked_priority(command.priority),
-                command.labels, choice(Restart, command.restart, "restart"),
-                choice(Overlap, command.overlap, "overlap"), choice(Missed, command.missed, "missed"),
-                checked_within(command.within),
-            )
-        )  # fmt: skip
-        self._executor.wake()
-        when = "never" if first is None else f"next at {shown(first, now)}"
-        return Answer(True, f"Schedule {made.id}: {made.rule}; {when}.", {"schedule": schedule_data(made)})
-
-    def _unschedule(self, command: messages.RemoveSchedule, person: str) -> Answer:
-        if not self._store.delete_schedule(command.schedule):
-            raise refused(f"Schedule {command.schedule}", "isn't known")
-        return Answer(True, f"Schedule {command.schedule} is removed.", {})
-
-    def _schedules(self, command: messages.Schedules, person: str) -> Answer:
-        now, found = self._now(), self._store.schedules()
-        lines = [
-            f"{each.id:>4}  {each.rule}: {short(each.mission)}"
-            + ("" if each.next is None else f"; next at {shown(each.next, now)}")
-            for each in found
-        ]
-        text = "\n".join(lines) or "There are no schedules."
-        return Answer(True, text, {"schedules": [schedule_data(each) for each in found]})
 
     def _put(self, command: messages.PutMission, person: str) -> Answer:
         if not command.name.strip() or "/" in command.name or not command.name.isprintable():
@@ -279,7 +255,10 @@ class Handler:
     def _delete(self, command: messages.DeleteMission, person: str) -> Answer:
         if not self._store.delete_mission(command.name, person, self._now()):
             raise _unknown(command.name)
-        return Answer(True, f"'{one_line(command.name)}' is no longer in the library.", {})
+        left = [
+            each.id for each in self._store.schedules() if each.mission.revision and each.mission.name == command.name
+        ]
+        return Answer(True, deleted(command.name, left), {"schedules": left})
 
     def _library(self, command: messages.Library, person: str) -> Answer:
         found = self._store.revisions(command.name) if command.name else self._store.missions()
@@ -290,6 +269,8 @@ class Handler:
             for each in found
         ]
         data = [{**revision_data(each), "text": each.text} for each in found]
+        if command.name and not found:
+            raise _unknown(command.name)
         return Answer(True, "\n".join(lines) or "The library is empty.", {"missions": data})
 
     def _pause(self, command: messages.Pause, person: str) -> Answer:
@@ -349,11 +330,8 @@ class Handler:
         return Answer(True, "\n".join(lines), data)
 
     def _report(self, command: messages.Report, person: str) -> Answer:
-        now = self._now()
-        until = moment(command.until, now)
-        until = now if until is None else until
-        since = moment(command.since, now)
-        lines = list(report(self._store, until - _WEEK if since is None else since, until))
+        since, until = report_times(command.since, command.until, self._now())
+        lines = list(report(self._store, since, until))
         return Answer(True, "\n".join(lines), {"lines": lines})
 
     def _trail(self, command: messages.Trail, person: str) -> Answer:
@@ -373,11 +351,11 @@ class Handler:
                 raise _unknown(name)
             text, revision = found.text, found.number
         mission = MissionText(text, name, revision, dict(command.values), command.keywords)
-        self._admit(mission)
+        check_values(self._admit(mission), mission.values)
         return mission
 
     def _known(self, number: int) -> Task:
-        task = self._store.task(number)
+        task = self._store.task(number) if abs(number) <= HIGHEST else None
         if task is None:
             raise refused(number, "isn't known")
         return task

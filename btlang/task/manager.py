@@ -83,8 +83,14 @@ class Manager:
         """When to look again, if nobody asks for anything before."""
         return self._store.next_time(now)
 
+    def first(self, now: float) -> int:
+        """The task that is under way, or else the next one; 0 for none."""
+        active = self._store.tasks(ACTIVE)
+        best = active[0] if active else self._store.peek(now)
+        return best.id if best is not None else 0
+
     def why_waiting(self, task: Task, now: float, hindrance: str = "", first: int | None = None) -> str:
-        """Why a task that waits hasn't begun yet. `first` is the task that comes first, if known, 0 for none."""
+        """Why a task that waits hasn't begun yet. `first` is that of the method, if known."""
         if task.state not in WAITING:
             return ""
         if task.state is State.DELAYED and task.token:
@@ -95,10 +101,7 @@ class Manager:
             return f"its time is {shown(task.earliest, now)}"
         if hindrance:
             return hindrance
-        if first is None:
-            active = self._store.tasks(ACTIVE)
-            best = active[0] if active else self._store.peek(now)
-            first = best.id if best is not None else 0
+        first = self.first(now) if first is None else first
         return f"task {first} comes first" if first not in (0, task.id) else "it's next"
 
     def _come(self, schedule: Schedule, now: float) -> Iterator[Task]:

@@ -47,13 +47,15 @@ class Submit(Command):
 
 
 class List(Command):
-    """The tasks that are not over, in the order of their turn; or those in these `states`, newest first."""
+    """The tasks that are not over, in the order of their turn; or those in these `states`, newest first. The answer has
+    at most `limit` of them (None: all), and says how many `more` there are.
+    """
 
     tag = "list"
     changes = False
     states: tuple[str, ...] = ()
     label: str = ""
-    limit: int = 100
+    limit: int | None = 100
 
 
 class Show(Command):
@@ -164,7 +166,9 @@ class PutMission(Command):
 
 
 class DeleteMission(Command):
-    """Takes a mission out of the library; its revisions stay, and tasks that have its text still run."""
+    """Takes a mission out of the library; its revisions stay, and tasks and schedules that have its text still run.
+    The answer has the numbers of these `schedules`.
+    """
 
     tag = "delete"
     name: str
@@ -224,7 +228,9 @@ class Status(Command):
 
 
 class Report(Command):
-    """What the robot did from `since` to `until`: seconds since 1970 or English; by default in the last seven days."""
+    """What the robot did from `since` to `until`: seconds since 1970, or English for the past such as "2 hours ago"; by
+    default in the last seven days.
+    """
 
     tag = "report"
     changes = False

@@ -1,4 +1,4 @@
-"""Moments as people read them."""
+"""Moments and durations as people read them."""
 
 from __future__ import annotations
 
@@ -10,3 +10,9 @@ def shown(moment: float, now: float) -> str:
     there, today = time.localtime(moment), time.localtime(now)
     clock = time.strftime("%H:%M:%S" if there.tm_sec else "%H:%M", there)
     return clock if there[:3] == today[:3] else f"{time.strftime('%Y-%m-%d', there)} {clock}"
+
+
+def length(seconds: float) -> str:
+    """A duration in the longest unit of which it's a whole number: "10 min"."""
+    unit, size = next((each for each in (("h", 3600), ("min", 60)) if seconds % each[1] == 0), ("s", 1))
+    return f"{seconds / size:g} {unit}"

@@ -4,17 +4,9 @@ from __future__ import annotations
 
 import argparse
 
-from btlang.arguments import between, duration, speed
-
-ROBOT_ACTS = (
-    "up", "down", "status", "report", "stop", "release", "pause", "resume", "step", "say", "unit", "backup", "restore",
-)  # fmt: skip
-"""What `btc robot` does."""
-TASK_ACTS = (
-    "add", "list", "show", "cancel", "kill", "interrupt", "resume", "skip", "move", "again", "schedule", "schedules",
-    "unschedule", "put", "delete", "library", "trail",
-)  # fmt: skip
-"""What `btc task` does."""
+from btlang.arguments import at_least, between, duration, speed
+from btlang.diagnostics.errors import MissionError
+from btlang.task.applicable import ROBOT_ACTS, TASK_ACTS, note_given
 
 
 def add_robot_options(parser: argparse.ArgumentParser) -> None:
@@ -30,7 +22,8 @@ def add_robot_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--since", metavar="TIME", help="where a report begins (default: seven days ago)")
     _add_json(parser)
     parser.add_argument("act", choices=ROBOT_ACTS, metavar="ACT", help=", ".join(ROBOT_ACTS))
-    parser.add_argument("item", nargs="*", metavar="FILE", help="the file to back up to or to restore, or what to say")
+    parser.add_argument("item", nargs="*", default=[], metavar="FILE", help="what to back up to, to restore, or to say")
+    note_given(parser)
 
 
 def add_layer_options(parser: argparse.ArgumentParser) -> None:
@@ -73,15 +66,30 @@ def add_task_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--before", type=int, default=0, metavar="TASK", help="move it before this task")
     parser.add_argument("--token", default="", metavar="TOKEN", help="of the interruption that resume ends")
     parser.add_argument("--reason", default="", metavar="TEXT", help="why, for others to read")
-    parser.add_argument("--all", action="store_true", help="list tasks that are over, too")
+    parser.add_argument("--all", action="store_true", help="list every task, also those that are over")
+    parser.add_argument("--limit", type=at_least(1), metavar="N", help="list at most so many (default: 100)")
     parser.add_argument("--live", action="store_true", help="go on showing the list")
     _add_json(parser)
     parser.add_argument("act", choices=TASK_ACTS, metavar="ACT", help=", ".join(TASK_ACTS))
-    parser.add_argument("item", nargs="*", metavar="FILE", help="a mission file, a name of the library, or a task")
+    parser.add_argument(
+        "item", nargs="*", default=[], metavar="FILE", help="a mission file, a name of the library, or a task"
+    )
+    note_given(parser)
 
 
 def _add_name(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--name", default="", metavar="NAME", help="which robot, if several are up (default: robot)")
+    parser.add_argument(
+        "--name", type=_robot_name, default="", metavar="NAME", help="which robot, if several are up (default: robot)"
+    )
+
+
+def _robot_name(text: str) -> str:
+    from btlang.task.paths import checked_name
+
+    try:
+        return text and checked_name(text)
+    except MissionError:
+        raise argparse.ArgumentTypeError(f"expected up to 32 letters, digits, '-' and '_', not '{text}'") from None
 
 
 def _add_json(parser: argparse.ArgumentParser) -> None:

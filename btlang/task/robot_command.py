@@ -3,17 +3,19 @@
 from __future__ import annotations
 
 import os
-import shlex
+import re
 import signal
 import sys
 import threading
 from collections.abc import Callable
 from contextlib import suppress
 from functools import partial
+from urllib.parse import parse_qs, urlsplit
 
 from btlang.diagnostics.errors import MissionError
 from btlang.run.emergency import emergency_signal
 from btlang.task import messages
+from btlang.task.applicable import check_robot_words
 from btlang.task.backup import restore_backup
 from btlang.task.client import Client, emergency_stop
 from btlang.task.command import tell
@@ -31,7 +33,7 @@ if TYPE_CHECKING:
     import argparse
     from typing import Any
 
-_UNIT = """[Unit]
+_UNIT = """{note}[Unit]
 Description=The robot '{name}' (btlang)
 After=network.target
 
@@ -46,10 +48,17 @@ TimeoutStopSec=30
 WantedBy=default.target
 """
 
+_SECRET = """# The password of the store is in this file: let nobody else read it (chmod 600).
+# Or leave it out of the URL, and write it into ~/.pgpass, where PostgreSQL looks for it.
+"""
+_CONTROL = re.compile(r"[\0-\x1f\x7f]")
+_PLAIN = re.compile(r"[\w@%+=:,./-]+", re.ASCII)
+
 
 def serve(options: argparse.Namespace) -> int:
     """Does the verb `robot`; returns the exit code."""
     act = options.act
+    check_robot_words(options)
     if act == "up":
         return _up(options)
     if act == "unit":
@@ -139,10 +148,33 @@ def _unit(options: argparse.Namespace) -> str:
         for each in names:
             words += [option, os.path.abspath(each) if os.path.exists(each) else each]
     words += [] if options.speed == "real" else ["--speed", str(options.speed)]
+    words += [] if options.keep is None else ["--keep", f"{options.keep:g}"]
     words += ["--durable"] * options.durable + ["--no-recordings"] * options.no_recordings
+    folder = os.getcwd()
+    for word in (*words, folder):
+        if _CONTROL.search(word):  # behind the end of a line would be another setting
+            raise messages.wrong("unit", f"'{one_line(word)}' can't stand in a unit")
     return _UNIT.format(
-        name=options.name or USUAL_NAME, command=shlex.join(words).replace("%", "%%"), folder=os.getcwd()
+        note=_SECRET if _has_password(options.store) else "",
+        name=options.name or USUAL_NAME,
+        command=" ".join(map(_quoted, words)),
+        folder=folder.replace("%", "%%"),
     )
+
+
+def _quoted(word: str) -> str:
+    """A word of a command line as systemd reads it."""
+    plain = word.replace("\\", "\\\\").replace('"', '\\"').replace("%", "%%").replace("$", "$$")
+    return plain if _PLAIN.fullmatch(word) else f'"{plain}"'
+
+
+def _has_password(store: str) -> bool:
+    """Whether the place of a store has one: in its user, or as a parameter."""
+    try:
+        parts = urlsplit(store)
+        return parts.password is not None or "password" in parse_qs(parts.query)
+    except ValueError:
+        return "password" in store
 
 
 def _copy(options: argparse.Namespace) -> int:

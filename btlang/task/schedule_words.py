@@ -33,6 +33,7 @@ _SINGULAR = {
     "weekend": WEEKEND,
 }
 _PLURAL = {f"{name}s": days for name, days in _SINGULAR.items() if "day" in name or "end" in name}  # not `Tues`
+_DAY_UNITS = {"day": 1, "days": 1, "week": 7, "weeks": 7}
 _MONTHS = {
     **{name.lower(): number for number, name in enumerate(MONTHS, 1)},
     **{name[:3].lower(): number for number, name in enumerate(MONTHS, 1)},
@@ -92,6 +93,10 @@ class ScheduleWords:
     def ahead(self, by: int = 0) -> str:
         """A word that isn't read yet, by its distance."""
         return self._text.words[self.at + by] if self.at + by < self._last else END_OF_TEXT
+
+    def ends_with(self, word: str) -> bool:
+        """Whether that is the last word, and isn't read yet."""
+        return self.at < self._last and self._text.words[self._last - 1] == word
 
     def takes(self, *phrases: str) -> str:
         """The phrase that is next, behind which it reads on; "" if none of them is."""
@@ -196,14 +201,29 @@ class ScheduleWords:
         if found is not None and found[1] == DURATION:
             self.at = found[2]
             return found[0]
-        first = self.at
-        if self.number() is None:
+        first, number = self.at, self.number()
+        if number is None:
             return None
-        units = self._values.types[DURATION].units
-        self._asked.setdefault(self.at, set()).update(word for unit in units for word in unit.words)
+        units = {word for unit in self._values.types[DURATION].units for word in unit.words}
+        self._asked.setdefault(self.at, set()).update(units)
+        is_fraction = not float(number).is_integer() and self._text.words[first].isalpha()
+        example = "15 minutes" if is_fraction else f"{self.since(first).text} minutes"
         if self.is_over:
-            raise self.wrong("needs a unit of time", first, f"{self.since(first).text} minutes")
-        raise self.unknown(f"{self.since(first).text} minutes")
+            raise self.wrong("needs a unit of time", first, example)
+        if self.ahead() in units:  # and yet it's no quantity
+            self.at += 1
+            raise self.wrong("is too long", first, "10 minutes")
+        raise self.unknown(example)
+
+    def days(self) -> int | None:
+        """Whole days: `10 days`, `a week`."""
+        first = self.at
+        count = 1 if first in self._text.articles else self.number()
+        length = None if count is None else self.choice(_DAY_UNITS)
+        if count is None or length is None or not float(count * length).is_integer():
+            self.at = first
+            return None
+        return int(count * length)
 
     def weekdays(self) -> tuple[tuple[int, ...], bool] | None:
         """Weekdays, and whether they are said so that every week is meant: `Mondays`, `weekdays`, `Monday to Friday`,

@@ -8,7 +8,8 @@ from btlang.record import Record
 from btlang.task.backup import write_backup
 from btlang.task.database import Database, Mode, store_error
 from btlang.task.migrations import open_database
-from btlang.task.rows import columns_of, from_row, in_lines, marks, to_column, to_row
+from btlang.task.queries import IN_TURN, NEXT, NOT_OVER, TASK, TIMES, UNBEGUN, chosen
+from btlang.task.rows import columns_of, from_row, marks, to_column, to_row
 from btlang.task.task import FINAL, Act, Change, Revision, Schedule, State, Task
 
 TYPE_CHECKING = False
@@ -20,23 +21,7 @@ if TYPE_CHECKING:
 
     R = TypeVar("R", bound=Record)
 
-_TASK, _SCHEDULE, _REVISION, _ACT = (columns_of(kind) for kind in (Task, Schedule, Revision, Act))
-_IN_TURN = "priority DESC, position, id"
-_NOT_OVER = "state NOT IN ({})".format(", ".join(f"'{state}'" for state in sorted(FINAL)))
-"""Word by word the condition of the index `task_turn`: only then SQLite uses it. Few tasks of a store are not over."""
-_NEXT = (
-    f"SELECT {_TASK} FROM task WHERE {_NOT_OVER} AND (state = '{State.QUEUED}' OR state = '{State.DELAYED}'"
-    f" AND token = '') AND (earliest IS NULL OR earliest <= ?)"
-    f" AND (deadline IS NULL OR deadline >= ? OR started IS NOT NULL) ORDER BY {_IN_TURN} LIMIT 1"
-)
-_QUEUED = f"{_NOT_OVER} AND state = '{State.QUEUED}'"
-_UNBEGUN = f"{_QUEUED} AND started IS NULL"
-"""A task that began in time may go on, or begin again, after its deadline."""
-_TIMES = (
-    "SELECT min(time) FROM (SELECT next AS time FROM schedule WHERE next > ?"
-    f" UNION ALL SELECT earliest FROM task WHERE {_QUEUED} AND earliest > ?"
-    f" UNION ALL SELECT deadline FROM task WHERE {_UNBEGUN} AND deadline > ?) AS times"
-)
+_SCHEDULE, _REVISION, _ACT = (columns_of(kind) for kind in (Schedule, Revision, Act))
 
 
 class Store:
@@ -89,7 +74,7 @@ class Store:
 
     def task(self, id: int) -> Task | None:
         """None if there's no such task, perhaps not any more."""
-        return self._one(Task, f"SELECT {_TASK} FROM task WHERE id = ?", id)
+        return self._one(Task, f"SELECT {TASK} FROM task WHERE id = ?", id)
 
     def tasks(
         self,
@@ -101,22 +86,17 @@ class Store:
         limit: int | None = None,
     ) -> list[Task]:
         """Those in these states, with this label, of this schedule; in the order of their turn, or the newest first."""
-        conditions, values = ["1 = 1"], list[object]()
-        if states is not None:
-            names = [to_column(state) for state in states] or [""]  # there is no empty list in SQL
-            conditions.append(f"state IN ({marks(len(names))})")
-            values += names
-            if not FINAL.intersection(states):
-                conditions.append(_NOT_OVER)
-        if label:
-            conditions.append("replace(labels, ?, '') <> labels")
-            values.append(in_lines(label))
-        if schedule:
-            conditions.append("schedule = ?")
-            values.append(schedule)
-        order = "id DESC" if newest else _IN_TURN
-        query = f"SELECT {_TASK} FROM task WHERE {' AND '.join(conditions)} ORDER BY {order}"
+        where, values = chosen(states, label, schedule)
+        order = "id DESC" if newest else IN_TURN
+        query = f"SELECT {TASK} FROM task WHERE {where} ORDER BY {order}"
         return self._all(Task, query + _limit(limit, values), *values)
+
+    def count_tasks(self, states: Collection[State] | None = None, *, label: str = "", schedule: int = 0) -> int:
+        """How many `tasks` gives without a limit."""
+        where, values = chosen(states, label, schedule)
+        with self._database.transaction(Mode.READ) as execute:
+            [[count]] = execute(f"SELECT count(*) FROM task WHERE {where}", values)
+        return int(count)
 
     def change(
         self,
@@ -163,17 +143,17 @@ class Store:
 
     def peek(self, now: float) -> Task | None:
         """The task that `claim` would give."""
-        return self._one(Task, _NEXT, now, now)
+        return self._one(Task, NEXT, now, now)
 
     def overdue(self, now: float) -> list[Task]:
         """Those that are queued and should have begun by a time that has passed, in the order of their turn."""
-        query = f"SELECT {_TASK} FROM task WHERE {_UNBEGUN} AND deadline < ? ORDER BY {_IN_TURN}"
+        query = f"SELECT {TASK} FROM task WHERE {UNBEGUN} AND deadline < ? ORDER BY {IN_TURN}"
         return self._all(Task, query, now)
 
     def next_time(self, now: float) -> float | None:
         """The first time after this one at which a task may begin, or no longer, or a schedule is due; None if none."""
         with self._database.transaction(Mode.READ) as execute:
-            [[time]] = execute(_TIMES, (now, now, now))
+            [[time]] = execute(TIMES, (now, now, now))
         return None if time is None else float(time)
 
     def changes(self, task: int | None = None, after: int = 0, limit: int | None = None) -> list[tuple[int, Change]]:
@@ -293,7 +273,7 @@ class Store:
         not over stay, and the library does. Returns how many tasks were deleted.
         """
         ended = "coalesce(ended, (SELECT max(time) FROM change WHERE change.task = task.id), created)"
-        over = f"DELETE FROM task WHERE NOT ({_NOT_OVER}) AND {ended} < ? RETURNING id"
+        over = f"DELETE FROM task WHERE NOT ({NOT_OVER}) AND {ended} < ? RETURNING id"
         with self._database.transaction(Mode.ALONE) as execute:
             deleted = execute(over, (before,))
             execute("DELETE FROM change WHERE NOT EXISTS (SELECT 1 FROM task WHERE task.id = change.task)")
@@ -312,7 +292,7 @@ class Store:
 
     def _claim(self, now: float, mode: Mode) -> Task | None:
         with self._database.transaction(mode) as execute:
-            found = self._records(Task, execute(_NEXT + self._database.row_lock[mode], (now, now)))
+            found = self._records(Task, execute(NEXT + self._database.row_lock[mode], (now, now)))
             if not found:
                 return None
             [task] = found
@@ -395,5 +375,5 @@ def _check(kind: type[Record], fields: Mapping[str, Any], *fixed: str) -> None:
 def _limit(limit: int | None, values: list[object]) -> str:
     if limit is None:
         return ""
-    values.append(max(limit, 0))
+    values.append(min(max(limit, 0), 2**63 - 1))
     return " LIMIT ?"

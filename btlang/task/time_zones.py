@@ -12,6 +12,10 @@ from btlang.text.spelling import nearest
 
 _LONGEST = 80  # characters of a name that may be a misspelling
 _EXAMPLE = "Europe/Berlin"
+_NO_ZONES = ("Factory", "localtime", "posixrules")
+"""Files beside those of the zones: placeholders and settings."""
+_COPIES = ("posix/", "right/")
+"""Folders with all zones once more; those in the second one count leap seconds, which clocks don't."""
 
 
 def read_zone(name: str) -> ZoneInfo | None:
@@ -19,6 +23,8 @@ def read_zone(name: str) -> ZoneInfo | None:
     one. Raises MissionError (BT194).
     """
     try:
+        if name in _NO_ZONES or name.startswith(_COPIES):
+            raise KeyError(name)
         return ZoneInfo(name) if name else None
     except (KeyError, ValueError, OSError):  # unknown, no name at all, a folder of zones
         raise MissionError([
@@ -46,7 +52,7 @@ def day_of(moment: float, zone: ZoneInfo | None) -> date:
 
 
 def _advice(name: str) -> str:
-    known = available_timezones()
+    known = available_timezones().difference(_NO_ZONES)
     if not known:
         return "This computer has no time zones; install them: pip install tzdata"
     similar = nearest(name.lower(), known) if len(name) <= _LONGEST else []

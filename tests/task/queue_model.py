@@ -78,6 +78,10 @@ class Model:
         first, last = (None if hours is None else self.hour + hours for hours in (earliest, deadline))
         at, by = (None if hour is None else self.robot.begins + (hour + 0.5) * HOUR for hour in (first, last))
         answer = self.robot.ask("submit", text=MISSION, priority=priority, at=at, by=by, restart=restart)
+        could_begin = deadline is None or (deadline >= 0 and (earliest is None or earliest <= deadline))
+        assert answer.ok is could_begin
+        if not could_begin:
+            return
         number = answer.data["task"]["id"]
         assert number not in self.tasks
         self.tasks[number] = Expected(priority, first, last, restart)

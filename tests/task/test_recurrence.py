@@ -16,7 +16,7 @@ from hypothesis import strategies as st
 
 from btlang.diagnostics.errors import MissionError
 from btlang.task.days import Days
-from btlang.task.recurrence import Recurrence, read_moment, read_rule
+from btlang.task.recurrence import Recurrence, read_moment, read_past_moment, read_rule
 from btlang.task.rule import Rule
 from tests.profiles import searches
 from tests.task.wall_clock import CHANGES, DAY, RULES, clock, is_on
@@ -204,6 +204,8 @@ def test_rules(text: str, canonical: str, first: str, second: str) -> None:
         ("29 February at 10:00", "Tue 2028-02-29 10:00"),
         ("December 24, 2027 at 9 pm", "Fri 2027-12-24 21:00"),
         ("in 10 minutes", "Mon 2026-11-23 10:10"),
+        ("in 10 days", "Thu 2026-12-03 10:00"),
+        ("in a week and 2 h", "Mon 2026-11-30 12:00"),
         ("in 2 h", "Mon 2026-11-23 12:00"),
         ("in half an hour", "Mon 2026-11-23 10:30"),
         ("in 1 hour and 20 minutes", "Mon 2026-11-23 11:20"),
@@ -213,6 +215,32 @@ def test_rules(text: str, canonical: str, first: str, second: str) -> None:
 )
 def test_moments(text: str, expected: str) -> None:
     assert shown(read_moment(text, NOW, BERLIN)) == expected
+
+
+@pytest.mark.parametrize(
+    ("text", "expected"),
+    [
+        ("9:00", "Mon 2026-11-23 09:00"),
+        ("10:00", "Mon 2026-11-23 10:00"),
+        ("11:00", "Sun 2026-11-22 11:00"),
+        ("today at 9:00", "Mon 2026-11-23 09:00"),
+        ("yesterday at 9:00", "Sun 2026-11-22 09:00"),
+        ("9 am, yesterday", "Sun 2026-11-22 09:00"),
+        ("Monday at 9:00", "Mon 2026-11-23 09:00"),
+        ("last Friday at noon", "Fri 2026-11-20 12:00"),
+        ("24 December at 10:00", "Wed 2025-12-24 10:00"),
+        ("29 February at 10:00", "Thu 2024-02-29 10:00"),
+        ("2026-10-01 09:00", "Thu 2026-10-01 09:00"),
+        ("2 hours ago", "Mon 2026-11-23 08:00"),
+        ("half an hour ago", "Mon 2026-11-23 09:30"),
+        ("1 hour and 10 minutes ago", "Mon 2026-11-23 08:50"),
+        ("30 days ago", "Sat 2026-10-24 10:00"),
+        ("a week ago", "Mon 2026-11-16 10:00"),
+        ("now", "Mon 2026-11-23 10:00"),
+    ],
+)
+def test_past_moments(text: str, expected: str) -> None:
+    assert shown(read_past_moment(text, NOW, BERLIN)) == expected
 
 
 @pytest.mark.parametrize(
@@ -262,6 +290,7 @@ def test_a_moment_where_clocks_change() -> None:
     for text in ("2:30", "tomorrow at 2:30", "Sunday at 2:30", "2026-03-29 2:30", "29 March at 2:30"):
         assert shown(read_moment(text, now, BERLIN)) == "Sun 2026-03-29 03:30"
     assert read_moment("in 24 hours", now, BERLIN) == moment("2026-03-29 13:00")
+    assert read_moment("in a day", now, BERLIN) == moment("2026-03-29 12:00")
 
 
 def test_both_ends() -> None:
@@ -362,6 +391,10 @@ def test_the_page_is_true() -> None:
         assert read_rule(text, BERLIN).next(NOW)
     for text in shown_times:
         assert read_moment(text, NOW, BERLIN) >= NOW - 3600
+    orders = re.findall(r"`([^`]*\d[^`]*)`", rules.partition("in any order, with")[2].replace("\n", " "))
+    instead = [cell for line in refused.partition("These sound")[2].splitlines() for cell in line.split("|")[2:3]]
+    for text in (*orders, *re.findall(r"`(.+?)`", "\n".join(instead))):
+        assert read_rule(text, BERLIN).next(NOW)
     for text in shown_refused:
         with pytest.raises(MissionError):
             read_rule(text, BERLIN)

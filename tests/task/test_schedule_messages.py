@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from datetime import UTC, datetime
+from functools import partial
 from pathlib import Path
 
 import pytest
@@ -11,7 +12,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from btlang.diagnostics.errors import MissionError
-from btlang.task.recurrence import read_moment, read_rule
+from btlang.task.recurrence import read_moment, read_past_moment, read_rule
 from tests.conftest import matches_golden
 from tests.profiles import searches
 
@@ -24,7 +25,7 @@ REFUSED_MOMENTS = (
     "tomorrow Monday at 9:00", "9:00 and 10:00", "9:00 10:00", "30 February at 9:00", "2026-13-01 09:00",
     "1969-12-31 09:00", "3000-01-01 09:00", "2026-12-24T09:00", "in 10", "in ten minuts", "in 10 metres",
     "in -5 minutes", "in 9000 hours", "in", "in 1 hour tomorrow", "now please", "every day at 9:00", "soon",
-    "9:00 # or later", "\N{SNOWMAN}",
+    "9:00 # or later", "\N{SNOWMAN}", "in 999999999999 minutes", "in 400 days", "in 10 dayz", "in 2.5 days",
 )  # fmt: skip
 
 
@@ -36,6 +37,22 @@ def test_refused_moments() -> None:
         assert {problem.code for problem in refused.value.diagnostics} == {"BT194"}
         told.append(str(refused.value))
     matches_golden("\n\n".join(told) + "\n", HERE / "refused_moments.out")
+
+
+REFUSED_PAST_MOMENTS = (
+    "today at 18:00", "tomorrow at 9:00", "2027-01-01 09:00", "in 10 minutes", "ago", "10 ago", "400 days ago",
+    "-5 minutes ago", "yesterday", "yestreday at 9:00", "2 hours ago at 9:00",
+)  # fmt: skip
+
+
+def test_refused_past_moments() -> None:
+    told = []
+    for text in REFUSED_PAST_MOMENTS:
+        with pytest.raises(MissionError) as refused:
+            read_past_moment(text, NOW, BERLIN)
+        assert {problem.code for problem in refused.value.diagnostics} == {"BT194"}
+        told.append(str(refused.value))
+    matches_golden("\n\n".join(told) + "\n", HERE / "refused_past_moments.out")
 
 
 REFUSED_RULES = (
@@ -59,6 +76,7 @@ REFUSED_RULES = (
     "on 24.12.2026 at 9:00", "on 31 November 2026 at 9:00", "on 29 February 2027 at 9:00", "on 2026-12-32 at 9:00",
     "on 24 December 1066 at 9:00", "twice a day", "0 9 * * *", "every day at 9:00 # morning", '"every day at 9:00"',
     "every day at 9:00 in Berlin",
+    "every quarter at 9:00", "every quarter",
     "every Wednesday, Thursday and Friday and on the second Monday at 9:00 and at 10:00 and 11:00",
 )  # fmt: skip
 """Others are in tests/samples/bad/BT194.txt."""
@@ -105,6 +123,10 @@ def test_corrections_mend_the_text(text: str, fixed: str) -> None:
         ("Europe/Berln", "Similar: Europe/Berlin"),
         ("europe/berlin", "Similar: Europe/Berlin"),
         ("Berlin", "Similar: Europe/Berlin"),
+        ("Factory", ""),
+        ("posixrules", ""),
+        ("localtime", ""),
+        ("right/Europe/Berlin", "Similar: Europe/Berlin"),
         ("Europe", "Similar: Europe/"),
         ("../../etc/passwd", "Write for example: "),
         ("/etc/localtime", ""),
@@ -130,7 +152,7 @@ def test_a_computer_without_zones(monkeypatch: pytest.MonkeyPatch) -> None:
         read_rule("every day at 9:00", "Europe/Nowhere")
 
 
-WORDS = sorted({word for text in (*REFUSED_RULES, *REFUSED_MOMENTS) for word in text.split()})
+WORDS = sorted({word for text in (*REFUSED_RULES, *REFUSED_MOMENTS, *REFUSED_PAST_MOMENTS) for word in text.split()})
 _TEXTS = st.one_of(
     st.text(max_size=40),
     st.lists(st.sampled_from((*WORDS, ",", "\n", "and", "every", "on", "at", "9:00")), max_size=10).map(" ".join),
@@ -151,7 +173,10 @@ def codes(read: Callable[[], object]) -> list[str]:
 @given(text=_TEXTS, zone=st.sampled_from(("", BERLIN)))
 def test_any_text_is_read_or_refused(text: str, zone: str) -> None:
     assert codes(lambda: read_rule(text, zone)) in ([], ["BT194"])
-    assert codes(lambda: read_moment(text, NOW, zone)) in ([], ["BT194"])
+    for read in (read_moment, read_past_moment):
+        assert codes(partial(read, text, NOW, zone)) in ([], ["BT194"])
+    if not codes(lambda: read_past_moment(text, NOW, zone)):
+        assert read_past_moment(text, NOW, zone) <= NOW
     if not codes(lambda: read_rule(text, zone)):
         rule = read_rule(text, zone)
         assert read_rule(str(rule), zone) == rule

@@ -96,6 +96,9 @@ def test_tasks_are_found_by_label_and_not_by_a_part_of_one(store: Store) -> None
     ]
     for label in LABELS:
         assert store.tasks(label=label) == [task for task in labelled if label in task.labels]
+        assert store.count_tasks({State.QUEUED}, label=label) == len(store.tasks(label=label))
+    assert (store.count_tasks(), store.count_tasks([]), store.count_tasks(schedule=3)) == (len(store.tasks()), 0, 0)
+    assert len(store.tasks(limit=2**70)) == len(store.tasks())
 
 
 def test_a_change_needs_the_state_before(store: Store) -> None:
