@@ -10,7 +10,6 @@ from contextlib import suppress
 
 from btlang.api import Mission
 from btlang.engine.status import IDLE, NAMES
-from btlang.record import Record
 from btlang.run.bus import INLINE
 from btlang.run.events import LOGGED, Event, PeriodPassed, StatusesChanged
 from btlang.run.json_log import as_json
@@ -32,12 +31,12 @@ _ALIVE = 5.0  # seconds after which a watcher of a robot on which nothing happen
 _MOST_EVENTS, _MOST_RUNS, _MOST_CHANGES = 1000, 16, 1000
 
 
-class _Watched(Record):
-    """A run with its task, 0 for the house rules between tasks."""
+class _Watched:
+    """A run with its task, 0 for the house rules between tasks; `changed` is when a status changed last."""
 
-    task: int
-    mission: Mission
-    run: Run
+    def __init__(self, task: int, mission: Mission, run: Run) -> None:
+        self.task, self.mission, self.run = task, mission, run
+        self.changed = 0.0
 
 
 class Feed:
@@ -87,6 +86,8 @@ class Feed:
         """In the thread of the run."""
         if isinstance(event, PeriodPassed):
             self._state = event.state
+        elif isinstance(event, StatusesChanged):
+            watched.changed = event.wall
         for watcher in tuple(self._watchers):
             if isinstance(event, LOGGED):
                 watcher.events.append((watched, event))
@@ -155,12 +156,13 @@ def _statuses(watcher: _Watcher, watched: _Watched) -> Iterator[dict[str, Any]]:
         mission = watched.mission
         nodes = [[path, node.id, mission.label(node)] for path, node in run.nodes.nodes]
         yield {"type": "run", "run": run.id, "task": watched.task, "outline": str(mission), "nodes": nodes}
+    changed = watched.changed  # before the statuses, so that none of them is older
     codes = run.follower.codes() or watcher.codes
     if codes != watcher.codes:
         pairs = enumerate(zip(watcher.codes, codes, strict=True))
         changes = [[index, NAMES[min(after, IDLE)]] for index, (before, after) in pairs if before != after]
         watcher.codes = codes
-        yield {"type": "statuses", "run": run.id, "changes": changes}
+        yield {"type": "statuses", "run": run.id, "t": changed, "changes": changes}
 
 
 def _state(state: RobotState | None) -> dict[str, Any]:
