@@ -35,6 +35,7 @@ class RobotLink:
         self._change: int | None = None
         self._run: dict[str, Any] | None = None
         self._statuses: dict[int, str] = {}
+        self._t = 0.0
         self._robot: dict[str, Any] | None = None
 
     @property
@@ -112,6 +113,7 @@ class RobotLink:
             self._run, self._statuses = message, {}
         elif kind == "statuses":
             self._statuses.update(message["changes"])
+            self._t = message["t"]
         elif kind == "robot":
             self._robot = message
         self._tell(message)
@@ -128,7 +130,7 @@ class RobotLink:
         if self._run is not None:
             messages.append(self._run)
             changes = [[index, status] for index, status in self._statuses.items()]
-            messages.append({"type": "statuses", "run": self._run["run"], "changes": changes})
+            messages.append({"type": "statuses", "run": self._run["run"], "t": self._t, "changes": changes})
         return [*messages, *filter(None, [self._robot])]
 
 

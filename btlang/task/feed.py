@@ -14,6 +14,7 @@ from btlang.run.bus import INLINE
 from btlang.run.events import LOGGED, Event, PeriodPassed, StatusesChanged
 from btlang.run.json_log import as_json
 from btlang.session import Run
+from btlang.task.allowance import Allowance
 from btlang.task.database import StoreError
 from btlang.task.store import Store
 from btlang.task.task import Task
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
 RATES = 0.1, 100.0
 """The least and the most messages of one kind in a second."""
 _ALIVE = 5.0  # seconds after which a watcher of a robot on which nothing happens gets a word nevertheless
+_GATHERED, _GATHERED_AT_MOST = 0.2, 0.01  # of a period, and seconds: what comes so soon after other news goes with it
 _MOST_EVENTS, _MOST_RUNS, _MOST_CHANGES = 1000, 16, 1000
 
 
@@ -94,13 +96,16 @@ class Feed:
             watcher.news.set()
 
     def _messages(self, watcher: _Watcher, period: float) -> Iterator[dict[str, Any]]:
+        allowance = Allowance(period)
         while True:
-            began = time.monotonic()
             yield from self._new(watcher)
             if not watcher.news.wait(_ALIVE):
                 yield {"type": "alive"}
+                continue
+            # A period ends just before the next tick: so one message tells of both, and not of the tick a period later.
+            time.sleep(max(min(period * _GATHERED, _GATHERED_AT_MOST), allowance.wait(time.monotonic())))
+            allowance.use(time.monotonic())
             watcher.news.clear()
-            time.sleep(max(0.0, began + period - time.monotonic()))
 
     def _new(self, watcher: _Watcher) -> Iterator[dict[str, Any]]:
         found = self._store.changes(after=watcher.change, limit=_MOST_CHANGES)
