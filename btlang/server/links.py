@@ -90,7 +90,11 @@ class RobotLink:
         reader, writer = await asyncio.open_unix_connection(socket_path(self.name), limit=_LONGEST)
         try:
             writer.write(json.dumps({"watch": {"rate": RATE, "after": self._change}}).encode() + b"\n")
-            while line := await asyncio.wait_for(reader.readline(), _SILENT):
+            while True:
+                async with asyncio.timeout(_SILENT):  # which, unlike wait_for, takes all that is there in one go
+                    line = await reader.readline()
+                if not line:
+                    return
                 self._take(json.loads(line))
         except TimeoutError:
             return

@@ -3,10 +3,10 @@
     python -m tests.benchmarks.server [--seconds 60] [--clients 200] [--idle 1000] [--log-ins 20]
 
 A robot is up in a process of its own, with a mission of 500 nodes of which nearly all have another status after each
-tick, 20 times a second. First it is alone, then there is a server with clients that subscribe to all of that, in a niced
-process of their own; after half of the time one of them stops reading. The same again with idle clients beside them.
-Clients measure from the wall time of the change in the robot to the moment when they have the whole message. A tick is
-late by what its period took longer than 50 ms. Each line ends with the load of the computer.
+tick, 20 times a second. First it is alone. Then there is a server, with clients in a niced process that subscribe to
+all of that; next one of them stops reading, then people log in. Last there are idle clients, too. Clients measure from
+the wall time of the change in the robot to the moment when they have the whole message. A tick is late by what its
+period took longer than 50 ms. Figures come with the load of the computer.
 """
 
 from __future__ import annotations
@@ -143,7 +143,7 @@ class Bench:
 
 def load() -> str:
     """The load of the computer, as each line shows it."""
-    return "(load {:.1f})".format(os.getloadavg()[0])
+    return f"(load {os.getloadavg()[0]:.1f})"
 
 
 def log_ins(door: Door, count: int) -> None:
@@ -185,9 +185,7 @@ def main() -> None:
         return
     with tempfile.TemporaryDirectory(prefix="bt") as name, ExitStack() as parts:
         folder = Path(name)
-        bench = Bench(
-            parts.enter_context(closing(Part("tests.benchmarks.server", "--robot", name))), options.seconds
-        )
+        bench = Bench(parts.enter_context(closing(Part("tests.benchmarks.server", "--robot", name))), options.seconds)
         time.sleep(_SETTLE)
         bench.measure("the robot alone")
         door = parts.enter_context(closing(Door(folder)))

@@ -16,7 +16,6 @@ import re
 import selectors
 import socket
 import ssl
-import struct
 import sys
 import time
 from contextlib import suppress
