@@ -117,7 +117,9 @@ def main() -> None:
             if isinstance(key.data, Client):
                 try:
                     messages += key.data.read(delays)
-                except OSError:
+                except OSError as error:
+                    if subscribed == options.count:
+                        print(f"a client was hung up on: {error!r}", file=sys.stderr)
                     selector.unregister(key.fileobj)
                     subscribed -= 1
                 continue
