@@ -15,6 +15,7 @@ from btlang.server.accounts import Identity
 from btlang.server.bodies import read_object
 from btlang.server.links import RobotLink, Robots
 from btlang.server.outlet import Outlet
+from btlang.task.allowance import Allowance
 from btlang.task.messages import Answer, Command, read_command
 
 TYPE_CHECKING = False
@@ -35,7 +36,7 @@ class _Client:
     def __init__(self, socket: WebSocket, identity: Identity) -> None:
         self.socket, self.identity = socket, identity
         self.outlet = Outlet()
-        self.rate = 0.0
+        self.allowance = Allowance(0.0)
         self.robots: frozenset[str] | None = None
         self.watches = False
         self.waiting: set[asyncio.Task[None]] = set()
@@ -119,14 +120,16 @@ class Clients:
                 task.cancel()
 
     async def _send(self, client: _Client) -> None:
-        loop = asyncio.get_running_loop()
+        now, outlet = asyncio.get_running_loop().time, client.outlet
         with suppress(WebSocketDisconnect, RuntimeError, OSError):
             while True:
-                began = loop.time()
-                for text in await client.outlet.take():
+                await outlet.wait()
+                early = client.allowance.wait(now())
+                if early:
+                    await outlet.wait_for_answer(early)
+                client.allowance.use(now())
+                for text in outlet.take():
                     await client.socket.send_text(text)
-                if client.rate:
-                    await asyncio.sleep(max(0.0, began + 1.0 / client.rate - loop.time()))
 
     async def _answer(self, client: _Client, text: str) -> None:
         number: Any = None
@@ -164,7 +167,7 @@ class Clients:
         if not isinstance(rate, int | float) or isinstance(rate, bool) or not 0 <= rate <= 100:
             raise AccessError(400, "'rate' must be a number up to 100.")
         self._unsubscribe(client)
-        client.watches, client.rate = True, float(rate)
+        client.watches, client.allowance = True, Allowance(1.0 / rate if rate else 0.0)
         client.robots = None if robots is None else frozenset(robots)
         for link in self._robots.links.values():
             if client.robots is None or link.name in client.robots:

@@ -37,6 +37,7 @@ class RobotLink:
         self._change: int | None = None
         self._run: dict[str, Any] | None = None
         self._statuses: dict[int, str] = {}
+        self._t = 0.0
         self._robot: dict[str, Any] | None = None
 
     @property
@@ -96,7 +97,11 @@ class RobotLink:
         reader, writer = await asyncio.open_unix_connection(socket_path(self.name), limit=_LONGEST)
         try:
             writer.write(json.dumps({"watch": {"rate": RATE, "after": self._change}}).encode() + b"\n")
-            while line := await asyncio.wait_for(reader.readline(), _SILENT):
+            while True:
+                async with asyncio.timeout(_SILENT):  # which, unlike wait_for, takes all that is there in one go
+                    line = await reader.readline()
+                if not line:
+                    return
                 self._take(json.loads(line))
         except TimeoutError:
             return
@@ -121,6 +126,7 @@ class RobotLink:
             self._run, self._statuses = message, {}
         elif kind == "statuses":
             self._statuses.update(message["changes"])
+            self._t = message["t"]
         elif kind == "robot":
             self._robot = message
         self._tell(message)
@@ -137,7 +143,7 @@ class RobotLink:
         if self._run is not None:
             messages.append(self._run)
             changes = [[index, status] for index, status in self._statuses.items()]
-            messages.append({"type": "statuses", "run": self._run["run"], "changes": changes})
+            messages.append({"type": "statuses", "run": self._run["run"], "t": self._t, "changes": changes})
         return [*messages, *filter(None, [self._robot])]
 
 

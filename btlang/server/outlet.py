@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 from collections import deque
+from contextlib import suppress
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -15,36 +16,39 @@ _MOST = 2000
 
 
 class News:
-    """A message for many clients, which is written as JSON once."""
+    """A message for many clients, which is written as JSON once. So are statuses that were merged for many."""
 
-    __slots__ = ("_text", "message", "robot")
+    __slots__ = ("_merged", "_text", "message", "robot")
 
     def __init__(self, robot: str, message: dict[str, Any]) -> None:
         self.robot, self.message = robot, message
         self._text = ""
+        self._merged: tuple[News, News] | None = None
 
     @property
     def text(self) -> str:
         """As JSON."""
         if not self._text:
-            self._text = as_text(self.robot, self.message)
+            self._text = json.dumps({"robot": self.robot, **self.message}, separators=(",", ":"), default=str)
         return self._text
 
-
-def as_text(robot: str, message: dict[str, Any]) -> str:
-    """A message of a robot as clients get it."""
-    return json.dumps({"robot": robot, **message}, separators=(",", ":"), default=str)
+    def after(self, before: News) -> News:
+        """These statuses together with earlier ones of the same run, where these count."""
+        if self._merged is None or self._merged[0] is not before:
+            changes = dict(before.message["changes"]) | dict(self.message["changes"])
+            self._merged = before, News(self.robot, {**self.message, "changes": [[i, s] for i, s in changes.items()]})
+        return self._merged[1]
 
 
 class Outlet:
-    """Used by one event loop. `put` never waits; `take` waits for what is next."""
+    """Used by one event loop. `put` never waits; `wait` waits until there is something to `take`."""
 
     def __init__(self) -> None:
         self._queue: deque[str] = deque()
-        self._statuses: dict[str, News | tuple[str, dict[int, str]]] = {}
+        self._statuses: dict[str, News] = {}
         self._states: dict[str, News] = {}
         self._full = False
-        self._news = asyncio.Event()
+        self._news, self._answers = asyncio.Event(), asyncio.Event()
 
     def put(self, news: News) -> None:
         """Adds a message of a robot."""
@@ -63,11 +67,22 @@ class Outlet:
         """Adds an answer, which is never left out."""
         self._queue.append(text)
         self._news.set()
+        self._answers.set()
 
-    async def take(self) -> list[str]:
-        """What there is, at least one message, in the order of its coming; statuses come last, each the newest."""
+    async def wait(self) -> None:
+        """Until there is something."""
         await self._news.wait()
+
+    async def wait_for_answer(self, seconds: float) -> None:
+        """Until there is an answer, but no longer than that."""
+        with suppress(TimeoutError):
+            async with asyncio.timeout(seconds):
+                await self._answers.wait()
+
+    def take(self) -> list[str]:
+        """What there is, in the order of its coming; statuses come last, each the newest."""
         self._news.clear()
+        self._answers.clear()
         for robot in tuple(self._statuses):
             self._flush(robot)
         taken = [*self._queue, *(state.text for state in self._states.values())]
@@ -86,22 +101,10 @@ class Outlet:
 
     def _merge(self, news: News) -> None:
         before = self._statuses.get(news.robot)
-        if before is None:
-            self._statuses[news.robot] = news
-            return
-        run = news.message["run"]
-        if isinstance(before, News):
-            before = (before.message["run"], dict(before.message["changes"]))
-        if before[0] == run:
-            before[1].update(news.message["changes"])
-            self._statuses[news.robot] = before
-        else:
-            self._statuses[news.robot] = news
+        same = before is not None and before.message["run"] == news.message["run"]
+        self._statuses[news.robot] = news.after(before) if before is not None and same else news
 
     def _flush(self, robot: str) -> None:
         waiting = self._statuses.pop(robot, None)
-        if isinstance(waiting, News):
+        if waiting is not None:
             self._say(waiting.text)
-        elif waiting is not None:
-            run, changes = waiting
-            self._say(as_text(robot, {"type": "statuses", "run": run, "changes": [[i, s] for i, s in changes.items()]}))

@@ -10,11 +10,11 @@ from contextlib import suppress
 
 from btlang.api import Mission
 from btlang.engine.status import IDLE, NAMES
-from btlang.record import Record
 from btlang.run.bus import INLINE
 from btlang.run.events import LOGGED, Event, PeriodPassed, StatusesChanged
 from btlang.run.json_log import as_json
 from btlang.session import Run
+from btlang.task.allowance import Allowance
 from btlang.task.database import StoreError
 from btlang.task.store import Store
 from btlang.task.task import Task
@@ -29,15 +29,16 @@ if TYPE_CHECKING:
 RATES = 0.1, 100.0
 """The least and the most messages of one kind in a second."""
 _ALIVE = 5.0  # seconds after which a watcher of a robot on which nothing happens gets a word nevertheless
+_GATHERED, _GATHERED_AT_MOST = 0.2, 0.01  # of a period, and seconds: what comes so soon after other news goes with it
 _MOST_EVENTS, _MOST_RUNS, _MOST_CHANGES = 1000, 16, 1000
 
 
-class _Watched(Record):
-    """A run with its task, 0 for the house rules between tasks."""
+class _Watched:
+    """A run with its task, 0 for the house rules between tasks; `changed` is when a status changed last."""
 
-    task: int
-    mission: Mission
-    run: Run
+    def __init__(self, task: int, mission: Mission, run: Run) -> None:
+        self.task, self.mission, self.run = task, mission, run
+        self.changed = 0.0
 
 
 class Feed:
@@ -88,19 +89,24 @@ class Feed:
         """In the thread of the run."""
         if isinstance(event, PeriodPassed):
             self._state = event.state
+        elif isinstance(event, StatusesChanged):
+            watched.changed = event.wall
         for watcher in tuple(self._watchers):
             if isinstance(event, LOGGED):
                 watcher.events.append((watched, event))
             watcher.news.set()
 
     def _messages(self, watcher: _Watcher, period: float) -> Iterator[dict[str, Any]]:
+        allowance = Allowance(period)
         while True:
-            began = time.monotonic()
             yield from self._new(watcher)
             if not watcher.news.wait(_ALIVE):
                 yield {"type": "alive"}
+                continue
+            # A period ends just before the next tick: so one message tells of both, and not of the tick a period later.
+            time.sleep(max(min(period * _GATHERED, _GATHERED_AT_MOST), allowance.wait(time.monotonic())))
+            allowance.use(time.monotonic())
             watcher.news.clear()
-            time.sleep(max(0.0, began + period - time.monotonic()))
 
     def _new(self, watcher: _Watcher) -> Iterator[dict[str, Any]]:
         found = self._store.changes(after=watcher.change, limit=_MOST_CHANGES)
@@ -156,12 +162,13 @@ def _statuses(watcher: _Watcher, watched: _Watched) -> Iterator[dict[str, Any]]:
         mission = watched.mission
         nodes = [[path, node.id, mission.label(node)] for path, node in run.nodes.nodes]
         yield {"type": "run", "run": run.id, "task": watched.task, "outline": str(mission), "nodes": nodes}
+    changed = watched.changed  # before the statuses, so that none of them is older
     codes = run.follower.codes() or watcher.codes
     if codes != watcher.codes:
         pairs = enumerate(zip(watcher.codes, codes, strict=True))
         changes = [[index, NAMES[min(after, IDLE)]] for index, (before, after) in pairs if before != after]
         watcher.codes = codes
-        yield {"type": "statuses", "run": run.id, "changes": changes}
+        yield {"type": "statuses", "run": run.id, "t": changed, "changes": changes}
 
 
 def _state(state: RobotState | None) -> dict[str, Any]:
