@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import asyncio
 import multiprocessing
-from collections.abc import Callable, Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 
@@ -32,7 +32,7 @@ _MOST_OFFERS = 200
 class Words:
     """Where the words of a robot are: keyword files, world and language."""
 
-    def __init__(self, keywords: tuple[str, ...] = (), world: str | None = None, language: str = "en") -> None:
+    def __init__(self, keywords: Sequence[str] = (), world: str | None = None, language: str = "en") -> None:
         self.keywords, self.world, self.language = keywords, world, language
 
 

@@ -113,8 +113,7 @@ class RobotLink:
         kind = message["type"]
         if kind == "hello":
             self.is_up = True
-            words = message["words"]
-            self.words = Words(tuple(words["keywords"]), words["world"], words["language"])
+            self.words = Words(**message.get("words", {}))
             self._change = message["change"] if self._change is None else self._change
             self._tell({"type": "up"})
             return
