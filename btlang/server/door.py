@@ -7,7 +7,6 @@ import os
 import secrets
 import socket
 import ssl
-from asyncio.sslproto import SSLProtocol
 from collections.abc import Callable
 from contextlib import suppress
 
@@ -28,7 +27,6 @@ if TYPE_CHECKING:
 _HEAD = 10.0  # seconds for the head of the first request
 _MOST_CONNECTIONS = 4000
 _MOST_HEAD, _MOST_FRAME = 16 * 1024, 256 * 1024  # bytes
-_TLS_BUFFER = 16 * 1024  # bytes, one record of TLS: asyncio keeps 256 kB for each connection, also for an idle one
 
 
 class _Protocol(H11Protocol):
@@ -73,7 +71,6 @@ def serve(
         ws_ping_interval=20, ws_ping_timeout=20, timeout_graceful_shutdown=3,
         ssl_context_factory=None if certificate is None else lambda config, usual: tls(certificate),
     )  # fmt: skip
-    SSLProtocol.max_size = _TLS_BUFFER
     server = uvicorn.Server(config)
     asyncio.run(_serve(api, server, door, control, ready))
 
