@@ -23,6 +23,11 @@ def needs_of(node: Node, vocabulary: Lexicon) -> tuple[str, ...]:
     return chosen.needs if chosen is not None else ()
 
 
+def needs_of_tree(tree: Tree, vocabulary: Lexicon) -> tuple[str, ...]:
+    """What its leaves need of a robot, each capability once, in the order of the alphabet."""
+    return tuple(sorted({need for node in tree.walk() for need in needs_of(node, vocabulary)}))
+
+
 def lacking(body: Body, tree: Tree, vocabulary: Lexicon, but: Collection[str] = ()) -> dict[str, Node]:
     """Each part that the body lacks, with the first leaf that needs it; but for leaves of some ids."""
     found: dict[str, Node] = {}

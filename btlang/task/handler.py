@@ -49,7 +49,7 @@ _MOMENT = 0.01
 
 class Handler:
     """`handle` is for any thread. `admit` reads a mission for this robot and refuses what it can't do, with all
-    reasons (MissionError); `now` gives the time since 1970, `down` ends the process.
+    reasons (MissionError); `now` gives the time since 1970, `down` ends the process, `needs` is what a mission needs.
     """
 
     def __init__(
@@ -62,9 +62,10 @@ class Handler:
         admit: Callable[[MissionText], Mission],
         now: Callable[[], float],
         down: Callable[[], object],
+        needs: Callable[[MissionText], tuple[str, ...]],
     ) -> None:
         self._store, self._manager, self._executor, self._emergency = store, manager, executor, emergency
-        self._session, self._admit, self._now, self._down = session, admit, now, down
+        self._session, self._admit, self._now, self._down, self._needs = session, admit, now, down, needs
         schedules = ScheduleHandler(store, executor.wake, self._mission, now)
         self._does: dict[type[Command], Callable[[Any, str], Answer]] = {
             messages.Submit: self._submit, messages.List: self._list, messages.Show: self._show,
@@ -95,7 +96,8 @@ class Handler:
 
     def add(self, mission: MissionText, person: str, **fields: Any) -> Task:
         """Queues a mission that was admitted, with these fields of its task. Raises StoreError."""
-        task = self._store.add(Task(0, mission, person, self._now(), **fields), "it was submitted")
+        task = Task(0, mission, person, self._now(), needs=self._needs(mission), **fields)
+        task = self._store.add(task, "it was submitted")
         self._executor.wake()
         return task
 
@@ -135,6 +137,8 @@ class Handler:
             {"time": each.time, "state": each.state, "cause": each.cause, "person": each.person} for each in changes
         ]
         lines = [task_line(data), f"  asked for by {one_line(task.person) or 'nobody'} at {shown(task.created, now)}"]
+        if task.needs:
+            lines.append(f"  needs {', '.join(task.needs)}")
         for each in changes:
             by = f", by {one_line(each.person)}" if each.person else ""
             cause = f": {one_line(each.cause)}" if each.cause else ""
@@ -235,7 +239,14 @@ class Handler:
     def _again(self, command: messages.Again, person: str) -> Answer:
         task = self._known(command.task)
         fresh = Task(
-            0, task.mission, person, self._now(), priority=task.priority, labels=task.labels, restart=task.restart
+            0,
+            task.mission,
+            person,
+            self._now(),
+            priority=task.priority,
+            labels=task.labels,
+            restart=task.restart,
+            needs=task.needs,
         )
         self._admit(task.mission)
         made = self._store.add(fresh, f"like task {task.id}")

@@ -9,7 +9,7 @@ from collections.abc import Callable
 from btlang.api import Mission
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
-from btlang.robots.needs import check_body, needs_of
+from btlang.robots.needs import check_body, needs_of_tree
 from btlang.session import Run, Session
 from btlang.task.emergency import EmergencyStop, latch_path
 from btlang.task.executor import Executor
@@ -36,6 +36,7 @@ _IDLE = MissionText("repeat forever: wait 24 h")
 KEPT = 90 * DAY
 """Seconds for which tasks that are over are kept, where nobody says something else."""
 _SLOW = 1.0  # ticks per second between tasks where no time is lost by waiting
+_WHEELS = {"base", "navigation"}
 _EMPTY = 1.0  # percent of the battery below which no mission begins that needs the wheels
 
 
@@ -84,7 +85,7 @@ class TaskLayer:
         self.emergency = EmergencyStop(latch_path(folder), self.session.emergency_stop)
         self.feed = Feed(self.store, self._hindrances, self.reader.words)
         self.emergency.listeners.append(self.feed.wake)
-        self.manager = Manager(self.store, keeps)
+        self.manager = Manager(self.store, keeps, self._needs)
         self.executor = Executor(
             self.session, self.store, self.manager, self.emergency, self.rules, self.reader.read(_IDLE),
             missions=self.reader.read, now=self.now, trouble=trouble,
@@ -93,7 +94,15 @@ class TaskLayer:
             sinks=lambda *run: [*self.feed.sinks(*run), *sinks(*run)],
         )  # fmt: skip
         self.handler = Handler(
-            self.store, self.manager, self.executor, self.emergency, self.session, self._admitted, self.now, down
+            self.store,
+            self.manager,
+            self.executor,
+            self.emergency,
+            self.session,
+            self._admitted,
+            self.now,
+            down,
+            self._needs,
         )
 
     def now(self) -> float:
@@ -150,6 +159,14 @@ class TaskLayer:
     ) -> None:
         self.close()
 
+    def _needs(self, text: MissionText) -> tuple[str, ...]:
+        """Nothing for a mission that can't be read any more: its task will say so."""
+        try:
+            mission = self.reader.read(text)
+        except MissionError:
+            return ()
+        return needs_of_tree(mission.tree, mission.vocabulary)
+
     def _hindrances(self) -> dict[str, Any]:
         return {
             "stopped": self.emergency.reason, "paused": self.executor.is_paused,
@@ -166,10 +183,6 @@ class TaskLayer:
             check_body(body, mission.tree, mission.vocabulary)
         state = self.executor.robot_state
         battery = None if state is None else state.battery
-        if battery is not None and battery < _EMPTY and _drives(mission):
+        if battery is not None and battery < _EMPTY and _WHEELS & {*needs_of_tree(mission.tree, mission.vocabulary)}:
             raise MissionError([diagnostic("BT186", NOWHERE, reason=f"its battery is at {battery:.0f}%")])
         return mission
-
-
-def _drives(mission: Mission) -> bool:
-    return any({"base", "navigation"} & {*needs_of(node, mission.vocabulary)} for node in mission.tree.walk())

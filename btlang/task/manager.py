@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import json
 import math
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 
 from btlang.engine.status import FAILURE
 from btlang.task.moments import shown
 from btlang.task.recurrence import read_rule
-from btlang.task.task import ACTIVE, WAITING, Missed, Overlap, Restart, Schedule, State, Task
+from btlang.task.task import ACTIVE, WAITING, Missed, MissionText, Overlap, Restart, Schedule, State, Task
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -29,9 +29,14 @@ class Manager:
     A task is due if it is queued, or was suspended for a more urgent one, and its earliest time has come.
     """
 
-    def __init__(self, store: Store, keeps: float = math.inf) -> None:
-        """`keeps` is for how many seconds tasks that are over stay in the store."""
-        self._store, self._keeps = store, keeps
+    def __init__(
+        self,
+        store: Store,
+        keeps: float = math.inf,
+        needs: Callable[[MissionText], tuple[str, ...]] = lambda mission: (),
+    ) -> None:
+        """`keeps` is for how many seconds tasks that are over stay in the store, `needs` what a mission needs."""
+        self._store, self._keeps, self._needs = store, keeps, needs
         self._tidied = -math.inf
 
     def recover(self, now: float, stopped: str = "") -> list[Task]:
@@ -150,7 +155,8 @@ class Manager:
         deadline = None if schedule.within is None else time + schedule.within
         return Task(
             0, schedule.mission, schedule.person, now, priority=schedule.priority, labels=schedule.labels,
-            deadline=deadline, restart=schedule.restart, schedule=schedule.id, due=time,
+            deadline=deadline, restart=schedule.restart, needs=self._needs(schedule.mission), schedule=schedule.id,
+            due=time,
         )  # fmt: skip
 
 

@@ -14,13 +14,15 @@ from action_msgs.msg import GoalStatus
 from diagnostic_msgs.msg import DiagnosticArray
 from lifecycle_msgs.srv import GetState
 from nav_msgs.msg import Odometry
+from rclpy.action import ActionClient
+from rclpy.qos import QoSProfile
 from std_msgs.msg import String
 from std_srvs.srv import Trigger
 
 from btlang.api import parse_tree
 from btlang.cli import main
 from tests.ros.client import LATCHED, Client, Goal, answer
-from tests.ros.processes import Command
+from tests.ros.processes import LONG, Command
 
 FAR = "move forward 3 meters at 0.2 meters per second"
 
@@ -142,9 +144,14 @@ def test_missions_queue(start_node, client: Client, run_mission: Any):
 
 
 def test_many_goals_at_once(start_node, client: Client, run_mission: Any):
-    """By default services of ROS 2 lose all but ten."""
+    """By default services of ROS 2 lose all but ten, and so do their clients."""
     start_node("--speed", "10")
-    server = client.action(run_mission, "/btlang/run_mission")
+    client.action(run_mission, "/btlang/run_mission")  # which waits until it is found
+    many = QoSProfile(depth=1000)
+    depths = {f"{name}_service_qos_profile": many for name in ("goal", "result", "cancel")}
+    server = ActionClient(client.node, run_mission, "/btlang/run_mission", **depths)
+    assert server.wait_for_server(LONG)
+    time.sleep(0.2)  # and until it has found this one, too
     goal = run_mission.Goal(mission="say hello")
     sent: list[Any] = []
     answer(client.node.executor.create_task(lambda: sent.extend(server.send_goal_async(goal) for _ in range(60))))

@@ -369,3 +369,17 @@ def test_recordings_that_cannot_be_written_are_told_once(tmp_path: Path) -> None
             assert wait_for(layer, submit(layer, "wave"), *FINAL).state is State.COMPLETED
     assert len(troubles) == 1
     assert "BT009" in troubles[0]
+
+
+def test_a_task_says_what_it_needs_of_the_robot(tmp_path: Path) -> None:
+    with layer_in(tmp_path) as layer:
+        number = submit(layer, "go to the lab then say hello", at="in 1 hour")
+        assert task(layer, number).needs == ("navigation", "voice")
+        assert "needs navigation, voice" in layer.handle({"command": "show", "task": number}, "ann").text
+        assert task(layer, int(ask(layer, "again", task=number)["task"]["id"])).needs == ("navigation", "voice")
+        plan = ask(layer, "schedule", text="wave", rule="every minute", missed="all")["schedule"]["id"]
+        layer.store.amend_schedule(plan, next=layer.now() - 1)
+        ask(layer, "pause")
+        layer.manager.refresh(layer.now())
+        [made] = layer.store.tasks(schedule=plan)[:1]
+        assert made.needs == ("posture wave", "right arm")
