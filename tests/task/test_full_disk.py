@@ -25,10 +25,10 @@ def answer(peer: Peer) -> str:
 
 def test_what_happens_on_a_full_disk_is_written_later(tmp_path: Path) -> None:
     def states() -> list[State]:
-        with open_store(str(tmp_path / "tasks.db")) as store:
-            return [task.state for task in store.tasks()]
+        return [task.state for task in store.tasks()]
 
     peer = Peer(tmp_path)
+    store = open_store(str(tmp_path / "tasks.db"))  # once: whoever opens a store checks it, and holds up who writes
     peer.send(command="submit", text="wait 60 s then print over")
     assert answer(peer) == "answer 1"
     wait_until(lambda: states() == [State.UNDERWAY])
@@ -45,4 +45,5 @@ def test_what_happens_on_a_full_disk_is_written_later(tmp_path: Path) -> None:
     assert states() == [State.UNDERWAY]  # as far as the store knows
     resource.prlimit(peer.pid, resource.RLIMIT_FSIZE, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
     wait_until(lambda: states() == [State.COMPLETED])
+    store.close()
     peer.end()
