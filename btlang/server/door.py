@@ -98,18 +98,13 @@ async def _serve(
             os.unlink(control)
 
 
-def tell_changes(control: str) -> None:
-    """Lets a server that is up look again who may come in; does nothing where there is none."""
-    with suppress(OSError), socket.socket(socket.AF_UNIX) as connection:
-        connection.settimeout(2.0)
-        connection.connect(control)
-        connection.recv(1)
-
-
 def tls(certificate: Certificate) -> ssl.SSLContext:
     """TLS 1.2 and later. Raises OSError or ssl.SSLError for files that can't be used."""
     context = ssl.SSLContext(ssl.PROTOCOL_TLS_SERVER)
     context.minimum_version = ssl.TLSVersion.TLSv1_2
+    # A client that reads in one thread and writes in another (websockets.sync) may lose its request to a ticket that
+    # comes at the same time: ssl has no lock before Python 3.14 (python/cpython#134698).
+    context.num_tickets = 0
     context.load_cert_chain(certificate.certificate, certificate.key)
     return context
 

@@ -239,6 +239,10 @@ def test_old_tls_is_refused(door: Door) -> None:
     new.minimum_version = ssl.TLSVersion.TLSv1_3
     with socket.create_connection(("127.0.0.1", door.port)) as plain, new.wrap_socket(plain) as connection:
         assert connection.version() == "TLSv1.3"
+        connection.sendall(b"GET /live HTTP/1.1\r\nhost: localhost\r\n\r\n")
+        assert connection.recv(100).startswith(b"HTTP/1.1 200")
+        assert connection.session is not None
+        assert not connection.session.has_ticket
 
 
 def test_what_browsers_are_told(door: Door) -> None:
