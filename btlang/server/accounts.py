@@ -13,12 +13,12 @@ from btlang.server.roles import Role
 from btlang.task.checks import refused
 from btlang.task.database import Mode
 from btlang.task.migrations import migrate
-from btlang.task.rows import columns_of, from_row, marks, to_row
+from btlang.task.rows import columns_of, from_row, insert
 from btlang.task.sqlite import Sqlite
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any, TypeVar
+    from typing import TypeVar
 
     R = TypeVar("R", bound=Record)
 
@@ -134,7 +134,7 @@ class Accounts:
         with self._database.transaction(Mode.ALONE) as execute:
             if execute("SELECT 1 FROM user WHERE name = ?", (name,)):
                 raise refused(f"The user '{name}'", "exists already")
-            _insert(execute, "user", added)
+            insert(execute, "user", added)
         return added
 
     def set_password(self, name: str, password: str) -> None:
@@ -162,7 +162,7 @@ class Accounts:
         secret, now = secrets.token_urlsafe(32), self._clock()
         with self._database.transaction() as execute:
             execute("DELETE FROM session WHERE used < ? OR created < ?", (now - IDLE, now - LONGEST))
-            _insert(execute, "session", Login(_hash(secret), user, address, now, now))
+            insert(execute, "session", Login(_hash(secret), user, address, now, now))
         return secret
 
     def log_out(self, user: str, id: str = "") -> None:
@@ -179,7 +179,7 @@ class Accounts:
         with self._database.transaction(Mode.ALONE) as execute:
             if execute("SELECT 1 FROM token WHERE user = ? AND name = ?", (user, name)):
                 raise refused(f"The token '{name}' of '{user}'", "exists already")
-            _insert(execute, "token", Token(_hash(secret), name, user, self._clock()))
+            insert(execute, "token", Token(_hash(secret), name, user, self._clock()))
         return secret
 
     def tokens(self, user: str) -> list[Token]:
@@ -220,7 +220,7 @@ class Accounts:
     def log(self, user: str, address: str, what: str, outcome: str) -> None:
         """Adds to the trail."""
         with self._database.transaction() as execute:
-            _insert(execute, "entry", Entry(self._clock(), user, address, what, outcome))
+            insert(execute, "entry", Entry(self._clock(), user, address, what, outcome))
 
     def entries(self, limit: int = 100) -> list[Entry]:
         """The trail, the newest first."""
@@ -252,11 +252,6 @@ class Accounts:
         with self._database.transaction(Mode.READ) as execute:
             rows = execute(f"SELECT {columns_of(kind)} FROM {table} WHERE {condition}", values)
         return [from_row(kind, row) for row in rows]
-
-
-def _insert(execute: Any, table: str, record: Record) -> None:
-    values = to_row(record)
-    execute(f"INSERT INTO {table} ({', '.join(record.fields)}) VALUES ({marks(len(values))})", values)
 
 
 def _hash(secret: str) -> str:

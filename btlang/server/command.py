@@ -3,7 +3,10 @@
 from __future__ import annotations
 
 import os
+import socket
 import ssl
+from contextlib import suppress
+from importlib.util import find_spec
 from ipaddress import ip_address
 
 from btlang.diagnostics.diagnostic import diagnostic
@@ -22,6 +25,7 @@ if TYPE_CHECKING:
     from btlang.server.certificate import Certificate
 
 _ADMINISTRATOR = "admin"
+_PACKAGES = ("argon2", "cryptography", "itsdangerous", "starlette", "uvicorn", "websockets")
 
 
 def server_folder() -> str:
@@ -34,17 +38,19 @@ def control_path() -> str:
     return os.path.join(socket_folder(), "server.control")
 
 
+def tell_changes() -> None:
+    """Lets a server that is up look again who may come in; does nothing where there is none."""
+    with suppress(OSError), socket.socket(socket.AF_UNIX) as connection:
+        connection.settimeout(2.0)
+        connection.connect(control_path())
+        connection.recv(1)
+
+
 def require_server() -> None:
     """Raises MissionError (BT200) if a package of the extra `server` isn't installed."""
-    try:
-        import argon2  # noqa: F401
-        import cryptography  # noqa: F401
-        import itsdangerous  # noqa: F401
-        import starlette  # noqa: F401
-        import uvicorn  # noqa: F401
-        import websockets  # noqa: F401
-    except ImportError as error:
-        raise MissionError([diagnostic("BT200", NOWHERE, package=error.name or "")]) from None
+    for package in _PACKAGES:
+        if find_spec(package) is None:
+            raise MissionError([diagnostic("BT200", NOWHERE, package=package)])
 
 
 def serve(options: argparse.Namespace) -> int:

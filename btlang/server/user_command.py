@@ -6,7 +6,7 @@ import getpass
 import sys
 import time
 
-from btlang.server.command import control_path, require_server, server_folder
+from btlang.server.command import require_server, server_folder, tell_changes
 from btlang.task.messages import wrong
 from btlang.task.moments import shown
 from btlang.text.escaping import one_line
@@ -24,9 +24,8 @@ def serve(options: argparse.Namespace) -> int:
     """Does the verb `user`; returns the exit code. Raises MissionError."""
     require_server()
     from btlang.server.accounts import Accounts
-    from btlang.server.door import tell_changes
 
-    accounts = Accounts(server_folder(), lambda: tell_changes(control_path()))
+    accounts = Accounts(server_folder(), tell_changes)
     try:
         _do(options, accounts)
     finally:

@@ -14,6 +14,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, TypeVar
 
+    from btlang.task.database import Execute
+
     R = TypeVar("R", bound=Record)
 
 _READERS: dict[str, Callable[[Any], Any]] = {
@@ -56,6 +58,12 @@ def to_column(value: Any) -> Any:
 def in_lines(text: str) -> str:
     """What a column for several texts contains if, and only if, this text is one of them."""
     return "\n" + json.dumps(text)
+
+
+def insert(execute: Execute, table: str, record: Record, **more: object) -> None:
+    """Adds the row of a record, with further columns before it."""
+    values = [*more.values(), *to_row(record)]
+    execute(f"INSERT INTO {table} ({', '.join([*more, *record.fields])}) VALUES ({marks(len(values))})", values)
 
 
 def from_row(kind: type[R], row: tuple[Any, ...]) -> R:

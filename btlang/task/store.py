@@ -9,7 +9,7 @@ from btlang.task.backup import write_backup
 from btlang.task.database import Database, Mode, store_error
 from btlang.task.migrations import open_database
 from btlang.task.queries import IN_TURN, NEXT, NOT_OVER, TASK, TIMES, UNBEGUN, chosen
-from btlang.task.rows import columns_of, from_row, marks, to_column, to_row
+from btlang.task.rows import columns_of, from_row, insert, marks, to_column
 from btlang.task.task import FINAL, Act, Change, Revision, Schedule, State, Task
 
 TYPE_CHECKING = False
@@ -67,7 +67,7 @@ class Store:
         """Keeps a new task, with an id that no task of this store had before."""
         with self._database.transaction() as execute:
             added: Task = task.replace(id=_count(execute, "task"))
-            _insert(execute, "task", added)
+            insert(execute, "task", added)
             _note(execute, Change(added.id, added.created, added.state, cause, added.person))
         self._tell()
         return added
@@ -181,7 +181,7 @@ class Store:
         """Keeps a new schedule, with an id that no schedule of this store had before."""
         with self._database.transaction() as execute:
             added: Schedule = schedule.replace(id=_count(execute, "schedule"))
-            _insert(execute, "schedule", added)
+            insert(execute, "schedule", added)
         return added
 
     def schedule(self, id: int) -> Schedule | None:
@@ -218,7 +218,7 @@ class Store:
             if latest is not None and not latest.deleted and latest.text == text:
                 return latest
             put = Revision(name, latest.number + 1 if latest else 1, text, person, time)
-            _insert(execute, "revision", put)
+            insert(execute, "revision", put)
         return put
 
     def mission(self, name: str, number: int = 0) -> Revision | None:
@@ -243,13 +243,13 @@ class Store:
             latest = self._latest(execute, name)
             if latest is None or latest.deleted:
                 return False
-            _insert(execute, "revision", Revision(name, latest.number + 1, "", person, time, deleted=True))
+            insert(execute, "revision", Revision(name, latest.number + 1, "", person, time, deleted=True))
         return True
 
     def log(self, act: Act) -> None:
         """Adds to the audit trail."""
         with self._database.transaction() as execute:
-            _insert(execute, "act", act, number=_count(execute, "act"))
+            insert(execute, "act", act, number=_count(execute, "act"))
 
     def acts(self, limit: int | None = None) -> list[Act]:
         """The audit trail, the newest first."""
@@ -357,13 +357,8 @@ def _count(execute: Execute, name: str) -> int:
     return int(number)
 
 
-def _insert(execute: Execute, table: str, record: Record, **more: object) -> None:
-    values = [*more.values(), *to_row(record)]
-    execute(f"INSERT INTO {table} ({', '.join([*more, *record.fields])}) VALUES ({marks(len(values))})", values)
-
-
 def _note(execute: Execute, change: Change) -> None:
-    _insert(execute, "change", change, number=_count(execute, "change"))
+    insert(execute, "change", change, number=_count(execute, "change"))
 
 
 def _check(kind: type[Record], fields: Mapping[str, Any], *fixed: str) -> None:

@@ -133,6 +133,7 @@ def test_log_out(door: Door) -> None:
 
 def test_the_trail_says_who_did_what(door: Door, robot: TaskLayer) -> None:
     door.ask("POST", "/api/commands", {"command": "release"}, **door.log_in("vic"))
+    door.ask("POST", "/api/commands", {"command": "release"}, **door.log_in("olga"))
     trail = door.user("trail").splitlines()
     assert any(line.endswith("vic from 127.0.0.1: release: refused") for line in trail)
     assert any(line.endswith("olga from 127.0.0.1: log in: ok") for line in trail)

@@ -4,11 +4,13 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from contextlib import closing, contextmanager
 from pathlib import Path
 from typing import Any
 
 from btlang.task.layer import TaskLayer
+from btlang.task.paths import USUAL_NAME
+from btlang.task.socket_server import SocketServer
 from btlang.task.task import State, Task
 
 LONG = 20.0
@@ -19,6 +21,17 @@ LONG = 20.0
 def layer_in(folder: Path, **options: Any) -> Iterator[TaskLayer]:
     """A robot that is up; simulated, 50 times as fast as real time."""
     with TaskLayer(folder=str(folder), **{"speed": 50.0, **options}) as layer:
+        yield layer
+
+
+@contextmanager
+def robot_up(folder: Path, name: str = USUAL_NAME, **options: Any) -> Iterator[TaskLayer]:
+    """One with its sockets, for other processes; the folder of these needs a short path."""
+    with (
+        layer_in(folder, **options) as layer,
+        closing(SocketServer(name, layer.handle, layer.stop, layer.feed.watch)) as door,
+    ):
+        door.start()
         yield layer
 
 

@@ -7,7 +7,6 @@ import re
 import stat
 import tempfile
 from collections.abc import Callable, Iterator
-from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -15,11 +14,9 @@ import pytest
 
 from btlang.cli import main
 from btlang.task.layer import TaskLayer
-from btlang.task.paths import USUAL_NAME
-from btlang.task.socket_server import SocketServer
 from btlang.task.task import State
 
-from .layers import ask, layer_in, refusal, submit, task, wait_for, wait_until
+from .layers import ask, refusal, robot_up, submit, task, wait_for, wait_until
 
 Btc = Callable[..., tuple[int, str]]
 
@@ -30,11 +27,7 @@ def robot(monkeypatch: pytest.MonkeyPatch) -> Iterator[TaskLayer]:
     with tempfile.TemporaryDirectory() as short:  # the path of a socket has to be
         for variable in ("XDG_RUNTIME_DIR", "XDG_DATA_HOME"):
             monkeypatch.setenv(variable, short)
-        with (
-            layer_in(Path(short, "data")) as layer,
-            closing(SocketServer(USUAL_NAME, layer.handle, layer.stop)) as door,
-        ):
-            door.start()
+        with robot_up(Path(short, "data")) as layer:
             ask(layer, "pause")
             yield layer
 

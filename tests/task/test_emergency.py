@@ -7,7 +7,6 @@ import shutil
 import socket
 import tempfile
 from collections.abc import Iterator
-from contextlib import closing
 from pathlib import Path
 
 import pytest
@@ -15,10 +14,9 @@ import pytest
 from btlang.cli import main
 from btlang.task.emergency import EmergencyStop, latch_path, shut_latch
 from btlang.task.paths import data_folder, socket_path
-from btlang.task.socket_server import SocketServer
 from btlang.task.task import State
 
-from .layers import ask, layer_in, submit, wait_for, wait_until
+from .layers import ask, layer_in, robot_up, submit, wait_for, wait_until
 
 
 @pytest.fixture
@@ -52,11 +50,7 @@ def test_a_stop_of_nobody(folder: Path, capsys: pytest.CaptureFixture[str]) -> N
 
 
 def test_a_robot_whose_sockets_were_taken_away(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    with (
-        layer_in(Path(data_folder("q"))) as layer,
-        closing(SocketServer("q", layer.handle, layer.stop)) as door,
-    ):
-        door.start()
+    with robot_up(Path(data_folder("q")), "q") as layer:
         wait_for(layer, submit(layer, "repeat 99 times: wait 20 s"), State.UNDERWAY)
         os.unlink(socket_path("q", stop=True))
         assert main(["robot", "stop", "--name", "q"]) == 0  # over the other socket
@@ -74,14 +68,7 @@ def test_a_robot_whose_sockets_were_taken_away(folder: Path, capsys: pytest.Capt
 
 
 def test_all_robots_that_are_up_are_stopped(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
-    with (
-        layer_in(Path(data_folder("p"))) as first,
-        layer_in(Path(data_folder("q"))) as second,
-        closing(SocketServer("p", first.handle, first.stop)) as one,
-        closing(SocketServer("q", second.handle, second.stop)) as other,
-    ):
-        one.start()
-        other.start()
+    with robot_up(Path(data_folder("p")), "p") as first, robot_up(Path(data_folder("q")), "q") as second:
         assert main(["robot", "stop"]) == 0
         assert first.emergency.is_latched
         assert second.emergency.is_latched

@@ -8,7 +8,6 @@ import socket
 import tempfile
 import threading
 from collections.abc import Iterator
-from contextlib import closing
 from pathlib import Path
 from typing import Any
 
@@ -16,10 +15,9 @@ import pytest
 
 from btlang.task.layer import TaskLayer
 from btlang.task.paths import USUAL_NAME, socket_path
-from btlang.task.socket_server import SocketServer
 from btlang.task.task import FINAL, State
 
-from .layers import ask, layer_in, submit, wait_for
+from .layers import ask, layer_in, robot_up, submit, wait_for
 
 
 class Watcher:
@@ -111,11 +109,7 @@ def door(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[TaskLayer]
     """A robot with its sockets."""
     with tempfile.TemporaryDirectory() as short:
         monkeypatch.setenv("XDG_RUNTIME_DIR", short)
-        with (
-            layer_in(tmp_path) as layer,
-            closing(SocketServer(USUAL_NAME, layer.handle, layer.stop, layer.feed.watch)) as sockets,
-        ):
-            sockets.start()
+        with robot_up(tmp_path) as layer:
             yield layer
 
 

@@ -29,14 +29,19 @@ REFUSED_MOMENTS = (
 )  # fmt: skip
 
 
-def test_refused_moments() -> None:
+def all_are_refused(texts: tuple[str, ...], read: Callable[[str, float, str], object], golden: str) -> None:
+    """With the messages of a file."""
     told = []
-    for text in REFUSED_MOMENTS:
+    for text in texts:
         with pytest.raises(MissionError) as refused:
-            read_moment(text, NOW, BERLIN)
+            read(text, NOW, BERLIN)
         assert {problem.code for problem in refused.value.diagnostics} == {"BT194"}
         told.append(str(refused.value))
-    matches_golden("\n\n".join(told) + "\n", HERE / "refused_moments.out")
+    matches_golden("\n\n".join(told) + "\n", HERE / golden)
+
+
+def test_refused_moments() -> None:
+    all_are_refused(REFUSED_MOMENTS, read_moment, "refused_moments.out")
 
 
 REFUSED_PAST_MOMENTS = (
@@ -46,13 +51,7 @@ REFUSED_PAST_MOMENTS = (
 
 
 def test_refused_past_moments() -> None:
-    told = []
-    for text in REFUSED_PAST_MOMENTS:
-        with pytest.raises(MissionError) as refused:
-            read_past_moment(text, NOW, BERLIN)
-        assert {problem.code for problem in refused.value.diagnostics} == {"BT194"}
-        told.append(str(refused.value))
-    matches_golden("\n\n".join(told) + "\n", HERE / "refused_past_moments.out")
+    all_are_refused(REFUSED_PAST_MOMENTS, read_past_moment, "refused_past_moments.out")
 
 
 REFUSED_RULES = (

@@ -17,11 +17,10 @@ from btlang.diagnostics.errors import MissionError
 from btlang.session import Session
 from btlang.task.house_rules import read_house_rules
 from btlang.task.missions import MissionReader
-from btlang.task.paths import USUAL_NAME, socket_path
-from btlang.task.socket_server import SocketServer
+from btlang.task.paths import socket_path
 from btlang.task.store import open_store
 from btlang.task.task import State
-from tests.task.layers import layer_in, submit, wait_for, wait_until
+from tests.task.layers import robot_up, submit, wait_for, wait_until
 
 REFUSALS = ("BT186", "BT187", "BT192")
 """Codes that a robot answers with: `btc` ends with 1 then, and with 2 if it can't read a command."""
@@ -43,11 +42,7 @@ def robot_for(code: str, patch: pytest.MonkeyPatch) -> Iterator[None]:
     with tempfile.TemporaryDirectory() as short:  # the path of a socket has to be
         for variable in ("XDG_RUNTIME_DIR", "XDG_DATA_HOME"):
             patch.setenv(variable, short)
-        with (
-            layer_in(Path(short, "data")) as layer,
-            closing(SocketServer(USUAL_NAME, layer.handle, layer.stop)) as door,
-        ):
-            door.start()
+        with robot_up(Path(short, "data")) as layer:
             if code == "BT186":
                 layer.session.robot.power.set_level(0.0)
                 wait_until(lambda: (state := layer.executor.robot_state) is not None and state.battery == 0)

@@ -8,15 +8,12 @@ import subprocess
 import sys
 import tempfile
 from collections.abc import Callable, Iterator
-from contextlib import closing
 from pathlib import Path
 
 import pytest
 
 from btlang.task.layer import TaskLayer
-from btlang.task.paths import USUAL_NAME
-from btlang.task.socket_server import SocketServer
-from tests.task.layers import ask, layer_in, submit
+from tests.task.layers import ask, robot_up, submit
 from tests.terminal.emulator import Terminal
 
 LIST = (sys.executable, "-m", "btlang", "task", "list", "--live")
@@ -27,8 +24,7 @@ def robot(monkeypatch: pytest.MonkeyPatch) -> Iterator[TaskLayer]:
     """One that is up, and paused."""
     with tempfile.TemporaryDirectory() as short:  # the path of a socket has to be
         monkeypatch.setenv("XDG_RUNTIME_DIR", short)
-        with layer_in(Path(short)) as layer, closing(SocketServer(USUAL_NAME, layer.handle, layer.stop)) as door:
-            door.start()
+        with robot_up(Path(short)) as layer:
             ask(layer, "pause")
             yield layer
 

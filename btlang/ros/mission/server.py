@@ -63,11 +63,6 @@ class MissionServer:
         else:
             self._end(data["id"], report)
 
-    def end_all(self, reason: str) -> None:
-        """Cancels all goals."""
-        for task in tuple(self._goals):
-            self._handle(messages.Cancel(task, reason))
-
     def _accepts(self) -> bool:
         reason = self._hindrance()
         if reason:
