@@ -41,7 +41,7 @@ class Peer:
         self.lines: queue.Queue[str] = queue.Queue()
         self._thread = threading.Thread(target=self._read)
         self._thread.start()
-        assert self.lines.get(timeout=LONG) == "up"
+        self._before = list(iter(partial(self.lines.get, timeout=LONG), "up"))  # a task may begin sooner
 
     @property
     def pid(self) -> int:
@@ -76,10 +76,7 @@ class Peer:
         with suppress(BrokenPipeError):
             self._process.stdin.close()
         self._process.stdout.close()
-        lines = []
-        while line := self.lines.get(timeout=LONG):
-            lines.append(line)
-        return lines
+        return [*self._before, *iter(partial(self.lines.get, timeout=LONG), "")]
 
 
 def recorded_in(place: str) -> tuple[int, State]:
