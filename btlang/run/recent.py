@@ -14,7 +14,7 @@ if TYPE_CHECKING:
     from btlang.run.events import Event
 
 MOST_EVENTS = 10_000
-"""So many are kept."""
+"""So many are kept, where each change of a status counts: what is kept is garbage to look through while robots move."""
 
 
 class RecentEvents:
@@ -23,8 +23,8 @@ class RecentEvents:
     policy = INLINE
 
     def __init__(self) -> None:
-        self._events: deque[Event] = deque(maxlen=MOST_EVENTS)
-        self._count = 0
+        self._events: deque[Event] = deque()
+        self._kept = self._count = 0
         self._over = False
         self._changed = Condition()
 
@@ -33,7 +33,10 @@ class RecentEvents:
             return
         with self._changed:
             self._events.append(event)
+            self._kept += event.count
             self._count += 1
+            while self._kept > MOST_EVENTS and len(self._events) > 1:
+                self._kept -= self._events.popleft().count
             self._changed.notify_all()
 
     def close(self) -> None:

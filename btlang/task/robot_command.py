@@ -13,6 +13,7 @@ from functools import partial
 from urllib.parse import parse_qs, urlsplit
 
 from btlang.diagnostics.errors import MissionError
+from btlang.gc_pause import keep_for_good
 from btlang.run.emergency import emergency_signal
 from btlang.task import messages
 from btlang.task.applicable import check_robot_words
@@ -123,6 +124,7 @@ def _up(options: argparse.Namespace) -> int:
                 signal.signal(number, lambda *_: ended.set())
             layer.start()
             door.start()
+            keep_for_good()
             show(f"The robot '{name}' is up. Give it work with: btc task add")
             if layer.emergency.is_latched:
                 show(f"It is stopped: {layer.emergency.reason}. To let it move: btc robot release", sys.stderr)

@@ -25,6 +25,7 @@ from pathlib import Path
 from typing import Any
 
 from btlang.api import Mission
+from btlang.gc_pause import keep_for_good
 from btlang.run.bus import INLINE
 from btlang.run.events import Event, PeriodPassed
 from btlang.session import Run
@@ -82,6 +83,7 @@ def robot(folder: Path) -> None:
 
     with robot_in(folder, speed="real", sinks=sinks) as layer:
         submit(layer, mission())
+        keep_for_good()
         print("up", flush=True)
         for _ in sys.stdin:
             print(json.dumps(marks[-1].report()), flush=True)

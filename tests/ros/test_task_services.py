@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 import json
 import signal
+import socket
 import time
 from pathlib import Path
 from threading import Thread
@@ -14,6 +16,7 @@ from std_srvs.srv import Trigger
 
 from btlang.task import messages
 from btlang.task.client import Client as TaskClient
+from btlang.task.paths import socket_path
 from tests.ros.client import LATCHED, Client
 from tests.ros.processes import LONG, Command, wait_until
 from tests.ros.test_mission_node import FAR, mission
@@ -133,6 +136,13 @@ def test_its_tasks_are_those_of_the_command_line(
         answer = terminal.send(messages.Submit("say hello"))
         assert answer.ok, answer.text
         wait_until(lambda: state(client, 1) == "completed", "the end")
+    with socket.socket(socket.AF_UNIX) as watching:  # as a server does
+        watching.settimeout(10.0)
+        watching.connect(socket_path("btlang"))
+        watching.sendall(b'{"watch": {"after": 0}}\n')
+        told = watching.makefile("rb")
+        states = [message["state"] for message in map(json.loads, itertools.islice(told, 5)) if "state" in message]
+        assert states[:2] == ["queued", "standby"]
 
 
 def test_nothing_delays_the_emergency_stop(start_node, client: Client, run_mission: Any, tmp_path: Path):

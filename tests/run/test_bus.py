@@ -15,6 +15,7 @@ from btlang.run import bus as buses
 from btlang.run.bus import BLOCK, DROP_OLDEST, INLINE, NEWEST, Bus
 from btlang.run.events import LOGGED, Ended, Event, Printed, Said, StatusesChanged
 from btlang.run.json_log import JsonLog, as_json, schema
+from btlang.run.recent import RecentEvents
 
 SCHEMA = Path(btlang.__file__).parent / "run" / "events.schema.json"
 
@@ -135,6 +136,18 @@ def test_a_session_runs_many_missions_and_late_joiners_see_the_state() -> None:
     assert isinstance(events[-1], Ended)
     changes = [change for event in events if isinstance(event, StatusesChanged) for change in event]
     assert [(c.path, c.before, c.status) for c in changes if c.path == "/0"] == [("/0", 4, 2), ("/0", 2, 1)]
+
+
+def test_of_a_long_run_only_the_latest_events_are_kept() -> None:
+    with btlang.Session() as session:
+        nodes = session.prepare(btlang.parse_tree("wave")).nodes
+    recent, changes = RecentEvents(), [(0, 1, 4, None)] * 600
+    for number in range(20):
+        recent(StatusesChanged(0.0, "run", number, 0.0, changes, nodes))
+    recent(Printed(0.0, "run", 20, 0.0, "x"))
+    recent.close()
+    kept = list(recent.events())
+    assert [event.number for event in kept] == list(range(4, 21))  # 16 times 600 changes, and one
 
 
 def test_an_emergency_stop_of_a_session_ends_a_run_that_is_prepared_too() -> None:

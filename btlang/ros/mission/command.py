@@ -10,6 +10,7 @@ from functools import partial
 from typing import Any
 
 from btlang.arguments import node_name
+from btlang.gc_pause import keep_for_good
 from btlang.ros.available import require_interfaces, require_ros
 from btlang.ros.command import add_body_options, add_namespace, platform_of
 from btlang.ros.ending import EndingSignals, ending_signals
@@ -73,7 +74,10 @@ def _serve(options: argparse.Namespace, came: EndingSignals) -> int:
     controls = Controls()
     came.on_arrival = controls.wake
     door = SocketServer(
-        robot, lambda data, person: node.answer(data, person), lambda person: node.emergency_stop(person)
+        robot,
+        lambda data, person: node.answer(data, person),
+        lambda person: node.emergency_stop(person),
+        lambda *wanted: node.watch(*wanted),
     )
     with closing(door):  # the name is ours before the store and the robot are touched
         spun = SpunNode(
@@ -94,6 +98,7 @@ def _serve(options: argparse.Namespace, came: EndingSignals) -> int:
             with emergency_signal(partial(node.emergency_stop, "the keyboard")), stopping:
                 spun.start()
                 door.start()
+                keep_for_good()
                 show(f"btlang ros-node: ready as {node.get_fully_qualified_name()}; Ctrl-C ends it")
                 while not came.numbers:
                     controls.wait(None)

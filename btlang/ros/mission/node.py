@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Generator, Sequence
 from contextlib import suppress
 
 from rclpy.lifecycle import LifecycleNode, LifecycleState, TransitionCallbackReturn
@@ -166,6 +166,11 @@ class MissionNode(LifecycleNode):  # type: ignore[misc]  # rclpy is seen as unty
         if layer is None:
             return Answer(False, "There is no robot: the node is not configured.")
         return layer.handle(command, person)
+
+    def watch(self, *wanted: Any) -> Generator[dict[str, Any]]:
+        """What happens on the robot (see `btlang.task.feed.Feed.watch`); nothing where there is none."""
+        if self._layer is not None:
+            yield from self._layer.feed.watch(*wanted)
 
     def _end_tasks(self, states: frozenset[State], reason: str) -> None:
         """Those that don't outlive the node's work: of goals, and its own."""
