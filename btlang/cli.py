@@ -341,6 +341,14 @@ def _completion(options: argparse.Namespace) -> int:
     return SUCCESS
 
 
+def _robot(options: argparse.Namespace) -> int:
+    from btlang.task.applicable import FLEET_ACTS
+
+    module = "btlang.server.fleet_command" if options.act in FLEET_ACTS else "btlang.task.robot_command"
+    code: int = import_module(module).serve(options)
+    return code
+
+
 def _help(options: argparse.Namespace) -> int:
     show_help(options.subject)
     return SUCCESS
@@ -357,7 +365,6 @@ _ELSEWHERE = {
     "diff": "btlang.recording.command",
     "test": "btlang.testing.command",
     "mcp": "btlang.mcp_server",
-    "robot": "btlang.task.robot_command",
     "task": "btlang.task.command",
     "serve": "btlang.server.command",
     "user": "btlang.server.user_command",
@@ -379,6 +386,7 @@ _VERBS: dict[str, Callable[[argparse.Namespace], int]] = {
     "explain": _explain,
     "format": _format,
     **dict.fromkeys(_ELSEWHERE, _serve),
+    "robot": _robot,
     "completion": _completion,
     "help": _help,
     "version": _version,

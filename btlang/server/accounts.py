@@ -47,7 +47,13 @@ _STEPS = [
             number INTEGER PRIMARY KEY, time DOUBLE PRECISION NOT NULL, user TEXT NOT NULL, address TEXT NOT NULL,
             what TEXT NOT NULL, outcome TEXT NOT NULL
         )""",
-    )
+    ),
+    (
+        """CREATE TABLE robot (
+            name TEXT PRIMARY KEY, code TEXT NOT NULL, invited DOUBLE PRECISION NOT NULL, key TEXT NOT NULL,
+            seen DOUBLE PRECISION
+        )""",
+    ),
 ]
 
 
@@ -112,14 +118,14 @@ class Accounts:
         clock: Callable[[], float] = time.time,
     ) -> None:
         os.makedirs(folder, mode=0o700, exist_ok=True)
-        self._database = Sqlite(os.path.join(folder, "accounts.db"), durable=True)
-        self._database.check()
-        migrate(self._database, _STEPS)
+        self.database = Sqlite(os.path.join(folder, "accounts.db"), durable=True)
+        self.database.check()
+        migrate(self.database, _STEPS)
         self._changed, self._clock = changed, clock
 
     def close(self) -> None:
         """Ends its connections."""
-        self._database.close()
+        self.database.close()
 
     def users(self) -> list[User]:
         """All, by name."""
@@ -132,7 +138,7 @@ class Accounts:
     def add(self, name: str, role: Role, password: str) -> User:
         """A new user with the hash of a password. Raises MissionError (BT187) if there is one of that name."""
         added = User(name, role, password, self._clock())
-        with self._database.transaction(Mode.ALONE) as execute:
+        with self.database.transaction(Mode.ALONE) as execute:
             if execute("SELECT 1 FROM user WHERE name = ?", (name,)):
                 raise refused(f"The user '{name}'", "exists already")
             insert(execute, "user", added)
@@ -154,21 +160,21 @@ class Accounts:
         """Ends all that a user has. Raises MissionError (BT187), also for the last administrator."""
         self._keep_an_administrator(name)
         self._change(name, "DELETE FROM user WHERE name = ? RETURNING name")
-        with self._database.transaction() as execute:
+        with self.database.transaction() as execute:
             execute("DELETE FROM token WHERE user = ?", (name,))
         self.log_out(name)
 
     def log_in(self, user: str, address: str) -> str:
         """Begins a session; returns what its cookie has."""
         secret, now = secrets.token_urlsafe(32), self._clock()
-        with self._database.transaction() as execute:
+        with self.database.transaction() as execute:
             execute("DELETE FROM session WHERE used < ? OR created < ?", (now - IDLE, now - LONGEST))
-            insert(execute, "session", Login(_hash(secret), user, address, now, now))
+            insert(execute, "session", Login(secret_hash(secret), user, address, now, now))
         return secret
 
     def log_out(self, user: str, id: str = "") -> None:
         """Ends a session of a user, or all."""
-        with self._database.transaction() as execute:
+        with self.database.transaction() as execute:
             execute("DELETE FROM session WHERE user = ? AND (id = ? OR ? = '')", (user, id, id))
         self._changed()
 
@@ -177,10 +183,10 @@ class Accounts:
         if self.user(user) is None:
             raise refused(f"The user '{user}'", "isn't known")
         secret = _TOKEN + secrets.token_urlsafe(32)
-        with self._database.transaction(Mode.ALONE) as execute:
+        with self.database.transaction(Mode.ALONE) as execute:
             if execute("SELECT 1 FROM token WHERE user = ? AND name = ?", (user, name)):
                 raise refused(f"The token '{name}' of '{user}'", "exists already")
-            insert(execute, "token", Token(_hash(secret), name, user, self._clock()))
+            insert(execute, "token", Token(secret_hash(secret), name, user, self._clock()))
         return secret
 
     def tokens(self, user: str) -> list[Token]:
@@ -189,14 +195,14 @@ class Accounts:
 
     def revoke(self, user: str, name: str) -> None:
         """Ends a token. Raises MissionError (BT187)."""
-        with self._database.transaction() as execute:
+        with self.database.transaction() as execute:
             if not execute("DELETE FROM token WHERE user = ? AND name = ? RETURNING name", (user, name)):
                 raise refused(f"The token '{name}' of '{user}'", "isn't known")
         self._changed()
 
     def identity(self, secret: str) -> Identity | None:
         """Who brings a secret, of a cookie or of a program; None for nobody."""
-        now, id = self._clock(), _hash(secret)
+        now, id = self._clock(), secret_hash(secret)
         if secret.startswith(_TOKEN):
             token = self._one(Token, "token", "id = ?", id)
             if token is None:
@@ -214,13 +220,13 @@ class Accounts:
     def still(self, identity: Identity) -> Identity | None:
         """The same one as it is now, perhaps with another role; None if it was revoked."""
         table = "session" if identity.is_session else "token"
-        with self._database.transaction(Mode.READ) as execute:
+        with self.database.transaction(Mode.READ) as execute:
             found = execute(f"SELECT 1 FROM {table} WHERE id = ?", (identity.id,))
         return self._identified(identity.user, identity.id, is_session=identity.is_session) if found else None
 
     def log(self, user: str, address: str, what: str, outcome: str) -> None:
         """Adds to the trail."""
-        with self._database.transaction() as execute:
+        with self.database.transaction() as execute:
             insert(execute, "entry", Entry(self._clock(), user, address, what, outcome))
 
     def entries(self, limit: int = 100) -> list[Entry]:
@@ -231,13 +237,13 @@ class Accounts:
         """Writes all but the sessions into a new SQLite file for its owner alone, as it is at one moment. Raises
         StoreError, also if there's such a file already.
         """
-        write_backup(self._database, path, _STEPS, _NOT_COPIED)
+        write_backup(self.database, path, _STEPS, _NOT_COPIED)
 
     def restore(self, path: str) -> None:
         """Takes over what `backup` wrote, also that of an older btlang. Raises MissionError (BT196) if it's that of a
         newer one, and StoreError if there are users here or the file is no backup; then nothing is changed.
         """
-        fill_from_backup(self._database, path, _STEPS, _NOT_COPIED)
+        fill_from_backup(self.database, path, _STEPS, _NOT_COPIED)
         self._changed()
 
     def _identified(self, name: str, id: str, *, is_session: bool) -> Identity | None:
@@ -250,12 +256,12 @@ class Accounts:
             raise refused(f"The user '{name}'", "is the only administrator")
 
     def _change(self, name: str, sql: str, *values: object) -> None:
-        with self._database.transaction() as execute:
+        with self.database.transaction() as execute:
             if not execute(sql, (*values, name)):
                 raise refused(f"The user '{name}'", "isn't known")
 
     def _note(self, table: str, id: str, now: float) -> None:
-        with self._database.transaction() as execute:
+        with self.database.transaction() as execute:
             execute(f"UPDATE {table} SET used = ? WHERE id = ?", (now, id))
 
     def _one(self, kind: type[R], table: str, condition: str, *values: object) -> R | None:
@@ -263,15 +269,15 @@ class Accounts:
         return found[0] if found else None
 
     def _all(self, kind: type[R], table: str, condition: str, *values: object) -> list[R]:
-        with self._database.transaction(Mode.READ) as execute:
+        with self.database.transaction(Mode.READ) as execute:
             rows = execute(f"SELECT {columns_of(kind)} FROM {table} WHERE {condition}", values)
         try:
             found = [from_row(kind, row) for row in rows]
             return [each.replace(role=Role(each.role)) if isinstance(each, User) else each for each in found]
         except (ValueError, TypeError) as error:
-            raise store_error(self._database.place, f"it's damaged: a {table} can't be read") from error
+            raise store_error(self.database.place, f"it's damaged: a {table} can't be read") from error
 
 
-def _hash(secret: str) -> str:
+def secret_hash(secret: str) -> str:
     """Fast, since nobody guesses 256 random bits."""
     return hashlib.sha256(secret.encode("utf-8", "surrogatepass")).hexdigest()

@@ -19,6 +19,8 @@ from btlang.server.accounts import LONGEST, Accounts, Identity
 from btlang.server.bodies import json_object, text_in
 from btlang.server.checking import DOES, Checker, Words
 from btlang.server.clients import Clients
+from btlang.server.fleet import Fleet
+from btlang.server.joining import Joins
 from btlang.server.links import RobotLink, Robots
 from btlang.server.metrics import metrics
 from btlang.server.openapi import VERSION, document
@@ -42,12 +44,13 @@ _HEADERS = {
 
 
 class Api:
-    """What the routes do. `robots` are those of this computer."""
+    """What the routes do."""
 
     def __init__(self, accounts: Accounts, key: str, robots: Robots | None = None) -> None:
         self.accounts, self.robots = accounts, robots or Robots()
         self.access, self.checker = Access(accounts, key), Checker()
         self.clients = Clients(self.access, self.robots, self.send)
+        self.joins = Joins(Fleet(accounts.database), self.robots, self.access)
 
     def app(self) -> ASGIApp:
         """The ASGI application."""
@@ -68,8 +71,14 @@ class Api:
             Route("/live", _word("live")),
             Route("/ready", _word("ready")),
             WebSocketRoute("/api/ws", self.clients.serve),
+            WebSocketRoute("/api/join", self.joins.serve),
         ]
         return _Headers(Starlette(routes=routes, lifespan=self._life, exception_handlers={404: _not_found}))
+
+    async def check(self) -> None:
+        """The accounts have changed: who may no longer be here is sent away."""
+        await self.clients.check()
+        await self.joins.check()
 
     async def send(self, identity: Identity, robot: str, command: Command, address: str) -> Answer:
         """A command to a robot, by somebody who may. Raises AccessError."""
@@ -96,6 +105,7 @@ class Api:
 
     @asynccontextmanager
     async def _life(self, app: Starlette) -> AsyncIterator[None]:
+        await self.joins.check()
         following = asyncio.create_task(self.robots.follow())
         try:
             yield
@@ -146,7 +156,10 @@ class Api:
     async def _robots(self, request: Request) -> Response:
         await self._who(request)
         links = self.robots.links.values()
-        return JSONResponse({"robots": [{"name": each.name, "up": each.is_up, "seen": each.seen} for each in links]})
+        listed = [
+            {"name": each.name, "up": each.is_up, "seen": each.seen, "elsewhere": each.is_elsewhere} for each in links
+        ]
+        return JSONResponse({"robots": listed})
 
     async def _stop(self, request: Request) -> Response:
         identity = await self._who(request)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import hashlib
 import ipaddress
 import os
 import socket
@@ -50,6 +51,23 @@ def fingerprint_of(path: str) -> str:
 def fingerprint(certificate: x509.Certificate) -> str:
     """Its SHA-256, as pairs of digits."""
     return certificate.fingerprint(hashes.SHA256()).hex(":").upper()
+
+
+def pin(certificate: bytes) -> bytes:
+    """What robots know a server by: the SHA-256 of the public key in its certificate (DER), which outlives that."""
+    return _pin(x509.load_der_x509_certificate(certificate))
+
+
+def pin_of(path: str) -> bytes:
+    """That of the first certificate in a PEM file. Raises OSError or ValueError."""
+    with open(path, "rb") as file:
+        return _pin(x509.load_pem_x509_certificate(file.read()))
+
+
+def _pin(certificate: x509.Certificate) -> bytes:
+    key = certificate.public_key()
+    form = serialization.PublicFormat.SubjectPublicKeyInfo
+    return hashlib.sha256(key.public_bytes(serialization.Encoding.DER, form)).digest()
 
 
 def _read(path: str) -> x509.Certificate | None:

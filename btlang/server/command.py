@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import json
 import os
+import signal
 import socket
 import ssl
+import sys
+import threading
 from contextlib import suppress
-from importlib.util import find_spec
 from ipaddress import ip_address
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import reason_of
+from btlang.task.companion import require_server
 from btlang.task.paths import socket_folder
 from btlang.text.output import show
 from btlang.text.source import NOWHERE
@@ -25,7 +29,6 @@ if TYPE_CHECKING:
     from btlang.server.certificate import Certificate
 
 _ADMINISTRATOR = "admin"
-_PACKAGES = ("argon2", "cryptography", "itsdangerous", "starlette", "uvicorn", "websockets")
 
 
 def server_folder() -> str:
@@ -44,13 +47,6 @@ def tell_changes() -> None:
         connection.settimeout(2.0)
         connection.connect(control_path())
         connection.recv(1)
-
-
-def require_server() -> None:
-    """Raises MissionError (BT200) if a package of the extra `server` isn't installed."""
-    for package in _PACKAGES:
-        if find_spec(package) is None:
-            raise MissionError([diagnostic("BT200", NOWHERE, package=package)])
 
 
 def serve(options: argparse.Namespace) -> int:
@@ -75,6 +71,7 @@ def serve(options: argparse.Namespace) -> int:
     door = listening(options.host, options.port)
     password = _first_password(accounts)
     port = door.getsockname()[1]
+    _keep_door(certificate, port)
     scheme = "http" if certificate is None else "https"
 
     def ready() -> None:
@@ -85,6 +82,8 @@ def serve(options: argparse.Namespace) -> int:
             show(f"Log in as '{_ADMINISTRATOR}' with the password {password}")
             show(f"It is shown this once. For another one: btc user passwd {_ADMINISTRATOR}")
 
+    if options.until_eof:
+        threading.Thread(target=_end_at_eof, daemon=True).start()
     try:
         serve_door(Api(accounts, kept_key(server_folder())), door, certificate, control_path(), ready)
     except (OSError, ssl.SSLError) as error:
@@ -92,6 +91,11 @@ def serve(options: argparse.Namespace) -> int:
     finally:
         accounts.close()
     return 0
+
+
+def _end_at_eof() -> None:
+    sys.stdin.read()
+    os.kill(os.getpid(), signal.SIGTERM)
 
 
 def _is_loopback(host: str) -> bool:
@@ -115,6 +119,22 @@ def _certificate(options: argparse.Namespace) -> Certificate:
         raise _refused(options, f"its certificate can't be used: {reason_of(error)}") from None
     except ValueError:
         raise _refused(options, "its certificate can't be read: it must be in PEM") from None
+
+
+def door_path() -> str:
+    """The file in which a server with TLS leaves what robots know it by, and its port."""
+    return os.path.join(server_folder(), "door.json")
+
+
+def _keep_door(certificate: Certificate | None, port: int) -> None:
+    """For `btc robot invite`, which is another process."""
+    from btlang.server.certificate import pin_of
+
+    with suppress(FileNotFoundError):
+        os.unlink(door_path())
+    if certificate is not None:
+        with open(door_path(), "w", encoding="ascii") as file:
+            json.dump({"pin": pin_of(certificate.certificate).hex(), "port": port}, file)
 
 
 def _first_password(accounts: Accounts) -> str:

@@ -1,4 +1,4 @@
-"""The robots that are up on this computer: commands to them, and what happens on them for any number of clients."""
+"""The robots behind a server: commands to them, and what happens on them for any number of clients."""
 
 from __future__ import annotations
 
@@ -10,30 +10,35 @@ from contextlib import suppress
 
 from btlang.server.checking import Words
 from btlang.server.outlet import News, Outlet
+from btlang.server.reach import Sockets
 from btlang.task.messages import Answer, Command, as_json
-from btlang.task.paths import names_up, socket_path
+from btlang.task.paths import names_up
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+    from btlang.server.reach import Reach
+
 _AGAIN = 0.5  # seconds between two looks whether a robot is there
 _SILENT = 15.0  # seconds without a word after which a robot counts as gone
 _PATIENCE = 35.0  # seconds for an answer
-_LONGEST = 32_000_000  # bytes of a line
+_STOPPED = 3.0  # seconds in which a robot has to say that it has the emergency stop
 RATE = 20.0
 
 
 class RobotLink:
-    """One robot. In one event loop."""
+    """One robot. In one event loop. `reach` is the way to it, over the sockets of this computer if it isn't given."""
 
-    def __init__(self, name: str) -> None:
+    def __init__(self, name: str, reach: Reach | None = None, seen: float | None = None) -> None:
         self.name = name
+        self.is_elsewhere = reach is not None
         self.is_up = False
-        self.seen: float | None = None
+        self.seen = seen
         """When it last said something, in seconds since 1970."""
         self.words = Words()
         self.outlets: set[Outlet] = set()
+        self._reach: Reach = reach or Sockets(name)
         self._change: int | None = None
         self._run: dict[str, Any] | None = None
         self._statuses: dict[int, str] = {}
@@ -45,37 +50,24 @@ class RobotLink:
         """What is known of the robot itself: pose, battery, what keeps it from working."""
         return self._robot or {}
 
-    @property
-    def _silence(self) -> str:
-        return f"The robot '{self.name}' isn't up, or doesn't answer."
-
     async def send(self, command: Command, person: str) -> Answer:
         """What it answers. Raises ConnectionError if it isn't up, or doesn't answer."""
-        message = {**as_json(command), "as": person}
         try:
             async with asyncio.timeout(_PATIENCE):
-                reader, writer = await asyncio.open_unix_connection(socket_path(self.name), limit=_LONGEST)
-                try:
-                    writer.write(json.dumps(message).encode() + b"\n")
-                    answer = json.loads(await reader.readline())
-                    return Answer(answer["ok"], answer["text"], answer["data"], answer["code"])
-                finally:
-                    writer.close()
+                answer = await self._reach.ask({**as_json(command), "as": person})
+                return Answer(answer["ok"], answer["text"], answer["data"], answer["code"])
         except (OSError, ValueError, KeyError, TypeError, TimeoutError) as error:
-            raise ConnectionError(self._silence) from error
+            text = f"The robot '{self.name}' isn't up, or doesn't answer. If it was up, it may have done it."
+            raise ConnectionError(text) from error
 
     async def stop(self) -> None:
-        """The emergency stop, over the socket that is for nothing else. Raises ConnectionError."""
+        """The emergency stop, past all commands. Raises ConnectionError if the robot doesn't say that it has it."""
         try:
-            async with asyncio.timeout(_PATIENCE):
-                reader, writer = await asyncio.open_unix_connection(socket_path(self.name, stop=True))
-                try:
-                    if not await reader.read(16):
-                        raise ConnectionError(self._silence)
-                finally:
-                    writer.close()
+            async with asyncio.timeout(_STOPPED):
+                await self._reach.stop()
         except (OSError, TimeoutError) as error:
-            raise ConnectionError(self._silence) from error
+            text = f"The emergency stop may not have reached the robot '{self.name}': STOP IT WHERE IT STANDS."
+            raise ConnectionError(text) from error
 
     def add(self, outlet: Outlet) -> None:
         """A client that is told what is now, and from now on all that happens."""
@@ -86,34 +78,33 @@ class RobotLink:
     async def follow(self) -> None:
         """Reads what happens, until it is cancelled; goes on after the last change when the robot is up again."""
         while True:
-            with suppress(OSError, ValueError):
+            with suppress(OSError, ValueError, KeyError, TypeError, AttributeError):  # it may say anything
                 await self._read()
-            if self.is_up:
-                self.is_up = False
-                self._tell({"type": "away"})
+            self.leave()
             await asyncio.sleep(_AGAIN)
 
+    def leave(self) -> None:
+        """It is no longer up."""
+        if self.is_up:
+            self.is_up = False
+            self._tell({"type": "away"})
+
     async def _read(self) -> None:
-        reader, writer = await asyncio.open_unix_connection(socket_path(self.name), limit=_LONGEST)
-        try:
-            writer.write(json.dumps({"watch": {"rate": RATE, "after": self._change}}).encode() + b"\n")
+        async with self._reach.watching({"rate": RATE, "after": self._change}) as reader:
             while True:
                 async with asyncio.timeout(_SILENT):  # which, unlike wait_for, takes all that is there in one go
                     line = await reader.readline()
                 if not line:
                     return
                 self._take(json.loads(line))
-        except TimeoutError:
-            return
-        finally:
-            writer.close()
 
     def _take(self, message: dict[str, Any]) -> None:
         self.seen = time.time()
         kind = message["type"]
         if kind == "hello":
             self.is_up = True
-            self.words = Words(**message.get("words", {}))
+            if not self.is_elsewhere:  # its files are not on this computer
+                self.words = Words(**message.get("words", {}))
             self._change = message["change"] if self._change is None else self._change
             self._tell({"type": "up"})
             return
@@ -147,12 +138,15 @@ class RobotLink:
 
 
 class Robots:
-    """All that are up on this computer, as long as `follow` goes on. `came` is called with one that is new."""
+    """All that are up on this computer, as long as `follow` goes on, and those that joined.
+
+    `came` is called with one that is new.
+    """
 
     def __init__(self, came: Callable[[RobotLink], object] = lambda link: None) -> None:
         self.links: dict[str, RobotLink] = {}
         self.came = came
-        self._tasks: list[asyncio.Task[None]] = []
+        self._following: dict[str, asyncio.Task[None]] = {}
 
     def get(self, name: str) -> RobotLink | None:
         """That of a name; "" for the only one that is up."""
@@ -161,16 +155,25 @@ class Robots:
         up = [link for link in self.links.values() if link.is_up]
         return up[0] if len(up) == 1 else None
 
+    def add(self, link: RobotLink) -> None:
+        """Follows a robot from now on."""
+        self.links[link.name] = link
+        self._following[link.name] = asyncio.create_task(link.follow())
+        self.came(link)
+
+    def remove(self, name: str) -> None:
+        """There is no such robot any more."""
+        self._following.pop(name).cancel()
+        self.links.pop(name).leave()
+
     async def follow(self) -> None:
-        """Looks for robots, until it is cancelled."""
+        """Looks for robots of this computer, until it is cancelled."""
         try:
             while True:
                 for name in names_up():
                     if name not in self.links:
-                        link = self.links[name] = RobotLink(name)
-                        self._tasks.append(asyncio.create_task(link.follow()))
-                        self.came(link)
+                        self.add(RobotLink(name))
                 await asyncio.sleep(_AGAIN)
         finally:
-            for task in self._tasks:
+            for task in self._following.values():
                 task.cancel()

@@ -4,9 +4,8 @@ from __future__ import annotations
 
 import argparse
 
-from btlang.arguments import port
+from btlang.task.options import add_address_options
 
-PORT = 8443
 USER_ACTS = (
     "list", "add", "passwd", "role", "remove", "token", "tokens", "revoke", "logout", "trail", "backup", "restore",
 )  # fmt: skip
@@ -15,13 +14,11 @@ USER_ACTS = (
 
 def add_serve_options(parser: argparse.ArgumentParser) -> None:
     """Those of `btc serve`."""
-    parser.add_argument(
-        "--host", default="127.0.0.1", metavar="ADDRESS", help="where to listen (default: this computer alone)"
-    )
-    parser.add_argument("--port", type=port, default=PORT, metavar="PORT", help="which port (default: %(default)s)")
+    add_address_options(parser)
     parser.add_argument("--cert", metavar="FILE", help="a certificate (PEM) instead of its own; needs --key")
     parser.add_argument("--key", metavar="FILE", help="the key of the certificate")
     parser.add_argument("--no-tls", action="store_true", help="plain HTTP, on this computer alone")
+    parser.add_argument("--until-eof", action="store_true", help="end when standard input does")
 
 
 def add_user_options(parser: argparse.ArgumentParser) -> None:

@@ -6,7 +6,8 @@ import getpass
 import sys
 import time
 
-from btlang.server.command import require_server, server_folder, tell_changes
+from btlang.server.command import server_folder, tell_changes
+from btlang.task.companion import require_server
 from btlang.task.messages import wrong
 from btlang.task.moments import shown
 from btlang.text.escaping import one_line

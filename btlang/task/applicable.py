@@ -9,13 +9,13 @@ from btlang.task.messages import wrong
 
 _UP = (
     "robot", "world", "keywords", "rules", "store", "durable", "keep", "record", "no_recordings", "allow_keywords",
-    "include_root", "speed",
+    "include_root", "speed", "serve", "host", "port", "join", "code",
 )  # fmt: skip
 _ADD = ("code", "priority", "label", "restart", "set", "keywords", "json")
 _ROBOT: Mapping[str, Sequence[str]] = {
     "up": _UP, "down": ("json",), "status": ("json",), "report": ("since", "json"), "stop": ("reason", "json"),
     "release": ("json",), "pause": ("json",), "resume": ("json",), "step": ("json",), "say": ("json",),
-    "unit": _UP, "backup": ("store",), "restore": ("store",),
+    "unit": _UP, "backup": ("store",), "restore": ("store",), "invite": (), "revoke": (), "invited": ("json",),
 }  # fmt: skip
 _TASK: Mapping[str, Sequence[str]] = {
     "add": (*_ADD, "at", "by"), "list": ("all", "live", "limit", "label", "json"), "show": ("json",),
@@ -28,7 +28,9 @@ _TASK: Mapping[str, Sequence[str]] = {
 """By the acts, the options that mean something there; `--name` always does."""
 ROBOT_ACTS, TASK_ACTS = tuple(_ROBOT), tuple(_TASK)
 """What `btc robot` and `btc task` do."""
-_NO_WORDS = ("up", "down", "status", "report", "release", "pause", "resume", "step", "unit")
+FLEET_ACTS = ("invite", "revoke", "invited")
+"""Those of `btc robot` that are about a server's robots elsewhere."""
+_NO_WORDS = ("up", "down", "status", "report", "release", "pause", "resume", "step", "unit", "invited")
 _MOST_WORDS = {"list": 0, "schedules": 0, "trail": 0, "put": 2}
 """Where it isn't one."""
 _NOT_GIVEN = object()
@@ -48,6 +50,9 @@ def check_robot_words(options: argparse.Namespace) -> None:
     if options.act == "stop":
         return  # whatever else is typed: it stops
     _check(options, found, _ROBOT[options.act])
+    for each, other in (("host", "serve"), ("port", "serve"), ("code", "join")):
+        if each in found and other not in found:
+            raise wrong(options.act, f"{options.flags[each]} needs {options.flags[other]}")
     if options.act in _NO_WORDS:
         _check_count(options, 0)
     elif options.act != "say":  # which says all of them

@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 import argparse
+import re
 
-from btlang.arguments import at_least, between, duration, speed
+from btlang.arguments import at_least, between, duration, port, speed
 from btlang.diagnostics.errors import MissionError
 from btlang.task.applicable import ROBOT_ACTS, TASK_ACTS, note_given
 
@@ -16,13 +17,16 @@ def add_robot_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--world", metavar="FILE", help="world file")
     parser.add_argument("--keywords", action="append", default=[], metavar="FILE", help="keyword file")
     add_layer_options(parser)
+    add_companion_options(parser)
     parser.add_argument("--include-root", metavar="DIR", help="let missions include files below this folder")
     parser.add_argument("--speed", type=speed, default="real", metavar="SPEED", help="real, max or a factor")
     parser.add_argument("--reason", default="", metavar="TEXT", help="why, for others to read")
     parser.add_argument("--since", metavar="TIME", help="where a report begins (default: seven days ago)")
     _add_json(parser)
     parser.add_argument("act", choices=ROBOT_ACTS, metavar="ACT", help=", ".join(ROBOT_ACTS))
-    parser.add_argument("item", nargs="*", default=[], metavar="FILE", help="what to back up to, to restore, or to say")
+    parser.add_argument(
+        "item", nargs="*", default=[], metavar="FILE", help="what to back up to, to restore, or to say; another robot"
+    )
     note_given(parser)
 
 
@@ -43,6 +47,24 @@ def add_layer_options(parser: argparse.ArgumentParser) -> None:
         metavar="NAME|DIR",
         help="let missions bring this pack, or the keyword files below DIR; these run Python (default: none)",
     )
+
+
+def add_companion_options(parser: argparse.ArgumentParser) -> None:
+    """Those of the programs beside a robot's own."""
+    parser.add_argument("--serve", action="store_true", help="bring the server up, too, as btc serve does")
+    add_address_options(parser)
+    parser.add_argument(
+        "--join", type=_server, default="", metavar="ADDRESS", help="a server elsewhere: wss://host:8443"
+    )
+    parser.add_argument("--code", default="", metavar="CODE", help="that of btc robot invite there, the first time")
+
+
+def add_address_options(parser: argparse.ArgumentParser) -> None:
+    """Where a server listens."""
+    parser.add_argument(
+        "--host", default="127.0.0.1", metavar="ADDRESS", help="where it listens (default: this computer alone)"
+    )
+    parser.add_argument("--port", type=port, default=8443, metavar="PORT", help="on which port (default: %(default)s)")
 
 
 def add_task_options(parser: argparse.ArgumentParser) -> None:
@@ -90,6 +112,12 @@ def _robot_name(text: str) -> str:
         return text and checked_name(text)
     except MissionError:
         raise argparse.ArgumentTypeError(f"expected up to 32 letters, digits, '-' and '_', not '{text}'") from None
+
+
+def _server(text: str) -> str:
+    if not re.fullmatch(r"wss://[^\s/?#@]+/?", text):
+        raise argparse.ArgumentTypeError(f"expected an address such as wss://host:8443, not '{text}'")
+    return text.rstrip("/")
 
 
 def _add_json(parser: argparse.ArgumentParser) -> None:

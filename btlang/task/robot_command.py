@@ -20,6 +20,7 @@ from btlang.task.applicable import check_robot_words
 from btlang.task.backup import restore_backup
 from btlang.task.client import Client, emergency_stop
 from btlang.task.command import tell
+from btlang.task.companion import companions
 from btlang.task.layer import KEPT, TaskLayer
 from btlang.task.manager import DAY
 from btlang.task.missions import MissionReader
@@ -128,21 +129,21 @@ def _up(options: argparse.Namespace) -> int:
             show(f"The robot '{name}' is up. Give it work with: btc task add")
             if layer.emergency.is_latched:
                 show(f"It is stopped: {layer.emergency.reason}. To let it move: btc robot release", sys.stderr)
-            with emergency_signal(partial(layer.stop, "the keyboard")):
-                while not ended.wait(1.0):
+            with emergency_signal(partial(layer.stop, "the keyboard")), companions(options, name, show) as code:
+                while not code and not ended.wait(1.0):
                     pass
         finally:
             door.close()
     finally:
         ended_well = layer.close()
     show(f"The robot '{name}' is down.")
-    return 0 if ended_well else 1
+    return code or (0 if ended_well else 1)
 
 
 def _unit(options: argparse.Namespace) -> str:
     """A unit of systemd that brings the robot up with these options."""
     words = [sys.executable, "-m", "btlang", "robot", "up"]
-    for option in ("name", "robot", "world", "rules", "store", "record", "include_root"):
+    for option in ("name", "robot", "world", "rules", "store", "record", "include_root", "join", "code"):
         value = getattr(options, option)
         if value and value != "simulated":
             words += [f"--{option.replace('_', '-')}", os.path.abspath(value) if os.path.exists(value) else value]
@@ -151,6 +152,7 @@ def _unit(options: argparse.Namespace) -> str:
             words += [option, os.path.abspath(each) if os.path.exists(each) else each]
     words += [] if options.speed == "real" else ["--speed", str(options.speed)]
     words += [] if options.keep is None else ["--keep", f"{options.keep:g}"]
+    words += ["--serve", "--host", options.host, "--port", str(options.port)] if options.serve else []
     words += ["--durable"] * options.durable + ["--no-recordings"] * options.no_recordings
     folder = os.getcwd()
     for word in (*words, folder):

@@ -14,7 +14,7 @@ from btlang.gc_pause import keep_for_good
 from btlang.ros.available import require_interfaces, require_ros
 from btlang.ros.command import add_body_options, add_namespace, platform_of
 from btlang.ros.ending import EndingSignals, ending_signals
-from btlang.task.options import add_layer_options
+from btlang.task.options import add_companion_options, add_layer_options
 from btlang.text.output import show
 
 PACKAGES = ("diagnostic_msgs", "lifecycle_msgs", "std_msgs", "std_srvs")
@@ -38,6 +38,7 @@ def add_node_options(parser: argparse.ArgumentParser) -> None:
         help="configure and activate the node at once (default), or leave that to a lifecycle manager",
     )
     add_layer_options(parser)
+    add_companion_options(parser)
     parser.add_argument("--ros-args", nargs=argparse.REMAINDER, help="all further arguments are for ROS 2")
 
 
@@ -62,6 +63,7 @@ def _serve(options: argparse.Namespace, came: EndingSignals) -> int:
     from btlang.ros.node import SpunNode
     from btlang.run.controls import Controls
     from btlang.run.emergency import emergency_signal
+    from btlang.task.companion import companions
     from btlang.task.robot_command import layer_options
     from btlang.task.socket_server import SocketServer
 
@@ -95,12 +97,16 @@ def _serve(options: argparse.Namespace, came: EndingSignals) -> int:
                 if node.error is not None:
                     raise node.error
                 node.trigger_activate()
-            with emergency_signal(partial(node.emergency_stop, "the keyboard")), stopping:
+            with (
+                emergency_signal(partial(node.emergency_stop, "the keyboard")),
+                stopping,
+                companions(options, robot, show) as code,
+            ):
                 spun.start()
                 door.start()
                 keep_for_good()
                 show(f"btlang ros-node: ready as {node.get_fully_qualified_name()}; Ctrl-C ends it")
-                while not came.numbers:
+                while not code and not came.numbers:
                     controls.wait(None)
                 node.halt()
                 spun.settle(_ANSWERS)
@@ -111,4 +117,4 @@ def _serve(options: argparse.Namespace, came: EndingSignals) -> int:
                 spun.close()
             finally:
                 node.release()
-    return 128 + came.numbers[0]
+    return 128 + came.numbers[0] if came.numbers else code

@@ -1,0 +1,121 @@
+"""Programs beside a robot's own, which can't delay it: its server (`--serve`), what dials another one (`--join`)."""
+
+from __future__ import annotations
+
+import json
+import os
+import subprocess
+import sys
+import threading
+from collections.abc import Callable, Iterator, Sequence
+from contextlib import contextmanager
+from importlib.util import find_spec
+
+from btlang.diagnostics.diagnostic import diagnostic
+from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.reading import reason_of
+from btlang.task.paths import data_folder
+from btlang.text.source import NOWHERE
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    import argparse
+
+_AGAIN = 1.0  # seconds until one that crashed is started again
+_PATIENCE = 10.0  # seconds that it has to end
+_ENDED = 0, 2, 130, 143
+"""Exit codes of one that has nothing more to do, or that was refused: trying again wouldn't help."""
+
+
+_PACKAGES = ("argon2", "cryptography", "itsdangerous", "starlette", "uvicorn", "websockets")
+
+
+def require_server() -> None:
+    """Raises MissionError (BT200) if a package of the extra `server` isn't installed."""
+    for package in _PACKAGES:
+        if find_spec(package) is None:
+            raise MissionError([diagnostic("BT200", NOWHERE, package=package)])
+
+
+class Companion:
+    """A module of btlang as a process. It ends when its standard input, whose first line is `given`, does: also if this
+    process is killed. `tell` gets its lines, and what becomes of it.
+    """
+
+    def __init__(self, name: str, words: Sequence[str], given: str, tell: Callable[[str], object]) -> None:
+        self._name, self._given, self._tell = name, given, tell
+        self._command = [sys.executable, "-P", "-m", *words]  # -P: a file beside the mission is no module
+        self._spoke, self._closed = threading.Event(), threading.Event()
+        self._process = self._begun()
+        self._thread = threading.Thread(target=self._keep, daemon=True, name=f"btlang {name}")
+
+    def start(self) -> int:
+        """Waits for its first line; returns its exit code if it ended before that, else 0."""
+        self._thread.start()
+        self._spoke.wait()
+        return self._process.poll() or 0
+
+    def close(self) -> None:
+        """Ends it. May be called twice."""
+        self._closed.set()
+        self._process.terminate()
+        try:
+            self._process.wait(_PATIENCE)
+        except subprocess.TimeoutExpired:
+            self._process.kill()
+        self._thread.join(_PATIENCE)
+
+    def _begun(self) -> subprocess.Popen[str]:
+        process = subprocess.Popen(self._command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
+        assert process.stdin is not None
+        try:
+            process.stdin.write(f"{self._given}\n")
+            process.stdin.flush()
+        except OSError:  # it has ended, and its exit code says why
+            pass
+        return process
+
+    def _keep(self) -> None:
+        while True:
+            process = self._process
+            assert process.stdin is not None
+            assert process.stdout is not None
+            with process.stdout, process.stdin:
+                for line in process.stdout:
+                    self._tell(line.rstrip())
+                    self._spoke.set()
+                code = process.wait()
+            if self._closed.is_set() or code in _ENDED or not self._spoke.is_set():
+                self._spoke.set()
+                return
+            self._tell(f"The {self._name} ended with exit code {code}; it starts again.")
+            if self._closed.wait(_AGAIN):
+                return
+            try:
+                self._process = self._begun()
+            except OSError as error:
+                self._tell(f"The {self._name} can't start: {reason_of(error)}")
+                return
+
+
+@contextmanager
+def companions(options: argparse.Namespace, robot: str, tell: Callable[[str], object]) -> Iterator[int]:
+    """Those that the options of `add_companion_options` ask for; the exit code of one that can't come up, else 0.
+
+    Raises MissionError (BT200).
+    """
+    started: list[Companion] = []
+    if options.serve or options.join:
+        require_server()
+    if options.serve:
+        words = ["btlang", "serve", "--until-eof", "--host", options.host, "--port", str(options.port)]
+        started.append(Companion("server", words, "", tell))
+    if options.join:
+        kept = os.path.join(data_folder(robot), "server.json")
+        settings = {"robot": robot, "address": options.join, "code": options.code, "kept": kept}
+        started.append(Companion("link to the server", ["btlang.server.dialer"], json.dumps(settings), tell))
+    try:
+        yield max([each.start() for each in started], default=0)
+    finally:
+        for each in started:
+            each.close()

@@ -1,0 +1,264 @@
+"""Robots of other computers: each is a process here, in folders of its own, behind a cable that can be cut."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import signal
+import subprocess
+import sys
+import tempfile
+import threading
+import time
+from collections.abc import Callable, Iterator
+from contextlib import closing
+from pathlib import Path
+from typing import Any
+
+import pytest
+from websockets.sync.client import ClientConnection
+
+from btlang.diagnostics.errors import MissionError
+from btlang.server.accounts import Accounts
+from btlang.server.clients import FORBIDDEN
+from btlang.server.fleet import VALID, Fleet, pin_in
+from tests.server.cable import Cable
+from tests.server.doors import Door, Reply, close_code, received
+from tests.task.layers import LONG, wait_until
+
+
+class Elsewhere:
+    """`btc robot up --join` on a computer of its own, as far as folders can be one."""
+
+    def __init__(self, port: int, code: str, folder: Path | None = None) -> None:
+        self.folder = folder or Path(tempfile.mkdtemp(prefix="bt"))
+        self.environment = {
+            **os.environ,
+            "XDG_DATA_HOME": str(self.folder / "data"),
+            "XDG_RUNTIME_DIR": str(self.folder),
+        }
+        words = ["robot", "up", "--join", f"wss://127.0.0.1:{port}", *(["--code", code] if code else [])]
+        self.process = subprocess.Popen(
+            [sys.executable, "-m", "btlang", *words], env=self.environment, text=True,
+            stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
+        )  # fmt: skip
+        self.lines: list[str] = []
+        self._thread = threading.Thread(target=self._read)
+        self._thread.start()
+
+    def told(self, words: str) -> None:
+        wait_until(lambda: any(words in line for line in self.lines))
+
+    def dialer(self) -> int:
+        """The process that dials."""
+        children = Path(f"/proc/{self.process.pid}/task/{self.process.pid}/children").read_text(encoding="ascii")
+        return int(children.split()[0])
+
+    def close(self) -> None:
+        self.process.terminate()
+        self.process.wait(LONG)
+        self._thread.join(LONG)
+
+    def _read(self) -> None:
+        assert self.process.stdout is not None
+        with self.process.stdout as lines:
+            self.lines.extend(lines)
+
+
+def btc(door: Door, *words: str) -> str:
+    done = subprocess.run(
+        [sys.executable, "-m", "btlang", *words], env=door.environment, capture_output=True, text=True, timeout=LONG
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def invited(door: Door, name: str) -> str:
+    return btc(door, "robot", "invite", name).split()[-1]
+
+
+@pytest.fixture
+def cable(door: Door) -> Iterator[Cable]:
+    with closing(Cable(door.port)) as cable:
+        yield cable
+
+
+@pytest.fixture
+def kim(door: Door, cable: Cable) -> Iterator[Elsewhere]:
+    code = invited(door, "kim")
+    with closing(Elsewhere(cable.port, code)) as robot:
+        wait_until(lambda: is_up(door, "kim"))
+        yield robot
+    btc(door, "robot", "revoke", "kim")
+    shutil.rmtree(robot.folder)
+
+
+def listed(door: Door) -> dict[str, dict[str, Any]]:
+    return {each["name"]: each for each in door.ask("GET", "/api/robots", **door.log_in("vic")).data["robots"]}
+
+
+def is_up(door: Door, name: str) -> bool:
+    return bool(listed(door).get(name, {}).get("up"))
+
+
+def command(door: Door, name: str, **fields: Any) -> Reply:
+    return door.ask("POST", "/api/commands", {"robot": name, **fields}, **door.log_in("olga"))
+
+
+def in_background(work: Callable[[], Any]) -> tuple[threading.Thread, list[Any]]:
+    results: list[Any] = []
+    thread = threading.Thread(target=lambda: results.append(work()))
+    thread.start()
+    return thread, results
+
+
+def tasks(door: Door) -> list[str]:
+    return [task["mission"] for task in command(door, "kim", command="list").data["data"]["tasks"]]
+
+
+def test_a_robot_elsewhere_is_like_one_here(door: Door, kim: Elsewhere) -> None:
+    assert listed(door)["kim"]["elsewhere"]
+    with door.socket(Cookie=door.log_in("olga")["cookie"]) as socket:
+        socket.send(json.dumps({"id": 1, "type": "subscribe", "robots": ["kim"], "rate": 20}))
+        socket.send(json.dumps({"id": 2, "robot": "kim", "command": "submit", "text": "wait 100 s"}))
+        assert received(socket, type="run", robot="kim", task=1)["nodes"]
+        assert received(socket, type="statuses", robot="kim")["changes"]
+        began = time.monotonic()
+        stopped = door.ask("POST", "/api/stop", {"robot": "kim", "reason": "test"}, **door.log_in("vic"))
+        assert (stopped.status, stopped.data["ok"]) == (200, True)
+        assert time.monotonic() - began < 2.0
+        assert received(socket, type="change", robot="kim", state="killed")["cause"]
+    state = command(door, "kim", command="status").data["data"]
+    assert state["stopped"] == "emergency stop by vic: test"
+    assert "last seen" in btc(door, "robot", "invited")
+
+
+def test_a_command_whose_link_breaks_is_done_once(door: Door, cable: Cable, kim: Elsewhere) -> None:
+    for lost in (cable.out_open, cable.in_open):  # on its way to the robot, and its answer
+        mission = f"wait {100 + len(tasks(door))} s"
+        lost.clear()
+        thread, replies = in_background(lambda text=mission: command(door, "kim", command="submit", text=text))
+        time.sleep(0.5)
+        assert not replies
+        cable.cut()
+        thread.join(LONG)
+        assert replies[0].status == 200
+        assert tasks(door).count(mission) == 1
+
+
+def test_a_stop_that_did_not_arrive_is_told_and_never_sent_again(door: Door, cable: Cable, kim: Elsewhere) -> None:
+    cable.out_open.clear()
+    thread, replies = in_background(lambda: door.ask("POST", "/api/stop", {"robot": "kim"}, **door.log_in("vic")))
+    time.sleep(0.5)
+    cable.cut()
+    thread.join(LONG)
+    assert replies[0].status == 503
+    assert "STOP IT WHERE IT STANDS" in replies[0].data["text"]
+    wait_until(lambda: is_up(door, "kim"))
+    assert not command(door, "kim", command="status").data["data"]["stopped"]
+
+
+def test_who_knew_what_was_done_is_gone(door: Door, cable: Cable, kim: Elsewhere) -> None:
+    cable.in_open.clear()
+    thread, replies = in_background(lambda: command(door, "kim", command="submit", text="wait 100 s"))
+    time.sleep(0.5)
+    os.kill(kim.dialer(), signal.SIGKILL)
+    cable.cut()
+    thread.join(LONG)
+    assert replies[0].status == 503
+    assert "it may have done it" in replies[0].data["text"]
+    kim.told("starts again")
+    wait_until(lambda: is_up(door, "kim"))
+    assert tasks(door) == ["wait 100 s"]
+
+
+def test_a_robot_that_is_revoked_is_gone_at_once(door: Door, cable: Cable) -> None:
+    code = invited(door, "lee")
+    with closing(Elsewhere(cable.port, code)) as robot:
+        wait_until(lambda: is_up(door, "lee"))
+        robot.close()
+        with closing(Elsewhere(cable.port, "", robot.folder)) as again:  # its key is good without the code
+            wait_until(lambda: is_up(door, "lee"))
+            with closing(Elsewhere(cable.port, code)) as other:
+                other.told("the server refuses it")  # which is good once
+            btc(door, "robot", "revoke", "lee")
+            assert "lee" not in listed(door)
+            again.told("the server refuses it")
+            assert again.process.poll() is None  # the robot itself goes on
+    trail = door.user("trail")
+    assert "lee from 127.0.0.1: join: ok" in trail
+    assert " from 127.0.0.1: join: refused" in trail
+
+
+def test_another_server_is_told_nothing(door: Door, cable: Cable) -> None:
+    code = invited(door, "max")
+    end = "A" if code[-1] != "A" else "B"
+    with closing(Elsewhere(cable.port, code[:-1] + end)) as robot:
+        robot.told("its certificate isn't that of the server which invited this robot; nothing was sent")
+    with closing(Elsewhere(cable.port, "hello")) as robot:
+        robot.told("a code is what 'btc robot invite' prints, whole")
+    with closing(Elsewhere(cable.port, "")) as robot:
+        robot.told("it needs a --code")
+    assert not is_up(door, "max")
+
+
+def test_who_says_nothing_sensible_does_not_join(door: Door) -> None:
+    for text in ("", "{", "[]", '{"type":"join"}', '{"key": "x", "code": 1, "instance": null}') * 4:
+        with door.socket(path="/api/join") as socket:
+            socket.send(text)
+            assert json.loads(socket.recv(LONG))["type"] == "refused"
+    assert door.user("trail").count("join: refused") < 20  # a flood of them doesn't fill the disk
+
+
+def asked_to_watch(socket: ClientConnection) -> None:
+    while not json.loads(socket.recv(LONG)).get("request"):
+        pass
+
+
+def test_a_robot_may_say_anything(door: Door) -> None:
+    """What it says can't hurt the server: its words are text, and its files are not on this computer."""
+    code, key = invited(door, "eve"), "k" * 40
+    join = {"type": "join", "key": key, "code": code, "instance": "1"}
+    hello = {"type": "hello", "change": 0, "words": {"keywords": ["/etc/passwd"], "world": "/etc/passwd"}}
+    with door.socket(path="/api/join") as socket:
+        socket.send(json.dumps(join))
+        assert json.loads(socket.recv(LONG)) == {"type": "joined", "name": "eve"}
+        for line in (b"[]\n", b"5\n", b"{}\n", b'{"type": "statuses"}\n', b"\xff\n", b"x" * 200_000):
+            asked_to_watch(socket)
+            socket.send(line)
+            for answer in ("{}", '{"id": 1}', '{"id": "x", "answer": 5}', '{"type": "watched"}'):
+                socket.send(answer)
+        asked_to_watch(socket)
+        socket.send(json.dumps(hello).encode() + b"\n")
+        wait_until(lambda: is_up(door, "eve"))
+        checked = door.ask("POST", "/api/check", {"text": "wave", "robot": "eve"}, **door.log_in("vic"))
+        assert checked.data["ok"]
+        socket.send("[]")
+        assert close_code(socket) == FORBIDDEN
+    btc(door, "robot", "revoke", "eve")
+
+
+def test_codes(tmp_path: Path) -> None:
+    now = [0.0]
+    with closing(Accounts(str(tmp_path))) as accounts:
+        fleet = Fleet(accounts.database, clock=lambda: now[0])
+        first = fleet.invite("kim", b"p" * 32)
+        second = fleet.invite("kim", b"p" * 32)  # the first one is good no longer
+        assert pin_in(second) == b"p" * 32
+        assert fleet.admitted("a" * 40, first) is None
+        now[0] = VALID + 1
+        assert fleet.admitted("a" * 40, second) is None
+        third = fleet.invite("kim", b"p" * 32)
+        assert fleet.admitted("a" * 40, third) is not None
+        assert fleet.admitted("a" * 40, third) is not None  # the answer may have been lost
+        assert fleet.admitted("b" * 40, third) is None
+        with pytest.raises(MissionError, match="revoke it first"):
+            fleet.invite("kim", b"p" * 32)
+        fleet.revoke("kim")
+        assert fleet.admitted("a" * 40, third) is None
+        with pytest.raises(MissionError, match="isn't known"):
+            fleet.revoke("kim")
+    for wrong in ("", "btr_", third[:-4], third + "AAAA", "btr_\0"):
+        with pytest.raises(ValueError, match=r"code|base64|[Pp]adding|string"):
+            pin_in(wrong)
