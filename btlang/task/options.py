@@ -115,7 +115,7 @@ def _robot_name(text: str) -> str:
 
 
 def _server(text: str) -> str:
-    if not re.fullmatch(r"wss://[^\s/?#@]+/?", text):
+    if text and not re.fullmatch(r"wss://[^\s/?#@]+/?", text):
         raise argparse.ArgumentTypeError(f"expected an address such as wss://host:8443, not '{text}'")
     return text.rstrip("/")
 
