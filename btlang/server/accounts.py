@@ -10,8 +10,9 @@ from collections.abc import Callable
 
 from btlang.record import Record
 from btlang.server.roles import Role
+from btlang.task.backup import fill_from_backup, write_backup
 from btlang.task.checks import refused
-from btlang.task.database import Mode
+from btlang.task.database import Mode, store_error
 from btlang.task.migrations import migrate
 from btlang.task.rows import columns_of, from_row, insert
 from btlang.task.sqlite import Sqlite
@@ -26,6 +27,7 @@ IDLE, LONGEST = 8 * 3600.0, 7 * 86_400.0
 """Seconds after which a session ends that nobody uses, and after which every one does."""
 _NOTED = 60.0  # seconds between two notes that a session or token is used
 _TOKEN = "btl_"
+_NOT_COPIED = ("session",)  # else a restore would bring back one that was logged out
 _STEPS = [
     (
         "CREATE TABLE version (number BIGINT NOT NULL)",
@@ -121,12 +123,11 @@ class Accounts:
 
     def users(self) -> list[User]:
         """All, by name."""
-        return [user.replace(role=Role(user.role)) for user in self._all(User, "user", "1 = 1 ORDER BY name")]
+        return self._all(User, "user", "1 = 1 ORDER BY name")
 
     def user(self, name: str) -> User | None:
         """None if there is no such user."""
-        user = self._one(User, "user", "name = ?", name)
-        return None if user is None else user.replace(role=Role(user.role))
+        return self._one(User, "user", "name = ?", name)
 
     def add(self, name: str, role: Role, password: str) -> User:
         """A new user with the hash of a password. Raises MissionError (BT187) if there is one of that name."""
@@ -226,6 +227,19 @@ class Accounts:
         """The trail, the newest first."""
         return self._all(Entry, "entry", "1 = 1 ORDER BY number DESC LIMIT ?", limit)
 
+    def backup(self, path: str) -> None:
+        """Writes all but the sessions into a new SQLite file for its owner alone, as it is at one moment. Raises
+        StoreError, also if there's such a file already.
+        """
+        write_backup(self._database, path, _STEPS, _NOT_COPIED)
+
+    def restore(self, path: str) -> None:
+        """Takes over what `backup` wrote, also that of an older btlang. Raises MissionError (BT196) if it's that of a
+        newer one, and StoreError if there are users here or the file is no backup; then nothing is changed.
+        """
+        fill_from_backup(self._database, path, _STEPS, _NOT_COPIED)
+        self._changed()
+
     def _identified(self, name: str, id: str, *, is_session: bool) -> Identity | None:
         user = self.user(name)
         return None if user is None else Identity(user.name, user.role, id, is_session)
@@ -251,7 +265,11 @@ class Accounts:
     def _all(self, kind: type[R], table: str, condition: str, *values: object) -> list[R]:
         with self._database.transaction(Mode.READ) as execute:
             rows = execute(f"SELECT {columns_of(kind)} FROM {table} WHERE {condition}", values)
-        return [from_row(kind, row) for row in rows]
+        try:
+            found = [from_row(kind, row) for row in rows]
+            return [each.replace(role=Role(each.role)) if isinstance(each, User) else each for each in found]
+        except (ValueError, TypeError) as error:
+            raise store_error(self._database.place, f"it's damaged: a {table} can't be read") from error
 
 
 def _hash(secret: str) -> str:

@@ -7,7 +7,9 @@ import argparse
 from btlang.arguments import port
 
 PORT = 8443
-USER_ACTS = ("list", "add", "passwd", "role", "remove", "token", "tokens", "revoke", "logout", "trail")
+USER_ACTS = (
+    "list", "add", "passwd", "role", "remove", "token", "tokens", "revoke", "logout", "trail", "backup", "restore",
+)  # fmt: skip
 """What `btc user` does."""
 
 
@@ -26,5 +28,7 @@ def add_user_options(parser: argparse.ArgumentParser) -> None:
     """Those of `btc user`."""
     parser.add_argument("--role", default="viewer", metavar="ROLE", help="viewer, operator, editor or administrator")
     parser.add_argument("act", choices=USER_ACTS, metavar="ACT", help=", ".join(USER_ACTS))
-    parser.add_argument("name", nargs="?", default="", metavar="NAME", help="the name of a user")
+    parser.add_argument(
+        "name", nargs="?", default="", metavar="NAME", help="the name of a user; a file for backup and restore"
+    )
     parser.add_argument("item", nargs="?", default="", metavar="WHAT", help="the name of a token, or a role")

@@ -45,6 +45,9 @@ def _do(options: argparse.Namespace, accounts: Accounts) -> None:
             by = f"{one_line(entry.user)} from {one_line(entry.address)}"
             show(f"{shown(entry.time, now)}  {by}: {one_line(entry.what)}: {one_line(entry.outcome)}")
         return
+    if act in ("backup", "restore"):
+        _copy(options, accounts)
+        return
     if not name:
         raise wrong(act, "it needs the name of a user")
     if act == "tokens":
@@ -53,6 +56,21 @@ def _do(options: argparse.Namespace, accounts: Accounts) -> None:
             show(f"{one_line(token.name)}  {used}")
         return
     show(_changed(options, accounts))
+
+
+def _copy(options: argparse.Namespace, accounts: Accounts) -> None:
+    """A backup of the accounts, or one brought back."""
+    act, path = options.act, options.name
+    if not path:
+        raise wrong(act, "it needs a file")
+    if options.item:
+        raise wrong(act, f"'{one_line(options.item)}' is more than it takes")
+    if act == "restore":
+        accounts.restore(path)
+        show(f"Restored {one_line(path)}.")
+    else:
+        accounts.backup(path)
+        show(f"Wrote {one_line(path)}.")
 
 
 def _changed(options: argparse.Namespace, accounts: Accounts) -> str:
