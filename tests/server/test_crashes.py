@@ -9,6 +9,7 @@ import http.client
 import json
 import random
 import shutil
+import stat
 import statistics
 import subprocess
 import sys
@@ -27,6 +28,7 @@ from websockets.asyncio.client import ClientConnection, connect
 from websockets.exceptions import WebSocketException
 
 from btlang.server.accounts import Accounts
+from btlang.server.door import kept_key
 from btlang.server.roles import Role
 from btlang.task.store import Store, open_store
 from btlang.task.task import FINAL, State
@@ -48,7 +50,7 @@ class Robot:
         self.start()
 
     def start(self) -> None:
-        command = [sys.executable, "-m", "btlang", "robot", "up", "--name", NAME, "--speed", "max", "--no-recordings"]
+        command = [sys.executable, "-m", "btlang", "robot", "up", "--name", NAME, "--speed", "max"]
         self._process = subprocess.Popen(
             command, env=self._environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
         )
@@ -78,12 +80,14 @@ class Client(ABC):
         self.asked = 0.0
         """When the latest request was sent that was answered."""
         self.refusals: Counter[str] = Counter()
-        self.ended = threading.Event()
+        self.ended, self._latest = threading.Event(), float("inf")
         self._problem: BaseException | None = None
         self._thread = threading.Thread(target=self._run)
         self._thread.start()
 
     def close(self) -> None:
+        """Once what has no answer yet has one."""
+        self._latest = time.monotonic() + LONG
         self.ended.set()
         self._thread.join()
         if self._problem is not None:
@@ -94,8 +98,9 @@ class Client(ABC):
         """Until `ended`."""
 
     def ask(self, method: str, path: str, data: object = None) -> dict[str, Any]:
-        """The answer of the robot; nothing for as long as there is none. Raises TimeoutError once this has `ended`."""
+        """The answer of the robot, nothing if there is none. Raises AssertionError some time after `close`."""
         sent = time.monotonic()
+        assert sent < self._latest
         with suppress(OSError, http.client.HTTPException):
             reply = self.door.ask(method, f"{path}?robot={NAME}", data, **self.headers)
             if reply.status in (200, 409):
@@ -245,8 +250,9 @@ def test_server_and_robot_are_killed_in_turn(door: Door) -> None:
                 time.sleep(draw.uniform(0.0, amount(1, 2)))
                 killed = (door, robot)[number % 2]
                 killed.kill()
+                began = time.monotonic()
                 killed.start()
-                waits += answered(clients, time.monotonic())
+                waits += answered(clients, began)
             for client in (*submitters, saver):
                 client.close()
             wait_until(lambda: not store.count_tasks({state for state in State if state not in FINAL}), 120.0)
@@ -291,3 +297,14 @@ def check(store: Store, submitters: list[Submitter], saver: Saver, follower: Fol
     assert [number for number, *_ in changes] == list(range(1, len(changes) + 1))
     ends = Counter(task for _, task, state in changes if State(state) in FINAL)
     assert ends == Counter(task.id for task in tasks)
+
+
+def test_a_secret_is_written_whole_or_made_again(tmp_path: Path) -> None:
+    """A server that is killed at its first start leaves none that is empty."""
+    path = tmp_path / "secret.key"
+    path.touch()
+    key = kept_key(str(tmp_path))
+    assert len(key) == 64
+    assert kept_key(str(tmp_path)) == key == path.read_text()
+    assert stat.S_IMODE(path.stat().st_mode) == 0o600
+    assert list(tmp_path.iterdir()) == [path]
