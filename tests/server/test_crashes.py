@@ -258,10 +258,8 @@ def test_server_and_robot_are_killed_in_turn(door: Door) -> None:
             wait_until(lambda: not store.count_tasks({state for state in State if state not in FINAL}), 120.0)
             wait_until(lambda: follower.changes[-1][0] >= store.latest_change())
         check(store, submitters, saver, follower)
-    unanswered, refused = (
-        sum(each.unanswered for each in submitters),
-        sum((each.refusals for each in clients), Counter()),
-    )
+    unanswered = sum(each.unanswered for each in submitters)
+    refused = sum((each.refusals for each in clients), Counter[str]())
     print(
         f"{kills} kills, {sum(len(each.tasks) for each in submitters)} tasks ({unanswered} without an answer),"
         f" {len(saver.texts)} saves ({saver.unanswered}), {len(follower.changes)} changes over {follower.connections}"
