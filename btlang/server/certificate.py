@@ -38,7 +38,7 @@ def own_certificate(folder: str, host: str, now: datetime | None = None) -> Cert
     private = _key(key)
     if kept is None or kept.public_key() != private.public_key() or _is_old(kept, now) or not _is_for(kept, host):
         kept = _made(private, host, now)
-        _write(certificate, kept.public_bytes(serialization.Encoding.PEM))
+        write_private(certificate, kept.public_bytes(serialization.Encoding.PEM))
     return Certificate(certificate, key, fingerprint(kept))
 
 
@@ -83,12 +83,12 @@ def _key(path: str) -> ec.EllipticCurvePrivateKey:
             return kept
     made = ec.generate_private_key(ec.SECP256R1())
     encoding, form = serialization.Encoding.PEM, serialization.PrivateFormat.PKCS8
-    _write(path, made.private_bytes(encoding, form, serialization.NoEncryption()))
+    write_private(path, made.private_bytes(encoding, form, serialization.NoEncryption()))
     return made
 
 
-def _write(path: str, data: bytes) -> None:
-    """For its owner alone, and whole or not at all."""
+def write_private(path: str, data: bytes) -> None:
+    """For its owner alone, and whole or not at all. Raises OSError."""
     part = f"{path}.{os.getpid()}"
     descriptor = os.open(part, os.O_WRONLY | os.O_CREAT | os.O_TRUNC, 0o600)
     try:

@@ -38,6 +38,7 @@ class _Client:
         self.outlet = Outlet()
         self.allowance = Allowance(0.0)
         self.robots: frozenset[str] | None = None
+        self.after: dict[str, int] = {}
         self.watches = False
         self.waiting: set[asyncio.Task[None]] = set()
 
@@ -160,29 +161,36 @@ class Clients:
         return answer.as_json()
 
     def _subscribe(self, client: _Client, data: dict[str, Any]) -> dict[str, Any]:
-        """{"robots": [...], "rate": N}: by default all robots, at the rate at which they tell."""
-        robots, rate = data.get("robots"), data.get("rate", 0)
+        """{"robots": [...], "rate": N, "after": {...}}: by default all robots, at the rate at which they tell, and only
+        what is to come.
+        """
+        robots, rate, after = data.get("robots"), data.get("rate", 0), data.get("after", {})
         if robots is not None and not (isinstance(robots, list) and all(isinstance(name, str) for name in robots)):
             raise AccessError(400, "'robots' must be a list of names.")
         if not isinstance(rate, int | float) or isinstance(rate, bool) or not 0 <= rate <= 100:
             raise AccessError(400, "'rate' must be a number up to 100.")
+        if not isinstance(after, dict) or not all(type(number) is int and number >= 0 for number in after.values()):
+            raise AccessError(400, "'after' must have the number of a change for each robot.")
         self._unsubscribe(client)
         client.watches, client.allowance = True, Allowance(1.0 / rate if rate else 0.0)
-        client.robots = None if robots is None else frozenset(robots)
+        client.robots, client.after = None if robots is None else frozenset(robots), after
         for link in self._robots.links.values():
-            if client.robots is None or link.name in client.robots:
-                link.add(client.outlet)
+            self._watch(client, link)
         return {"ok": True}
 
     def _unsubscribe(self, client: _Client) -> None:
         client.watches = False
         for link in self._robots.links.values():
-            link.outlets.discard(client.outlet)
+            link.discard(client.outlet)
 
     def _came(self, link: RobotLink) -> None:
         for client in self._clients:
-            if client.watches and (client.robots is None or link.name in client.robots):
-                link.add(client.outlet)
+            if client.watches:
+                self._watch(client, link)
+
+    def _watch(self, client: _Client, link: RobotLink) -> None:
+        if client.robots is None or link.name in client.robots:
+            link.add(client.outlet, client.after.get(link.name))
 
     def _forget(self, client: _Client) -> None:
         self._clients.discard(client)

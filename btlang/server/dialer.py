@@ -23,7 +23,7 @@ from btlang.diagnostics.reading import reason_of
 from btlang.record import Record
 from btlang.server.certificate import pin
 from btlang.server.fleet import pin_in
-from btlang.server.reach import Sockets
+from btlang.server.reach import STREAM, Sockets
 from btlang.text.escaping import one_line
 
 TYPE_CHECKING = False
@@ -94,7 +94,7 @@ class Dialer:
         self._connection: ClientConnection | None = None
         self._answers: dict[str, dict[str, Any] | None] = {}
         self._tasks: set[asyncio.Task[None]] = set()
-        self._watching: asyncio.Task[None] | None = None
+        self._watching: dict[int, asyncio.Task[None]] = {}
 
     async def dial(self) -> None:
         """Until it is cancelled. Raises RefusedError if the server doesn't want it."""
@@ -127,7 +127,9 @@ class Dialer:
                         self._take(json.loads(text))
             finally:
                 self._connection = None
-                self._watch(None)
+                for watching in self._watching.values():
+                    watching.cancel()
+                self._watching.clear()
         self._tell(f"The connection to {self._settings.address} broke.")
 
     def _check_pin(self, connection: ClientConnection) -> None:
@@ -139,7 +141,7 @@ class Dialer:
     def _take(self, message: dict[str, Any]) -> None:
         kind, id = message.get("type"), str(message.get("id", ""))
         if kind == "watch":
-            self._watch(message["request"])
+            self._watch(int(message["stream"]), message["request"])
         elif kind == "stop":
             self._start(self._stop(id))
         elif kind == "command":
@@ -154,10 +156,11 @@ class Dialer:
         self._tasks.add(task)
         task.add_done_callback(self._tasks.discard)
 
-    def _watch(self, request: dict[str, Any] | None) -> None:
-        if self._watching is not None:
-            self._watching.cancel()
-        self._watching = None if request is None else asyncio.create_task(self._tell_all(request))
+    def _watch(self, stream: int, request: dict[str, Any] | None) -> None:
+        if request is not None:
+            self._watching[stream] = asyncio.create_task(self._tell_all(stream, request))
+        elif stream in self._watching:
+            self._watching.pop(stream).cancel()
 
     async def _do(self, id: str, message: dict[str, Any]) -> None:
         try:
@@ -176,13 +179,14 @@ class Dialer:
         except OSError:
             await self._send({"id": id})
 
-    async def _tell_all(self, request: dict[str, Any]) -> None:
+    async def _tell_all(self, stream: int, request: dict[str, Any]) -> None:
         """What happens on the robot, as fast as the connection takes it."""
-        with suppress(OSError):
+        number = stream.to_bytes(STREAM, "big")
+        with suppress(OSError, WebSocketException):
             async with self._sockets.watching(request) as reader:
                 while (data := await reader.read(_PART)) and self._connection is not None:
-                    await self._connection.send(data)
-        await self._send({"type": "watched"})
+                    await self._connection.send(number + data)
+        await self._send({"type": "watched", "stream": stream})
 
     async def _send(self, message: dict[str, Any] | None) -> None:
         with suppress(WebSocketException):  # what is lost is asked for again

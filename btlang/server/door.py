@@ -17,7 +17,7 @@ from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import reason_of
 from btlang.server.app import Api
-from btlang.server.certificate import Certificate
+from btlang.server.certificate import Certificate, write_private
 from btlang.text.source import NOWHERE
 
 TYPE_CHECKING = False
@@ -112,9 +112,7 @@ def tls(certificate: Certificate) -> ssl.SSLContext:
 def kept_key(folder: str) -> str:
     """A secret of the server, made when it is first asked for. Raises OSError."""
     path = os.path.join(folder, "secret.key")
-    with suppress(FileExistsError):
-        descriptor = os.open(path, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600)
-        with os.fdopen(descriptor, "w") as file:
-            file.write(secrets.token_hex(32))
+    if not os.path.exists(path) or os.path.getsize(path) == 0:  # an empty one would be no secret
+        write_private(path, secrets.token_hex(32).encode())
     with open(path, encoding="ascii") as kept:
         return kept.read()

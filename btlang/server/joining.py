@@ -1,6 +1,7 @@
 """Robots of other computers, which dial in at /api/join: the way to them goes over their WebSocket.
 
-Commands and answers are messages of JSON with an `id`, what happens on the robot are bytes. A command that is under way
+Commands and answers are messages of JSON with an `id`. What happens on the robot are bytes behind the number of a
+stream, which both ends know from the message that asked for it. A command that is under way
 when the connection breaks is sent again when it's back: the program that dials (`dialer`) does none twice, as long as
 it is the same `instance`. An emergency stop is never sent again, since it would come when nobody expects it.
 """
@@ -12,6 +13,7 @@ import json
 import secrets
 from collections.abc import AsyncIterator
 from contextlib import asynccontextmanager, suppress
+from itertools import count
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
@@ -21,7 +23,7 @@ from btlang.server.bodies import read_object, text_in
 from btlang.server.clients import FORBIDDEN, REVOKED
 from btlang.server.fleet import Fleet, FleetRobot
 from btlang.server.links import RobotLink, Robots
-from btlang.server.reach import LONGEST
+from btlang.server.reach import LONGEST, STREAM
 from btlang.server.throttle import Throttle
 
 TYPE_CHECKING = False
@@ -39,7 +41,8 @@ class Dialed:
         self.socket: WebSocket | None = None
         self._instance = ""
         self._waiting: dict[str, tuple[dict[str, Any], asyncio.Future[Any]]] = {}
-        self._reader: asyncio.StreamReader | None = None
+        self._streams: dict[int, asyncio.StreamReader] = {}
+        self._numbers = count()
         self._closing: asyncio.Task[None] | None = None
 
     async def ask(self, message: dict[str, Any]) -> Any:
@@ -53,15 +56,15 @@ class Dialed:
     @asynccontextmanager
     async def watching(self, request: dict[str, Any]) -> AsyncIterator[asyncio.StreamReader]:
         """See `Reach`."""
-        reader = self._reader = asyncio.StreamReader(limit=LONGEST)
+        number, reader = next(self._numbers), asyncio.StreamReader(limit=LONGEST)
+        self._streams[number] = reader
         try:
-            await self._send({"type": "watch", "request": request})
+            await self._send({"type": "watch", "stream": number, "request": request})
             yield reader
         finally:
-            if self._reader is reader:
-                self._reader = None
-                with suppress(OSError):
-                    await self._send({"type": "watch", "request": None})
+            del self._streams[number]
+            with suppress(OSError):
+                await self._send({"type": "watch", "stream": number, "request": None})
 
     async def serve(self, socket: WebSocket, instance: str) -> None:
         """As long as the robot is here. A newer socket takes over from an older one, whose other end may be gone."""
@@ -79,7 +82,8 @@ class Dialed:
             if self.socket is socket:
                 self.socket = None
                 self._lose("stop")
-                self._end_watch()
+                for reader in self._streams.values():
+                    reader.feed_eof()
 
     async def _settle(self, instance: str) -> None:
         """What was under way when the connection broke."""
@@ -95,19 +99,18 @@ class Dialed:
             if message["type"] == kind and not answer.done():
                 answer.set_exception(ConnectionResetError("the connection broke"))
 
-    def _end_watch(self) -> None:
-        if self._reader is not None:
-            self._reader.feed_eof()
-
     def _take(self, message: Any) -> None:
         data = message.get("bytes")
         if data is not None:
-            if self._reader is not None:
-                self._reader.feed_data(data)
+            reader = self._streams.get(int.from_bytes(data[:STREAM], "big"))
+            if reader is not None:
+                reader.feed_data(data[STREAM:])
             return
         answer = read_object(message.get("text") or "")
         if answer.get("type") == "watched":
-            self._end_watch()
+            for number, reader in self._streams.items():
+                if number == answer.get("stream"):
+                    reader.feed_eof()
             return
         _, waiting = self._waiting.get(str(answer.get("id")), ({}, None))
         if waiting is None or waiting.done():

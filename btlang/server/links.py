@@ -5,8 +5,8 @@ from __future__ import annotations
 import asyncio
 import json
 import time
-from collections.abc import Callable
-from contextlib import suppress
+from collections.abc import AsyncGenerator, Callable
+from contextlib import aclosing, suppress
 
 from btlang.server.checking import Words
 from btlang.server.outlet import News, Outlet
@@ -24,6 +24,8 @@ _AGAIN = 0.5  # seconds between two looks whether a robot is there
 _SILENT = 15.0  # seconds without a word after which a robot counts as gone
 _PATIENCE = 35.0  # seconds for an answer
 _STOPPED = 3.0  # seconds in which a robot has to say that it has the emergency stop
+_PAGE = 500  # changes that are read at once for a client who comes back
+_BROKEN = (OSError, ValueError, KeyError, TypeError, AttributeError)  # a robot may say anything
 RATE = 20.0
 
 
@@ -33,12 +35,14 @@ class RobotLink:
     def __init__(self, name: str, reach: Reach | None = None, seen: float | None = None) -> None:
         self.name = name
         self.is_elsewhere = reach is not None
-        self.is_up = False
         self.seen = seen
         """When it last said something, in seconds since 1970."""
         self.words = Words()
-        self.outlets: set[Outlet] = set()
         self._reach: Reach = reach or Sockets(name)
+        self._outlets: set[Outlet] = set()
+        self._catching_up: dict[Outlet, asyncio.Task[None]] = {}  # those that don't know the latest change yet
+        self._paging = asyncio.Lock()  # each is a watcher more for the robot
+        self._up = asyncio.Event()
         self._change: int | None = None
         self._run: dict[str, Any] | None = None
         self._statuses: dict[int, str] = {}
@@ -46,9 +50,18 @@ class RobotLink:
         self._robot: dict[str, Any] | None = None
 
     @property
+    def is_up(self) -> bool:
+        """Whether it can be spoken to."""
+        return self._up.is_set()
+
+    @property
     def latest(self) -> dict[str, Any]:
         """What is known of the robot itself: pose, battery, what keeps it from working."""
         return self._robot or {}
+
+    @property
+    def _beginning(self) -> dict[str, Any]:
+        return {"type": "up", "change": self._change}
 
     async def send(self, command: Command, person: str) -> Answer:
         """What it answers. Raises ConnectionError if it isn't up, or doesn't answer."""
@@ -69,49 +82,95 @@ class RobotLink:
             text = f"The emergency stop may not have reached the robot '{self.name}': STOP IT WHERE IT STANDS."
             raise ConnectionError(text) from error
 
-    def add(self, outlet: Outlet) -> None:
-        """A client that is told what is now, and from now on all that happens."""
+    def add(self, outlet: Outlet, after: int | None = None) -> None:
+        """A client that is told what is now, and from now on all that happens; who was here before gets the changes of
+        tasks `after` the last one that he knows first.
+        """
         for message in self._snapshot():
             outlet.put(News(self.name, message))
-        self.outlets.add(outlet)
+        self._outlets.add(outlet)
+        if after is not None:
+            self._catching_up[outlet] = asyncio.create_task(self._catch_up(outlet, after))
+
+    def discard(self, outlet: Outlet) -> None:
+        """A client that is told nothing any more."""
+        self._outlets.discard(outlet)
+        catching_up = self._catching_up.pop(outlet, None)
+        if catching_up is not None:
+            catching_up.cancel()
 
     async def follow(self) -> None:
         """Reads what happens, until it is cancelled; goes on after the last change when the robot is up again."""
         while True:
-            with suppress(OSError, ValueError, KeyError, TypeError, AttributeError):  # it may say anything
-                await self._read()
+            with suppress(*_BROKEN):
+                async with aclosing(self._messages(self._change)) as messages:
+                    async for message in messages:
+                        self._take(message)
             self.leave()
             await asyncio.sleep(_AGAIN)
 
     def leave(self) -> None:
         """It is no longer up."""
         if self.is_up:
-            self.is_up = False
+            self._up.clear()
             self._tell({"type": "away"})
 
-    async def _read(self) -> None:
-        async with self._reach.watching({"rate": RATE, "after": self._change}) as reader:
+    async def _messages(self, after: int | None) -> AsyncGenerator[dict[str, Any]]:
+        """What the robot tells a watcher, until it ends."""
+        async with self._reach.watching({"rate": RATE, "after": after}) as reader:
             while True:
                 async with asyncio.timeout(_SILENT):  # which, unlike wait_for, takes all that is there in one go
                     line = await reader.readline()
                 if not line:
                     return
-                self._take(json.loads(line))
+                yield json.loads(line)
+
+    async def _catch_up(self, outlet: Outlet, after: int) -> None:
+        """Tells a client the changes after one, until it knows all that were told to others."""
+        while True:
+            await self._up.wait()
+            told = self._change or 0
+            if after >= told:
+                break
+            await outlet.wait_for_room()
+            async with self._paging:
+                last, is_all = await self._page(outlet, after)
+            if not is_all and last == after:
+                await asyncio.sleep(_AGAIN)
+            after = max(last, told) if is_all else last  # the task of a change may be deleted by now
+        del self._catching_up[outlet]
+
+    async def _page(self, outlet: Outlet, after: int) -> tuple[int, bool]:
+        """Tells a client some of the changes after one; the number of the last, and whether others know no more."""
+        end = after + _PAGE
+        with suppress(*_BROKEN):
+            async with aclosing(self._messages(after)) as messages:
+                async for message in messages:
+                    if message["type"] == "hello":
+                        after = int(message["change"])
+                    elif message["type"] != "change" or message["number"] > (self._change or 0):
+                        return after, True
+                    else:
+                        after = int(message["number"])
+                        outlet.put(News(self.name, message))
+                        if after >= end:
+                            break
+        return after, False
 
     def _take(self, message: dict[str, Any]) -> None:
         self.seen = time.time()
         kind = message["type"]
         if kind == "hello":
-            self.is_up = True
             if not self.is_elsewhere:  # its files are not on this computer
                 self.words = Words(**message.get("words", {}))
-            self._change = message["change"] if self._change is None else self._change
-            self._tell({"type": "up"})
+            self._change = int(message["change"])
+            self._up.set()
+            self._tell(self._beginning)
             return
         if kind == "alive":
             return
         if kind == "change":
-            self._change = message["number"]
+            self._change = int(message["number"])
         elif kind == "run":
             self._run, self._statuses = message, {}
         elif kind == "statuses":
@@ -123,13 +182,14 @@ class RobotLink:
 
     def _tell(self, message: dict[str, Any]) -> None:
         news = News(self.name, message)
-        for outlet in self.outlets:
-            outlet.put(news)
+        for outlet in self._outlets:
+            if message["type"] != "change" or outlet not in self._catching_up:
+                outlet.put(news)
 
     def _snapshot(self) -> list[dict[str, Any]]:
         if not self.is_up:
             return [{"type": "away"}]
-        messages: list[dict[str, Any]] = [{"type": "up"}]
+        messages = [self._beginning]
         if self._run is not None:
             messages.append(self._run)
             changes = [[index, status] for index, status in self._statuses.items()]

@@ -12,7 +12,7 @@ if TYPE_CHECKING:
     from typing import Any
 
 _MOST = 2000
-"""Messages that may wait, beside statuses. A client that reads so slowly begins anew."""
+"""Messages that may wait, beside statuses. A client that reads so slowly has to subscribe again."""
 
 
 class News:
@@ -48,7 +48,7 @@ class Outlet:
         self._statuses: dict[str, News] = {}
         self._states: dict[str, News] = {}
         self._full = False
-        self._news, self._answers = asyncio.Event(), asyncio.Event()
+        self._news, self._answers, self._taken = asyncio.Event(), asyncio.Event(), asyncio.Event()
 
     def put(self, news: News) -> None:
         """Adds a message of a robot."""
@@ -79,10 +79,17 @@ class Outlet:
             async with asyncio.timeout(seconds):
                 await self._answers.wait()
 
+    async def wait_for_room(self) -> None:
+        """Until at most half as many messages wait as may."""
+        while len(self._queue) > _MOST // 2:
+            self._taken.clear()
+            await self._taken.wait()
+
     def take(self) -> list[str]:
         """What there is, in the order of its coming; statuses come last, each the newest."""
         self._news.clear()
         self._answers.clear()
+        self._taken.set()
         for robot in tuple(self._statuses):
             self._flush(robot)
         taken = [*self._queue, *(state.text for state in self._states.values())]

@@ -29,6 +29,8 @@ if TYPE_CHECKING:
 
 LONGEST = 32_000_000
 """Bytes of a line from a robot."""
+STREAM = 4
+"""Bytes of the number of a stream, before what happens on a robot elsewhere."""
 
 
 class Sockets:

@@ -71,10 +71,12 @@ class Feed:
     def watch(self, rate: float = 10.0, after: int | None = None) -> Generator[dict[str, Any]]:
         """Messages, each with its "type", until it is closed or the robot goes down; the caller waits for the next one.
 
-        `after` is the number of the last change of a task that is known: those that came since are told, all of them.
+        The first one, "hello", has the number of the last change of a task that is known. Who comes back gives it as
+        `after`, unless the store is another one by now: then all changes that came since are told, before all else.
         """
         least, most = RATES
-        watcher = _Watcher(self._store.latest_change() if after is None else after)
+        latest = self._store.latest_change()
+        watcher = _Watcher(latest if after is None else min(after, latest))
         if self._current is not None:
             watcher.runs.append(self._current)
         self._watchers.append(watcher)
@@ -109,10 +111,10 @@ class Feed:
             watcher.news.clear()
 
     def _new(self, watcher: _Watcher) -> Iterator[dict[str, Any]]:
-        found = self._store.changes(after=watcher.change, limit=_MOST_CHANGES)
-        for number, change in found:
-            watcher.change = number
-            yield {"type": "change", "number": number, **{name: getattr(change, name) for name in change.fields}}
+        while found := self._store.changes(after=watcher.change, limit=_MOST_CHANGES):
+            for number, change in found:
+                watcher.change = number
+                yield {"type": "change", "number": number, **{name: getattr(change, name) for name in change.fields}}
         while watcher.runs:
             watched = watcher.runs[0]
             yield from _statuses(watcher, watched)

@@ -118,7 +118,9 @@ def stored_version(database: Database, execute: Execute, steps: Sequence[Step] |
     version = rows[0][0]
     if version > len(steps):
         if not found.keys() & tables_of(steps).keys() - {"version"}:
-            raise store_error(database.place, "it has other tables than it should; perhaps it's a copy of something else")
+            raise store_error(
+                database.place, "it has other tables than it should; perhaps it's a copy of something else"
+            )
         known = str(len(steps))
         raise MissionError([diagnostic("BT196", NOWHERE, place=database.place, version=str(version), known=known)])
     for table, expected in tables_of(steps[:version]).items():

@@ -172,10 +172,10 @@ class Store:
         return [(row[-1], change) for row, change in zip(rows, found, strict=True)]
 
     def latest_change(self) -> int:
-        """The number of the last change, 0 if there was none."""
+        """The number of the last change, also if it was deleted since; 0 if there was none."""
         with self._database.transaction(Mode.READ) as execute:
-            [[number]] = execute("SELECT max(number) FROM change")
-        return int(number or 0)
+            [[number]] = execute("SELECT value FROM counter WHERE name = 'change'")
+        return int(number)
 
     def add_schedule(self, schedule: Schedule) -> Schedule:
         """Keeps a new schedule, with an id that no schedule of this store had before."""

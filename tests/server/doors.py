@@ -32,14 +32,18 @@ class Door:
         self.folder = folder
         self.environment = {**os.environ, "XDG_DATA_HOME": str(folder), "XDG_RUNTIME_DIR": str(folder)}
         self.port = free_port()
-        command = [sys.executable, "-m", "btlang", "serve", "--port", str(self.port), *options]
+        self.tls = None if "--no-tls" in options else trusting()
+        self._command = [sys.executable, "-m", "btlang", "serve", "--port", str(self.port), *options]
+        self.start()
+
+    def start(self) -> None:
+        """Also again, on the same port and folder, after its end."""
         self.process = subprocess.Popen(
-            command, env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
+            self._command, env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
         )
         assert self.process.stdout is not None
         self.lines = [self.process.stdout.readline()]
         assert self.lines[0].startswith("The server is up"), self.lines + self.process.stdout.readlines()
-        self.tls = None if "--no-tls" in options else trusting()
 
     def user(self, *words: str, password: str = PASSWORD) -> str:
         """What `btc user` prints."""
@@ -79,8 +83,15 @@ class Door:
         address = f"{scheme}://127.0.0.1:{self.port}{path}"
         return connect(address, ssl=self.tls, additional_headers=headers, proxy=None, open_timeout=LONG)
 
+    def kill(self) -> None:
+        self.process.kill()
+        self._end()
+
     def close(self) -> None:
         self.process.terminate()
+        self._end()
+
+    def _end(self) -> None:
         self.process.wait(LONG)
         assert self.process.stdout is not None
         self.lines += self.process.stdout.readlines()

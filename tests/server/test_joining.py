@@ -23,6 +23,7 @@ from btlang.diagnostics.errors import MissionError
 from btlang.server.accounts import Accounts
 from btlang.server.clients import FORBIDDEN
 from btlang.server.fleet import VALID, Fleet, pin_in
+from btlang.server.reach import STREAM
 from tests.server.cable import Cable
 from tests.server.doors import Door, Reply, close_code, received
 from tests.task.layers import LONG, wait_until
@@ -211,9 +212,11 @@ def test_who_says_nothing_sensible_does_not_join(door: Door) -> None:
     assert door.user("trail").count("join: refused") < 20  # a flood of them doesn't fill the disk
 
 
-def asked_to_watch(socket: ClientConnection) -> None:
-    while not json.loads(socket.recv(LONG)).get("request"):
+def asked_to_watch(socket: ClientConnection) -> int:
+    """The number of the stream."""
+    while not (asked := json.loads(socket.recv(LONG))).get("request"):
         pass
+    return int(asked["stream"])
 
 
 def test_a_robot_may_say_anything(door: Door) -> None:
@@ -225,12 +228,12 @@ def test_a_robot_may_say_anything(door: Door) -> None:
         socket.send(json.dumps(join))
         assert json.loads(socket.recv(LONG)) == {"type": "joined", "name": "eve"}
         for line in (b"[]\n", b"5\n", b"{}\n", b'{"type": "statuses"}\n', b"\xff\n", b"x" * 200_000):
-            asked_to_watch(socket)
-            socket.send(line)
-            for answer in ("{}", '{"id": 1}', '{"id": "x", "answer": 5}', '{"type": "watched"}'):
-                socket.send(answer)
-        asked_to_watch(socket)
-        socket.send(json.dumps(hello).encode() + b"\n")
+            stream = asked_to_watch(socket)
+            socket.send(b"\xff" + line)
+            socket.send(stream.to_bytes(STREAM, "big") + line)
+            for answer in ({}, {"id": 1}, {"id": "x", "answer": 5}, {"type": "watched", "stream": stream}):
+                socket.send(json.dumps(answer))
+        socket.send(asked_to_watch(socket).to_bytes(STREAM, "big") + json.dumps(hello).encode() + b"\n")
         wait_until(lambda: is_up(door, "eve"))
         checked = door.ask("POST", "/api/check", {"text": "wave", "robot": "eve"}, **door.log_in("vic"))
         assert checked.data["ok"]

@@ -13,11 +13,13 @@ from typing import Any
 
 import pytest
 
+from btlang.task.feed import _MOST_CHANGES
 from btlang.task.layer import TaskLayer
 from btlang.task.paths import USUAL_NAME, socket_path
 from btlang.task.task import FINAL, State
 
 from .layers import ask, layer_in, robot_up, submit, wait_for
+from .places import a_task
 
 
 class Watcher:
@@ -74,6 +76,31 @@ def test_who_comes_back_misses_no_change(tmp_path: Path) -> None:
         ask(layer, "cancel", task=2)
         assert late.wait(lambda message: message["type"] == "change")["number"] == 4
         assert len(late.of("change")) == 1
+
+
+def test_all_that_was_missed_comes_first(tmp_path: Path) -> None:
+    with layer_in(tmp_path) as layer:
+        for _ in range(2 * _MOST_CHANGES):
+            layer.store.add(a_task(earliest=1e12))
+        _, *messages = itertools.islice(layer.feed.watch(after=0), 2 * _MOST_CHANGES + 1)
+        assert [message["number"] for message in messages] == list(range(1, 2 * _MOST_CHANGES + 1))
+
+
+def test_numbers_of_another_store_are_unknown(tmp_path: Path) -> None:
+    with layer_in(tmp_path) as layer:
+        submit(layer, "wave", at="in 2 hours")
+        watcher = Watcher(layer, after=1000)
+        assert watcher.of("hello")[0]["change"] == 1
+        ask(layer, "cancel", task=1)
+        assert watcher.wait(lambda message: message["type"] == "change")["number"] == 2
+
+
+def test_numbers_go_on_where_old_changes_were_deleted(tmp_path: Path) -> None:
+    with layer_in(tmp_path) as layer:
+        submit(layer, "wave", at="in 2 hours")
+        ask(layer, "cancel", task=1)
+        assert layer.store.clean(1e12) == 1
+        assert Watcher(layer, after=2).of("hello")[0]["change"] == 2
 
 
 def test_stops_and_pauses_are_told(tmp_path: Path) -> None:
