@@ -25,12 +25,12 @@ def read_robot(robot: Any) -> RobotState | None:
     """The state of a robot, None where there is no robot. For the thread of the run."""
     if robot is None:
         return None
-    hands = (_asked(lambda: robot.holding("left")), _asked(lambda: robot.holding("right")))
-    return RobotState(_asked(lambda: robot.pose), _asked(lambda: robot.battery), *hands)
+    hands = (asked(lambda: robot.holding("left")), asked(lambda: robot.holding("right")))
+    return RobotState(asked(lambda: robot.pose), asked(lambda: robot.battery), *hands)
 
 
-def _asked(ask: Callable[[], Any]) -> Any:
-    """None where the robot has no such sensor, or it is silent."""
+def asked(ask: Callable[[], Any]) -> Any:
+    """What a sensor says; None where the robot has no such one, or it is silent."""
     try:
         return ask()
     except (ActionFailed, AttributeError):

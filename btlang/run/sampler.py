@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from btlang.engine.blackboard import Blackboard
-from btlang.engine.leaves.leaf import ActionFailed
 from btlang.run.bus import INLINE, Bus
 from btlang.run.events import Event, PeriodPassed, Sampled
+from btlang.run.robot_state import asked
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -40,7 +40,4 @@ class Sampler:
 
     def _scan(self, event: PeriodPassed) -> tuple[float, ...]:
         self._next_scan = event.t + 1 / self._scans
-        try:
-            return tuple(float(distance) for distance in event.robot.scan())
-        except (ActionFailed, AttributeError):
-            return ()  # the robot has no scanner, or it is silent
+        return tuple(asked(lambda: [float(distance) for distance in event.robot.scan()]) or ())

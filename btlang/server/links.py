@@ -9,7 +9,7 @@ from collections.abc import AsyncGenerator, Callable
 from contextlib import aclosing, suppress
 
 from btlang.server.checking import Words
-from btlang.server.outlet import News, Outlet
+from btlang.server.outlet import STATES, News, Outlet
 from btlang.server.reach import Sockets
 from btlang.task.messages import Answer, Command, as_json
 from btlang.task.paths import names_up
@@ -47,7 +47,7 @@ class RobotLink:
         self._run: dict[str, Any] | None = None
         self._statuses: dict[int, str] = {}
         self._t = 0.0
-        self._robot: dict[str, Any] | None = None
+        self._states: dict[str, dict[str, Any]] = {}
 
     @property
     def is_up(self) -> bool:
@@ -57,7 +57,7 @@ class RobotLink:
     @property
     def latest(self) -> dict[str, Any]:
         """What is known of the robot itself: pose, battery, what keeps it from working."""
-        return self._robot or {}
+        return self._states.get("robot", {})
 
     @property
     def _beginning(self) -> dict[str, Any]:
@@ -176,8 +176,8 @@ class RobotLink:
         elif kind == "statuses":
             self._statuses.update(message["changes"])
             self._t = message["t"]
-        elif kind == "robot":
-            self._robot = message
+        elif kind in STATES:
+            self._states[kind] = message
         self._tell(message)
 
     def _tell(self, message: dict[str, Any]) -> None:
@@ -194,7 +194,7 @@ class RobotLink:
             messages.append(self._run)
             changes = [[index, status] for index, status in self._statuses.items()]
             messages.append({"type": "statuses", "run": self._run["run"], "t": self._t, "changes": changes})
-        return [*messages, *filter(None, [self._robot])]
+        return [*messages, *self._states.values()]
 
 
 class Robots:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import asyncio
 import json
 from collections import deque
+from collections.abc import Container
 from contextlib import suppress
 
 TYPE_CHECKING = False
@@ -13,6 +14,16 @@ if TYPE_CHECKING:
 
 _MOST = 2000
 """Messages that may wait, beside statuses. A client that reads so slowly has to subscribe again."""
+
+
+STATES = ("map", "robot", "scan")
+"""Kinds of messages of which only the newest one counts."""
+TOPICS = {
+    "tree": ("run", "statuses"), "tasks": ("change",), "events": ("event",), "robot": ("robot",),
+    "map": ("map", "scan"),
+}  # fmt: skip
+"""What somebody may want to hear, with the kinds of messages of each. Whether a robot is up everybody hears."""
+_TOPIC = {kind: topic for topic, kinds in TOPICS.items() for kind in kinds}
 
 
 class News:
@@ -46,17 +57,21 @@ class Outlet:
     def __init__(self) -> None:
         self._queue: deque[str] = deque()
         self._statuses: dict[str, News] = {}
-        self._states: dict[str, News] = {}
+        self._states: dict[tuple[str, str], News] = {}
+        self.topics: Container[str] = TOPICS
+        """Of which the messages are taken."""
         self._full = False
         self._news, self._answers, self._taken = asyncio.Event(), asyncio.Event(), asyncio.Event()
 
     def put(self, news: News) -> None:
         """Adds a message of a robot."""
         kind = news.message["type"]
+        if kind in _TOPIC and _TOPIC[kind] not in self.topics:
+            return
         if kind == "statuses":
             self._merge(news)
-        elif kind == "robot":
-            self._states[news.robot] = news
+        elif kind in STATES:
+            self._states[news.robot, kind] = news
         else:
             if kind == "run":  # after the last statuses of the run before
                 self._flush(news.robot)

@@ -7,12 +7,15 @@ import time
 from collections import deque
 from collections.abc import Callable, Generator, Iterator
 from contextlib import suppress
+from math import isfinite
 
 from btlang.api import Mission
 from btlang.engine.status import IDLE, NAMES
+from btlang.record import Record
 from btlang.run.bus import INLINE
 from btlang.run.events import LOGGED, Event, PeriodPassed, StatusesChanged
 from btlang.run.json_log import as_json
+from btlang.run.robot_state import asked
 from btlang.session import Run
 from btlang.task.allowance import Allowance
 from btlang.task.database import StoreError
@@ -23,6 +26,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+    from btlang.robots.world import World
     from btlang.run.events import Sink
     from btlang.run.robot_state import RobotState
 
@@ -30,6 +34,7 @@ RATES = 0.1, 100.0
 """The least and the most messages of one kind in a second."""
 _ALIVE = 5.0  # seconds after which a watcher of a robot on which nothing happens gets a word nevertheless
 _GATHERED, _GATHERED_AT_MOST = 0.2, 0.01  # of a period, and seconds: what comes so soon after other news goes with it
+_SCANS = 0.5  # seconds between two
 _MOST_EVENTS, _MOST_RUNS, _MOST_CHANGES = 1000, 16, 1000
 
 
@@ -44,15 +49,19 @@ class _Watched:
 class Feed:
     """`sinks` makes the sinks of a run; `watch` tells what happens, beginning with what is now.
 
-    `robot` gives what keeps the robot from working, `words` are where its words and its world are. Methods may be
-    called from any thread.
+    `robot` gives what keeps the robot from working, `words` are where its words and its world are, `world` is its map
+    where it has one. Methods may be called from any thread.
     """
 
-    def __init__(self, store: Store, robot: Callable[[], dict[str, Any]], words: dict[str, Any]) -> None:
-        self._store, self._robot, self._words = store, robot, words
+    def __init__(
+        self, store: Store, robot: Callable[[], dict[str, Any]], words: dict[str, Any], world: World | None = None
+    ) -> None:
+        self._store, self._robot, self._words, self._world = store, robot, words, world
         self._watchers: list[_Watcher] = []
         self._current: _Watched | None = None
         self._state: RobotState | None = None
+        self._scan: list[float | None] = []
+        self._next_scan = 0.0
         store.listeners.append(self.wake)
 
     def sinks(self, task: Task | None, mission: Mission, run: Run) -> list[Sink]:
@@ -82,6 +91,8 @@ class Feed:
         self._watchers.append(watcher)
         try:
             yield {"type": "hello", "change": watcher.change, "words": self._words}
+            if self._world is not None:
+                yield {"type": "map", **_map(self._world)}
             with suppress(StoreError):  # it is closed, or can't be read
                 yield from self._messages(watcher, 1.0 / min(max(rate, least), most))
         finally:
@@ -91,6 +102,9 @@ class Feed:
         """In the thread of the run."""
         if isinstance(event, PeriodPassed):
             self._state = event.state
+            if self._watchers and event.wall >= self._next_scan:
+                self._next_scan = event.wall + _SCANS
+                self._scan = _scan(event)
         elif isinstance(event, StatusesChanged):
             watched.changed = event.wall
         for watcher in tuple(self._watchers):
@@ -114,7 +128,7 @@ class Feed:
         while found := self._store.changes(after=watcher.change, limit=_MOST_CHANGES):
             for number, change in found:
                 watcher.change = number
-                yield {"type": "change", "number": number, **{name: getattr(change, name) for name in change.fields}}
+                yield {"type": "change", "number": number, **_fields(change)}
         while watcher.runs:
             watched = watcher.runs[0]
             yield from _statuses(watcher, watched)
@@ -128,6 +142,9 @@ class Feed:
         if robot != watcher.robot:
             watcher.robot = robot
             yield {"type": "robot", **robot}
+        if self._scan != watcher.scan:
+            watcher.scan = self._scan
+            yield {"type": "scan", "ranges": self._scan}
 
 
 class _Watcher:
@@ -139,6 +156,7 @@ class _Watcher:
         self.runs: deque[_Watched] = deque(maxlen=_MOST_RUNS)
         self.events: deque[tuple[_Watched, Event]] = deque(maxlen=_MOST_EVENTS)
         self.robot: dict[str, Any] = {}
+        self.scan: list[float | None] = []
         self.run = ""
         self.codes = b""
 
@@ -181,3 +199,20 @@ def _state(state: RobotState | None) -> dict[str, Any]:
     place = None if pose is None else [round(pose.x, 3), round(pose.y, 3), round(pose.heading, 1)]
     battery = None if state.battery is None else round(state.battery, 1)
     return {"pose": place, "battery": battery, "left": state.left, "right": state.right}
+
+
+def _scan(event: PeriodPassed) -> list[float | None]:
+    """Metres to what is there, counter-clockwise from straight ahead; None where nothing is."""
+    ranges = asked(lambda: [float(distance) for distance in event.robot.scan()]) or ()
+    return [round(distance, 2) if isfinite(distance) else None for distance in ranges]
+
+
+def _map(world: World) -> dict[str, Any]:
+    """As in a world file."""
+    listed = {kind: getattr(world, kind) for kind in ("boxes", "places", "objects", "people")}
+    found: dict[str, Any] = {kind: [_fields(each) for each in known] for kind, known in listed.items()}
+    return {"walls": world.walls, "dock": None if world.dock is None else _fields(world.dock), **found}
+
+
+def _fields(record: Record) -> dict[str, Any]:
+    return {name: getattr(record, name) for name in record.fields}

@@ -83,7 +83,8 @@ class TaskLayer:
         self._begins = time.time() if begins is None else begins
         self._real = speed == "real"
         self.emergency = EmergencyStop(latch_path(folder), self.session.emergency_stop)
-        self.feed = Feed(self.store, self._hindrances, self.reader.words)
+        knows = self.reader.world is not None or not getattr(self.session.robot, "moves_by_itself", True)
+        self.feed = Feed(self.store, self._hindrances, self.reader.words, self.session.world if knows else None)
         self.emergency.listeners.append(self.feed.wake)
         self.manager = Manager(self.store, keeps, self._needs)
         self.executor = Executor(
