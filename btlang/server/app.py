@@ -23,6 +23,7 @@ from btlang.server.links import RobotLink, Robots
 from btlang.server.metrics import metrics
 from btlang.server.openapi import VERSION, document
 from btlang.server.roles import NEEDED
+from btlang.server.sockets import Sockets
 from btlang.task import messages
 from btlang.task.messages import Answer, Command, read_command
 
@@ -47,7 +48,7 @@ class Api:
     def __init__(self, accounts: Accounts, key: str, robots: Robots | None = None) -> None:
         self.accounts, self.robots = accounts, robots or Robots()
         self.access, self.checker = Access(accounts, key), Checker()
-        self.clients = Clients(self.access, self.robots, self.send)
+        self.sockets, self.clients = Sockets(self.access), Clients(self.robots, self.send)
 
     def app(self) -> ASGIApp:
         """The ASGI application."""
@@ -67,7 +68,7 @@ class Api:
             Route("/openapi.json", lambda request: JSONResponse(document())),
             Route("/live", _word("live")),
             Route("/ready", _word("ready")),
-            WebSocketRoute("/api/ws", self.clients.serve),
+            WebSocketRoute("/api/ws", partial(self.sockets.serve, self.clients)),
         ]
         return _Headers(Starlette(routes=routes, lifespan=self._life, exception_handlers={404: _not_found}))
 
@@ -135,7 +136,7 @@ class Api:
         data = await json_object(request)
         ended = "" if data.get("everywhere") is True else identity.id
         await asyncio.to_thread(self.accounts.log_out, identity.user, ended)
-        await self.clients.check()
+        await self.sockets.check()
         response = JSONResponse({"ok": True})
         response.delete_cookie(COOKIE, secure=True, httponly=True, samesite="strict")
         return response
@@ -170,7 +171,7 @@ class Api:
 
     async def _metrics(self, request: Request) -> Response:
         await self._who(request)
-        return PlainTextResponse(metrics(self.robots.links.values(), len(self.clients)))
+        return PlainTextResponse(metrics(self.robots.links.values(), len(self.sockets)))
 
     async def _missions(self, request: Request) -> Response:
         return await self._of_library(request, messages.Library())

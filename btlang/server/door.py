@@ -79,7 +79,7 @@ async def _serve(
     api: Api, server: uvicorn.Server, door: socket.socket, control: str, ready: Callable[[], object]
 ) -> None:
     async def changed(reader: asyncio.StreamReader, writer: asyncio.StreamWriter) -> None:
-        await api.clients.check()
+        await api.sockets.check()
         writer.close()  # now who told it knows that it holds
 
     with suppress(FileNotFoundError):

@@ -13,6 +13,8 @@ if TYPE_CHECKING:
 
 _MOST = 2000
 """Messages that may wait, beside statuses. A client that reads so slowly begins anew."""
+_MUCH = 4_000_000
+"""Characters of answers and topics that may wait until a client has to read first."""
 
 
 class News:
@@ -47,8 +49,10 @@ class Outlet:
         self._queue: deque[str] = deque()
         self._statuses: dict[str, News] = {}
         self._states: dict[str, News] = {}
+        self._topics: dict[str, deque[str]] = {}
+        self._length = 0  # of answers and topics
         self._full = False
-        self._news, self._answers = asyncio.Event(), asyncio.Event()
+        self._news, self._answers, self._taken = asyncio.Event(), asyncio.Event(), asyncio.Event()
 
     def put(self, news: News) -> None:
         """Adds a message of a robot."""
@@ -66,8 +70,24 @@ class Outlet:
     def say(self, text: str) -> None:
         """Adds an answer, which is never left out."""
         self._queue.append(text)
+        self._length += len(text)
         self._news.set()
         self._answers.set()
+
+    def keep(self, topic: str, text: str, most: int) -> None:
+        """Adds a text of a topic, of which the newest `most` wait; fewer, but one, where much waits already."""
+        waiting = self._topics.setdefault(topic, deque())
+        while waiting and (len(waiting) >= most or self._length > _MUCH):
+            self._length -= len(waiting.popleft())
+        waiting.append(text)
+        self._length += len(text)
+        self._news.set()
+
+    async def has_room(self) -> None:
+        """Until a client that asks for much has read what he got."""
+        while self._length > _MUCH:
+            self._taken.clear()
+            await self._taken.wait()
 
     async def wait(self) -> None:
         """Until there is something."""
@@ -86,11 +106,15 @@ class Outlet:
         for robot in tuple(self._statuses):
             self._flush(robot)
         taken = [*self._queue, *(state.text for state in self._states.values())]
+        for texts in self._topics.values():
+            taken += texts
         if self._full:  # what was left out is said
             taken.append('{"type":"lost"}')
         self._queue.clear()
         self._states.clear()
-        self._full = False
+        self._topics.clear()
+        self._length, self._full = 0, False
+        self._taken.set()
         return taken
 
     def _say(self, text: str) -> None:
