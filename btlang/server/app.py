@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncIterator, Awaitable, Callable
+from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
 from contextlib import asynccontextmanager, suppress
 from functools import partial
 
@@ -12,6 +12,7 @@ from starlette.requests import Request
 from starlette.responses import JSONResponse, PlainTextResponse, Response
 from starlette.routing import Route, WebSocketRoute
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from starlette.websockets import WebSocket
 
 from btlang.diagnostics.errors import MissionError
 from btlang.server.access import COOKIE, Access, AccessError
@@ -23,6 +24,7 @@ from btlang.server.links import RobotLink, Robots
 from btlang.server.metrics import metrics
 from btlang.server.openapi import VERSION, document
 from btlang.server.roles import NEEDED
+from btlang.server.rosbridge import Rosbridge
 from btlang.server.sockets import Sockets
 from btlang.task import messages
 from btlang.task.messages import Answer, Command, read_command
@@ -43,12 +45,13 @@ _HEADERS = {
 
 
 class Api:
-    """What the routes do. `robots` are those of this computer."""
+    """What the routes do. `robots` are those of this computer, `ros` the names of its ROS 2 graph that are allowed."""
 
-    def __init__(self, accounts: Accounts, key: str, robots: Robots | None = None) -> None:
+    def __init__(self, accounts: Accounts, key: str, robots: Robots | None = None, ros: Sequence[str] = ()) -> None:
         self.accounts, self.robots = accounts, robots or Robots()
         self.access, self.checker = Access(accounts, key), Checker()
         self.sockets, self.clients = Sockets(self.access), Clients(self.robots, self.send)
+        self.rosbridge = Rosbridge(self.access, ros) if ros else None
 
     def app(self) -> ASGIApp:
         """The ASGI application."""
@@ -69,6 +72,10 @@ class Api:
             Route("/live", _word("live")),
             Route("/ready", _word("ready")),
             WebSocketRoute("/api/ws", partial(self.sockets.serve, self.clients)),
+            WebSocketRoute(
+                "/api/rosbridge",
+                _no_socket if self.rosbridge is None else partial(self.sockets.serve, self.rosbridge),
+            ),
         ]
         return _Headers(Starlette(routes=routes, lifespan=self._life, exception_handlers={404: _not_found}))
 
@@ -106,6 +113,8 @@ class Api:
                 await following
             self.access.close()
             self.checker.close()
+            if self.rosbridge is not None:
+                await self.rosbridge.close()
 
     def _route(self, path: str, do: Callable[[Request], Awaitable[Response]], method: str) -> Route:
         async def answered(request: Request) -> Response:
@@ -229,5 +238,9 @@ def _word(word: str) -> Callable[[Request], Response]:
     return lambda request: PlainTextResponse(word)
 
 
-def _not_found(request: Request, error: Exception) -> Response:
+async def _no_socket(socket: WebSocket) -> None:
+    await socket.send_denial_response(_not_found())
+
+
+def _not_found(*_: object) -> Response:
     return JSONResponse({"ok": False, "text": "There's nothing at this address.", "code": ""}, 404)

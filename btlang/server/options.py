@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 
-from btlang.arguments import port
+from btlang.arguments import port, ros_name
 
 PORT = 8443
 USER_ACTS = ("list", "add", "passwd", "role", "remove", "token", "tokens", "revoke", "logout", "trail")
@@ -20,6 +20,14 @@ def add_serve_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--cert", metavar="FILE", help="a certificate (PEM) instead of its own; needs --key")
     parser.add_argument("--key", metavar="FILE", help="the key of the certificate")
     parser.add_argument("--no-tls", action="store_true", help="plain HTTP, on this computer alone")
+    parser.add_argument(
+        "--ros",
+        action="append",
+        default=[],
+        type=ros_name,
+        metavar="NAME",
+        help="a name of ROS 2 that clients of rosbridge may use, such as '/btlang/*'; may be given several times",
+    )
 
 
 def add_user_options(parser: argparse.ArgumentParser) -> None:
