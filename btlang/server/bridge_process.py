@@ -23,7 +23,7 @@ _ENDING = 4.0  # seconds for it to end by itself
 class BridgeProcess:
     """See `btlang.ros.bridge`. In one event loop.
 
-    `heard` is called with both parts of each line that it writes, `ended` when it is gone, with a reason if it gave one.
+    `heard` gets both parts of each line that it writes, `ended` its reason, if it gave one, when it is gone.
     """
 
     def __init__(self, heard: Heard, ended: Callable[[str], object]) -> None:

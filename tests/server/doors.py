@@ -73,10 +73,10 @@ class Door:
         assert reply.status == 200, reply.body
         return {"cookie": reply.headers["set-cookie"].partition(";")[0], "x_csrf_token": reply.data["csrf"]}
 
-    def socket(self, **headers: str) -> ClientConnection:
-        """A WebSocket to /api/ws."""
+    def socket(self, path: str = "/api/ws", **headers: str) -> ClientConnection:
+        """A WebSocket."""
         scheme = "ws" if self.tls is None else "wss"
-        address = f"{scheme}://127.0.0.1:{self.port}/api/ws"
+        address = f"{scheme}://127.0.0.1:{self.port}{path}"
         return connect(address, ssl=self.tls, additional_headers=headers, proxy=None, open_timeout=LONG)
 
     def close(self) -> None:

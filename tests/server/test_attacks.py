@@ -204,6 +204,9 @@ def test_frames_that_are_too_much(door: Door) -> None:
         with suppress(ConnectionClosed):
             pieces.send("x" * 50_000 for _ in range(100))
         assert close_code(pieces) in HUNG_UP
+    with door.socket(**token) as binary:
+        binary.send(b"{}")
+        assert close_code(binary) == 1003
     with door.socket(**token) as deep:
         deep.send('{"a":' * 40_000)
         assert received(deep, type="result")["status"] == 400
