@@ -196,7 +196,8 @@ def test_a_viewer_only_listens(door: Door, vic: Page, robot: Robot) -> None:
     assert "Only operators" in vic.refused(
         "send_action_goal", action="/demo/go", action_type="nav2_msgs/NavigateToPose"
     )
-    assert vic.wait(op="action_result")["result"] is False
+    answer = vic.wait(op="action_result")
+    assert (answer["result"], answer["status"]) == (False, 0)
     assert (len(robot.driven.messages), len(robot.goals)) == before
     assert any(line.endswith("vic from 127.0.0.1: publish /demo/cmd_vel: refused") for line in trail(door))
 

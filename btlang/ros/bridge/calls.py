@@ -171,8 +171,7 @@ class Goal:
             self.ended = True
             result = future.result()
             success = result.status == GoalStatus.STATUS_SUCCEEDED
-            told = answer(self._asked, as_data(result.result), success=success)
-            self._tell({**told, "status": result.status})
+            self._tell(answer(self._asked, as_data(result.result), success=success, goal=result.status))
 
     def _end_badly(self, reason: str) -> None:
         if not self.ended:

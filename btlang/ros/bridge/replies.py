@@ -21,11 +21,12 @@ def status(text: str, id: object = None, level: str = "error") -> dict[str, Any]
     return {"op": "status", **about, "level": level, "msg": text}
 
 
-def answer(asked: dict[str, Any], values: object, *, success: bool) -> dict[str, Any]:
-    """What a service call or a goal comes to."""
+def answer(asked: dict[str, Any], values: object, *, success: bool, goal: int = 0) -> dict[str, Any]:
+    """What a service call or a goal comes to; `goal` is the status of a goal in ROS 2, 0 for none."""
     op, name = _ANSWERS[asked["op"]]
     about = {} if asked.get("id") is None else {"id": asked["id"]}
-    return {"op": op, **about, name: asked[name], "values": values, "result": success}
+    ended = {"status": goal} if name == "action" else {}
+    return {"op": op, **about, name: asked[name], "values": values, **ended, "result": success}
 
 
 def failures(asked: dict[str, Any], text: str) -> list[dict[str, Any]]:
