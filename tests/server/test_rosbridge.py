@@ -8,6 +8,7 @@ import shutil
 import signal
 import tempfile
 import time
+from argparse import ArgumentTypeError
 from collections.abc import Iterator
 from contextlib import closing, contextmanager, suppress
 from itertools import count
@@ -25,6 +26,9 @@ from sensor_msgs.msg import Image, LaserScan
 from std_msgs.msg import ByteMultiArray, String
 from std_srvs.srv import SetBool
 
+from btlang.arguments import ros_name
+from btlang.diagnostics.errors import MissionError
+from btlang.ros.available import require_package
 from btlang.ros.goals import GoalServer, HeldGoal
 from btlang.ros.lease import Leases
 from tests.profiles import amount
@@ -145,7 +149,7 @@ def vic(door: Door) -> Iterator[Page]:
         yield Page(socket, door.tokens["vic"])  # type: ignore[attr-defined]
 
 
-def test_a_page_listens_drives_calls_and_sends_a_goal(olga: Page, robot: Robot) -> None:
+def test_a_page_listens_drives_calls_and_sends_a_goal(door: Door, olga: Page, robot: Robot) -> None:
     olga.send("subscribe", topic="/demo/name", type="std_msgs/String", compression="none", throttle_rate=0)
     olga.send("advertise", topic="/demo/cmd_vel", type="geometry_msgs/Twist", latch=False, queue_size=100)
     assert olga.wait(op="publish", topic="/demo/name")["msg"] == {"data": "Ada"}
@@ -168,6 +172,8 @@ def test_a_page_listens_drives_calls_and_sends_a_goal(olga: Page, robot: Robot) 
     wait_until(lambda: robot.goals[-1].request.pose is not begun)
     robot.goals[-1].end(True, robot.action.Result())
     assert olga.wait(op="action_result", result=True)["status"] == 4
+    assert "rclpy" not in Path(f"/proc/{door.process.pid}/maps").read_text()
+    assert "rclpy" in Path(f"/proc/{child_of(door.process.pid)}/maps").read_text()
 
 
 def test_who_is_not_logged_in_gets_nothing(door: Door) -> None:
@@ -302,6 +308,34 @@ def test_who_is_revoked_is_out_at_once(door: Door, robot: Robot) -> None:
         door.user("revoke", "olga", "short")
         assert close_code(socket) == 4001
     wait_until(lambda: len(robot.cancelled) == count + 1)
+
+
+def test_the_last_message_of_who_leaves_is_heard(door: Door, robot: Robot) -> None:
+    with door.socket("/api/rosbridge") as socket:
+        page = Page(socket, door.tokens["olga"])  # type: ignore[attr-defined]
+        page.send("advertise", topic="/demo/cmd_vel", type="geometry_msgs/Twist")
+        heard = len(robot.driven.messages)
+        while len(robot.driven.messages) == heard:  # until the node has found it
+            page.send("publish", topic="/demo/cmd_vel", msg={"linear": {"x": 1.0}})
+            time.sleep(0.05)
+        page.send("publish", topic="/demo/cmd_vel", msg={"linear": {"x": 0.125}})
+    robot.driven.wait(lambda twist: twist.linear.x == 0.125)
+
+
+def test_ros_that_cannot_start(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("ROS_DOMAIN_ID", "500")
+    with new_door("--ros", "*", "--no-tls") as door:
+        door.user("add", "vic")
+        with door.socket("/api/rosbridge", authorization=f"Bearer {door.user('token', 'vic', 'page')}") as socket:
+            assert "ROS_DOMAIN_ID must be from 0 to" in Page(socket).wait(op="status")["msg"]
+            assert close_code(socket) == 1011
+
+
+def test_what_btc_serve_is_not_started_with() -> None:
+    with pytest.raises(ArgumentTypeError, match="begins with /"):
+        ros_name("cmd_vel")
+    with pytest.raises(MissionError, match="no Python package no_such_package"):
+        require_package("no_such_package")
 
 
 def test_so_many_subscriptions_and_no_more(olga: Page) -> None:

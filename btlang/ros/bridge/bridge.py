@@ -10,7 +10,7 @@ from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 
 from btlang.ros.bridge.calls import Call, Goal, Servers
-from btlang.ros.bridge.replies import MOST_CHARACTERS, BridgeError, failures
+from btlang.ros.bridge.replies import MOST_CHARACTERS, BridgeError, failures, reason_of
 from btlang.ros.bridge.topics import Publisher, Subscription
 
 TYPE_CHECKING = False
@@ -53,7 +53,7 @@ class Bridge:
         try:
             client.do[asked["op"]](asked)
         except Exception as error:  # of ROS, too: whoever asks must not end what others use
-            client.fail(asked, _reason(error))
+            client.fail(asked, reason_of(error))
 
     def left(self) -> list[Goal]:
         """The goals that were cancelled and haven't ended."""
@@ -104,14 +104,14 @@ class _Client:
 
     def leave(self) -> list[Goal]:
         """Ends all; the goals that are to be cancelled, and may take a moment for that."""
+        for goal in self._goals.values():
+            goal.cancel()
+        for call in self._calls:
+            call.end()
         for subscription, _ in self._subscriptions.values():
             subscription.end()
         for publisher in self._publishers.values():
             publisher.end()
-        for call in self._calls:
-            call.end()
-        for goal in tuple(self._goals.values()):
-            goal.cancel()
         return list(self._goals.values())
 
     def _subscribe(self, asked: Asked) -> None:
@@ -131,7 +131,7 @@ class _Client:
             subscription.look()
         except Exception as error:
             self._subscriptions.pop(topic)[0].end()
-            self.fail(asked, _reason(error))
+            self.fail(asked, reason_of(error))
 
     def _unsubscribe(self, asked: Asked) -> None:
         topic = asked["topic"]
@@ -189,10 +189,6 @@ class _Client:
             self.fail(asked, f"The answer has {len(text):,} characters, more than {MOST_CHARACTERS:,}.")
         else:
             self._tell(text)
-
-
-def _reason(error: Exception) -> str:
-    return str(error) if isinstance(error, BridgeError) else f"ROS 2 refuses it: {str(error).partition(', at ')[0]}"
 
 
 def _check(what: str, count: int) -> None:

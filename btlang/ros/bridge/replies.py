@@ -15,6 +15,11 @@ class BridgeError(Exception):
     """Why something can't be done, in words for who asked."""
 
 
+def reason_of(error: Exception) -> str:
+    """What went wrong, in words."""
+    return str(error) if isinstance(error, BridgeError) else f"ROS 2 refuses it: {str(error).partition(', at ')[0]}"
+
+
 def status(text: str, id: object = None, level: str = "error") -> dict[str, Any]:
     """A status message; `id` is that of what it is about."""
     about = {} if id is None else {"id": id}

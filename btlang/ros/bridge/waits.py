@@ -9,7 +9,7 @@ from rclpy.clock import Clock, ClockType
 from rclpy.node import Node
 
 from btlang.record import Record
-from btlang.ros.bridge.replies import BridgeError
+from btlang.ros.bridge.replies import reason_of
 
 _LOOK = 0.02  # seconds between two looks
 
@@ -38,7 +38,7 @@ class Waits:
         reason: Callable[[], str],
         seconds: float,
     ) -> None:
-        """Calls `then` once `ready` holds, or `late` with a reason: the given one, or the BridgeError of these two."""
+        """Calls `then` once `ready` holds, or `late` with a reason: the given one, or why one of these two failed."""
         self._waits.append(_Wait(ready, then, late, reason, time.monotonic() + seconds))
         self._timer.reset()
 
@@ -53,8 +53,8 @@ class Waits:
             if wait.ready():
                 wait.then()
                 return True
-        except BridgeError as error:
-            wait.late(str(error))
+        except Exception as error:  # also of ROS: the others go on
+            wait.late(reason_of(error))
             return True
         if time.monotonic() < wait.until:
             return False
