@@ -51,6 +51,13 @@ def node_name(text: str) -> str:
     return text
 
 
+def ros_name(text: str) -> str:
+    """A full name of the graph of ROS 2, or a pattern for some."""
+    if not text.startswith(("/", "*")):
+        raise argparse.ArgumentTypeError(f"expected a name that begins with /, such as '/btlang/*', not '{text}'")
+    return text
+
+
 def at_least(least: int) -> Callable[[str], int]:
     """A whole number from `least` on."""
 

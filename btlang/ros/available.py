@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from importlib import import_module
+from importlib.util import find_spec
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
@@ -20,6 +21,12 @@ def require_ros(*packages: str) -> None:
         except ImportError as error:
             absent = error.name is not None and error.name.partition(".")[0] == package
             raise unusable(f"there is no Python package {package}" if absent else str(error), _INSTALL) from None
+
+
+def require_package(package: str) -> None:
+    """Raises MissionError (BT100) where there is no such Python package. Imports nothing."""
+    if find_spec(package) is None:
+        raise unusable(f"there is no Python package {package}", _INSTALL)
 
 
 def require_interfaces() -> None:

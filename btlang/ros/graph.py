@@ -30,7 +30,7 @@ def absent(node: Any, kind: str, name: str, wanted: Any) -> str:
     `wanted` is the class of the type, or its name.
     """
     name, wanted = full_name(node, kind, name), type_name(wanted)
-    types = _types(node, kind, name)
+    types = types_of(node, kind, name)
     others = sorted(types - {wanted})
     if kind in ("publisher", "listener"):
         if wanted in types:
@@ -64,7 +64,8 @@ def no_publisher(node: Any, cls: Any, name: str) -> str:
     return absent(node, "publisher", name, cls)
 
 
-def _types(node: Any, kind: str, name: str) -> set[str]:
+def types_of(node: Any, kind: str, name: str) -> set[str]:
+    """The types with which the graph has a full name; `kind` is as in `absent`."""
     if kind == "publisher":
         return {end.topic_type for end in node.get_publishers_info_by_topic(name)}
     if kind == "listener":

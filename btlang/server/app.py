@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import asyncio
-from collections.abc import AsyncIterator, Awaitable, Callable
+from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
 from contextlib import asynccontextmanager, suppress
 from functools import partial
 
@@ -12,6 +12,7 @@ from starlette.requests import Request
 from starlette.responses import JSONResponse, PlainTextResponse, Response
 from starlette.routing import Route, WebSocketRoute
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
+from starlette.websockets import WebSocket
 
 from btlang.diagnostics.errors import MissionError
 from btlang.server.access import COOKIE, Access, AccessError
@@ -25,6 +26,8 @@ from btlang.server.links import RobotLink, Robots
 from btlang.server.metrics import metrics
 from btlang.server.openapi import VERSION, document
 from btlang.server.roles import NEEDED
+from btlang.server.rosbridge import Rosbridge
+from btlang.server.sockets import Sockets
 from btlang.task import messages
 from btlang.task.messages import Answer, Command, read_command
 
@@ -44,12 +47,13 @@ _HEADERS = {
 
 
 class Api:
-    """What the routes do."""
+    """What the routes do. `ros` are the names of the ROS 2 graph that are allowed."""
 
-    def __init__(self, accounts: Accounts, key: str, robots: Robots | None = None) -> None:
+    def __init__(self, accounts: Accounts, key: str, robots: Robots | None = None, ros: Sequence[str] = ()) -> None:
         self.accounts, self.robots = accounts, robots or Robots()
         self.access, self.checker = Access(accounts, key), Checker()
-        self.clients = Clients(self.access, self.robots, self.send)
+        self.sockets, self.clients = Sockets(self.access), Clients(self.robots, self.send)
+        self.rosbridge = Rosbridge(self.access, ros) if ros else None
         self.joins = Joins(Fleet(accounts.database), self.robots, self.access)
 
     def app(self) -> ASGIApp:
@@ -70,14 +74,18 @@ class Api:
             Route("/openapi.json", lambda request: JSONResponse(document())),
             Route("/live", _word("live")),
             Route("/ready", _word("ready")),
-            WebSocketRoute("/api/ws", self.clients.serve),
+            WebSocketRoute("/api/ws", partial(self.sockets.serve, self.clients)),
+            WebSocketRoute(
+                "/api/rosbridge",
+                _no_socket if self.rosbridge is None else partial(self.sockets.serve, self.rosbridge),
+            ),
             WebSocketRoute("/api/join", self.joins.serve),
         ]
         return _Headers(Starlette(routes=routes, lifespan=self._life, exception_handlers={404: _not_found}))
 
     async def check(self) -> None:
         """The accounts have changed: who may no longer be here is sent away."""
-        await self.clients.check()
+        await self.sockets.check()
         await self.joins.check()
 
     async def send(self, identity: Identity, robot: str, command: Command, address: str) -> Answer:
@@ -115,6 +123,8 @@ class Api:
                 await following
             self.access.close()
             self.checker.close()
+            if self.rosbridge is not None:
+                await self.rosbridge.close()
 
     def _route(self, path: str, do: Callable[[Request], Awaitable[Response]], method: str) -> Route:
         async def answered(request: Request) -> Response:
@@ -145,7 +155,7 @@ class Api:
         data = await json_object(request)
         ended = "" if data.get("everywhere") is True else identity.id
         await asyncio.to_thread(self.accounts.log_out, identity.user, ended)
-        await self.clients.check()
+        await self.sockets.check()
         response = JSONResponse({"ok": True})
         response.delete_cookie(COOKIE, secure=True, httponly=True, samesite="strict")
         return response
@@ -183,7 +193,7 @@ class Api:
 
     async def _metrics(self, request: Request) -> Response:
         await self._who(request)
-        return PlainTextResponse(metrics(self.robots.links.values(), len(self.clients)))
+        return PlainTextResponse(metrics(self.robots.links.values(), len(self.sockets)))
 
     async def _missions(self, request: Request) -> Response:
         return await self._of_library(request, messages.Library())
@@ -241,5 +251,9 @@ def _word(word: str) -> Callable[[Request], Response]:
     return lambda request: PlainTextResponse(word)
 
 
-def _not_found(request: Request, error: Exception) -> Response:
+async def _no_socket(socket: WebSocket) -> None:
+    await socket.send_denial_response(_not_found())
+
+
+def _not_found(*_: object) -> Response:
     return JSONResponse({"ok": False, "text": "There's nothing at this address.", "code": ""}, 404)

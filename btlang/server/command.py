@@ -52,6 +52,7 @@ def tell_changes() -> None:
 def serve(options: argparse.Namespace) -> int:
     """Does the verb `serve` until SIGINT or SIGTERM; returns the exit code."""
     require_server()
+    from btlang.ros.available import require_package
     from btlang.server.accounts import Accounts
     from btlang.server.app import Api
     from btlang.server.door import kept_key, listening
@@ -61,6 +62,8 @@ def serve(options: argparse.Namespace) -> int:
         options.refuse("--cert and --key go together")
     if options.no_tls and options.cert is not None:
         options.refuse("--no-tls needs no certificate")
+    if options.ros:
+        require_package("rclpy")
     if options.no_tls and not _is_loopback(options.host):
         raise _refused(options, "without TLS it listens on this computer alone")
     accounts = Accounts(server_folder())
@@ -85,7 +88,7 @@ def serve(options: argparse.Namespace) -> int:
     if options.until_eof:
         threading.Thread(target=_end_at_eof, daemon=True).start()
     try:
-        serve_door(Api(accounts, kept_key(server_folder())), door, certificate, control_path(), ready)
+        serve_door(Api(accounts, kept_key(server_folder()), ros=options.ros), door, certificate, control_path(), ready)
     except (OSError, ssl.SSLError) as error:
         raise _refused(options, reason_of(error)) from None
     finally:

@@ -23,7 +23,7 @@ from btlang.diagnostics.reading import reason_of
 from btlang.record import Record
 from btlang.server.certificate import pin
 from btlang.server.fleet import pin_in
-from btlang.server.reach import STREAM, Sockets
+from btlang.server.reach import STREAM, LocalSockets
 from btlang.text.escaping import one_line
 
 TYPE_CHECKING = False
@@ -89,7 +89,7 @@ class Dialer:
 
     def __init__(self, settings: Settings, key: Key, tell: Callable[[str], object]) -> None:
         self._settings, self._key, self._tell = settings, key, tell
-        self._sockets = Sockets(settings.robot)
+        self._sockets = LocalSockets(settings.robot)
         self._instance = secrets.token_hex(8)
         self._connection: ClientConnection | None = None
         self._answers: dict[str, dict[str, Any] | None] = {}

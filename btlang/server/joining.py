@@ -20,10 +20,10 @@ from starlette.websockets import WebSocket, WebSocketDisconnect
 from btlang.diagnostics.errors import MissionError
 from btlang.server.access import Access, AccessError
 from btlang.server.bodies import read_object, text_in
-from btlang.server.clients import FORBIDDEN, REVOKED
 from btlang.server.fleet import Fleet, FleetRobot
 from btlang.server.links import RobotLink, Robots
 from btlang.server.reach import LONGEST, STREAM
+from btlang.server.sockets import FORBIDDEN, REVOKED
 from btlang.server.throttle import Throttle
 
 TYPE_CHECKING = False

@@ -10,7 +10,7 @@ from contextlib import aclosing, suppress
 
 from btlang.server.checking import Words
 from btlang.server.outlet import STATES, News, Outlet
-from btlang.server.reach import Sockets
+from btlang.server.reach import LocalSockets
 from btlang.task.messages import Answer, Command, as_json
 from btlang.task.paths import names_up
 
@@ -38,7 +38,7 @@ class RobotLink:
         self.seen = seen
         """When it last said something, in seconds since 1970."""
         self.words = Words()
-        self._reach: Reach = reach or Sockets(name)
+        self._reach: Reach = reach or LocalSockets(name)
         self._outlets: set[Outlet] = set()
         self._catching_up: dict[Outlet, asyncio.Task[None]] = {}  # those that don't know the latest change yet
         self._paging = asyncio.Lock()  # each is a watcher more for the robot

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 
+from btlang.arguments import ros_name
 from btlang.task.options import add_address_options
 
 USER_ACTS = (
@@ -19,6 +20,14 @@ def add_serve_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--key", metavar="FILE", help="the key of the certificate")
     parser.add_argument("--no-tls", action="store_true", help="plain HTTP, on this computer alone")
     parser.add_argument("--until-eof", action="store_true", help="end when standard input does")
+    parser.add_argument(
+        "--ros",
+        action="append",
+        default=[],
+        type=ros_name,
+        metavar="NAME",
+        help="a name of ROS 2 that clients of rosbridge may use, such as '/btlang/*'; may be given several times",
+    )
 
 
 def add_user_options(parser: argparse.ArgumentParser) -> None:

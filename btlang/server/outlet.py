@@ -14,8 +14,8 @@ if TYPE_CHECKING:
 
 _MOST = 2000
 """Messages that may wait, beside statuses. A client that reads so slowly has to subscribe again."""
-
-
+_MUCH = 4_000_000
+"""Characters of answers and topics that may wait until a client has to read first."""
 STATES = ("map", "robot", "scan")
 """Kinds of messages of which only the newest one counts."""
 TOPICS = {
@@ -60,6 +60,8 @@ class Outlet:
         self._states: dict[tuple[str, str], News] = {}
         self.topics: Container[str] = TOPICS
         """Of which the messages are taken."""
+        self._topics: dict[str, deque[str]] = {}
+        self._length = 0  # of answers and topics
         self._full = False
         self._news, self._answers, self._taken = asyncio.Event(), asyncio.Event(), asyncio.Event()
 
@@ -81,8 +83,18 @@ class Outlet:
     def say(self, text: str) -> None:
         """Adds an answer, which is never left out."""
         self._queue.append(text)
+        self._length += len(text)
         self._news.set()
         self._answers.set()
+
+    def keep(self, topic: str, text: str, most: int) -> None:
+        """Adds a text of a topic, of which the newest `most` wait; fewer, but one, where much waits already."""
+        waiting = self._topics.setdefault(topic, deque())
+        while waiting and (len(waiting) >= most or self._length > _MUCH):
+            self._length -= len(waiting.popleft())
+        waiting.append(text)
+        self._length += len(text)
+        self._news.set()
 
     async def wait(self) -> None:
         """Until there is something."""
@@ -95,8 +107,8 @@ class Outlet:
                 await self._answers.wait()
 
     async def wait_for_room(self) -> None:
-        """Until at most half as many messages wait as may."""
-        while len(self._queue) > _MOST // 2:
+        """Until a client that asks for much has read most of what he got."""
+        while len(self._queue) > _MOST // 2 or self._length > _MUCH:
             self._taken.clear()
             await self._taken.wait()
 
@@ -104,15 +116,18 @@ class Outlet:
         """What there is, in the order of its coming; statuses come last, each the newest."""
         self._news.clear()
         self._answers.clear()
-        self._taken.set()
         for robot in tuple(self._statuses):
             self._flush(robot)
         taken = [*self._queue, *(state.text for state in self._states.values())]
+        for texts in self._topics.values():
+            taken += texts
         if self._full:  # what was left out is said
             taken.append('{"type":"lost"}')
         self._queue.clear()
         self._states.clear()
-        self._full = False
+        self._topics.clear()
+        self._length, self._full = 0, False
+        self._taken.set()
         return taken
 
     def _say(self, text: str) -> None:

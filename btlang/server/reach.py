@@ -33,7 +33,7 @@ STREAM = 4
 """Bytes of the number of a stream, before what happens on a robot elsewhere."""
 
 
-class Sockets:
+class LocalSockets:
     """The way to a robot of this computer."""
 
     def __init__(self, name: str) -> None:

@@ -91,8 +91,6 @@ class Feed:
         self._watchers.append(watcher)
         try:
             yield {"type": "hello", "change": watcher.change, "words": self._words}
-            if self._world is not None:
-                yield {"type": "map", **_map(self._world)}
             with suppress(StoreError):  # it is closed, or can't be read
                 yield from self._messages(watcher, 1.0 / min(max(rate, least), most))
         finally:
@@ -142,6 +140,9 @@ class Feed:
         if robot != watcher.robot:
             watcher.robot = robot
             yield {"type": "robot", **robot}
+        if self._world is not None and not watcher.has_map:
+            watcher.has_map = True
+            yield {"type": "map", **_map(self._world)}
         if self._scan != watcher.scan:
             watcher.scan = self._scan
             yield {"type": "scan", "ranges": self._scan}
@@ -156,6 +157,7 @@ class _Watcher:
         self.runs: deque[_Watched] = deque(maxlen=_MOST_RUNS)
         self.events: deque[tuple[_Watched, Event]] = deque(maxlen=_MOST_EVENTS)
         self.robot: dict[str, Any] = {}
+        self.has_map = False
         self.scan: list[float | None] = []
         self.run = ""
         self.codes = b""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 
 import pytest
+from websockets.exceptions import InvalidStatus
 
 from btlang.server.roles import NEEDED, Role
 from btlang.task.layer import TaskLayer
@@ -138,6 +139,12 @@ def test_the_trail_says_who_did_what(door: Door, robot: TaskLayer) -> None:
     assert any(line.endswith("vic from 127.0.0.1: release: refused") for line in trail)
     assert any(line.endswith("olga from 127.0.0.1: log in: ok") for line in trail)
     wait_until(lambda: any(act.person == "olga" for act in robot.store.acts()))
+
+
+def test_ros_is_shut_by_default(door: Door) -> None:
+    with pytest.raises(InvalidStatus) as refused:
+        door.socket("/api/rosbridge", authorization=f"Bearer {door.user('token', 'ann', 'ros')}")
+    assert refused.value.response.status_code == 404
 
 
 def test_liveness_and_readiness_need_no_log_in(door: Door) -> None:

@@ -204,6 +204,9 @@ def test_frames_that_are_too_much(door: Door) -> None:
         with suppress(ConnectionClosed):
             pieces.send("x" * 50_000 for _ in range(100))
         assert close_code(pieces) in HUNG_UP
+    with door.socket(**token) as binary:
+        binary.send(b"{}")
+        assert close_code(binary) == 1003
     with door.socket(**token) as deep:
         deep.send('{"a":' * 40_000)
         assert received(deep, type="result")["status"] == 400
@@ -332,3 +335,40 @@ def test_sessions_end_by_themselves(tmp_path: Path) -> None:
             known = accounts.identity(long)
         assert known is None
         assert accounts.identity("") is None
+
+
+def test_who_asks_but_never_reads_has_to_wait(door: Door) -> None:
+    """Answers are never left out, so they would fill the memory."""
+    before = memory(door)
+    head = f"""GET /api/ws HTTP/1.1
+host: 127.0.0.1:{door.port}
+cookie: {door.log_in("vic")["cookie"]}
+connection: upgrade
+upgrade: websocket
+sec-websocket-version: 13
+sec-websocket-key: AAAAAAAAAAAAAAAAAAAAAA==
+
+"""
+    question = json.dumps({"id": "x" * 100_000, "type": "ping"}).encode()
+    frame = b"\x81\xff" + len(question).to_bytes(8, "big") + bytes(4) + question  # masked, with zeros
+    with (
+        socket.create_connection(("127.0.0.1", door.port)) as plain,
+        trusting().wrap_socket(plain) as connection,
+    ):
+        connection.sendall(head.replace("\n", "\r\n").encode())
+        assert b" 101 " in connection.recv(1000)
+        connection.settimeout(2.0)
+        sent = 0
+        with suppress(TimeoutError):
+            while sent < 2000:
+                connection.sendall(frame)
+                sent += 1
+        assert sent < 1000
+    assert memory(door) - before < 100
+    assert door.ask("GET", "/live").status == 200
+
+
+def memory(door: Door) -> float:
+    """Megabytes of the server's process."""
+    status = Path(f"/proc/{door.process.pid}/status").read_text(encoding="ascii")
+    return int(status.partition("VmRSS:")[2].split()[0]) / 1024

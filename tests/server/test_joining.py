@@ -21,9 +21,9 @@ from websockets.sync.client import ClientConnection
 
 from btlang.diagnostics.errors import MissionError
 from btlang.server.accounts import Accounts
-from btlang.server.clients import FORBIDDEN
 from btlang.server.fleet import VALID, Fleet, pin_in
 from btlang.server.reach import STREAM
+from btlang.server.sockets import FORBIDDEN
 from tests.server.cable import Cable
 from tests.server.doors import Door, Reply, close_code, received
 from tests.task.layers import LONG, wait_until

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from btlang.server.links import RobotLink
-from btlang.server.outlet import _MOST, News, Outlet
+from btlang.server.outlet import _MOST, _MUCH, News, Outlet
 from btlang.task.allowance import Allowance
 
 
@@ -128,6 +128,21 @@ def test_an_answer_ends_the_wait_that_a_rate_asks_for() -> None:
     assert texts == [said("hello").text, "{}"]
 
 
+def test_of_other_topics_nothing_waits() -> None:
+    outlet = Outlet()
+    outlet.topics = {"map", "tasks"}
+    for kind in ("up", "map", "scan", "robot", "event", "change"):
+        outlet.put(News("kim", {"type": kind, "number": 1}))
+    outlet.put(statuses("1", {0: "RUNNING"}))
+    outlet.put(News("kim", {"type": "scan", "number": 2}))
+    assert [(each["type"], each.get("number")) for each in taken(outlet)] == [
+        ("up", 1),
+        ("change", 1),
+        ("map", 1),
+        ("scan", 2),
+    ]
+
+
 def test_a_client_that_comes_late_gets_what_is_now() -> None:
     link, outlet = RobotLink("robot"), Outlet()
     for message in (
@@ -172,3 +187,28 @@ def test_no_more_often_than_the_rate(rate: float) -> None:
             count += 1
         now += 0.01 / rate
     assert 95 <= count <= 107
+
+
+def test_of_a_topic_the_newest_wait() -> None:
+    outlet = Outlet()
+    for number in range(5):
+        outlet.keep("/one", f"one {number}", 1)
+        outlet.keep("/three", f"three {number}", 3)
+    assert outlet.take() == ["one 4", "three 2", "three 3", "three 4"]
+    assert outlet.take() == []
+
+
+def test_who_does_not_read_waits_with_what_he_asks_for() -> None:
+    async def asked() -> None:
+        outlet = Outlet()
+        await outlet.wait_for_room()
+        for _ in range(50):
+            outlet.keep("/big", "x" * 100_000, 100)
+        outlet.keep("/small", "x", 100)
+        room = asyncio.create_task(outlet.wait_for_room())
+        await asyncio.sleep(0)
+        assert not room.done()
+        assert sum(map(len, outlet.take())) < _MUCH + 200_000
+        await asyncio.wait_for(room, 1.0)
+
+    asyncio.run(asked())

@@ -66,6 +66,19 @@ def test_a_task_is_followed(tmp_path: Path) -> None:
         assert states == [State.QUEUED, State.STANDBY, State.UNDERWAY, State.COMPLETED]
 
 
+def test_the_map_and_what_the_scanner_sees(tmp_path: Path) -> None:
+    with layer_in(tmp_path) as layer:
+        watcher = Watcher(layer)
+        known = watcher.wait(lambda message: message["type"] == "map")
+        lab = next(place for place in known["places"] if place["name"] == "lab")
+        assert (lab["x"], lab["y"]) == (6.0, 6.2)
+        assert {len(point) for wall in known["walls"] for point in wall} == {2}
+        ranges = watcher.wait(lambda message: message["type"] == "scan")["ranges"]
+        assert len(ranges) == 360
+        assert all(distance is None or 0 < distance < 100 for distance in ranges)
+        assert json.loads(json.dumps(watcher.messages, default=str, allow_nan=False))
+
+
 def test_who_comes_back_misses_no_change(tmp_path: Path) -> None:
     with layer_in(tmp_path) as layer:
         for _ in range(3):

@@ -1,0 +1,196 @@
+"""The clients of a server, each with what it hears, publishes, calls and lets a robot do."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Callable
+from functools import partial
+
+from rclpy.clock import Clock, ClockType
+from rclpy.node import Node
+
+from btlang.ros.bridge.calls import Call, Goal, Servers
+from btlang.ros.bridge.replies import MOST_CHARACTERS, BridgeError, failures, reason_of
+from btlang.ros.bridge.topics import Publisher, Subscription
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any, TypeAlias
+
+    Asked: TypeAlias = dict[str, Any]
+    Write: TypeAlias = Callable[[Asked, str], object]
+
+_LOOK = 0.25  # seconds between two looks at who publishes
+_MOST = {"subscriptions": 100, "publishers": 100, "calls": 50, "goals": 20}
+"""Of one client."""
+_FEEDBACK = 10  # messages that wait for a client
+
+
+class Bridge:
+    """Does what clients ask for. Used by the thread that spins `node`.
+
+    `write` gets whom a text is for (`client`), the `topic` of which only the newest `most` count, "" for an answer,
+    and the text.
+    """
+
+    def __init__(self, node: Node, write: Write) -> None:
+        self.servers = Servers(node)
+        self._node, self._write = node, write
+        self._clients: dict[int, _Client] = {}
+        self._leaving: list[Goal] = []
+        node.create_timer(_LOOK, self._look, clock=Clock(clock_type=ClockType.STEADY_TIME))
+
+    def take(self, line: bytes) -> None:
+        """Does what a line asks for."""
+        asked: Asked = json.loads(line)
+        number = asked.pop("client")
+        if asked["op"] == "leave":
+            self._leave(number)
+            return
+        if number not in self._clients:
+            self._clients[number] = _Client(self._node, self.servers, partial(self._tell, number))
+        client = self._clients[number]
+        try:
+            client.do[asked["op"]](asked)
+        except Exception as error:  # of ROS, too: whoever asks must not end what others use
+            client.fail(asked, reason_of(error))
+
+    def left(self) -> list[Goal]:
+        """The goals that were cancelled and haven't ended."""
+        self._leaving = [goal for goal in self._leaving if not goal.ended]
+        return self._leaving
+
+    def close(self) -> None:
+        """All clients are gone."""
+        for number in tuple(self._clients):
+            self._leave(number)
+
+    def _leave(self, number: int) -> None:
+        client = self._clients.pop(number, None)
+        if client is not None:
+            self._leaving = self.left() + client.leave()
+
+    def _look(self) -> None:
+        for client in self._clients.values():
+            client.look()
+
+    def _tell(self, number: int, text: str, topic: str = "", most: int = 0) -> None:
+        if number in self._clients:
+            self._write({"client": number, "topic": topic, "most": most}, text)
+
+
+class _Client:
+    def __init__(self, node: Node, servers: Servers, tell: Callable[..., object]) -> None:
+        self._node, self._servers, self._tell = node, servers, tell
+        self._subscriptions: dict[str, tuple[Subscription, Asked]] = {}
+        self._publishers: dict[str, Publisher] = {}
+        self._calls: list[Call] = []
+        self._goals: dict[object, Goal] = {}
+        self.do: dict[str, Callable[[Asked], object]] = {
+            "subscribe": self._subscribe, "unsubscribe": self._unsubscribe, "advertise": self._advertise,
+            "unadvertise": self._unadvertise, "publish": self._publish, "call_service": self._call,
+            "send_action_goal": self._send_goal, "cancel_action_goal": self._cancel_goal,
+        }  # fmt: skip
+
+    def fail(self, asked: Asked, text: str) -> None:
+        """Tells the client why something isn't done."""
+        for message in failures(asked, text):
+            self._tell(json.dumps(message))
+
+    def look(self) -> None:
+        """Goes on with subscriptions as the graph changes."""
+        for topic in tuple(self._subscriptions):
+            self._look_at(topic)
+
+    def leave(self) -> list[Goal]:
+        """Ends all; the goals that are to be cancelled, and may take a moment for that."""
+        for goal in self._goals.values():
+            goal.cancel()
+        for call in self._calls:
+            call.end()
+        for subscription, _ in self._subscriptions.values():
+            subscription.end()
+        for publisher in self._publishers.values():
+            publisher.end()
+        return list(self._goals.values())
+
+    def _subscribe(self, asked: Asked) -> None:
+        topic = asked["topic"]
+        subscription, _ = self._subscriptions.get(topic, (None, None))
+        if subscription is None:
+            _check("subscriptions", len(self._subscriptions))
+            tell = lambda topic, text, most: self._tell(text, topic, most)  # noqa: E731
+            subscription = Subscription(self._node, topic, tell, partial(self.fail, asked))
+        subscription.want(asked)
+        self._subscriptions[topic] = subscription, asked
+        self._look_at(topic)
+
+    def _look_at(self, topic: str) -> None:
+        subscription, asked = self._subscriptions[topic]
+        try:
+            subscription.look()
+        except Exception as error:
+            self._subscriptions.pop(topic)[0].end()
+            self.fail(asked, reason_of(error))
+
+    def _unsubscribe(self, asked: Asked) -> None:
+        topic = asked["topic"]
+        if topic not in self._subscriptions:
+            raise BridgeError(f"You haven't subscribed to {topic}.")
+        if self._subscriptions[topic][0].unwant(asked.get("id")):
+            self._subscriptions.pop(topic)[0].end()
+
+    def _advertise(self, asked: Asked) -> None:
+        topic = asked["topic"]
+        _check("publishers", len(self._publishers.keys() - {topic}))
+        made = Publisher(self._node, topic, asked)
+        if topic in self._publishers:
+            self._publishers[topic].end()
+        self._publishers[topic] = made
+
+    def _unadvertise(self, asked: Asked) -> None:
+        if asked["topic"] not in self._publishers:
+            raise BridgeError(f"You haven't advertised {asked['topic']}.")
+        self._publishers.pop(asked["topic"]).end()
+
+    def _publish(self, asked: Asked) -> None:
+        if asked["topic"] not in self._publishers:
+            self._advertise({"topic": asked["topic"]})
+        self._publishers[asked["topic"]].publish(asked.get("msg", {}))
+
+    def _call(self, asked: Asked) -> None:
+        self._calls = [call for call in self._calls if not call.ended]
+        _check("calls", len(self._calls))
+        self._calls.append(Call(self._servers, asked, partial(self._answer, asked), partial(self.fail, asked)))
+
+    def _send_goal(self, asked: Asked) -> None:
+        self._goals = {id: goal for id, goal in self._goals.items() if not goal.ended}
+        _check("goals", len(self._goals))
+        id = object() if asked.get("id") is None else asked["id"]
+        if id in self._goals:
+            raise BridgeError("A goal with this id is running.")
+        tell, fail = partial(self._answer, asked), partial(self.fail, asked)
+        self._goals[id] = Goal(self._servers, asked, tell, fail, partial(self._feedback, id))
+
+    def _cancel_goal(self, asked: Asked) -> None:
+        goal = self._goals.get(asked.get("id"))
+        if goal is None or goal.ended:
+            raise BridgeError(f"No goal of yours for {asked['action']} has this id.")
+        goal.cancel()
+
+    def _feedback(self, id: object, message: Asked) -> None:
+        text = json.dumps(message)
+        if len(text) <= MOST_CHARACTERS:
+            self._tell(text, f"feedback {id}", _FEEDBACK)
+
+    def _answer(self, asked: Asked, message: Asked) -> None:
+        text = json.dumps(message)
+        if len(text) > MOST_CHARACTERS:
+            self.fail(asked, f"The answer has {len(text):,} characters, more than {MOST_CHARACTERS:,}.")
+        else:
+            self._tell(text)
+
+
+def _check(what: str, count: int) -> None:
+    if count >= _MOST[what]:
+        raise BridgeError(f"You have {count} {what} already, which is the most.")

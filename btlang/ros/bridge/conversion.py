@@ -1,0 +1,133 @@
+"""Messages as JSON, as rosbridge writes them: bytes as base64, NaN and infinity as null."""
+
+from __future__ import annotations
+
+import binascii
+import math
+from base64 import b64decode, b64encode
+from collections.abc import Callable, Mapping
+from functools import cache
+
+import numpy as np
+
+from btlang.ros.bridge.replies import BridgeError
+from btlang.ros.bridge.types import type_of
+from btlang.ros.fields import INTEGERS, array_of, field_types
+from btlang.ros.word import type_name
+from btlang.text.escaping import one_line
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any, TypeAlias
+
+    Write: TypeAlias = Callable[[Any], Any]
+    Now: TypeAlias = Callable[[], Any]
+
+_FLOATS, _BYTES = ("float", "double"), ("octet", "uint8")
+_HEADER = "std_msgs/Header"
+
+
+def as_data(message: Any) -> dict[str, Any]:
+    """The fields of a message, for JSON."""
+    cls: Any = type(message)
+    return {name: write(getattr(message, name)) for name, write in _writers(cls)}
+
+
+@cache
+def _writers(cls: Any) -> list[tuple[str, Write]]:
+    return [(name, _writer(kind)) for name, kind in field_types(cls).items()]
+
+
+def _writer(kind: str) -> Write:
+    array = array_of(kind)
+    element = kind if array is None else array[0]
+    if element == "octet":
+        return (lambda value: value[0]) if array is None else lambda values: _base64(b"".join(values))
+    if element in _FLOATS:
+        return _finite if array is None else _all_finite
+    if "/" in element:
+        return as_data if array is None else lambda values: [as_data(value) for value in values]
+    if array is None:
+        return lambda value: value
+    return _base64 if element == "uint8" else lambda values: np.asarray(values).tolist()
+
+
+def _base64(values: Any) -> str:
+    return b64encode(bytes(values)).decode()
+
+
+def _finite(value: float) -> float | None:
+    return value if math.isfinite(value) else None
+
+
+def _all_finite(values: Any) -> list[float | None]:
+    numbers = np.asarray(values, dtype=float)
+    if np.isfinite(numbers).all():
+        return numbers.tolist()  # type: ignore[no-any-return]
+    return [_finite(number) for number in numbers.tolist()]
+
+
+def filled(cls: Any, data: object, now: Now) -> Any:
+    """A message of a class with these fields; the others stay as they are by default.
+
+    A header without a stamp gets that of `now`. Raises BridgeError.
+    """
+    message = cls()
+    if isinstance(data, list):  # the fields of a request in their order
+        data = dict(zip(field_types(cls), data, strict=False)) if len(data) <= len(field_types(cls)) else data
+    _fill(message, data, "", now)
+    return message
+
+
+def _fill(message: Any, data: object, path: str, now: Now) -> None:
+    name = type_name(type(message))
+    if not isinstance(data, Mapping):
+        raise BridgeError(f"{path or 'The message'} must be an object with the fields of {name}.")
+    kinds = field_types(type(message))
+    for field, value in data.items():
+        if field not in kinds:
+            raise BridgeError(f"{name} has no field '{one_line(field[:100])}'. Its fields: {', '.join(kinds)}.")
+        place = f"{path}.{field}" if path else field
+        try:
+            setattr(message, field, _read(kinds[field], value, place, now))
+        except (AssertionError, OverflowError, TypeError, ValueError):
+            raise BridgeError(f"{place} is {kinds[field]}, which can't hold that value.") from None
+    for field, kind in kinds.items():
+        given = data.get(field)
+        if kind == _HEADER and not (isinstance(given, Mapping) and "stamp" in given):
+            getattr(message, field).stamp = now()
+
+
+def _read(kind: str, value: object, place: str, now: Now) -> Any:
+    array = array_of(kind)
+    if array is not None:
+        return _read_array(array[0], array[1], value, place, now)
+    if "/" in kind:
+        message = type_of(kind, "msg")()
+        _fill(message, value, place, now)
+        return message
+    if kind == "boolean" and isinstance(value, bool):
+        return value
+    if kind.startswith(("string", "wstring")) and isinstance(value, str):
+        value.encode()  # half a surrogate pair is no text
+        return value
+    if isinstance(value, int | float) and not isinstance(value, bool):
+        if kind in _FLOATS and math.isfinite(value):
+            return float(value)
+        least, most = INTEGERS.get("uint8" if kind == "octet" else kind, (1, 0))
+        if isinstance(value, int) and least <= value <= most:
+            return bytes([value]) if kind == "octet" else value
+    raise BridgeError(f"{place} is {kind}, which can't hold that value.")
+
+
+def _read_array(element: str, length: int | None, value: object, place: str, now: Now) -> Any:
+    if element in _BYTES and isinstance(value, str):
+        try:
+            value = list(b64decode(value, validate=True))
+        except (binascii.Error, ValueError):
+            raise BridgeError(f"{place} isn't base64.") from None
+    if not isinstance(value, list):
+        raise BridgeError(f"{place} must be a list.")
+    if length is not None and len(value) != length:
+        raise BridgeError(f"{place} must have {length} values, not {len(value)}.")
+    return [_read(element, each, f"{place}[{at}]", now) for at, each in enumerate(value)]
