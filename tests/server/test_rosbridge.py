@@ -11,7 +11,6 @@ import time
 from argparse import ArgumentTypeError
 from collections.abc import Iterator
 from contextlib import closing, contextmanager, suppress
-from itertools import count
 from pathlib import Path
 from socket import SHUT_RDWR
 from typing import Any
@@ -35,8 +34,9 @@ from tests.profiles import amount
 from tests.ros.client import LATCHED, Client
 from tests.ros.conftest import _found, _interfaces, _isolated  # noqa: F401
 from tests.ros.domains import free_domain
+from tests.server.bridge_client import Page
 from tests.server.doors import Door, close_code
-from tests.task.layers import LONG, wait_until
+from tests.task.layers import wait_until
 
 EVIL = "https://evil.example"
 HUNG_UP = (1009, 1006)  # the second one where the server was gone before all was sent
@@ -45,34 +45,6 @@ HUNG_UP = (1009, 1006)  # the second one where the server was gone before all wa
 def long_only(test: Any) -> Any:
     """Marks a test that takes seconds."""
     return pytest.mark.long(pytest.mark.skipif(not amount(0, 1), reason="takes seconds: with -m long")(test))
-
-
-class Page:
-    """A client; `ids` are made as roslibjs makes them."""
-
-    def __init__(self, socket: ClientConnection, token: str = "") -> None:
-        self.socket, self._numbers = socket, count(1)
-        if token:
-            self.send(op="auth", mac=token, client="", dest="", rand="", t=0, level="", end=0)
-
-    def send(self, op: str, id: str = "", **fields: Any) -> str:
-        """Sends an operation; the id that it has."""
-        id = id or f"{op}:{next(self._numbers)}"
-        self.socket.send(json.dumps({"op": op, "id": id, **fields}))
-        return id
-
-    def wait(self, **wanted: Any) -> dict[str, Any]:
-        """The next message with these fields."""
-        until = time.monotonic() + LONG
-        while time.monotonic() < until:
-            message: dict[str, Any] = json.loads(self.socket.recv(LONG))
-            if wanted.items() <= message.items():
-                return message
-        raise AssertionError(wanted)
-
-    def refused(self, op: str, **fields: Any) -> str:
-        """Sends what has to be refused; what is said of it."""
-        return str(self.wait(op="status", level="error", id=self.send(op, **fields))["msg"])
 
 
 class Robot(Client):
