@@ -25,6 +25,7 @@ from btlang.server.joining import Joins
 from btlang.server.links import RobotLink, Robots
 from btlang.server.metrics import metrics
 from btlang.server.openapi import VERSION, document
+from btlang.server.pages import page_routes
 from btlang.server.roles import NEEDED
 from btlang.server.rosbridge import Rosbridge
 from btlang.server.sockets import Sockets
@@ -36,13 +37,13 @@ if TYPE_CHECKING:
     from typing import Any
 
 _HEADERS = {
-    "content-security-policy": "default-src 'none'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'",
-    "x-frame-options": "DENY",
-    "x-content-type-options": "nosniff",
-    "referrer-policy": "no-referrer",
-    "cross-origin-resource-policy": "same-origin",
-    "cross-origin-opener-policy": "same-origin",
-    "cache-control": "no-store",
+    b"content-security-policy": b"default-src 'none'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'",
+    b"x-frame-options": b"DENY",
+    b"x-content-type-options": b"nosniff",
+    b"referrer-policy": b"no-referrer",
+    b"cross-origin-resource-policy": b"same-origin",
+    b"cross-origin-opener-policy": b"same-origin",
+    b"cache-control": b"no-store",
 }
 
 
@@ -72,6 +73,7 @@ class Api:
             *(self._route(f"/api/{kind}", partial(self._text, kind), "POST") for kind in DOES),
             self._route("/metrics", self._metrics, "GET"),
             Route("/openapi.json", lambda request: JSONResponse(document())),
+            *page_routes(self.access),
             Route("/live", _word("live")),
             Route("/ready", _word("ready")),
             WebSocketRoute("/api/ws", partial(self.sockets.serve, self.clients)),
@@ -232,8 +234,10 @@ class _Headers:
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         async def said(message: Message) -> None:
             if message["type"] == "http.response.start":
-                own = [(name.encode(), value.encode()) for name, value in _HEADERS.items()]
-                message = {**message, "headers": [*message.get("headers", ()), *own]}
+                given = list(message.get("headers", ()))
+                known = {name for name, _ in given}
+                own = [(name, value) for name, value in _HEADERS.items() if name not in known]
+                message = {**message, "headers": [*given, *own]}
             await send(message)
 
         await self._app(scope, receive, said)

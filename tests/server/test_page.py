@@ -1,4 +1,4 @@
-"""The program in docs/server.md, as it stands there."""
+"""The page for browsers, and the program in docs/server.md as it stands there."""
 
 from __future__ import annotations
 
@@ -24,3 +24,23 @@ def test_the_client_of_the_page(door: Door, robot: TaskLayer, tmp_path: Path) ->
         done = subprocess.run(words, capture_output=True, text=True, timeout=30)
         assert done.returncode == code, done.stderr
         assert code or {"result", "run", "statuses", "change"} <= {*done.stdout.split()}
+
+
+def test_the_page(door: Door) -> None:
+    led = door.ask("GET", "/")
+    assert (led.status, led.headers["location"]) == (303, "/login")
+    vic = door.log_in("vic")
+    for path, headers in (("/login", {}), ("/", vic)):
+        page = door.ask("GET", path, **headers)
+        text = page.body.decode()
+        assert (page.status, page.headers["content-type"]) == (200, "text/html; charset=utf-8")
+        policy = page.headers["content-security-policy"]
+        assert "default-src 'none'; script-src 'self'" in policy
+        assert "unsafe" not in policy
+        assert not re.search(r"<script(?![^>]*src)|<style|\bon\w+=", text)  # which that policy would keep from running
+        files = re.findall(r'(?:src|href)="(/[^"]+)"', text)
+        assert len(files) == 2
+        for each in files:
+            assert door.ask("GET", each).status == 200
+    for path in ("/page/", "/page/../pages.py", "/page/%2e%2e/pages.py", "/page//etc/passwd", "/page/nothing.js"):
+        assert door.ask("GET", path).status == 404
