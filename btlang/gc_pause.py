@@ -1,4 +1,4 @@
-"""Python's search for garbage in cycles: paused while much is made and little thrown away, short where robots move."""
+"""Pauses Python's search for garbage in cycles while much is made and little of it thrown away."""
 
 from __future__ import annotations
 
@@ -30,9 +30,3 @@ class _Pause:
 
 gc_paused = _Pause()
 """`with gc_paused:` makes a long mission compile in half the time, and the time of a line no longer grows."""
-
-
-def keep_for_good() -> None:
-    """What there is now is never searched again: in a robot's process a full search delays ticks by up to 50 ms."""
-    gc.collect()
-    gc.freeze()

@@ -25,6 +25,7 @@ from btlang.server.certificate import pin
 from btlang.server.fleet import pin_in
 from btlang.server.reach import STREAM, LocalSockets
 from btlang.text.escaping import one_line
+from btlang.text.output import show
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -105,7 +106,7 @@ class Dialer:
                 wait, told = _FIRST, ""
             except (OSError, ValueError, KeyError, TypeError, AttributeError, WebSocketException) as error:
                 if told != (told := one_line(str(error)) or type(error).__name__):
-                    self._tell(f"No connection to {self._settings.address}: {told}")
+                    self.show(f"No connection to {self._settings.address}: {told}")
             await asyncio.sleep(wait)
             wait = min(2 * wait, _LONGEST)
 
@@ -119,7 +120,7 @@ class Dialer:
                 answer = json.loads(await connection.recv())
             if answer.get("type") != "joined":
                 raise RefusedError(f"the server refuses it: {one_line(str(answer.get('text', '')))}")
-            self._tell(f"Joined {self._settings.address} as '{one_line(str(answer.get('name', '')))}'.")
+            self.show(f"Joined {self._settings.address} as '{one_line(str(answer.get('name', '')))}'.")
             self._connection = connection
             try:
                 with suppress(ConnectionClosed):
@@ -130,7 +131,7 @@ class Dialer:
                 for watching in self._watching.values():
                     watching.cancel()
                 self._watching.clear()
-        self._tell(f"The connection to {self._settings.address} broke.")
+        self.show(f"The connection to {self._settings.address} broke.")
 
     def _check_pin(self, connection: ClientConnection) -> None:
         """Nothing secret was sent until now."""
@@ -206,16 +207,12 @@ def main() -> int:
     settings = Settings(**json.loads(sys.stdin.readline()))
     threading.Thread(target=_end_with_robot, daemon=True).start()
     try:
-        asyncio.run(Dialer(settings, key_for(settings), _tell).dial())
+        asyncio.run(Dialer(settings, key_for(settings), show).dial())
     except RefusedError as error:
-        _tell(f"It can't join {settings.address}: {error}.")
+        show(f"It can't join {settings.address}: {error}.")
     except OSError as error:
-        _tell(f"It can't join {settings.address}: its key can't be kept: {reason_of(error)}")
+        show(f"It can't join {settings.address}: its key can't be kept: {reason_of(error)}")
     return _REFUSED
-
-
-def _tell(text: str) -> None:
-    print(text, flush=True)
 
 
 def _end_with_robot() -> None:

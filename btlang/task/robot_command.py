@@ -13,7 +13,6 @@ from functools import partial
 from urllib.parse import parse_qs, urlsplit
 
 from btlang.diagnostics.errors import MissionError
-from btlang.gc_pause import keep_for_good
 from btlang.run.emergency import emergency_signal
 from btlang.task import messages
 from btlang.task.applicable import check_robot_words
@@ -27,6 +26,7 @@ from btlang.task.missions import MissionReader
 from btlang.task.paths import USUAL_NAME, data_folder
 from btlang.task.socket_server import SocketServer
 from btlang.task.store import open_store
+from btlang.task.timeliness import keep_ticks_in_time
 from btlang.text.escaping import one_line
 from btlang.text.output import pass_on, show
 
@@ -125,7 +125,7 @@ def _up(options: argparse.Namespace) -> int:
                 signal.signal(number, lambda *_: ended.set())
             layer.start()
             door.start()
-            keep_for_good()
+            keep_ticks_in_time()
             show(f"The robot '{name}' is up. Give it work with: btc task add")
             if layer.emergency.is_latched:
                 show(f"It is stopped: {layer.emergency.reason}. To let it move: btc robot release", sys.stderr)

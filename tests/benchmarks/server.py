@@ -25,10 +25,10 @@ from pathlib import Path
 from typing import Any
 
 from btlang.api import Mission
-from btlang.gc_pause import keep_for_good
 from btlang.run.bus import INLINE
 from btlang.run.events import Event, PeriodPassed
 from btlang.session import Run
+from btlang.task.timeliness import keep_ticks_in_time
 from tests.benchmarks.server_clients import figures
 from tests.server.doors import Door, robot_in
 from tests.task.layers import submit
@@ -83,7 +83,7 @@ def robot(folder: Path) -> None:
 
     with robot_in(folder, speed="real", sinks=sinks) as layer:
         submit(layer, mission())
-        keep_for_good()
+        keep_ticks_in_time()
         print("up", flush=True)
         for _ in sys.stdin:
             print(json.dumps(marks[-1].report()), flush=True)

@@ -10,7 +10,6 @@ from functools import partial
 from typing import Any
 
 from btlang.arguments import node_name
-from btlang.gc_pause import keep_for_good
 from btlang.ros.available import require_interfaces, require_ros
 from btlang.ros.command import add_body_options, add_namespace, platform_of
 from btlang.ros.ending import EndingSignals, ending_signals
@@ -66,6 +65,7 @@ def _serve(options: argparse.Namespace, came: EndingSignals) -> int:
     from btlang.task.companion import companions
     from btlang.task.robot_command import layer_options
     from btlang.task.socket_server import SocketServer
+    from btlang.task.timeliness import keep_ticks_in_time
 
     robot = robot_name(options.namespace, options.name)
     setup = Setup(
@@ -104,7 +104,7 @@ def _serve(options: argparse.Namespace, came: EndingSignals) -> int:
             ):
                 spun.start()
                 door.start()
-                keep_for_good()
+                keep_ticks_in_time()
                 show(f"btlang ros-node: ready as {node.get_fully_qualified_name()}; Ctrl-C ends it")
                 while not code and not came.numbers:
                     controls.wait(None)
