@@ -106,7 +106,7 @@ class Dialer:
                 wait, told = _FIRST, ""
             except (OSError, ValueError, KeyError, TypeError, AttributeError, WebSocketException) as error:
                 if told != (told := one_line(str(error)) or type(error).__name__):
-                    self.show(f"No connection to {self._settings.address}: {told}")
+                    self._tell(f"No connection to {self._settings.address}: {told}")
             await asyncio.sleep(wait)
             wait = min(2 * wait, _LONGEST)
 
@@ -120,7 +120,7 @@ class Dialer:
                 answer = json.loads(await connection.recv())
             if answer.get("type") != "joined":
                 raise RefusedError(f"the server refuses it: {one_line(str(answer.get('text', '')))}")
-            self.show(f"Joined {self._settings.address} as '{one_line(str(answer.get('name', '')))}'.")
+            self._tell(f"Joined {self._settings.address} as '{one_line(str(answer.get('name', '')))}'.")
             self._connection = connection
             try:
                 with suppress(ConnectionClosed):
@@ -131,7 +131,7 @@ class Dialer:
                 for watching in self._watching.values():
                     watching.cancel()
                 self._watching.clear()
-        self.show(f"The connection to {self._settings.address} broke.")
+        self._tell(f"The connection to {self._settings.address} broke.")
 
     def _check_pin(self, connection: ClientConnection) -> None:
         """Nothing secret was sent until now."""
