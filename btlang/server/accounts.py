@@ -7,12 +7,13 @@ import os
 import secrets
 import time
 from collections.abc import Callable
+from contextlib import suppress
 
 from btlang.record import Record
 from btlang.server.roles import Role
 from btlang.task.backup import fill_from_backup, write_backup
 from btlang.task.checks import refused
-from btlang.task.database import Mode, store_error
+from btlang.task.database import Mode, StoreError, store_error
 from btlang.task.migrations import migrate
 from btlang.task.rows import columns_of, from_row, insert
 from btlang.task.sqlite import Sqlite
@@ -27,6 +28,8 @@ IDLE, LONGEST = 8 * 3600.0, 7 * 86_400.0
 """Seconds after which a session ends that nobody uses, and after which every one does."""
 _NOTED = 60.0  # seconds between two notes that a session or token is used
 _TOKEN = "btl_"
+MOST_ENTRIES = 100_000
+"""Of the trail."""
 _NOT_COPIED = ("session",)  # else a restore would bring back one that was logged out
 _STEPS = [
     (
@@ -225,9 +228,10 @@ class Accounts:
         return self._identified(identity.user, identity.id, is_session=identity.is_session) if found else None
 
     def log(self, user: str, address: str, what: str, outcome: str) -> None:
-        """Adds to the trail."""
+        """Adds to the trail, from which the oldest entries go: who tries again and again can't fill the disk."""
         with self.database.transaction() as execute:
             insert(execute, "entry", Entry(self._clock(), user, address, what, outcome))
+            execute("DELETE FROM entry WHERE number <= (SELECT max(number) FROM entry) - ?", (MOST_ENTRIES,))
 
     def entries(self, limit: int = 100) -> list[Entry]:
         """The trail, the newest first."""
@@ -261,7 +265,7 @@ class Accounts:
                 raise refused(f"The user '{name}'", "isn't known")
 
     def _note(self, table: str, id: str, now: float) -> None:
-        with self.database.transaction() as execute:
+        with suppress(StoreError), self.database.transaction() as execute:  # a full disk keeps nobody from the robot
             execute(f"UPDATE {table} SET used = ? WHERE id = ?", (now, id))
 
     def _one(self, kind: type[R], table: str, condition: str, *values: object) -> R | None:

@@ -30,6 +30,7 @@ from btlang.server.roles import NEEDED
 from btlang.server.rosbridge import Rosbridge
 from btlang.server.sockets import Sockets
 from btlang.task import messages
+from btlang.task.database import StoreError
 from btlang.task.messages import Answer, Command, read_command
 
 TYPE_CHECKING = False
@@ -135,6 +136,9 @@ class Api:
             except AccessError as error:
                 headers = {"retry-after": f"{error.wait + 1:.0f}"} if error.wait else None
                 return JSONResponse({"ok": False, "text": error.reason, "code": ""}, error.status, headers)
+            except StoreError:  # whose text has paths
+                text = "The server can't read or write its data: the disk may be full."
+                return JSONResponse({"ok": False, "text": text, "code": ""}, 503)
             except MissionError as error:
                 first = error.diagnostics[0]
                 return JSONResponse({"ok": False, "text": str(error), "code": first.code}, 400)

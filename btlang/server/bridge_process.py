@@ -36,7 +36,7 @@ class BridgeProcess:
         """Starts it, unless it is up. Raises OSError."""
         async with self._turn:
             if self._process is None:
-                command = (sys.executable, "-m", "btlang.ros.bridge")
+                command = (sys.executable, "-P", "-m", "btlang.ros.bridge")
                 self._process = await asyncio.create_subprocess_exec(
                     *command, stdin=PIPE, stdout=PIPE, limit=_LONGEST, start_new_session=True
                 )

@@ -319,6 +319,14 @@ def test_the_last_administrator_stays(tmp_path: Path) -> None:
         assert [user.name for user in accounts.users()] == ["bo"]
 
 
+def test_the_trail_fills_no_disk(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("btlang.server.accounts.MOST_ENTRIES", 3)
+    with closing(Accounts(str(tmp_path))) as accounts:
+        for number in range(5):
+            accounts.log("ann", "::1", str(number), "refused")
+        assert [entry.what for entry in accounts.entries()] == ["4", "3", "2"]
+
+
 def test_sessions_end_by_themselves(tmp_path: Path) -> None:
     now = [1000.0]
     with closing(Accounts(str(tmp_path), clock=lambda: now[0])) as accounts:

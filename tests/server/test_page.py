@@ -7,6 +7,9 @@ import subprocess
 import sys
 from pathlib import Path
 
+from btlang.server.openapi import ROUTES
+from btlang.server.outlet import TOPICS
+from btlang.server.rosbridge import OPERATIONS
 from btlang.task.layer import TaskLayer
 from tests.server.doors import Door
 
@@ -44,3 +47,11 @@ def test_the_page(door: Door) -> None:
             assert door.ask("GET", each).status == 200
     for path in ("/page/", "/page/../pages.py", "/page/%2e%2e/pages.py", "/page//etc/passwd", "/page/nothing.js"):
         assert door.ask("GET", path).status == 404
+
+
+def test_the_documents_name_all_that_there_is() -> None:
+    text = PAGE.read_text(encoding="utf-8")
+    for _, path in ROUTES:
+        assert path.replace("{name}", "NAME") in text
+    for name in (*TOPICS, *(kind for kinds in TOPICS.values() for kind in kinds), *OPERATIONS):
+        assert f"`{name}`" in text

@@ -1,0 +1,42 @@
+"""A server whose disk takes nothing any more: who was let in before still leads the robot."""
+
+from __future__ import annotations
+
+import resource
+import tempfile
+from collections.abc import Iterator
+from contextlib import closing
+from pathlib import Path
+
+import pytest
+
+from tests.server.doors import PASSWORD, Door, robot_in
+
+
+@pytest.fixture
+def door() -> Iterator[Door]:
+    with tempfile.TemporaryDirectory(prefix="bt") as name:
+        folder = Path(name)
+        (folder / "btlang").mkdir(0o700)  # for the data and the sockets both
+        with robot_in(folder), closing(Door(folder)) as door:
+            door.user("add", "ann", "--role", "operator")
+            yield door
+
+
+def test_a_full_disk_keeps_nobody_from_the_robot(door: Door) -> None:
+    page, token = door.log_in(), {"authorization": f"Bearer {door.user('token', 'ann', 'program').split()[-1]}"}
+    resource.prlimit(door.process.pid, resource.RLIMIT_FSIZE, (1000, 1000))
+    for who in (page, token):
+        for command in ("emergency_stop", "release"):
+            assert door.ask("POST", "/api/commands", {"command": command}, **who).data["ok"]
+        assert door.ask("POST", "/api/stop", {}, **who).data["ok"]
+        assert door.ask("POST", "/api/commands", {"command": "release"}, **who).data["ok"]
+    for path, data in (("/api/login", {"name": "ann", "password": PASSWORD}), ("/api/logout", {})):
+        refused = door.ask("POST", path, data, **page)
+        assert refused.status == 503
+        assert refused.data["text"] == "The server can't read or write its data: the disk may be full."
+    assert door.ask("POST", "/api/login", {"name": "ann", "password": "wrong horse"}).status == 401
+    resource.prlimit(door.process.pid, resource.RLIMIT_FSIZE, (-1, -1))
+    assert door.log_in()
+    door.close()
+    assert not any("Traceback" in line for line in door.lines)
