@@ -90,7 +90,7 @@ class Database(ABC):
                 yield partial(self._execute, connection)
                 self._run(connection, "COMMIT")
             except BaseException as error:
-                self._drop(connection)
+                self._undo(connection)
                 if isinstance(error, self._errors):
                     raise self._problem(error) from error
                 raise
@@ -134,6 +134,10 @@ class Database(ABC):
     @abstractmethod
     def _is_lost(self, connection: Any) -> bool:
         """Whether a connection broke."""
+
+    @abstractmethod
+    def _is_free(self, connection: Any) -> bool:
+        """Whether a connection has no transaction, and didn't break."""
 
     @abstractmethod
     def _reason(self, error: Exception) -> str:
@@ -193,6 +197,15 @@ class Database(ABC):
                 self._idle.append(connection)
                 return
         self._drop(connection)
+
+    def _undo(self, connection: Any) -> None:
+        """Undoes its transaction, and keeps it if it can go on: while a disk is full, no other one may be had."""
+        with suppress(*self._errors):
+            self._run(connection, "ROLLBACK")
+        if self._is_free(connection):
+            self._keep(connection)
+        else:
+            self._drop(connection)
 
     def _drop(self, connection: Any) -> None:
         """Undoes its transaction, if it has one, and ends it."""

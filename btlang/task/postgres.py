@@ -149,6 +149,9 @@ class Postgres(Database):
     def _is_lost(self, connection: Any) -> bool:
         return bool(connection.closed)
 
+    def _is_free(self, connection: Any) -> bool:
+        return bool(connection.info.transaction_status == self._psycopg.pq.TransactionStatus.IDLE)
+
     def _reason(self, error: Exception) -> str:
         code = getattr(error, "sqlstate", None) or ""
         for beginning, reason in _REASONS.items():

@@ -125,6 +125,9 @@ class Sqlite(Database):
     def _is_lost(self, connection: Any) -> bool:
         return False
 
+    def _is_free(self, connection: Any) -> bool:
+        return not connection.in_transaction
+
     def _turn(self, mode: Mode) -> AbstractContextManager[object]:
         # between processes SQLite waits by trying again and again, which between threads a lock does better
         return nullcontext() if mode is Mode.READ else self._writing

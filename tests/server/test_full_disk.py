@@ -11,6 +11,7 @@ from pathlib import Path
 import pytest
 
 from tests.server.doors import PASSWORD, Door, robot_in
+from tests.task.layers import wait_until
 
 
 @pytest.fixture
@@ -20,12 +21,13 @@ def door() -> Iterator[Door]:
         (folder / "btlang").mkdir(0o700)  # for the data and the sockets both
         with robot_in(folder), closing(Door(folder)) as door:
             door.user("add", "ann", "--role", "operator")
+            wait_until(lambda: door.ask("POST", "/api/commands", {"command": "status"}, **door.log_in()).data["ok"])
             yield door
 
 
 def test_a_full_disk_keeps_nobody_from_the_robot(door: Door) -> None:
     page, token = door.log_in(), {"authorization": f"Bearer {door.user('token', 'ann', 'program').split()[-1]}"}
-    resource.prlimit(door.process.pid, resource.RLIMIT_FSIZE, (1000, 1000))
+    resource.prlimit(door.process.pid, resource.RLIMIT_FSIZE, (1000, resource.RLIM_INFINITY))
     for who in (page, token):
         for command in ("emergency_stop", "release"):
             assert door.ask("POST", "/api/commands", {"command": command}, **who).data["ok"]
@@ -36,7 +38,7 @@ def test_a_full_disk_keeps_nobody_from_the_robot(door: Door) -> None:
         assert refused.status == 503
         assert refused.data["text"] == "The server can't read or write its data: the disk may be full."
     assert door.ask("POST", "/api/login", {"name": "ann", "password": "wrong horse"}).status == 401
-    resource.prlimit(door.process.pid, resource.RLIMIT_FSIZE, (-1, -1))
+    resource.prlimit(door.process.pid, resource.RLIMIT_FSIZE, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
     assert door.log_in()
     door.close()
     assert not any("Traceback" in line for line in door.lines)

@@ -286,6 +286,7 @@ def test_a_full_database(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Non
             with pytest.raises(StoreError) as error:
                 store.add(a_task("wave " * 100_000))
             assert reason(error) == "the disk is full."
+        store._database._idle.pop().close()
         assert [len(store.tasks()), len(store.changes())] == [1, 1]
         assert store.add(a_task("wave " * 100_000)).id == 2
 
