@@ -23,6 +23,7 @@ def door() -> Iterator[Door]:
             door.user("add", "ann", "--role", "operator")
             wait_until(lambda: door.ask("POST", "/api/commands", {"command": "status"}, **door.log_in()).data["ok"])
             yield door
+        assert not any("Traceback" in line for line in door.lines)
 
 
 def test_a_full_disk_keeps_nobody_from_the_robot(door: Door) -> None:
@@ -40,5 +41,3 @@ def test_a_full_disk_keeps_nobody_from_the_robot(door: Door) -> None:
     assert door.ask("POST", "/api/login", {"name": "ann", "password": "wrong horse"}).status == 401
     resource.prlimit(door.process.pid, resource.RLIMIT_FSIZE, (resource.RLIM_INFINITY, resource.RLIM_INFINITY))
     assert door.log_in()
-    door.close()
-    assert not any("Traceback" in line for line in door.lines)
