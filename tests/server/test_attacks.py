@@ -19,6 +19,7 @@ from hypothesis import HealthCheck, given
 from websockets.exceptions import ConnectionClosed, InvalidStatus
 
 from btlang.server.accounts import Accounts
+from btlang.server.door import listening
 from btlang.server.passwords import LONGEST, Verifier, fits, hashed, problem
 from btlang.server.roles import Role
 from btlang.server.throttle import Throttle
@@ -145,8 +146,13 @@ def test_a_flood_of_wrong_passwords(robot: Any) -> None:
             door.user("add", "flo")
 
         def attack(count: int) -> None:
-            for number in range(count):
-                answers[door.ask("POST", "/api/login", {"name": f"u{number % 7}", "password": "guess" * 3}).status] += 1
+            with closing(door.connection()) as connection:
+                for number in range(count):
+                    body = json.dumps({"name": f"u{number % 7}", "password": "guess" * 3})
+                    connection.request("POST", "/api/login", body, {"content-type": "application/json"})
+                    answer = connection.getresponse()
+                    answers[answer.status] += 1
+                    answer.read()
 
         threads = [threading.Thread(target=attack, args=(amount(15, 2500),)) for _ in range(4)]
         began = time.monotonic()
@@ -246,6 +252,14 @@ def test_old_tls_is_refused(door: Door) -> None:
         assert connection.recv(100).startswith(b"HTTP/1.1 200")
         assert connection.session is not None
         assert not connection.session.has_ticket
+
+
+def test_no_answer_is_held_back() -> None:
+    """Its head and its body are written apart: the second one waited 40 ms for the other end to have the first."""
+    with listening("127.0.0.1", 0) as door, socket.create_connection(door.getsockname()):
+        accepted, _ = door.accept()
+        with accepted:
+            assert accepted.getsockopt(socket.IPPROTO_TCP, socket.TCP_NODELAY)
 
 
 def test_what_browsers_are_told(door: Door) -> None:
