@@ -7,7 +7,7 @@ from difflib import unified_diff
 
 from btlang.task.checks import refused
 from btlang.task.days import joined
-from btlang.task.messages import Answer, PutMission
+from btlang.task.messages import Answer, Put
 from btlang.task.moments import length, shown
 from btlang.task.task import MissionText, Revision, Schedule, Task
 from btlang.text.escaping import one_line
@@ -68,7 +68,7 @@ def revision_data(revision: Revision) -> dict[str, Any]:
 
 
 def deleted(name: str, schedules: Sequence[int]) -> str:
-    """What is said of a mission that is no longer in the library, while some schedules have its text."""
+    """What is said of a text that is no longer in the library, while some schedules have it."""
     text = f"'{one_line(name)}' is no longer in the library."
     if not schedules:
         return text
@@ -77,13 +77,15 @@ def deleted(name: str, schedules: Sequence[int]) -> str:
     return f"{text} {who} on with its text. To end {it}: btc task unschedule"
 
 
-def outdated(command: PutMission, latest: Revision | None) -> Answer:
-    """The refusal of a text that was made from another revision than the latest one, with what differs from that."""
+def outdated(command: Put, called: str, latest: Revision | None) -> Answer:
+    """The refusal of a text, `called` "mission" or the like, that was made from another revision than the latest one,
+    with what differs from that.
+    """
     before = "" if latest is None else latest.text
     lines = unified_diff(before.splitlines(), command.text.splitlines(), "latest", "yours", lineterm="")
     number = 0 if latest is None else latest.number
     problem = refused(
-        f"The mission '{command.name}'", f"has changed since revision {command.revision}: it has {number}"
+        f"The {called} '{command.name}'", f"has changed since revision {command.revision}: it has {number}"
     )
     data = {"revision": number, "text": before, "diff": "\n".join(lines)}
     return Answer(False, str(problem), data, problem.diagnostics[0].code)
