@@ -66,7 +66,7 @@ def _body(top: Table, overs: Collection[str]) -> Body:
     name, over = top.text("name"), top.choice("over", tuple(ROBOTS), "simulated")
     if over not in overs:
         listed = " or ".join(f'"{each}"' for each in overs)
-        raise top.problem("over", f'"over" may only be {listed} here, which is what the robot runs on')
+        raise top.problem("over", f'"over" may only be {listed} here; to allow "{over}", bring the robot up on it')
     radius = top.number("radius", low=0.01, high=10.0)
     base = _base(top.table("base")) if top.has("base") else None
     navigation = None

@@ -179,6 +179,8 @@ class Api:
         words = self.link(robot).words if robot or self.robots.links else Words()
         if "world" in data:
             name = text_in(data, "world")
+            if not name:
+                raise AccessError(400, "'world' must be the name of a world.")
             command = messages.Library(name, Kind.WORLD.value, revision=0)
             found = await self.send(identity, robot, command, _address(request))
             if not found.ok:

@@ -96,7 +96,7 @@ class LibraryHandler:
             self._admit(MissionText(text, name))
             return
         if len(text) > MOST_CHARACTERS:
-            raise wrong("put", f"a {_CALLED[kind]} may have {MOST_CHARACTERS:,} characters")
+            raise wrong("put", f"a {_CALLED[kind]} may have at most {MOST_CHARACTERS:,} characters")
         source = Source(text, one_line(name), roots=())
         if kind is Kind.ROBOT:
             read_body(source, self._overs)
