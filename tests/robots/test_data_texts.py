@@ -10,6 +10,7 @@ import pytest
 
 import btlang
 from btlang.diagnostics.errors import MissionError
+from btlang.recording.bundle import files_of
 from btlang.robots.body_file import read_body
 from btlang.robots.world_problem import read_world
 from btlang.text.source import Source
@@ -127,5 +128,6 @@ def test_a_mission_in_a_world_that_is_a_text() -> None:
     made = module["mission"]
     assert isinstance(made, btlang.Mission)
     assert (made.tree, made.run(speed="max").succeeded) == (mission.tree, True)
+    assert files_of(mission, ())["world.toml"].decode() == world.text
     with pytest.raises(MissionError, match="BT070"):
         btlang.parse_tree("go to the shed", world=Source("", "garden"))
