@@ -125,11 +125,9 @@ def stored_version(database: Database, execute: Execute, steps: Sequence[Step] |
     if len(rows) != 1 or not isinstance(rows[0][0], int) or rows[0][0] < 1:
         raise store_error(database.place, "its version can't be read; perhaps it isn't a store of btlang")
     version = rows[0][0]
+    if not found.keys() & tables_of(steps).keys() - {"version"}:
+        raise store_error(database.place, "it has other tables than it should; perhaps it's a copy of something else")
     if version > len(steps):
-        if not found.keys() & tables_of(steps).keys() - {"version"}:
-            raise store_error(
-                database.place, "it has other tables than it should; perhaps it's a copy of something else"
-            )
         known = str(len(steps))
         raise MissionError([diagnostic("BT196", NOWHERE, place=database.place, version=str(version), known=known)])
     for table, expected in tables_of(steps[:version]).items():
