@@ -20,7 +20,7 @@ from btlang.text.source import Source, Span
 from btlang.text.words import split
 from btlang.tree.ast import Fact, Program, all_facts, exact_nodes
 from btlang.tree.node import Node, Tree
-from btlang.vocabulary.cache import cached
+from btlang.vocabulary.cache import cached, recent
 from btlang.vocabulary.entry import Entry
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.load import load_vocabulary
@@ -30,11 +30,13 @@ from btlang.vocabulary.values import key_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any
+    from typing import Any, TypeVar
 
     from btlang.robots.registry import Connect
     from btlang.run.runner import Outcome
     from btlang.tree.dump import Outline
+
+    World = TypeVar("World", bound=str | Source | None)
 
 
 def parse_tree(
@@ -42,7 +44,7 @@ def parse_tree(
     *,
     parser: str = DEFAULT_PARSER,
     keywords: Sequence[str | Entry | Callable[..., Any]] = (),
-    world: str | None = None,
+    world: str | Source | None = None,
     main: str = "",
     language: str = ENGLISH,
     values: Mapping[str, object] = {},
@@ -50,8 +52,8 @@ def parse_tree(
     """Compiles a mission in English, or a tree: a text that begins with `<` is XML of BehaviorTree.CPP, with `{` JSON.
 
     `parser` is "shunting-yard" or "lark" (both give the same tree). `keywords` are paths of keyword files, names of
-    installed packs, or functions decorated with `action` or `condition`. `world` is the path of a world file, by
-    default the world that ships. `main` is the ID of the tree to run, if XML or JSON has several. `language`
+    installed packs, or functions decorated with `action` or `condition`. `world` is the path of a world file, or its
+    text, by default the world that ships. `main` is the ID of the tree to run, if XML or JSON has several. `language`
     is that of the mission: "en", "es" or the folder of another one. `values` are what the mission may use by these
     names though it doesn't set them, or others of the same kind: a run gets them (`Session.prepare`). Raises
     MissionError with all diagnostics.
@@ -73,7 +75,7 @@ def parse_file(
     *,
     parser: str = DEFAULT_PARSER,
     keywords: Sequence[str | Entry | Callable[..., Any]] = (),
-    world: str | None = None,
+    world: str | Source | None = None,
     main: str = "",
     include_root: str | None = None,
     language: str = ENGLISH,
@@ -94,7 +96,7 @@ def format_mission(
     *,
     parser: str = DEFAULT_PARSER,
     keywords: Sequence[str | Entry | Callable[..., Any]] = (),
-    world: str | None = None,
+    world: str | Source | None = None,
     language: str = ENGLISH,
 ) -> str:
     """The text in the canonical layout: with the same words, comments, lines and tree.
@@ -128,11 +130,11 @@ def value_key(name: str) -> str:
 
 def mission_vocabulary(
     source: Source,
-    keywords: Sequence[str | Entry | Callable[..., Any]] = (),
-    world: str | None = None,
+    keywords: Sequence[str | Entry | Callable[..., Any]],
+    world: World,
     language: str = ENGLISH,
-) -> tuple[Lexicon, str | None]:
-    """The words of a text and the path of its world, with the files that it needs as its first lines say.
+) -> tuple[Lexicon, World | str]:
+    """The words of a text and its world, with the files that it needs as its first lines say.
 
     A given `world` wins over the text's own; `keywords` are added to its own. Raises MissionError.
     """
@@ -160,9 +162,9 @@ def mission_vocabulary(
     if problems:
         raise MissionError(problems)
     own = [path for path, role in files.items() if role == WORDS and path not in keywords]
-    world = next((path for path, role in files.items() if role != WORDS), world)
+    chosen = next((path for path, role in files.items() if role != WORDS), world)
     try:
-        return world_vocabulary([*own, *keywords], world, language), world
+        return world_vocabulary([*own, *keywords], chosen, language), chosen
     except MissionError as error:
         raise MissionError([_at_line(problem, lines) for problem in error.diagnostics]) from None
 
@@ -182,15 +184,23 @@ def _at_line(problem: Diagnostic, lines: Mapping[str, Span]) -> Diagnostic:
 
 
 def world_vocabulary(
-    keywords: Sequence[str | Entry | Callable[..., Any]] = (), world: str | None = None, language: str = ENGLISH
+    keywords: Sequence[str | Entry | Callable[..., Any]] = (),
+    world: str | Source | None = None,
+    language: str = ENGLISH,
 ) -> Lexicon:
     """The words of a language and of the keyword files, and the names of a world. Raises MissionError."""
-    file = DEFAULT_WORLD if world is None else world
-    names = cached("world", [file, STANDARD_BODY], partial(_names_by_type, world))
+    find = partial(_names_by_type, world)
+    if isinstance(world, Source):
+        names = recent(_names, world.text, find)
+    else:
+        names = cached("world", [DEFAULT_WORLD if world is None else world, STANDARD_BODY], find)
     return load_vocabulary(keywords, names, language)
 
 
-def _names_by_type(world: str | None) -> dict[str, tuple[str, ...]]:
+_names: dict[str, dict[str, tuple[str, ...]]] = {}  # by the text of the world
+
+
+def _names_by_type(world: str | Source | None) -> dict[str, tuple[str, ...]]:
     from btlang.robots.world_file import WorldError, world_names
 
     try:
@@ -205,14 +215,14 @@ def _names_by_type(world: str | None) -> dict[str, tuple[str, ...]]:
 class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax")):
     """A compiled mission, with its words and its world. Immutable: a Session runs it.
 
-    `tree` is the tree itself. `world` is the path of its world file, None for the one that ships. `warnings` are
-    diagnostics that don't keep it from running. `syntax` is the syntax tree that it was compiled from, if there is one.
-    `facts` are places of this mission, in addition to those of the world.
+    `tree` is the tree itself. `world` is the path of its world file, or its text, None for the one that ships.
+    `warnings` are diagnostics that don't keep it from running. `syntax` is the syntax tree that it was compiled from,
+    if there is one. `facts` are places of this mission, in addition to those of the world.
     """
 
     tree: Tree
     vocabulary: Lexicon
-    world: str | None = None
+    world: str | Source | None = None
     warnings: tuple[Diagnostic, ...] = ()
     syntax: Program | None = None
     facts: tuple[Fact, ...] = ()

@@ -31,7 +31,7 @@ from btlang.run.runner import Outcome, Runner, traced_engine
 from btlang.run.snapshot import Follower, Snapshot
 from btlang.run.statuses import Status
 from btlang.text.escaping import RED
-from btlang.text.source import NOWHERE
+from btlang.text.source import NOWHERE, Source
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -70,12 +70,13 @@ class Session:
 
     `robot` is "simulated", "ros", "actions", the path of a robot file or the name of one that ships, or a function that
     takes a World and returns a btlang.run.connection.Connection. `over` is what the robot in a file runs on, by default
-    what the file says. `world` is the path of a world file, by default the world that ships. Raises MissionError if the
-    world or the robot can't be read (BT070, BT071) or ROS 2 can't be used (BT100), ValueError for other names.
+    what the file says. `world` is the path of a world file, or its text, by default the world that ships. Raises
+    MissionError if the world or the robot can't be read (BT070, BT071) or ROS 2 can't be used (BT100), ValueError for
+    other names.
     """
 
     def __init__(
-        self, robot: str | Connect = "simulated", *, world: str | None = None, over: str | None = None
+        self, robot: str | Connect = "simulated", *, world: str | Source | None = None, over: str | None = None
     ) -> None:
         connect = connector(robot, over) if isinstance(robot, str) else robot
         self.world = read_world(world, getattr(connect, "body", None))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from btlang.backends.python_source import Source, Statements, called, literal
+from btlang.text.source import Source as WorldText
 from btlang.tree.ast import Fact
 from btlang.tree.node import Node, Tree
 from btlang.vocabulary.lexicon import Lexicon
@@ -20,6 +21,7 @@ from btlang import Mission, Session
 from btlang.api import world_vocabulary
 from btlang.tree.node import Node, Tree
 '''
+_TREE = "\nfrom btlang.tree"
 _FOOT = """
 if __name__ == "__main__":
     import sys
@@ -30,7 +32,9 @@ if __name__ == "__main__":
 """
 
 
-def to_python(tree: Tree, vocabulary: Lexicon, *, world: str | None = None, facts: Sequence[Fact] = ()) -> str:
+def to_python(
+    tree: Tree, vocabulary: Lexicon, *, world: str | WorldText | None = None, facts: Sequence[Fact] = ()
+) -> str:
     """The text of a module with a name `mission`, a Mission with the keyword files of its leaves.
 
     Words that are Python objects (`btlang.action`) cannot be told; the leaf is then unknown there. Nor can the places
@@ -38,7 +42,9 @@ def to_python(tree: Tree, vocabulary: Lexicon, *, world: str | None = None, fact
     """
     lines = [_HEAD]
     if facts:
-        lines = [_HEAD.replace("\nfrom btlang.tree", "\nfrom btlang.robots.world import Place\nfrom btlang.tree")]
+        lines = [_HEAD.replace(_TREE, f"\nfrom btlang.robots.world import Place{_TREE}")]
+    if isinstance(world, WorldText):
+        lines = [lines[0].replace(_TREE, f"\nfrom btlang.text.source import Source{_TREE}")]
     used: list[str] = []
     for name, root in tree.subtrees:
         lines += _assigned(f"subtree_{len(used) + 1}", root)
@@ -49,7 +55,8 @@ def to_python(tree: Tree, vocabulary: Lexicon, *, world: str | None = None, fact
         arguments.append(called("", used))
     lines += called("TREE = Tree", [*arguments, *([f"name={literal(tree.name)}"] if tree.name else [])]).lines
     lines.append(f"KEYWORDS = {literal(_files(tree, vocabulary))}")
-    lines.append(f"WORLD = {literal(world)}")
+    text = f"Source({literal(world.text)}, {literal(world.name)})" if isinstance(world, WorldText) else literal(world)
+    lines.append(f"WORLD = {text}")
     arguments = ["TREE", "world_vocabulary(KEYWORDS, WORLD)", "WORLD"]
     if facts:
         places = [

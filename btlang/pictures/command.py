@@ -14,6 +14,7 @@ if TYPE_CHECKING:
     from typing import Protocol
 
     from btlang.run.events import Sink
+    from btlang.text.source import Source
 
     class Mission(Protocol):
         """What a picture needs of a btlang.api.Mission."""
@@ -22,7 +23,7 @@ if TYPE_CHECKING:
         def tree(self) -> Tree: ...
 
         @property
-        def world(self) -> str | None: ...
+        def world(self) -> str | Source | None: ...
 
         def label(self, node: Node) -> str: ...
 

@@ -28,7 +28,9 @@ def files_of(mission: Mission, keywords: Sequence[str], robot: str = "") -> dict
         files[f"{_INCLUDED}/{include.path}"] = include.mission.span.source.text.encode()
     for number, path in enumerate(path for path in keywords if os.path.isfile(path)):
         files[f"{_WORDS}/{number}/{os.path.basename(path)}"] = _content(path)
-    if mission.world is not None and os.path.isfile(mission.world):
+    if isinstance(mission.world, Source):
+        files[_WORLD] = mission.world.text.encode()
+    elif mission.world is not None and os.path.isfile(mission.world):
         files[_WORLD] = _content(mission.world)
     if robot.endswith(".toml") and os.path.isfile(robot):
         files[ROBOT] = _content(robot)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from collections.abc import Collection, Mapping
 from functools import cache
 
 from btlang.robots.body import (
@@ -21,6 +22,7 @@ from btlang.robots.body import (
 )
 from btlang.robots.data_file import DataFileError, as_mission_error, load_data
 from btlang.robots.platforms import ROBOTS
+from btlang.text.source import Source
 from btlang.text.toml_table import Problem, Table
 from btlang.vocabulary.capabilities import CAPABILITIES
 from btlang.vocabulary.shipped import BODIES, STANDARD_BODY
@@ -36,15 +38,15 @@ class BodyError(DataFileError):
     code = "BT071"
 
 
-def load_body(path: str) -> Body:
-    """The robot in the file. Raises BodyError."""
-    return load_data(path, "a robot", _body, BodyError)
+def load_body(file: str | Source, overs: Collection[str] = tuple(ROBOTS)) -> Body:
+    """The robot in a file or a text, which may run on one of `overs`. Raises BodyError."""
+    return load_data(file, "a robot", lambda top: _body(top, overs), BodyError)
 
 
-def read_body(path: str) -> Body:
-    """The robot in the file. Raises MissionError (BT071)."""
+def read_body(file: str | Source, overs: Collection[str] = tuple(ROBOTS)) -> Body:
+    """As `load_body`. Raises MissionError (BT071)."""
     try:
-        return load_body(path)
+        return load_body(file, overs)
     except BodyError as error:
         raise as_mission_error(error) from None
 
@@ -60,8 +62,11 @@ def shipped_bodies() -> list[str]:
     return sorted(name.removesuffix(".toml") for name in os.listdir(BODIES) if name.endswith(".toml"))
 
 
-def _body(top: Table) -> Body:
+def _body(top: Table, overs: Collection[str]) -> Body:
     name, over = top.text("name"), top.choice("over", tuple(ROBOTS), "simulated")
+    if over not in overs:
+        listed = " or ".join(f'"{each}"' for each in overs)
+        raise top.problem("over", f'"over" may only be {listed} here; to allow "{over}", bring the robot up on it')
     radius = top.number("radius", low=0.01, high=10.0)
     base = _base(top.table("base")) if top.has("base") else None
     navigation = None
@@ -118,15 +123,15 @@ def _joint(table: Table) -> Joint:
 
 def _postures(table: Table, joints: tuple[Joint, ...]) -> dict[str, tuple[Step, ...]]:
     postures = {}
+    known = {joint.name: joint for joint in joints}
     for name in table.keys():  # noqa: SIM118
         steps = table.tables(name) if table.is_list(name) else [table.table(name)]
-        postures[name] = tuple(_step(step, joints) for step in steps)
+        postures[name] = tuple(_step(step, known) for step in steps)
     return postures
 
 
-def _step(table: Table, joints: tuple[Joint, ...]) -> Step:
+def _step(table: Table, known: Mapping[str, Joint]) -> Step:
     step: dict[str, float | str] = {}
-    known = {joint.name: joint for joint in joints}
     for name in table.keys():  # noqa: SIM118
         if name not in known:
             listed = ", ".join(known) or "none"
@@ -152,6 +157,8 @@ def _sensor(table: Table) -> Sensor:
 
 
 def _check_unique(section: str, names: list[str], key: str = "name") -> None:
+    seen: set[str] = set()
     for index, name in enumerate(names):
-        if name in names[:index]:
+        if name in seen:
             raise Problem(f'"{name}" is given twice in {section}', section, index, key)
+        seen.add(name)

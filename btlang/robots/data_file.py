@@ -6,6 +6,7 @@ import tomllib
 from collections.abc import Callable
 
 from btlang.diagnostics.reading import read_bytes
+from btlang.text.source import Source
 from btlang.text.toml import line_of, parse_toml
 from btlang.text.toml_table import Problem, Table
 from btlang.vocabulary.shipped import PACKAGE
@@ -20,47 +21,48 @@ if TYPE_CHECKING:
 
 
 class DataFileError(Exception):
-    """A file that cannot be used: `message` says what to write instead; `line` counts from 1, None if unknown."""
+    """A file that cannot be used: `message` says what to write instead; `line` counts from 1, None if unknown.
+    `source` is what was read, None if that was no text.
+    """
 
     code = ""
 
-    def __init__(self, message: str, path: str, line: int | None = None) -> None:
+    def __init__(self, message: str, path: str, line: int | None = None, source: Source | None = None) -> None:
         super().__init__(f"{path}:{line}: {message}" if line else f"{path}: {message}")
         self.message = message
         self.path = path
         self.line = line
+        self.source = source
 
 
-def load_data(path: str, what: str, make: Callable[[Table], T], error: type[DataFileError]) -> T:
-    """What `make` makes of the file, which is "a world" or the like. Raises `error`."""
+def load_data(file: str | Source, what: str, make: Callable[[Table], T], error: type[DataFileError]) -> T:
+    """What `make` makes of a path or a text, which is "a world" or the like. Raises `error`."""
+    path = file.name if isinstance(file, Source) else file
     try:
-        text = _read(path)
+        source = file if isinstance(file, Source) else Source(_read(file), file)
     except OSError as problem:
         raise error(f"cannot read {what.replace('a ', 'the ')} file: {problem.strerror or problem}", path) from None
     except UnicodeDecodeError:
         raise error(f"{what} file must be UTF-8 text; save it that way", path) from None
     try:
-        return make(Table(what, parse_toml(text)))
+        return make(Table(what, parse_toml(source.text)))
     except tomllib.TOMLDecodeError as problem:
-        raise error(f"this isn't TOML: {problem}", path, line_of(problem)) from None
+        raise error(f"this isn't TOML: {problem}", path, line_of(problem), source) from None
     except Problem as problem:
         from btlang.text.toml_positions import nearest, positions
 
-        at = nearest(positions(text), problem.path)
-        raise error(problem.message, path, None if at is None else text.count("\n", 0, at) + 1) from None
+        at = nearest(positions(source.text), problem.path)
+        line = None if at is None else source.position(at)[0]
+        raise error(problem.message, path, line, source) from None
 
 
 def as_mission_error(error: DataFileError) -> MissionError:
     """The error's code at its line."""
     from btlang.diagnostics.diagnostic import diagnostic
     from btlang.diagnostics.errors import MissionError
-    from btlang.diagnostics.reading import read_source
-    from btlang.text.source import Source, Span
+    from btlang.text.source import Span
 
-    try:
-        source = read_source(error.path)
-    except MissionError:
-        source = Source("", error.path)
+    source = error.source or Source("", error.path)
     start = source.offset(error.line or 1)
     end = start + len(source.line(error.line).rstrip()) if error.line and source.text else start
     return MissionError([diagnostic(error.code, Span(source, start, end), reason=error.message)])

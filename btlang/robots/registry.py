@@ -8,6 +8,7 @@ from collections.abc import Callable, Mapping
 from btlang.record import Record
 from btlang.robots.body_file import read_body, shipped_bodies, standard_body
 from btlang.robots.platforms import ROBOTS, connection_function
+from btlang.text.source import Source
 from btlang.vocabulary.shipped import BODIES
 
 TYPE_CHECKING = False
@@ -21,11 +22,13 @@ if TYPE_CHECKING:
     Connect: TypeAlias = Callable[[World], Connection]
 
 
-def body_of(robot: str) -> Body:
-    """The body of a robot: of a name in ROBOTS that which ships, else of the robot file.
+def body_of(robot: str | Source) -> Body:
+    """The body of a robot: of a name in ROBOTS that which ships, else of the robot file, or of its text.
 
     Raises MissionError (BT071), and ValueError for what is no robot.
     """
+    if isinstance(robot, Source):
+        return read_body(robot)
     if robot in ROBOTS:
         return standard_body()
     if robot in shipped_bodies():
@@ -36,7 +39,7 @@ def body_of(robot: str) -> Body:
     return read_body(robot)
 
 
-def runs_on(robot: str, over: str | None = None) -> tuple[Body, str]:
+def runs_on(robot: str | Source, over: str | None = None) -> tuple[Body, str]:
     """The body, and the name in ROBOTS of what it runs on: that of `over`, else what the robot says.
 
     Raises as `body_of`, and ValueError for another `over`.
@@ -59,7 +62,7 @@ class Connector(Record):
         return connection_function(self.over)(world, body=self.body, **self.options)
 
 
-def connector(robot: str, over: str | None = None, **options: Any) -> Connector:
+def connector(robot: str | Source, over: str | None = None, **options: Any) -> Connector:
     """What connects to a robot. The options are for one that does not run simulated. Raises as `runs_on`."""
     body, name = runs_on(robot, over)
     return Connector(body, name, {} if name == "simulated" else options)

@@ -19,8 +19,9 @@ from btlang.robots.world import (
     World,
     WorldNames,
 )
+from btlang.text.source import Source
 from btlang.text.time_of_day import USUAL_START
-from btlang.text.toml_table import Problem, Table
+from btlang.text.toml_table import Problem, Table, is_coordinate
 from btlang.vocabulary.shipped import DEFAULT_WORLD
 
 TYPE_CHECKING = False
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
 
     from btlang.robots.body import Body
 
+_MOST_CHECKS = 5_000_000  # of a place with a piece of wall, in some seconds
 _FAULTS = ("blocked", "slip", "silent scanner", "weak hand")
 
 
@@ -38,19 +40,19 @@ class WorldError(DataFileError):
     code = "BT070"
 
 
-def load_world(path: str | PathLike[str] | None = None, body: Body | None = None) -> World:
-    """The world in the file, or the world that ships. Raises WorldError.
+def load_world(file: str | PathLike[str] | Source | None = None, body: Body | None = None) -> World:
+    """The world in a file or a text, or the world that ships. Raises WorldError.
 
     It has to leave room for the body, by default that of the robot that ships.
     """
-    name = DEFAULT_WORLD if path is None else fspath(path)
+    given = DEFAULT_WORLD if file is None else file if isinstance(file, Source) else fspath(file)
     radius = (body or standard_body()).radius
-    return load_data(name, "a world", lambda top: _world(top, radius), WorldError)
+    return load_data(given, "a world", lambda top: _world(top, radius), WorldError)
 
 
-def world_names(path: str | PathLike[str] | None = None) -> WorldNames:
-    """Places, objects and people of the world in the file, or of the one that ships. Raises WorldError."""
-    return load_world(path).names
+def world_names(file: str | PathLike[str] | Source | None = None) -> WorldNames:
+    """Places, objects and people of the world in a file or a text, or of the one that ships. Raises WorldError."""
+    return load_world(file).names
 
 
 def _world(top: Table, radius: float) -> World:
@@ -67,7 +69,8 @@ def _world(top: Table, radius: float) -> World:
         places += (dock,)
     objects = tuple(_thing(table, OBJECT_RADIUS) for table in top.tables("objects"))
     people = tuple(_thing(table, PERSON_RADIUS) for table in top.tables("people"))
-    faults = tuple(_fault(table, [place.name for place in places]) for table in top.tables("faults"))
+    names = tuple(place.name for place in places)
+    faults = tuple(_fault(table, names) for table in top.tables("faults"))
     clock = _clock(top) if top.has("clock") else USUAL_START
     world = top.finish(World(start, battery, walls, boxes, places, objects, people, faults, dock, clock))
     _check_names(world)
@@ -94,7 +97,7 @@ def _wall(points: Any, index: int) -> tuple[Point, ...]:
 
 
 def _is_point(value: Any) -> bool:
-    return isinstance(value, list) and len(value) == 2 and all(type(number) in (int, float) for number in value)
+    return isinstance(value, list) and len(value) == 2 and all(map(is_coordinate, value))
 
 
 def _box(table: Table) -> Box:
@@ -112,12 +115,12 @@ def _thing(table: Table, radius: float) -> Thing:
     return table.finish(thing)
 
 
-def _fault(table: Table, places: list[str]) -> Fault:
+def _fault(table: Table, places: tuple[str, ...]) -> Fault:
     kind = table.choice("kind", _FAULTS)
     start, end = table.number("from", 0.0, low=0.0), table.number("until", NEVER, low=0.0)
     more: Mapping[str, Any] = {}
     if kind == "blocked":
-        more = {"place": table.choice("place", tuple(places))}
+        more = {"place": table.choice("place", places)}
     elif kind == "slip":
         wheel = table.choice("wheel", ("left", "right", "both"), "both")
         more = {"wheel": wheel, "grip": table.number("grip", low=0.0, high=1.0)}
@@ -146,9 +149,13 @@ def _check_room(world: World, radius: float) -> None:
     for index, place in enumerate(world.places):
         path: tuple[str | int, ...] = ("dock",) if place is world.dock else ("places", index)
         spots.append((f'the place "{place.name}"', path, place.x, place.y))
+    segments = world.segments()
+    if len(spots) * len(segments) > _MOST_CHECKS:
+        message = f"{len(spots):,} places are too many for {len(segments):,} pieces of wall; leave some out"
+        raise Problem(message, "places")
     for what, path, x, y in spots:
         inside = any(box.contains((x, y)) for box in world.boxes)
-        gap = min((segment_distance((x, y), segment) for segment in world.segments()), default=NEVER)
+        gap = min((segment_distance((x, y), segment) for segment in segments), default=NEVER)
         if inside or gap < radius:
             message = f"{what} at ({x:g}, {y:g}) is inside a wall or a box; leave {radius:g} m to every wall"
             raise Problem(message, *path, "x")

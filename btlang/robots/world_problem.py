@@ -6,10 +6,11 @@ from btlang.robots.body import Body
 from btlang.robots.data_file import as_mission_error
 from btlang.robots.world import World
 from btlang.robots.world_file import WorldError, load_world
+from btlang.text.source import Source
 
 
-def read_world(world: str | None = None, body: Body | None = None) -> World:
-    """The world in a file, by default the world that ships. Raises MissionError (BT070)."""
+def read_world(world: str | Source | None = None, body: Body | None = None) -> World:
+    """The world in a file or a text, by default the world that ships. Raises MissionError (BT070)."""
     try:
         return load_world(world, body)
     except WorldError as error:

@@ -1,4 +1,4 @@
-"""The server's routes: log-in, commands to robots, missions, and the WebSocket."""
+"""The server's routes: log-in, commands to robots, the library, and the WebSocket."""
 
 from __future__ import annotations
 
@@ -24,7 +24,7 @@ from btlang.server.fleet import Fleet
 from btlang.server.joining import Joins
 from btlang.server.links import RobotLink, Robots
 from btlang.server.metrics import metrics
-from btlang.server.openapi import VERSION, document
+from btlang.server.openapi import LIBRARY, VERSION, document
 from btlang.server.pages import page_routes
 from btlang.server.roles import NEEDED
 from btlang.server.rosbridge import Rosbridge
@@ -32,6 +32,7 @@ from btlang.server.sockets import Sockets
 from btlang.task import messages
 from btlang.task.database import StoreError
 from btlang.task.messages import Answer, Command, read_command
+from btlang.task.task import Kind
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -67,10 +68,7 @@ class Api:
             self._route("/api/robots", self._robots, "GET"),
             self._route("/api/stop", self._stop, "POST"),
             self._route("/api/commands", self._command, "POST"),
-            self._route("/api/missions", self._missions, "GET"),
-            self._route("/api/missions/{name:path}", self._mission, "GET"),
-            self._route("/api/missions/{name:path}", self._put_mission, "PUT"),
-            self._route("/api/missions/{name:path}", self._delete_mission, "DELETE"),
+            *(route for path, kind in LIBRARY.items() for route in self._library(path, kind)),
             *(self._route(f"/api/{kind}", partial(self._text, kind), "POST") for kind in DOES),
             self._route("/metrics", self._metrics, "GET"),
             Route("/openapi.json", lambda request: JSONResponse(document())),
@@ -191,34 +189,51 @@ class Api:
         return _answer(await self.send(identity, str(robot), read_command(data), _address(request)))
 
     async def _text(self, kind: str, request: Request) -> Response:
-        await self._who(request)
+        identity = await self._who(request)
         data = await json_object(request)
-        robot = data.get("robot", "")
-        words = self.link(str(robot)).words if robot or self.robots.links else Words()
-        return JSONResponse(await self.checker.answer(kind, text_in(data, "text"), words))
+        text, robot = text_in(data, "text"), str(data.get("robot", ""))
+        words = self.link(robot).words if robot or self.robots.links else Words()
+        if "world" in data:
+            name = text_in(data, "world")
+            if not name:
+                raise AccessError(400, "'world' must be the name of a world.")
+            command = messages.Library(name, Kind.WORLD.value, revision=0)
+            found = await self.send(identity, robot, command, _address(request))
+            if not found.ok:
+                return _answer(found)
+            try:
+                words = words.in_world(name, str(found.data["worlds"][0]["text"]))
+            except (LookupError, TypeError):  # a robot may say anything
+                raise AccessError(503, f"The robot didn't send the world '{name}'.") from None
+        return JSONResponse(await self.checker.answer(kind, text, words))
 
     async def _metrics(self, request: Request) -> Response:
         await self._who(request)
         return PlainTextResponse(metrics(self.robots.links.values(), len(self.sockets)))
 
-    async def _missions(self, request: Request) -> Response:
-        return await self._of_library(request, messages.Library())
+    def _library(self, path: str, kind: Kind) -> list[Route]:
+        return [
+            self._route(path, partial(self._list, kind), "GET"),
+            self._route(f"{path}/{{name:path}}", partial(self._list, kind), "GET"),
+            self._route(f"{path}/{{name:path}}", partial(self._put, kind), "PUT"),
+            self._route(f"{path}/{{name:path}}", partial(self._delete, kind), "DELETE"),
+        ]
 
-    async def _mission(self, request: Request) -> Response:
-        return await self._of_library(request, messages.Library(request.path_params["name"]))
+    async def _list(self, kind: Kind, request: Request) -> Response:
+        return await self._of_library(request, messages.Library(request.path_params.get("name", ""), kind.value))
 
-    async def _put_mission(self, request: Request) -> Response:
+    async def _put(self, kind: Kind, request: Request) -> Response:
         identity = await self._who(request)
         data = await json_object(request)
         revision = data.get("revision")
         if revision is not None and not isinstance(revision, int):
             raise AccessError(400, "'revision' must be a number.")
-        command = messages.PutMission(request.path_params["name"], text_in(data, "text"), revision)
+        command = messages.Put(request.path_params["name"], text_in(data, "text"), revision, kind.value)
         robot = request.query_params.get("robot", "")
         return _answer(await self.send(identity, robot, command, _address(request)))
 
-    async def _delete_mission(self, request: Request) -> Response:
-        return await self._of_library(request, messages.DeleteMission(request.path_params["name"]))
+    async def _delete(self, kind: Kind, request: Request) -> Response:
+        return await self._of_library(request, messages.Delete(request.path_params["name"], kind.value))
 
     async def _of_library(self, request: Request, command: Command) -> Response:
         robot = request.query_params.get("robot", "")

@@ -16,6 +16,7 @@ from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.report import as_data
 from btlang.frontends.mission.completion.completer import Completion, completions
 from btlang.server.access import AccessError
+from btlang.text.escaping import one_line
 from btlang.text.source import Source
 
 TYPE_CHECKING = False
@@ -30,10 +31,19 @@ _MOST_OFFERS = 200
 
 
 class Words:
-    """Where the words of a robot are: keyword files, world and language."""
+    """Where the words of a robot are: keyword files, world and language. The world is a file, or the text of one."""
 
-    def __init__(self, keywords: Sequence[str] = (), world: str | None = None, language: str = "en") -> None:
-        self.keywords, self.world, self.language = keywords, world, language
+    def __init__(
+        self, keywords: Sequence[str] = (), world: str | None = None, language: str = "en", world_text: str = ""
+    ) -> None:
+        self.keywords, self.language = keywords, language
+        self.world = Source(world_text, "world", roots=()) if world_text else world
+
+    def in_world(self, name: str, text: str) -> Words:
+        """These words with the places of a world in a text; `name` is what messages show."""
+        other = Words(self.keywords, language=self.language)
+        other.world = Source(text, one_line(name), roots=())
+        return other
 
 
 def _messages(problems: Iterable[Diagnostic]) -> list[dict[str, Any]]:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from functools import cache
 
 from btlang.task.messages import schema
+from btlang.task.task import Kind
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -25,7 +26,24 @@ def _object(*required: str, **properties: dict[str, Any]) -> dict[str, Any]:
     return {"type": "object", "properties": properties, "required": list(required)}
 
 
-_WRITTEN = _object("text", text=_TEXT, robot=_TEXT)
+LIBRARY = {"/api/missions": Kind.MISSION, "/api/worlds": Kind.WORLD, "/api/robot-files": Kind.ROBOT}
+"""What the library has, by the paths of its routes."""
+_WORLD = {"type": "string", "description": "The name of a world of the library, instead of the world of the robot."}
+_WRITTEN = _object("text", text=_TEXT, robot=_TEXT, world=_WORLD)
+
+
+def _library(path: str, called: str) -> dict[tuple[str, str], tuple[str, dict[str, Any] | None]]:
+    return {
+        ("GET", path): (f"The {called}s of the library.", None),
+        ("GET", f"{path}/{{name}}"): (f"All revisions of a {called}.", None),
+        ("PUT", f"{path}/{{name}}"): (
+            f"Keeps a {called}; with the revision it was made from, 0 for a new one, nothing newer is overwritten.",
+            _object("text", text=_TEXT, revision={"type": "integer"}),
+        ),
+        ("DELETE", f"{path}/{{name}}"): (f"Takes a {called} out of the library.", None),
+    }
+
+
 ROUTES: dict[tuple[str, str], tuple[str, dict[str, Any] | None]] = {
     ("POST", "/api/login"): ("Begins a session.", _object("name", "password", name=_TEXT, password=_TEXT)),
     ("POST", "/api/logout"): ("Ends a session, or all of a user.", _object(everywhere={"type": "boolean"})),
@@ -33,13 +51,9 @@ ROUTES: dict[tuple[str, str], tuple[str, dict[str, Any] | None]] = {
     ("GET", "/api/robots"): ("The robots, and whether they are up.", None),
     ("POST", "/api/stop"): ("The emergency stop.", _object(robot=_TEXT, reason=_TEXT)),
     ("POST", "/api/commands"): ("A command for a robot.", {"$ref": "#/components/schemas/Command"}),
-    ("GET", "/api/missions"): ("The library.", None),
-    ("GET", "/api/missions/{name}"): ("All revisions of a mission.", None),
-    ("PUT", "/api/missions/{name}"): (
-        "Keeps a mission; with the revision it was made from, 0 for a new one, nothing newer is overwritten.",
-        _object("text", text=_TEXT, revision={"type": "integer"}),
-    ),
-    ("DELETE", "/api/missions/{name}"): ("Takes a mission out of the library.", None),
+    **_library("/api/missions", "mission"),
+    **_library("/api/worlds", "world"),
+    **_library("/api/robot-files", "robot file"),
     ("POST", "/api/check"): ("What is wrong with a mission.", _WRITTEN),
     ("POST", "/api/complete"): ("What may follow a text.", _WRITTEN),
     ("POST", "/api/explain"): ("How a mission is understood.", _WRITTEN),
@@ -64,7 +78,7 @@ def document() -> dict[str, Any]:
         if body is not None:
             described["requestBody"] = {"required": True, "content": {"application/json": {"schema": body}}}
         parameters = [_NAME] if "{name}" in path else []
-        parameters += [_ROBOT] if "missions" in path else []
+        parameters += [_ROBOT] if path.removesuffix("/{name}") in LIBRARY else []
         if parameters:
             described["parameters"] = parameters
         if path in _OPEN:

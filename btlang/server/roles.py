@@ -31,7 +31,7 @@ _OPERATOR = (
     messages.Reorder, messages.Again, messages.AddSchedule, messages.RemoveSchedule, messages.Pause, messages.Step,
     messages.Release, messages.Say, messages.Trail,
 )  # fmt: skip
-_EDITOR = (messages.PutMission, messages.DeleteMission)
+_EDITOR = (messages.Put, messages.Delete)
 _ADMINISTRATOR = (messages.Down,)
 
 NEEDED: dict[type[Command], Role] = {

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from difflib import unified_diff
+from itertools import takewhile
 
 from btlang.task.checks import refused
 from btlang.task.days import joined
-from btlang.task.messages import Answer, PutMission
+from btlang.task.messages import Answer, Put
 from btlang.task.moments import length, shown
 from btlang.task.task import MissionText, Revision, Schedule, Task
 from btlang.text.escaping import one_line
@@ -17,6 +18,7 @@ if TYPE_CHECKING:
     from typing import Any
 
 _LONGEST = 60  # characters of a mission in a list
+_MOST_LINES = 3_000  # of texts whose smallest difference is found in some seconds, whatever they are
 _HIDDEN = ("mission", "saved", "token")
 
 
@@ -68,7 +70,7 @@ def revision_data(revision: Revision) -> dict[str, Any]:
 
 
 def deleted(name: str, schedules: Sequence[int]) -> str:
-    """What is said of a mission that is no longer in the library, while some schedules have its text."""
+    """What is said of a text that is no longer in the library, while some schedules have it."""
     text = f"'{one_line(name)}' is no longer in the library."
     if not schedules:
         return text
@@ -77,13 +79,31 @@ def deleted(name: str, schedules: Sequence[int]) -> str:
     return f"{text} {who} on with its text. To end {it}: btc task unschedule"
 
 
-def outdated(command: PutMission, latest: Revision | None) -> Answer:
-    """The refusal of a text that was made from another revision than the latest one, with what differs from that."""
+def outdated(command: Put, called: str, latest: Revision | None) -> Answer:
+    """The refusal of a text, `called` "mission" or the like, that was made from another revision than the latest one,
+    with what differs from that.
+    """
     before = "" if latest is None else latest.text
-    lines = unified_diff(before.splitlines(), command.text.splitlines(), "latest", "yours", lineterm="")
+    lines = _differences(before.splitlines(), command.text.splitlines())
     number = 0 if latest is None else latest.number
     problem = refused(
-        f"The mission '{command.name}'", f"has changed since revision {command.revision}: it has {number}"
+        f"The {called} '{command.name}'", f"has changed since revision {command.revision}: it has {number}"
     )
     data = {"revision": number, "text": before, "diff": "\n".join(lines)}
     return Answer(False, str(problem), data, problem.diagnostics[0].code)
+
+
+def _differences(before: list[str], after: list[str]) -> Iterable[str]:
+    """A unified diff; of long texts with everything between the first and the last difference."""
+    if max(len(before), len(after)) <= _MOST_LINES:
+        return unified_diff(before, after, "latest", "yours", lineterm="")
+    begin = _common(before, after)
+    end = _common(before[begin:][::-1], after[begin:][::-1])
+    old, new = before[begin : len(before) - end], after[begin : len(after) - end]
+    place = f"@@ -{begin + 1},{len(old)} +{begin + 1},{len(new)} @@"
+    return ["--- latest", "+++ yours", place, *(f"-{line}" for line in old), *(f"+{line}" for line in new)]
+
+
+def _common(first: list[str], second: list[str]) -> int:
+    """How many lines both begin with."""
+    return sum(1 for _ in takewhile(lambda pair: pair[0] == pair[1], zip(first, second, strict=False)))

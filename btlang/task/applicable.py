@@ -22,8 +22,8 @@ _TASK: Mapping[str, Sequence[str]] = {
     "cancel": ("reason", "json"), "kill": ("reason", "json"), "interrupt": ("reason", "json"),
     "resume": ("token", "json"), "skip": ("reason", "json"), "move": ("priority", "before", "json"),
     "again": ("json",), "schedule": (*_ADD, "every", "zone", "overlap", "missed", "within"),
-    "schedules": ("json",), "unschedule": ("json",), "put": ("code", "json"), "delete": ("json",),
-    "library": ("json",), "trail": ("limit", "json"),
+    "schedules": ("json",), "unschedule": ("json",), "put": ("code", "kind", "json"),
+    "delete": ("kind", "json"), "library": ("kind", "json"), "trail": ("limit", "json"),
 }  # fmt: skip
 """By the acts, the options that mean something there; `--name` always does."""
 ROBOT_ACTS, TASK_ACTS = tuple(_ROBOT), tuple(_TASK)

@@ -117,7 +117,9 @@ def _copy(read: Execute, write: Execute, steps: Sequence[Step] | None, without: 
         columns = tables[table]
         listed = ", ".join(columns)
         for at in range(0, read(f"SELECT count(*) FROM {table}")[0][0], _BATCH):
-            rows = read(f"SELECT {listed} FROM {table} ORDER BY 1, 2 LIMIT ? OFFSET ?", (_BATCH, at))
+            rows = read(
+                f"SELECT {listed} FROM {table} ORDER BY {', '.join(columns[:3])} LIMIT ? OFFSET ?", (_BATCH, at)
+            )
             every = ", ".join([f"({marks(len(columns))})"] * len(rows))
             write(f"INSERT INTO {table} ({listed}) VALUES {every}", [value for row in rows for value in row])
 

@@ -83,11 +83,11 @@ def _command(options: argparse.Namespace) -> Command:
     if act == "schedules":
         return messages.Schedules()
     if act == "library":
-        return messages.Library(_word(options, "") if options.item else "")
+        return messages.Library(_word(options, "") if options.item else "", options.kind)
     if act == "trail":
         return messages.Trail() if options.limit is None else messages.Trail(options.limit)
     if act == "delete":
-        return messages.DeleteMission(_word(options, "the name of a mission"))
+        return messages.Delete(_word(options, f"the name of a {options.kind}"), options.kind)
     number = _number(options)
     if act == "move":
         return messages.Reorder(number, options.priority, options.before)
@@ -114,7 +114,7 @@ def _with_mission(options: argparse.Namespace) -> Command:
         name = options.item[0] if options.item else ""
         if not text:
             text = read_source(_word(options, "a name and a file", 1)).text
-        return messages.PutMission(name, text)
+        return messages.Put(name, text, kind=options.kind)
     if not text:
         name = _word(options, "a file, a name of the library, or -c TEXT")
         if os.path.exists(name) or name.endswith(".txt"):

@@ -5,7 +5,7 @@ from __future__ import annotations
 import json
 import os
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Collection
 from contextlib import suppress
 from functools import partial
 
@@ -14,7 +14,7 @@ from btlang.diagnostics.crash import crashed
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.task import messages
-from btlang.task.answers import deleted, outdated, revision_data, task_data, task_line
+from btlang.task.answers import task_data, task_line
 from btlang.task.checks import (
     HIGHEST,
     check_values,
@@ -27,6 +27,7 @@ from btlang.task.checks import (
 )
 from btlang.task.emergency import EmergencyStop
 from btlang.task.executor import Executor
+from btlang.task.library_handler import LibraryHandler, unknown
 from btlang.task.manager import Manager
 from btlang.task.messages import Answer, Command, wrong
 from btlang.task.moments import shown
@@ -49,7 +50,8 @@ _MOMENT = 0.01
 
 class Handler:
     """`handle` is for any thread. `admit` reads a mission for this robot and refuses what it can't do, with all
-    reasons (MissionError); `now` gives the time since 1970, `down` ends the process, `needs` is what a mission needs.
+    reasons (MissionError); `now` gives the time since 1970, `down` ends the process, `needs` is what a mission needs,
+    `overs` is what robot files of others may run on.
     """
 
     def __init__(
@@ -63,17 +65,19 @@ class Handler:
         now: Callable[[], float],
         down: Callable[[], object],
         needs: Callable[[MissionText], tuple[str, ...]],
+        overs: Collection[str],
     ) -> None:
         self._store, self._manager, self._executor, self._emergency = store, manager, executor, emergency
         self._session, self._admit, self._now, self._down, self._needs = session, admit, now, down, needs
         schedules = ScheduleHandler(store, executor.wake, self._mission, now)
+        library = LibraryHandler(store, admit, now, getattr(session.robot, "body", None), overs)
         self._does: dict[type[Command], Callable[[Any, str], Answer]] = {
             messages.Submit: self._submit, messages.List: self._list, messages.Show: self._show,
             messages.Cancel: partial(self._end, State.CANCELED), messages.Kill: partial(self._end, State.KILLED),
             messages.Interrupt: self._interrupt, messages.Resume: self._resume, messages.Skip: self._skip,
             messages.Reorder: self._reorder, messages.Again: self._again, messages.AddSchedule: schedules.add,
             messages.RemoveSchedule: schedules.remove, messages.Schedules: schedules.list,
-            messages.PutMission: self._put, messages.DeleteMission: self._delete, messages.Library: self._library,
+            messages.Put: library.put, messages.Delete: library.delete, messages.Library: library.list,
             messages.Pause: self._pause, messages.Step: self._step, messages.EmergencyStop: self._stop,
             messages.Release: self._release, messages.Say: self._say, messages.Down: self._end_all,
             messages.Status: self._status, messages.Report: self._report, messages.Trail: self._trail,
@@ -253,37 +257,6 @@ class Handler:
         self._executor.wake()
         return Answer(True, f"Task {made.id} is queued.", {"task": task_data(made)})
 
-    def _put(self, command: messages.PutMission, person: str) -> Answer:
-        if not command.name.strip() or "/" in command.name or not command.name.isprintable():
-            raise wrong("put", "'name' must be a name without '/' that can be shown")
-        self._admit(MissionText(command.text, command.name))
-        kept = self._store.put_mission(command.name, command.text, person, self._now(), command.revision)
-        if kept is None:
-            return outdated(command, self._store.mission(command.name))
-        text = f"'{one_line(kept.name)}' is in the library, revision {kept.number}."
-        return Answer(True, text, {"mission": revision_data(kept)})
-
-    def _delete(self, command: messages.DeleteMission, person: str) -> Answer:
-        if not self._store.delete_mission(command.name, person, self._now()):
-            raise _unknown(command.name)
-        left = [
-            each.id for each in self._store.schedules() if each.mission.revision and each.mission.name == command.name
-        ]
-        return Answer(True, deleted(command.name, left), {"schedules": left})
-
-    def _library(self, command: messages.Library, person: str) -> Answer:
-        found = self._store.revisions(command.name) if command.name else self._store.missions()
-        now = self._now()
-        lines = [
-            f"{one_line(each.name)}, revision {each.number}: {one_line(each.person)}, {shown(each.time, now)}"
-            + (", deleted" if each.deleted else "")
-            for each in found
-        ]
-        data = [{**revision_data(each), "text": each.text} for each in found]
-        if command.name and not found:
-            raise _unknown(command.name)
-        return Answer(True, "\n".join(lines) or "The library is empty.", {"missions": data})
-
     def _pause(self, command: messages.Pause, person: str) -> Answer:
         self._executor.pause()
         return Answer(True, "The robot is paused.", {})
@@ -357,9 +330,9 @@ class Handler:
         if not text:
             if not name:
                 raise wrong(command.tag, "it needs 'text' or 'name'")
-            found = self._store.mission(name)
+            found = self._store.text(name)
             if found is None:
-                raise _unknown(name)
+                raise unknown(name)
             text, revision = found.text, found.number
         mission = MissionText(text, name, revision, dict(command.values), command.keywords)
         check_values(self._admit(mission), mission.values)
@@ -383,7 +356,3 @@ class Handler:
 
 def _cause(reason: str, person: str) -> str:
     return reason or f"{person or 'somebody'} asked for it"
-
-
-def _unknown(mission: str) -> MissionError:
-    return refused(f"The mission '{mission}'", "isn't in the library")

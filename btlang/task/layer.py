@@ -10,6 +10,7 @@ from btlang.api import Mission
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.robots.needs import check_body, needs_of_tree
+from btlang.robots.registry import runs_on
 from btlang.session import Run, Session
 from btlang.task.emergency import EmergencyStop, latch_path
 from btlang.task.executor import Executor
@@ -104,6 +105,7 @@ class TaskLayer:
             self.now,
             down,
             self._needs,
+            {"simulated": None, _over(robot, over): None},
         )
 
     def now(self) -> float:
@@ -187,3 +189,8 @@ class TaskLayer:
         if battery is not None and battery < _EMPTY and _WHEELS & {*needs_of_tree(mission.tree, mission.vocabulary)}:
             raise MissionError([diagnostic("BT186", NOWHERE, reason=f"its battery is at {battery:.0f}%")])
         return mission
+
+
+def _over(robot: str | Connect, over: str | None) -> str:
+    """What the robot runs on."""
+    return runs_on(robot, over)[1] if isinstance(robot, str) else getattr(robot, "over", "simulated")

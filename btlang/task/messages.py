@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.record import Record
-from btlang.task.task import Missed, Overlap, Restart
+from btlang.task.task import Kind, Missed, Overlap, Restart
 from btlang.text.source import NOWHERE
 from btlang.text.spelling import nearest
 
@@ -154,32 +154,39 @@ class Schedules(Command):
     changes = False
 
 
-class PutMission(Command):
-    """Keeps a mission in the library under a name. Every earlier revision stays. With the `revision` that the text was
-    made from, 0 for a new mission, it is refused if there is another one by now: the answer has the `diff` to that.
+class Put(Command):
+    """Keeps a text in the library under a name, which is unique in its `kind`: "mission", "world" or "robot". Every
+    earlier revision stays. With the `revision` that the text was made from, 0 for a new one, it is refused if there is
+    another one by now: the answer has the `diff` to that.
     """
 
     tag = "put"
     name: str
     text: str
     revision: int | None = None
+    kind: str = Kind.MISSION.value
 
 
-class DeleteMission(Command):
-    """Takes a mission out of the library; its revisions stay, and tasks and schedules that have its text still run.
+class Delete(Command):
+    """Takes a text out of the library; its revisions stay, and tasks and schedules that have its text still run.
     The answer has the numbers of these `schedules`.
     """
 
     tag = "delete"
     name: str
+    kind: str = Kind.MISSION.value
 
 
 class Library(Command):
-    """The missions of the library; with a `name`, the revisions of that one."""
+    """The missions of the library, or its texts of another `kind`; with a `name` the revisions of that one, or only the
+    one with the number `revision`, 0 for the latest.
+    """
 
     tag = "library"
     changes = False
     name: str = ""
+    kind: str = Kind.MISSION.value
+    revision: int | None = None
 
 
 class Pause(Command):
@@ -250,7 +257,7 @@ COMMANDS: dict[str, type[Command]] = {
     kind.tag: kind
     for kind in (
         Submit, List, Show, Cancel, Kill, Interrupt, Resume, Skip, Reorder, Again, AddSchedule, RemoveSchedule,
-        Schedules, PutMission, DeleteMission, Library, Pause, Step, EmergencyStop, Release, Say, Down, Status, Report,
+        Schedules, Put, Delete, Library, Pause, Step, EmergencyStop, Release, Say, Down, Status, Report,
         Trail,
     )
 }  # fmt: skip

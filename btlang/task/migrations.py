@@ -55,9 +55,18 @@ MIGRATIONS: list[Step] = [
         )""",
         "CREATE TABLE setting (name TEXT PRIMARY KEY, value TEXT NOT NULL)",
     ),
+    (
+        """CREATE TABLE revision_of_kind (
+            kind TEXT NOT NULL, name TEXT NOT NULL, number BIGINT NOT NULL, text TEXT NOT NULL, person TEXT NOT NULL,
+            time DOUBLE PRECISION NOT NULL, deleted BIGINT NOT NULL, PRIMARY KEY (kind, name, number)
+        )""",
+        "INSERT INTO revision_of_kind SELECT 'mission', name, number, text, person, time, deleted FROM revision",
+        "DROP TABLE revision",
+        "ALTER TABLE revision_of_kind RENAME TO revision",
+    ),
 ]
 """What leads from version 0, an empty database, to 1, from there to 2, and so on. A step that was released is never
-changed. The statements are for SQLite and PostgreSQL both; the first two columns of a table have its key.
+changed. The statements are for SQLite and PostgreSQL both; the first three columns of a table have its key.
 """
 
 
@@ -116,11 +125,9 @@ def stored_version(database: Database, execute: Execute, steps: Sequence[Step] |
     if len(rows) != 1 or not isinstance(rows[0][0], int) or rows[0][0] < 1:
         raise store_error(database.place, "its version can't be read; perhaps it isn't a store of btlang")
     version = rows[0][0]
+    if not found.keys() & tables_of(steps).keys() - {"version"}:
+        raise store_error(database.place, "it has other tables than it should; perhaps it's a copy of something else")
     if version > len(steps):
-        if not found.keys() & tables_of(steps).keys() - {"version"}:
-            raise store_error(
-                database.place, "it has other tables than it should; perhaps it's a copy of something else"
-            )
         known = str(len(steps))
         raise MissionError([diagnostic("BT196", NOWHERE, place=database.place, version=str(version), known=known)])
     for table, expected in tables_of(steps[:version]).items():

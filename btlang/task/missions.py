@@ -25,7 +25,8 @@ _NOT_ALLOWED = "others can't use it; to allow it, start the robot with --allow-k
 
 
 class MissionReader:
-    """For one robot: its words are those of the keyword files `keywords`, its names those of `world`.
+    """For one robot: its words are those of the keyword files `keywords`, its names those of `world`, a
+    world file or its text.
 
     A text may include files below `include_root`, and bring keyword files of `allowed_keywords` (names of packs, and
     folders); by default none, since the author of a text may not read these files, and keyword files run Python.
@@ -34,7 +35,7 @@ class MissionReader:
     def __init__(
         self,
         keywords: Sequence[str] = (),
-        world: str | None = None,
+        world: str | Source | None = None,
         *,
         parser: str = "shunting-yard",
         language: str = ENGLISH,
@@ -47,10 +48,12 @@ class MissionReader:
 
     @property
     def words(self) -> dict[str, Any]:
-        """Where its words are, for another process on this computer."""
+        """Where its words and its world are, for another process on this computer."""
         files = [os.path.abspath(name) if os.path.exists(name) else name for name in self.keywords]
-        world = os.path.abspath(self.world or DEFAULT_WORLD)
-        return {"keywords": files, "world": world, "language": self.language}
+        words: dict[str, Any] = {"keywords": files, "language": self.language}
+        if isinstance(self.world, Source):
+            return {**words, "world_text": self.world.text}
+        return {**words, "world": os.path.abspath(self.world or DEFAULT_WORLD)}
 
     def read(self, mission: MissionText) -> Mission:
         """Raises MissionError. Fast for a text that was read a moment ago."""

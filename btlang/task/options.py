@@ -13,8 +13,10 @@ from btlang.task.applicable import ROBOT_ACTS, TASK_ACTS, note_given
 def add_robot_options(parser: argparse.ArgumentParser) -> None:
     """Those of `btc robot`."""
     _add_name(parser)
-    parser.add_argument("--robot", default="simulated", metavar="ROBOT", help="robot file (default: simulated)")
-    parser.add_argument("--world", metavar="FILE", help="world file")
+    parser.add_argument(
+        "--robot", default="simulated", metavar="ROBOT", help="robot file, or library:NAME (default: simulated)"
+    )
+    parser.add_argument("--world", metavar="FILE", help="world file, or library:NAME")
     parser.add_argument("--keywords", action="append", default=[], metavar="FILE", help="keyword file")
     add_layer_options(parser)
     add_companion_options(parser)
@@ -71,6 +73,9 @@ def add_task_options(parser: argparse.ArgumentParser) -> None:
     """Those of `btc task`."""
     _add_name(parser)
     parser.add_argument("-c", dest="code", metavar="TEXT", help="the mission itself")
+    parser.add_argument(
+        "--kind", default="mission", metavar="KIND", help="of the library: mission (default), world or robot"
+    )
     parser.add_argument("--priority", type=int, metavar="N", help="from -100 to 100, higher first (default: 0)")
     parser.add_argument("--at", metavar="TIME", help='begin at this time at the earliest: "14:30", "in 10 minutes"')
     parser.add_argument("--by", metavar="TIME", help="skip it if it hasn't begun by this time")

@@ -7,12 +7,13 @@ import re
 import signal
 import sys
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from contextlib import suppress
 from functools import partial
 from urllib.parse import parse_qs, urlsplit
 
 from btlang.diagnostics.errors import MissionError
+from btlang.robots.registry import connector
 from btlang.run.emergency import emergency_signal
 from btlang.task import messages
 from btlang.task.applicable import check_robot_words
@@ -21,11 +22,13 @@ from btlang.task.client import Client, emergency_stop
 from btlang.task.command import tell
 from btlang.task.companion import companions
 from btlang.task.layer import KEPT, TaskLayer
+from btlang.task.library_handler import kept_text
 from btlang.task.manager import DAY
 from btlang.task.missions import MissionReader
 from btlang.task.paths import USUAL_NAME, data_folder
 from btlang.task.socket_server import SocketServer
 from btlang.task.store import open_store
+from btlang.task.task import Kind
 from btlang.task.timeliness import keep_ticks_in_time
 from btlang.text.escaping import one_line
 from btlang.text.output import pass_on, show
@@ -34,6 +37,9 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     import argparse
     from typing import Any
+
+    from btlang.robots.registry import Connect
+    from btlang.text.source import Source
 
 _UNIT = """{note}[Unit]
 Description=The robot '{name}' (btlang)
@@ -53,6 +59,7 @@ WantedBy=default.target
 _SECRET = """# The password of the store is in this file: let nobody else read it (chmod 600).
 # Or leave it out of the URL, and write it into ~/.pgpass, where PostgreSQL looks for it.
 """
+_LIBRARY = "library:"
 _CONTROL = re.compile(r"[\0-\x1f\x7f]")
 _PLAIN = re.compile(r"[\w@%+=:,./-]+", re.ASCII)
 
@@ -90,8 +97,9 @@ def layer_options(options: argparse.Namespace, name: str) -> dict[str, Any]:
     folder = data_folder(name)
     recordings = None if options.no_recordings else options.record or os.path.join(folder, "recordings")
     return {
-        "folder": folder, "store": options.store, "rules": options.rules, "durable": options.durable,
-        "recordings": recordings, "keeps": KEPT if options.keep is None else options.keep * DAY,
+        "folder": folder, "store": options.store or os.path.join(folder, "tasks.db"), "rules": options.rules,
+        "durable": options.durable, "recordings": recordings,
+        "keeps": KEPT if options.keep is None else options.keep * DAY,
     }  # fmt: skip
 
 
@@ -106,16 +114,16 @@ def _up(options: argparse.Namespace) -> int:
         lambda *wanted: layer.feed.watch(*wanted),
     )
     try:  # the name is ours before the store and the robot are touched
+        kept = layer_options(options, name)
+        robot, world = _from_library(options, kept)
         reader = MissionReader(
             options.keywords,
-            options.world,
+            world,
             include_root=options.include_root,
             allowed_keywords=options.allow_keywords,
         )
         trouble, down = (lambda text: show(one_line(text), sys.stderr)), ended.set
-        layer = TaskLayer(
-            options.robot, reader, **layer_options(options, name), speed=options.speed, trouble=trouble, down=down
-        )
+        layer = TaskLayer(robot, reader, **kept, speed=options.speed, trouble=trouble, down=down)
     except BaseException:
         door.close()
         raise
@@ -138,6 +146,21 @@ def _up(options: argparse.Namespace) -> int:
         ended_well = layer.close()
     show(f"The robot '{name}' is down.")
     return code or (0 if ended_well else 1)
+
+
+def _from_library(options: argparse.Namespace, kept: Mapping[str, Any]) -> tuple[str | Connect, str | Source | None]:
+    """The robot and the world that options name, the newest revisions where these are in the robot's own library."""
+    robot, world = options.robot, options.world
+    names = [each for each in (robot, world) if each is not None and each.startswith(_LIBRARY)]
+    if not names:
+        return robot, world
+    os.makedirs(kept["folder"], mode=0o700, exist_ok=True)
+    with open_store(kept["store"]) as store:
+        if robot in names:
+            robot = connector(kept_text(store, robot.removeprefix(_LIBRARY), Kind.ROBOT))
+        if world in names:
+            world = kept_text(store, world.removeprefix(_LIBRARY), Kind.WORLD)
+    return robot, world
 
 
 def _unit(options: argparse.Namespace) -> str:

@@ -8,7 +8,7 @@ from enum import StrEnum
 from functools import cache
 
 from btlang.record import Record
-from btlang.task.task import Missed, MissionText, Overlap, Restart, State
+from btlang.task.task import Kind, Missed, MissionText, Overlap, Restart, State
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -24,7 +24,7 @@ _READERS: dict[str, Callable[[Any], Any]] = {
     "bool": bool,
     "float": float,
     "float | None": lambda number: None if number is None else float(number),  # RETURNING may give a whole number
-    **{kind.__name__: kind for kind in (State, Restart, Overlap, Missed)},
+    **{kind.__name__: kind for kind in (State, Restart, Overlap, Missed, Kind)},
 }
 """By the annotation of the field. Other ones are as in the table."""
 

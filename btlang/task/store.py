@@ -1,4 +1,4 @@
-"""What the task layer remembers: tasks and their changes, schedules, the library of missions, the audit trail."""
+"""What the task layer remembers: tasks and their changes, schedules, the library, the audit trail."""
 
 from __future__ import annotations
 
@@ -10,7 +10,7 @@ from btlang.task.database import Database, Mode, store_error
 from btlang.task.migrations import open_database
 from btlang.task.queries import IN_TURN, NEXT, NOT_OVER, TASK, TIMES, UNBEGUN, chosen
 from btlang.task.rows import columns_of, from_row, insert, marks, to_column
-from btlang.task.task import FINAL, Act, Change, Revision, Schedule, State, Task
+from btlang.task.task import FINAL, Act, Change, Kind, Revision, Schedule, State, Task
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -207,43 +207,50 @@ class Store:
         with self._database.transaction() as execute:
             return bool(execute("DELETE FROM schedule WHERE id = ? RETURNING id", (id,)))
 
-    def put_mission(self, name: str, text: str, person: str, time: float, base: int | None = None) -> Revision | None:
-        """The revision of a mission that has this text: the latest one, or else a new one. None, and no change, if it
+    def put_text(
+        self, name: str, text: str, person: str, time: float, base: int | None = None, kind: Kind = Kind.MISSION
+    ) -> Revision | None:
+        """The revision that has this text: the latest one of that name, or else a new one. None, and no change, if it
         was made from another one, `base`, than the latest, 0 where there is none.
         """
         with self._database.transaction(Mode.ALONE) as execute:
-            latest = self._latest(execute, name)
+            latest = self._latest(execute, name, kind)
             if base not in (None, 0 if latest is None or latest.deleted else latest.number):
                 return None
             if latest is not None and not latest.deleted and latest.text == text:
                 return latest
-            put = Revision(name, latest.number + 1 if latest else 1, text, person, time)
+            put = Revision(name, latest.number + 1 if latest else 1, text, person, time, kind=kind)
             insert(execute, "revision", put)
         return put
 
-    def mission(self, name: str, number: int = 0) -> Revision | None:
-        """A revision of a mission, 0 for the latest. None if there isn't one, or the mission is deleted by it."""
-        which = "name = ? AND (number = ? OR ? = 0) ORDER BY number DESC LIMIT 1"
-        found = self._one(Revision, f"SELECT {_REVISION} FROM revision WHERE {which}", name, number, number)
+    def text(self, name: str, number: int = 0, kind: Kind = Kind.MISSION) -> Revision | None:
+        """A revision, 0 for the latest. None if there isn't one, or the text is deleted by it."""
+        which = "kind = ? AND name = ? AND (number = ? OR ? = 0) ORDER BY number DESC LIMIT 1"
+        query = f"SELECT {_REVISION} FROM revision WHERE {which}"
+        found = self._one(Revision, query, kind.value, name, number, number)
         return None if found is None or found.deleted else found
 
-    def missions(self) -> list[Revision]:
-        """The latest revision of each mission that isn't deleted, by name."""
-        latest = "SELECT max(number) FROM revision other WHERE other.name = revision.name"
-        found = self._all(Revision, f"SELECT {_REVISION} FROM revision WHERE deleted = 0 AND number = ({latest})")
+    def texts(self, kind: Kind = Kind.MISSION) -> list[Revision]:
+        """The latest revision of each text that isn't deleted, by name."""
+        latest = (
+            "SELECT max(number) FROM revision other WHERE other.kind = revision.kind AND other.name = revision.name"
+        )
+        which = f"kind = ? AND deleted = 0 AND number = ({latest})"
+        found = self._all(Revision, f"SELECT {_REVISION} FROM revision WHERE {which}", kind.value)
         return sorted(found, key=lambda revision: revision.name)  # the same order in all databases
 
-    def revisions(self, name: str) -> list[Revision]:
-        """All of a mission, the oldest first, with those that deleted it."""
-        return self._all(Revision, f"SELECT {_REVISION} FROM revision WHERE name = ? ORDER BY number", name)
+    def revisions(self, name: str, kind: Kind = Kind.MISSION) -> list[Revision]:
+        """All of a text, the oldest first, with those that deleted it."""
+        query = f"SELECT {_REVISION} FROM revision WHERE kind = ? AND name = ? ORDER BY number"
+        return self._all(Revision, query, kind.value, name)
 
-    def delete_mission(self, name: str, person: str, time: float) -> bool:
-        """Whether there was such a mission. Its revisions stay, and one more says who deleted it."""
+    def delete_text(self, name: str, person: str, time: float, kind: Kind = Kind.MISSION) -> bool:
+        """Whether there was such a text. Its revisions stay, and one more says who deleted it."""
         with self._database.transaction(Mode.ALONE) as execute:
-            latest = self._latest(execute, name)
+            latest = self._latest(execute, name, kind)
             if latest is None or latest.deleted:
                 return False
-            insert(execute, "revision", Revision(name, latest.number + 1, "", person, time, deleted=True))
+            insert(execute, "revision", Revision(name, latest.number + 1, "", person, time, deleted=True, kind=kind))
         return True
 
     def log(self, act: Act) -> None:
@@ -300,9 +307,9 @@ class Store:
             fields = {"reason": noted.cause, "attempts": task.attempts + 1}
             return self._changed(execute, noted, (task.state,), fields)
 
-    def _latest(self, execute: Execute, name: str) -> Revision | None:
-        query = f"SELECT {_REVISION} FROM revision WHERE name = ? ORDER BY number DESC LIMIT 1"
-        found = self._records(Revision, execute(query, (name,)))
+    def _latest(self, execute: Execute, name: str, kind: Kind) -> Revision | None:
+        query = f"SELECT {_REVISION} FROM revision WHERE kind = ? AND name = ? ORDER BY number DESC LIMIT 1"
+        found = self._records(Revision, execute(query, (kind.value, name)))
         return found[0] if found else None
 
     def _changed(

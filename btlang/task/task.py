@@ -170,8 +170,16 @@ class Schedule(Record):
     """Seconds after the time when a task that has not begun is not worth beginning; None: always worth it."""
 
 
+class Kind(StrEnum):
+    """What a text of the library is: a mission, a world file or a robot file. Each kind has names of its own."""
+
+    MISSION = "mission"
+    WORLD = "world"
+    ROBOT = "robot"
+
+
 class Revision(Record):
-    """One revision of a mission in the library; the first has number 1. One with `deleted` has no text."""
+    """One revision of a text in the library; the first has number 1. One with `deleted` has no text."""
 
     name: str
     number: int
@@ -179,6 +187,7 @@ class Revision(Record):
     person: str
     time: float
     deleted: bool = False
+    kind: Kind = Kind.MISSION
 
 
 class Act(Record):

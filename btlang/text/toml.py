@@ -10,8 +10,17 @@ if TYPE_CHECKING:
     from typing import Any
 
 
+_MOST_PARTS = 16  # of a key such as a.b.c: the time that tomllib takes grows with their square
+_QUOTED = re.compile(
+    r'"""(?:\\.|[^\\])*?(?:"{3,5}|\Z)|"(?:\\.|[^"\\\n])*"?' r"|'''.*?(?:'{3,5}|\Z)|'[^'\n]*'?|#[^\n]*", re.DOTALL
+)  # fmt: skip
+_LONG_KEY = re.compile(rf"(?<![\w-])[\w-]+(?:[ \t]*\.[ \t]*[\w-]+){{{_MOST_PARTS}}}")
+
+
 def parse_toml(text: str) -> dict[str, Any]:
     """The table of a text. Raises tomllib.TOMLDecodeError, also for what is nested too deep or too long a number."""
+    if _LONG_KEY.search(_QUOTED.sub(lambda quoted: "" if quoted[0][0] == "#" else "s", text)):
+        raise tomllib.TOMLDecodeError(f"a key has more than {_MOST_PARTS} parts")
     try:
         return tomllib.loads(text)
     except tomllib.TOMLDecodeError:

@@ -75,8 +75,9 @@ class _Scan:
         self._value(path)
 
     def _note(self, path: Path, start: int) -> None:
-        for end in range(1, len(path) + 1):
-            self.found.setdefault(path[:end], start)
+        while path and path not in self.found:
+            self.found[path] = start
+            path = path[:-1]
 
     def _keys(self) -> list[str]:
         keys = []

@@ -14,6 +14,11 @@ if TYPE_CHECKING:
 _MOST = 1_000_000
 
 
+def is_coordinate(value: object) -> bool:
+    """Whether it's a finite number, at most a million."""
+    return isinstance(value, int | float) and not isinstance(value, bool) and -_MOST <= value <= _MOST
+
+
 class Problem(Exception):
     """What is wrong at a path of the file."""
 
@@ -60,7 +65,7 @@ class Table:
         value = self._required(key, "a number")
         if type(value) not in (int, float) or value != value:
             raise self.problem(key, f'"{key}" must be a number; write {key} = 1.5')
-        if not -_MOST <= value <= _MOST:
+        if not is_coordinate(value):
             raise self.problem(key, f'"{key}" must be a number from {-_MOST:,} to {_MOST:,}')
         if (low is not None and value < low) or (high is not None and value > high):
             bounds = f"at least {low:g}" if high is None else f"from {low:g} to {high:g}"

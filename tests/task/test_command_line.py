@@ -90,6 +90,58 @@ def test_a_deleted_mission_says_which_schedules_have_its_text(robot: TaskLayer, 
     assert data(btc, "task", "delete", "tour") == {"schedules": [1, 3]}
 
 
+GARDEN = 'start = { x = 1, y = 1 }\nplaces = [{ name = "shed", x = 1, y = 2 }]\n'
+
+
+def test_worlds_and_robot_files(robot: TaskLayer, btc: Btc, tmp_path: Path) -> None:
+    garden, cart = tmp_path / "garden.toml", tmp_path / "cart.toml"
+    garden.write_bytes(b"\xef\xbb\xbf" + GARDEN.encode())
+    cart.write_text('name = "cart"\nradius = 0.25\n')
+    kept = "'q' is in the library, revision 1.\n"
+    assert btc("task", "put", "q", str(garden), "--kind", "world") == (0, kept)
+    assert btc("task", "put", "q", str(cart), "--kind", "robot") == (0, kept)
+    assert btc("task", "put", "q", "-c", "wave") == (0, kept)
+    for kind, text in (("world", GARDEN), ("robot", cart.read_text()), ("mission", "wave")):
+        [listed] = data(btc, "task", "library", "--kind", kind)[f"{kind}s"]
+        assert (listed["name"], listed["text"]) == ("q", text)
+        assert btc("task", "library", "q", "--kind", kind)[1].startswith("q, revision 1: ")
+    assert btc("task", "delete", "q", "--kind", "world") == (0, "'q' is no longer in the library.\n")
+    assert btc("task", "library", "--kind", "world") == (0, "The library has no worlds.\n")
+    assert "The world 'q' isn't in the library" in btc("task", "delete", "q", "--kind", "world")[1]
+    assert (
+        "'kind' must be one of 'mission', 'world', 'robot', not 'pack'" in btc("task", "library", "--kind", "pack")[1]
+    )
+    assert "--kind doesn't apply to it" in btc("task", "list", "--kind", "world")[1]
+    garden.write_bytes(b"\xff\xfe")
+    assert "BT002" in btc("task", "put", "q", str(garden), "--kind", "world")[1]
+
+
+def test_a_robot_comes_up_with_what_its_library_has(
+    robot: TaskLayer, btc: Btc, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    store = robot.store.place
+    for kind, text in (("world", GARDEN), ("robot", 'name = "cart"\nradius = 0.25\n')):
+        ask(robot, "put", name="q", kind=kind, text="# old\n" + text)
+        ask(robot, "put", name="q", kind=kind, text=text)
+    up = ("robot", "up", "--name", "other", "--store", store)
+    for kind, called in (("world", "world"), ("robot", "robot file")):
+        code, text = btc(*up, f"--{kind}", "library:nosuch")
+        assert code == 2
+        assert text.startswith(f"btc: error BT187: The {called} 'nosuch' isn't in the library.\n")
+    made: list[tuple[Any, Any]] = []
+
+    def layer(robot: Any, reader: Any, **_: Any) -> None:
+        made.append((robot, reader.world))
+        raise KeyboardInterrupt
+
+    monkeypatch.setattr("btlang.task.robot_command.TaskLayer", layer)
+    named = ("--robot", "library:q", "--world", "library:q")
+    btc(*up, *named)
+    [(connect, world)] = made
+    assert (connect.body.name, connect.over, world.text) == ("cart", "simulated", GARDEN)
+    assert " ".join(named) in btc("robot", "unit", *named)[1]
+
+
 def test_a_report_begins_in_the_past(robot: TaskLayer, btc: Btc) -> None:
     ask(robot, "resume")
     number = submit(robot, "wave", at="in 20 h")

@@ -17,6 +17,7 @@ from btlang.task.task import (
     WAITING,
     Act,
     Change,
+    Kind,
     Missed,
     MissionText,
     Overlap,
@@ -205,21 +206,32 @@ def test_schedules(store: Store) -> None:
 
 
 def test_the_library_keeps_every_revision(store: Store) -> None:
-    first = store.put_mission("tour", "wave", "ada", 1.0)
+    first = store.put_text("tour", "wave", "ada", 1.0)
     assert first == Revision("tour", 1, "wave", "ada", 1.0)
-    assert store.put_mission("tour", "wave", "bo", 2.0) == first
-    second = store.put_mission("tour", "nod", "bo", 3.0)
-    store.put_mission("Zoo", "wave", "ada", 4.0)
-    assert store.put_mission("tour", "wave", "ada", 5.0).number == 3
+    assert store.put_text("tour", "wave", "bo", 2.0) == first
+    second = store.put_text("tour", "nod", "bo", 3.0)
+    store.put_text("Zoo", "wave", "ada", 4.0)
+    assert store.put_text("tour", "wave", "ada", 5.0).number == 3
     assert [revision.text for revision in store.revisions("tour")] == ["wave", "nod", "wave"]
-    assert [store.mission("tour", number) for number in (1, 2, 4)] == [first, second, None]
-    assert [revision.name for revision in store.missions()] == ["Zoo", "tour"]
-    assert store.missions()[1] == store.mission("tour") == Revision("tour", 3, "wave", "ada", 5.0)
-    assert [store.delete_mission(name, "bo", 6.0) for name in ("tour", "tour", "park")] == [True, False, False]
+    assert [store.text("tour", number) for number in (1, 2, 4)] == [first, second, None]
+    assert [revision.name for revision in store.texts()] == ["Zoo", "tour"]
+    assert store.texts()[1] == store.text("tour") == Revision("tour", 3, "wave", "ada", 5.0)
+    assert [store.delete_text(name, "bo", 6.0) for name in ("tour", "tour", "park")] == [True, False, False]
     assert store.revisions("tour")[3:] == [Revision("tour", 4, "", "bo", 6.0, True)]
-    assert [store.mission("tour"), store.mission("tour", 4), store.mission("tour", 2)] == [None, None, second]
-    assert [revision.name for revision in store.missions()] == ["Zoo"]
-    assert store.put_mission("tour", "wave", "ada", 7.0).number == 5
+    assert [store.text("tour"), store.text("tour", 4), store.text("tour", 2)] == [None, None, second]
+    assert [revision.name for revision in store.texts()] == ["Zoo"]
+    assert store.put_text("tour", "wave", "ada", 7.0).number == 5
+
+
+def test_each_kind_of_text_has_names_of_its_own(store: Store) -> None:
+    kept = [store.put_text("tour", kind, "ada", 1.0, 0, kind) for kind in Kind]
+    assert [revision and revision.number for revision in kept] == [1, 1, 1]
+    assert [store.texts(kind) for kind in Kind] == [[revision] for revision in kept]
+    assert store.put_text("tour", "other", "ada", 2.0, 0, Kind.WORLD) is None
+    assert store.delete_text("tour", "bo", 3.0, Kind.WORLD)
+    assert [store.text("tour", kind=kind) for kind in Kind] == [kept[0], None, kept[2]]
+    deleted = Revision("tour", 2, "", "bo", 3.0, True, Kind.WORLD)
+    assert [store.revisions("tour", kind) for kind in Kind] == [[kept[0]], [kept[1], deleted], [kept[2]]]
 
 
 def test_the_audit_trail_and_settings(store: Store) -> None:
@@ -241,7 +253,7 @@ def test_cleaning_spares_what_is_not_over_and_the_library(store: Store) -> None:
     unsaid = store.add(a_task(created=1.0))
     store.change(unsaid.id, [State.QUEUED], State.SKIPPED, time=8.0)
     late = store.add(a_task(state=State.FAILED, ended=10.0, created=1.0))
-    store.put_mission("tour", "wave", "ada", 1.0)
+    store.put_text("tour", "wave", "ada", 1.0)
     for time in (4.0, 10.0):
         store.log(Act(time, "ada", "say", "", ""))
     assert store.clean(5.0) == 0
@@ -250,7 +262,7 @@ def test_cleaning_spares_what_is_not_over_and_the_library(store: Store) -> None:
     assert store.tasks(newest=True) == [late, *reversed(kept)]
     assert {change.task for _, change in store.changes()} == {task.id for task in [*kept, late]}
     assert [act.time for act in store.acts()] == [10.0]
-    assert len(store.missions()) == 1
+    assert len(store.texts()) == 1
     assert store.add(a_task()).id == late.id + 1
 
 

@@ -13,7 +13,7 @@ from hypothesis.stateful import RuleBasedStateMachine, initialize, invariant, ru
 
 from btlang.task.backup import restore_backup
 from btlang.task.store import open_store
-from btlang.task.task import FINAL, Act, Change, MissionText, Restart, Revision, Schedule, State, Task
+from btlang.task.task import FINAL, Act, Change, Kind, MissionText, Restart, Revision, Schedule, State, Task
 from tests.profiles import amount
 from tests.task.places import new_place
 
@@ -24,6 +24,7 @@ LABELS = st.sampled_from(["lab", "la", 'a"b', "x, y"])
 IDS = st.integers(1, 5)
 STATES = st.sets(st.sampled_from(State), min_size=3) | st.just(set(State)) | st.sets(st.sampled_from(State))
 NAMES = st.sampled_from(["tour", "Tour", "zoo"])
+KINDS = st.sampled_from([Kind.MISSION, Kind.WORLD])
 FIELDS = st.fixed_dictionaries(
     {},
     optional={
@@ -181,28 +182,32 @@ class Work(RuleBasedStateMachine):
         due = [plan for plan in self.schedules.values() if plan.next is not None and plan.next <= now]
         assert self.store.due_schedules(now) == sorted(due, key=lambda plan: (plan.next, plan.id))
 
-    @rule(name=NAMES, text=st.sampled_from(["wave", "nod"]), time=TIMES)
-    def put(self, name: str, text: str, time: float) -> None:
-        known = [revision for revision in self.revisions if revision.name == name]
-        if not known or known[-1].deleted or known[-1].text != text:
-            known.append(Revision(name, len(known) + 1, text, "ada", time))
-            self.revisions.append(known[-1])
-        assert self.store.put_mission(name, text, "ada", time) == known[-1]
+    def known(self, name: str, kind: Kind) -> list[Revision]:
+        """The revisions of a text."""
+        return [revision for revision in self.revisions if (revision.name, revision.kind) == (name, kind)]
 
-    @rule(name=NAMES, time=TIMES)
-    def delete(self, name: str, time: float) -> None:
-        known = [revision for revision in self.revisions if revision.name == name]
+    @rule(name=NAMES, text=st.sampled_from(["wave", "nod"]), time=TIMES, kind=KINDS)
+    def put(self, name: str, text: str, time: float, kind: Kind) -> None:
+        known = self.known(name, kind)
+        if not known or known[-1].deleted or known[-1].text != text:
+            known.append(Revision(name, len(known) + 1, text, "ada", time, kind=kind))
+            self.revisions.append(known[-1])
+        assert self.store.put_text(name, text, "ada", time, kind=kind) == known[-1]
+
+    @rule(name=NAMES, time=TIMES, kind=KINDS)
+    def delete(self, name: str, time: float, kind: Kind) -> None:
+        known = self.known(name, kind)
         there = bool(known) and not known[-1].deleted
         if there:
-            self.revisions.append(Revision(name, len(known) + 1, "", "bo", time, True))
-        assert self.store.delete_mission(name, "bo", time) == there
+            self.revisions.append(Revision(name, len(known) + 1, "", "bo", time, True, kind))
+        assert self.store.delete_text(name, "bo", time, kind) == there
 
-    @rule(name=NAMES, number=st.integers(0, 4))
-    def look_up(self, name: str, number: int) -> None:
-        known = [revision for revision in self.revisions if revision.name == name]
+    @rule(name=NAMES, number=st.integers(0, 4), kind=KINDS)
+    def look_up(self, name: str, number: int, kind: Kind) -> None:
+        known = self.known(name, kind)
         found = [revision for revision in known if number in (0, revision.number)]
-        assert self.store.mission(name, number) == (None if not found or found[-1].deleted else found[-1])
-        assert self.store.revisions(name) == known
+        assert self.store.text(name, number, kind) == (None if not found or found[-1].deleted else found[-1])
+        assert self.store.revisions(name, kind) == known
 
     @rule(text=TEXTS, time=TIMES, name=NAMES)
     def write_down(self, text: str, time: float, name: str) -> None:
@@ -239,8 +244,9 @@ class Work(RuleBasedStateMachine):
         assert self.store.tasks() == sorted(self.tasks.values(), key=turn)
         assert dict(self.store.changes()) == self.changes
         assert self.store.schedules() == list(self.schedules.values())
-        latest = {revision.name: revision for revision in self.revisions}
-        assert self.store.missions() == [latest[name] for name in sorted(latest) if not latest[name].deleted]
+        for kind in Kind:
+            latest = {revision.name: revision for revision in self.revisions if revision.kind is kind}
+            assert self.store.texts(kind) == [latest[name] for name in sorted(latest) if not latest[name].deleted]
         assert self.store.acts() == self.acts[::-1]
         assert {name: self.store.setting(name) for name in self.settings} == self.settings
 

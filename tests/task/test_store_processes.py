@@ -110,9 +110,9 @@ def test_threads_do_everything(store: Store) -> None:
                 case 6:
                     store.clean(5.0)
                 case 7:
-                    store.put_mission(mission, str(draw.random()), "ada", 1.0)
+                    store.put_text(mission, str(draw.random()), "ada", 1.0)
                 case 8:
-                    store.delete_mission(mission, "ada", 1.0)
+                    store.delete_text(mission, "ada", 1.0)
                 case 9:
                     store.log(Act(draw.choice((1.0, 9.0)), "ada", "say", "", ""))
 
@@ -124,9 +124,9 @@ def test_threads_do_everything(store: Store) -> None:
     assert last == {task.id: task.state for task in store.tasks()}
 
 
-def test_threads_put_missions(store: Store) -> None:
+def test_threads_put_texts(store: Store) -> None:
     with ThreadPoolExecutor(6) as threads:
-        put = list(threads.map(lambda at: store.put_mission("tour", f"wait {at} s", "ada", 1.0).number, range(12)))
+        put = list(threads.map(lambda at: store.put_text("tour", f"wait {at} s", "ada", 1.0).number, range(12)))
     assert sorted(put) == list(range(1, 13))
 
 
