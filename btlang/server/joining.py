@@ -177,7 +177,7 @@ class Joins:
         """One robot that dials in, until it is gone."""
         address = socket.client.host if socket.client is not None else ""
         await socket.accept()
-        with suppress(WebSocketDisconnect, RuntimeError, TimeoutError):
+        with suppress(WebSocketDisconnect, RuntimeError, OSError):
             async with asyncio.timeout(_JOIN):
                 robot, instance = await self._admitted(socket, address)
             way = None if robot is None else await self._way(robot)

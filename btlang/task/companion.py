@@ -8,7 +8,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Callable, Iterator, Sequence
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from importlib.util import find_spec
 
 from btlang.diagnostics.diagnostic import diagnostic
@@ -25,8 +25,6 @@ _AGAIN = 1.0  # seconds until one that crashed is started again
 _PATIENCE = 10.0  # seconds that it has to end
 _ENDED = 0, 2, 130, 143
 """Exit codes of one that has nothing more to do, or that was refused: trying again wouldn't help."""
-
-
 _PACKAGES = ("argon2", "cryptography", "itsdangerous", "starlette", "uvicorn", "websockets")
 
 
@@ -45,15 +43,16 @@ class Companion:
     def __init__(self, name: str, words: Sequence[str], given: str, tell: Callable[[str], object]) -> None:
         self._name, self._given, self._tell = name, given, tell
         self._command = [sys.executable, "-P", "-m", *words]  # -P: a file beside the mission is no module
-        self._spoke, self._closed = threading.Event(), threading.Event()
+        self._began, self._closed = threading.Event(), threading.Event()
+        self._spoke = False
         self._process = self._begun()
         self._thread = threading.Thread(target=self._keep, daemon=True, name=f"btlang {name}")
 
     def start(self) -> int:
-        """Waits for its first line; returns its exit code if it ended before that, else 0."""
+        """Waits for its first line; returns its exit code if it ended without one, else 0."""
         self._thread.start()
-        self._spoke.wait()
-        return self._process.poll() or 0
+        self._began.wait()
+        return 0 if self._spoke else self._process.wait()
 
     def close(self) -> None:
         """Ends it. May be called twice."""
@@ -68,11 +67,9 @@ class Companion:
     def _begun(self) -> subprocess.Popen[str]:
         process = subprocess.Popen(self._command, stdin=subprocess.PIPE, stdout=subprocess.PIPE, text=True)
         assert process.stdin is not None
-        try:
+        with suppress(OSError):  # it has ended, and its exit code says why
             process.stdin.write(f"{self._given}\n")
             process.stdin.flush()
-        except OSError:  # it has ended, and its exit code says why
-            pass
         return process
 
     def _keep(self) -> None:
@@ -83,10 +80,11 @@ class Companion:
             with process.stdout, process.stdin:
                 for line in process.stdout:
                     self._tell(line.rstrip())
-                    self._spoke.set()
+                    self._spoke = True
+                    self._began.set()
                 code = process.wait()
-            if self._closed.is_set() or code in _ENDED or not self._spoke.is_set():
-                self._spoke.set()
+            if self._closed.is_set() or code in _ENDED or not self._spoke:
+                self._began.set()
                 return
             self._tell(f"The {self._name} ended with exit code {code}; it starts again.")
             if self._closed.wait(_AGAIN):
@@ -107,14 +105,14 @@ def companions(options: argparse.Namespace, robot: str, tell: Callable[[str], ob
     started: list[Companion] = []
     if options.serve or options.join:
         require_server()
-    if options.serve:
-        words = ["btlang", "serve", "--until-eof", "--host", options.host, "--port", str(options.port)]
-        started.append(Companion("server", words, "", tell))
-    if options.join:
-        kept = os.path.join(data_folder(robot), "server.json")
-        settings = {"robot": robot, "address": options.join, "code": options.code, "kept": kept}
-        started.append(Companion("link to the server", ["btlang.server.dialer"], json.dumps(settings), tell))
     try:
+        if options.serve:
+            words = ["btlang", "serve", "--until-eof", "--host", options.host, "--port", str(options.port)]
+            started.append(Companion("server", words, "", tell))
+        if options.join:
+            kept = os.path.join(data_folder(robot), "server.json")
+            settings = {"robot": robot, "address": options.join, "code": options.code, "kept": kept}
+            started.append(Companion("link to the server", ["btlang.server.dialer"], json.dumps(settings), tell))
         yield max([each.start() for each in started], default=0)
     finally:
         for each in started:

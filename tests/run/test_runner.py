@@ -166,10 +166,10 @@ def test_stop_before_the_first_tick() -> None:
 
 
 def test_real_time_is_kept_over_a_schedule_and_speed() -> None:
-    runner, _, _ = make(SLEEP, speed=20.0)
+    runner, _, _ = make(Node("Sleep", ports=(("msec", "5000"),)), speed=20.0)
     began = time.monotonic()
     runner.run()
-    assert 0.04 < time.monotonic() - began < 1.0
+    assert 0.24 < time.monotonic() - began < 4.0
 
 
 def test_overruns_are_counted() -> None:

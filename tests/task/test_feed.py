@@ -132,7 +132,7 @@ def test_who_reads_nothing_delays_nobody_and_fills_no_memory(tmp_path: Path) -> 
     with layer_in(tmp_path) as layer:
         silent = layer.feed.watch()
         next(silent)
-        numbers = [submit(layer, f"repeat 300 times: print {number}") for number in range(20)]
+        numbers = [submit(layer, f"repeat 60 times: print {number}") for number in range(20)]
         for number in numbers:
             assert wait_for(layer, number, *FINAL).state is State.COMPLETED
         [watcher] = layer.feed._watchers
