@@ -19,7 +19,7 @@ from tests.ros.lock_step import in_lock_step
 from tests.ros.processes import LONG, Command
 
 ENDING = [name for name, case in CASES.items() if "--for" not in case.options]
-USUAL = ("museum_tour", "oily_floor", "locked_lab", "find_someone", "obedience", "guard_the_door")
+USUAL = ("museum_tour", "oily_floor", "locked_lab", "find_someone", "obedience")
 """Those of each run: together they use every part of the robot. `-m long` runs all."""
 LATER = 0.1
 """How much longer or shorter a mission may take over ROS 2."""

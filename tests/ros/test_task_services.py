@@ -26,7 +26,7 @@ from time import sleep
 
 
 def hang():
-    sleep(30)
+    sleep(10)
 """
 
 

@@ -12,7 +12,7 @@ from btlang.task.layer import TaskLayer
 from btlang.task.messages import COMMANDS
 from btlang.task.task import State
 from tests.server.conftest import ROLES
-from tests.server.doors import Door, close_code, received
+from tests.server.doors import PASSWORD, Door, close_code, received
 from tests.task.layers import wait_for, wait_until
 
 
@@ -149,3 +149,16 @@ def test_ros_is_shut_by_default(door: Door) -> None:
 
 def test_liveness_and_readiness_need_no_log_in(door: Door) -> None:
     assert [door.ask("GET", path).body for path in ("/live", "/ready")] == [b"live", b"ready"]
+
+
+def test_nothing_that_is_kept_or_printed_has_a_secret(door: Door, robot: TaskLayer) -> None:
+    olga, token = door.log_in("olga"), door.user("token", "olga", "secrets").split()[-1]
+    door.ask("POST", "/api/login", {"name": "olga", "password": "a wrong secret"})
+    door.ask("POST", "/api/commands", {"command": "status"}, **olga)
+    door.ask("POST", "/api/commands", {"command": "down"}, authorization=f"Bearer {token}")
+    secrets = [PASSWORD, "a wrong secret", token, olga["cookie"].partition("=")[2], olga["x_csrf_token"]]
+    kept = [path.read_bytes() for path in door.folder.rglob("*") if path.is_file()]
+    assert any(b"olga" in each for each in kept)
+    for secret in secrets:
+        assert secret not in door.user("trail")
+        assert not any(secret.encode() in each for each in kept)

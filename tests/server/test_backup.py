@@ -184,3 +184,17 @@ def test_a_server_goes_on_elsewhere(door: Door, tmp_path: Path) -> None:
         assert not (folder / "btlang" / "server" / "copy").exists()
     with closing(sqlite3.connect(path)) as copied:
         assert copied.execute("SELECT count(*) FROM session").fetchone() == (0,)
+
+
+def test_users_of_an_older_btlang_stay(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    steps = module._STEPS
+    monkeypatch.setattr(module, "_STEPS", steps[:1])
+    with closing(Accounts(str(tmp_path))) as older:
+        older.add("ann", Role.ADMINISTRATOR, "hash")
+        token, session = older.add_token("ann", "program"), older.log_in("ann", "::1")
+        monkeypatch.undo()
+        with closing(Accounts(str(tmp_path))) as newer:  # beside one that is up
+            assert newer.identity(token) is not None
+            assert newer.identity(session) is not None
+            newer.log("ann", "::1", "look", "ok")
+        assert older.entries()[0].what == "look"
