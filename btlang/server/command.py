@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from btlang.server.certificate import Certificate
 
 _ADMINISTRATOR = "admin"
+_NICE = 5  # robots on this computer come first
 
 
 def server_folder() -> str:
@@ -85,6 +86,7 @@ def serve(options: argparse.Namespace) -> int:
             show(f"Log in as '{_ADMINISTRATOR}' with the password {password}")
             show(f"It is shown this once. For another one: btc user passwd {_ADMINISTRATOR}")
 
+    os.nice(_NICE)
     if options.until_eof:
         threading.Thread(target=_end_at_eof, daemon=True).start()
     try:
