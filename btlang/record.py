@@ -6,7 +6,7 @@ recurses, which crashes on a tree that is 10,000 deep (both measured). mypy sees
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Container, Iterator
 from functools import cache
 from types import CodeType, FunctionType
 
@@ -101,6 +101,10 @@ class Record(metaclass=_RecordMeta):
     def replace(self, **changes: Any) -> Any:
         """A copy with the named fields changed."""
         return type(self)(**{f: changes.get(f, getattr(self, f)) for f in self.fields})
+
+    def as_dict(self, without: Container[str] = ()) -> dict[str, Any]:
+        """Its fields by their names, as they are."""
+        return {f: getattr(self, f) for f in self.fields if f not in without}
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Record:
         return self  # a copy of what is frozen would be the same, and copying a deep tree is recursion

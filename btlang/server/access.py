@@ -9,6 +9,7 @@ from http.cookies import CookieError, SimpleCookie
 from urllib.parse import urlsplit
 
 from itsdangerous import BadSignature, Signer
+from starlette.requests import HTTPConnection
 
 from btlang.diagnostics.errors import MissionError
 from btlang.server.accounts import Accounts, Identity
@@ -135,6 +136,11 @@ def is_same_site(headers: Mapping[str, str]) -> bool:
     """Whether a browser sent a request from a page of this host. Programs send no Origin."""
     origin = headers.get("origin")
     return origin is None or (origin != "null" and urlsplit(origin).netloc == headers.get("host"))
+
+
+def address_of(connection: HTTPConnection) -> str:
+    """Where somebody is who sends a request, or has a socket."""
+    return connection.client.host if connection.client is not None else ""
 
 
 def _cookie(header: str) -> str:

@@ -15,7 +15,7 @@ from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocket
 
 from btlang.diagnostics.errors import MissionError
-from btlang.server.access import COOKIE, Access, AccessError
+from btlang.server.access import COOKIE, Access, AccessError, address_of
 from btlang.server.accounts import LONGEST, Accounts, Identity
 from btlang.server.bodies import json_object, text_in
 from btlang.server.checking import DOES, Checker, Words
@@ -148,7 +148,7 @@ class Api:
 
     async def _log_in(self, request: Request) -> Response:
         data = await json_object(request)
-        address = _address(request)
+        address = address_of(request)
         identity, secret = await self.access.log_in(text_in(data, "name"), text_in(data, "password"), address)
         response = JSONResponse(self._described(identity))
         response.set_cookie(COOKIE, secret, int(LONGEST), secure=True, httponly=True, samesite="strict")
@@ -180,13 +180,13 @@ class Api:
         data = await json_object(request)
         robot, reason = data.get("robot", ""), data.get("reason", "")
         command = messages.EmergencyStop(reason if isinstance(reason, str) else "")
-        return _answer(await self.send(identity, str(robot), command, _address(request)))
+        return _answer(await self.send(identity, str(robot), command, address_of(request)))
 
     async def _command(self, request: Request) -> Response:
         identity = await self._who(request)
         data = await json_object(request)
         robot = data.pop("robot", "")
-        return _answer(await self.send(identity, str(robot), read_command(data), _address(request)))
+        return _answer(await self.send(identity, str(robot), read_command(data), address_of(request)))
 
     async def _text(self, kind: str, request: Request) -> Response:
         identity = await self._who(request)
@@ -198,7 +198,7 @@ class Api:
             if not name:
                 raise AccessError(400, "'world' must be the name of a world.")
             command = messages.Library(name, Kind.WORLD.value, revision=0)
-            found = await self.send(identity, robot, command, _address(request))
+            found = await self.send(identity, robot, command, address_of(request))
             if not found.ok:
                 return _answer(found)
             try:
@@ -230,14 +230,14 @@ class Api:
             raise AccessError(400, "'revision' must be a number.")
         command = messages.Put(request.path_params["name"], text_in(data, "text"), revision, kind.value)
         robot = request.query_params.get("robot", "")
-        return _answer(await self.send(identity, robot, command, _address(request)))
+        return _answer(await self.send(identity, robot, command, address_of(request)))
 
     async def _delete(self, kind: Kind, request: Request) -> Response:
         return await self._of_library(request, messages.Delete(request.path_params["name"], kind.value))
 
     async def _of_library(self, request: Request, command: Command) -> Response:
         robot = request.query_params.get("robot", "")
-        return _answer(await self.send(await self._who(request), robot, command, _address(request)))
+        return _answer(await self.send(await self._who(request), robot, command, address_of(request)))
 
     def _described(self, identity: Identity) -> dict[str, Any]:
         described = {"ok": True, "user": identity.user, "role": identity.role, "version": VERSION}
@@ -264,10 +264,6 @@ class _Headers:
 
 def _answer(answer: Answer) -> Response:
     return JSONResponse(answer.as_json(), 200 if answer.ok else 409)
-
-
-def _address(request: Request) -> str:
-    return request.client.host if request.client is not None else ""
 
 
 def _word(word: str) -> Callable[[Request], Response]:

@@ -14,7 +14,7 @@ from concurrent.futures.process import BrokenProcessPool
 from btlang.api import format_mission, parse_tree, world_vocabulary
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.report import as_data
-from btlang.frontends.mission.completion.completer import Completion, completions
+from btlang.frontends.mission.completion.completer import completions
 from btlang.server.access import AccessError
 from btlang.text.escaping import one_line
 from btlang.text.source import Source
@@ -67,11 +67,7 @@ def _format(source: Source, words: Words) -> dict[str, Any]:
 
 def _complete(source: Source, words: Words) -> dict[str, Any]:
     found = completions(source.text, world_vocabulary(words.keywords, words.world, words.language))
-    return {"messages": [], "completions": [_offer(each) for each in found[:_MOST_OFFERS]]}
-
-
-def _offer(completion: Completion) -> dict[str, Any]:
-    return {field: getattr(completion, field) for field in completion.fields}
+    return {"messages": [], "completions": [each.as_dict() for each in found[:_MOST_OFFERS]]}
 
 
 DOES: Mapping[str, Callable[[Source, Words], dict[str, Any]]] = {

@@ -133,13 +133,13 @@ def door_path() -> str:
 
 def _keep_door(certificate: Certificate | None, port: int) -> None:
     """For `btc robot invite`, which is another process."""
-    from btlang.server.certificate import pin_of
+    from btlang.server.certificate import pin_of, write_private
 
     with suppress(FileNotFoundError):
         os.unlink(door_path())
     if certificate is not None:
-        with open(door_path(), "w", encoding="ascii") as file:
-            json.dump({"pin": pin_of(certificate.certificate).hex(), "port": port}, file)
+        known = {"pin": pin_of(certificate.certificate).hex(), "port": port}
+        write_private(door_path(), json.dumps(known).encode())
 
 
 def _first_password(accounts: Accounts) -> str:

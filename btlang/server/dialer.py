@@ -21,7 +21,7 @@ from websockets.exceptions import ConnectionClosed, WebSocketException
 
 from btlang.diagnostics.reading import reason_of
 from btlang.record import Record
-from btlang.server.certificate import pin
+from btlang.server.certificate import pin, write_private
 from btlang.server.fleet import pin_in
 from btlang.server.reach import STREAM, LocalSockets
 from btlang.text.escaping import one_line
@@ -70,12 +70,7 @@ def key_for(settings: Settings) -> Key:
         made = Key(pin_in(settings.code).hex(), secrets.token_urlsafe(32), settings.code)
     except ValueError:
         raise RefusedError("a code is what 'btc robot invite' prints, whole") from None
-    part = f"{settings.kept}.{os.getpid()}"
-    with suppress(FileNotFoundError):
-        os.unlink(part)
-    with os.fdopen(os.open(part, os.O_WRONLY | os.O_CREAT | os.O_EXCL, 0o600), "w", encoding="utf-8") as file:
-        json.dump({name: getattr(made, name) for name in made.fields}, file)
-    os.replace(part, settings.kept)
+    write_private(settings.kept, json.dumps(made.as_dict()).encode())
     return made
 
 

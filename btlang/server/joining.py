@@ -1,9 +1,9 @@
 """Robots of other computers, which dial in at /api/join: the way to them goes over their WebSocket.
 
 Commands and answers are messages of JSON with an `id`. What happens on the robot are bytes behind the number of a
-stream, which both ends know from the message that asked for it. A command that is under way
-when the connection breaks is sent again when it's back: the program that dials (`dialer`) does none twice, as long as
-it is the same `instance`. An emergency stop is never sent again, since it would come when nobody expects it.
+stream, which both ends know from the message that asked for it. A command that is under way when the connection breaks
+is sent again when it's back: the program that dials (`dialer`) does none twice, as long as it is the same `instance`.
+An emergency stop is never sent again, since it would come when nobody expects it.
 """
 
 from __future__ import annotations
@@ -18,7 +18,7 @@ from itertools import count
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from btlang.diagnostics.errors import MissionError
-from btlang.server.access import Access, AccessError
+from btlang.server.access import Access, AccessError, address_of
 from btlang.server.bodies import read_object, text_in
 from btlang.server.fleet import Fleet, FleetRobot
 from btlang.server.links import RobotLink, Robots
@@ -175,7 +175,7 @@ class Joins:
 
     async def serve(self, socket: WebSocket) -> None:
         """One robot that dials in, until it is gone."""
-        address = socket.client.host if socket.client is not None else ""
+        address = address_of(socket)
         await socket.accept()
         with suppress(WebSocketDisconnect, RuntimeError, OSError):
             async with asyncio.timeout(_JOIN):

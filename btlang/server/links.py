@@ -69,7 +69,7 @@ class RobotLink:
             async with asyncio.timeout(_PATIENCE):
                 answer = await self._reach.ask({**as_json(command), "as": person})
                 return Answer(answer["ok"], answer["text"], answer["data"], answer["code"])
-        except (OSError, ValueError, KeyError, TypeError, TimeoutError) as error:
+        except _BROKEN as error:
             text = f"The robot '{self.name}' isn't up, or doesn't answer. If it was up, it may have done it."
             raise ConnectionError(text) from error
 
@@ -78,7 +78,7 @@ class RobotLink:
         try:
             async with asyncio.timeout(_STOPPED):
                 await self._reach.stop()
-        except (OSError, TimeoutError) as error:
+        except OSError as error:
             text = f"The emergency stop may not have reached the robot '{self.name}': STOP IT WHERE IT STANDS."
             raise ConnectionError(text) from error
 

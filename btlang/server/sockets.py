@@ -7,7 +7,7 @@ from contextlib import suppress
 
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
-from btlang.server.access import Access, AccessError, is_same_site
+from btlang.server.access import Access, AccessError, address_of, is_same_site
 from btlang.server.accounts import Identity
 from btlang.server.bodies import read_object
 from btlang.server.outlet import Outlet
@@ -54,7 +54,7 @@ class Visitor:
     @property
     def address(self) -> str:
         """Where he is."""
-        return self.socket.client.host if self.socket.client is not None else ""
+        return address_of(self.socket)
 
     async def receive(self) -> str:
         """The next text. Raises WebSocketDisconnect."""

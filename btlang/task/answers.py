@@ -24,7 +24,7 @@ _HIDDEN = ("mission", "saved", "token")
 
 def task_data(task: Task, waits: str = "") -> dict[str, Any]:
     """A task without its text, and why it waits."""
-    data = {field: getattr(task, field) for field in task.fields if field not in _HIDDEN}
+    data = task.as_dict(without=_HIDDEN)
     return {**data, "mission": short(task.mission), "revision": task.mission.revision, "waits": waits}
 
 
@@ -43,8 +43,7 @@ def short(mission: MissionText) -> str:
 
 def schedule_data(schedule: Schedule) -> dict[str, Any]:
     """A schedule with the short form of its mission."""
-    data = {field: getattr(schedule, field) for field in schedule.fields if field != "mission"}
-    return {**data, "mission": short(schedule.mission)}
+    return {**schedule.as_dict(without=("mission",)), "mission": short(schedule.mission)}
 
 
 def schedule_line(schedule: Schedule, now: float) -> str:
@@ -66,7 +65,7 @@ def schedule_line(schedule: Schedule, now: float) -> str:
 
 def revision_data(revision: Revision) -> dict[str, Any]:
     """A revision without its text."""
-    return {field: getattr(revision, field) for field in revision.fields if field != "text"}
+    return revision.as_dict(without=("text",))
 
 
 def deleted(name: str, schedules: Sequence[int]) -> str:

@@ -11,7 +11,6 @@ from math import isfinite
 
 from btlang.api import Mission
 from btlang.engine.status import IDLE, NAMES
-from btlang.record import Record
 from btlang.run.bus import INLINE
 from btlang.run.events import LOGGED, Event, PeriodPassed, StatusesChanged
 from btlang.run.json_log import as_json
@@ -126,7 +125,7 @@ class Feed:
         while found := self._store.changes(after=watcher.change, limit=_MOST_CHANGES):
             for number, change in found:
                 watcher.change = number
-                yield {"type": "change", "number": number, **_fields(change)}
+                yield {"type": "change", "number": number, **change.as_dict()}
         while watcher.runs:
             watched = watcher.runs[0]
             yield from _statuses(watcher, watched)
@@ -212,9 +211,5 @@ def _scan(event: PeriodPassed) -> list[float | None]:
 def _map(world: World) -> dict[str, Any]:
     """As in a world file."""
     listed = {kind: getattr(world, kind) for kind in ("boxes", "places", "objects", "people")}
-    found: dict[str, Any] = {kind: [_fields(each) for each in known] for kind, known in listed.items()}
-    return {"walls": world.walls, "dock": None if world.dock is None else _fields(world.dock), **found}
-
-
-def _fields(record: Record) -> dict[str, Any]:
-    return {name: getattr(record, name) for name in record.fields}
+    found: dict[str, Any] = {kind: [each.as_dict() for each in known] for kind, known in listed.items()}
+    return {"walls": world.walls, "dock": None if world.dock is None else world.dock.as_dict(), **found}

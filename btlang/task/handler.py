@@ -321,8 +321,8 @@ class Handler:
     def _trail(self, command: messages.Trail, person: str) -> Answer:
         now, found = self._now(), self._store.acts(command.limit)
         lines = [f"{shown(each.time, now)}  {one_line(each.person)}: {one_line(each.details)}" for each in found]
-        data = [{field: getattr(each, field) for field in each.fields} for each in found]
-        return Answer(True, "\n".join(lines) or "Nobody has asked for anything.", {"acts": data})
+        acts = [each.as_dict() for each in found]
+        return Answer(True, "\n".join(lines) or "Nobody has asked for anything.", {"acts": acts})
 
     def _mission(self, command: messages.Submit | messages.AddSchedule) -> MissionText:
         """The mission of a command, which this robot can do."""

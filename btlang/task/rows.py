@@ -47,7 +47,7 @@ def to_row(record: Record) -> list[Any]:
 def to_column(value: Any) -> Any:
     """The value of a field, for the table."""
     if isinstance(value, MissionText):
-        return json.dumps({**{field: getattr(value, field) for field in value.fields}, "values": dict(value.values)})
+        return json.dumps({**value.as_dict(), "values": dict(value.values)})
     if isinstance(value, tuple):
         return json.dumps(value, indent=0)  # in lines, so that `in_lines` finds one of them
     if isinstance(value, StrEnum):

@@ -159,12 +159,6 @@ def log_ins(door: Door, count: int) -> None:
         print(f"  {count} log-ins: {figures(taken)} {load()}")
 
 
-def memory(process: int) -> float:
-    """Megabytes of a process."""
-    status = Path(f"/proc/{process}/status").read_text(encoding="ascii")
-    return int(status.partition("VmRSS:")[2].split()[0]) / 1024
-
-
 def cpu(process: int) -> float:
     """Seconds that a process has used."""
     fields = Path(f"/proc/{process}/stat").read_text(encoding="ascii").rpartition(")")[2].split()
@@ -207,21 +201,21 @@ def told(bench: Bench, door: Door, options: argparse.Namespace, parts: ExitStack
         return parts.enter_context(closing(part))
 
     time.sleep(1.0)
-    print(f"the server: {memory(server):.0f} MB")
+    print(f"the server: {door.memory:.0f} MB")
     watching = clients(options.clients, RATE)
     time.sleep(_SETTLE)
     used, began = cpu(server), time.monotonic()
     bench.measure(f"{options.clients} clients", watching)
-    print(f"  the server: {(cpu(server) - used) / (time.monotonic() - began):.0%} of a core, {memory(server):.0f} MB")
+    print(f"  the server: {(cpu(server) - used) / (time.monotonic() - began):.0%} of a core, {door.memory:.0f} MB")
     watching.ask("silence")
     bench.measure("  and one that has stopped reading", watching)
     bench.measure("  and log-ins", watching, lambda: log_ins(door, options.log_ins))
     if options.idle:
-        before = memory(server)
+        before = door.memory
         clients(options.idle, 0.0)
         time.sleep(_SETTLE)
         bench.measure(f"{options.clients} clients and {options.idle} idle ones", watching)
-        now = memory(server)
+        now = door.memory
         print(f"  the server: {now:.0f} MB, {(now - before) * 1024 / options.idle:.0f} kB for each idle client")
     if options.hold:
         print(f"the server is process {server}")

@@ -25,25 +25,58 @@ from tests.task.layers import LONG, robot_up
 PASSWORD = "correct horse battery"
 
 
-class Door:
-    """`btc serve` on a free port, over TLS unless `options` say otherwise. `folder` has to have a short path."""
+class Program:
+    """A command of btlang in a process of its own. Each line that is printed is kept once it has ended."""
 
-    def __init__(self, folder: Path, *options: str) -> None:
-        self.folder = folder
-        self.environment = {**os.environ, "XDG_DATA_HOME": str(folder), "XDG_RUNTIME_DIR": str(folder)}
-        self.port = free_port()
-        self.tls = None if "--no-tls" in options else trusting()
-        self._command = [sys.executable, "-m", "btlang", "serve", "--port", str(self.port), *options]
-        self.start()
+    process: subprocess.Popen[str]
+    lines: list[str]
 
-    def start(self) -> None:
-        """Also again, on the same port and folder, after its end."""
+    def __init__(self, environment: dict[str, str], *words: str) -> None:
+        self.environment, self._command = environment, [sys.executable, "-m", "btlang", *words]
+
+    def start(self, beginning: str) -> None:
+        """Until its first line, which has to begin so. Also again, after its end."""
         self.process = subprocess.Popen(
             self._command, env=self.environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
         )
         assert self.process.stdout is not None
         self.lines = [self.process.stdout.readline()]
-        assert self.lines[0].startswith("The server is up"), self.lines + self.process.stdout.readlines()
+        assert self.lines[0].startswith(beginning), self.lines + self.process.stdout.readlines()
+
+    def kill(self) -> None:
+        self.process.kill()
+        self._end()
+
+    def close(self) -> None:
+        self.process.terminate()
+        self._end()
+
+    def _end(self) -> None:
+        self.process.wait(LONG)
+        assert self.process.stdout is not None
+        self.lines += self.process.stdout.readlines()
+        self.process.stdout.close()
+
+
+class Door(Program):
+    """`btc serve` on a free port, over TLS unless `options` say otherwise. `folder` has to have a short path."""
+
+    def __init__(self, folder: Path, *options: str) -> None:
+        self.folder, self.port = folder, free_port()
+        environment = {**os.environ, "XDG_DATA_HOME": str(folder), "XDG_RUNTIME_DIR": str(folder)}
+        super().__init__(environment, "serve", "--port", str(self.port), *options)
+        self.tls = None if "--no-tls" in options else trusting()
+        self.start()
+
+    def start(self, beginning: str = "The server is up") -> None:
+        """On the same port and folder each time."""
+        super().start(beginning)
+
+    @property
+    def memory(self) -> float:
+        """Megabytes of its process."""
+        status = Path(f"/proc/{self.process.pid}/status").read_text(encoding="ascii")
+        return int(status.partition("VmRSS:")[2].split()[0]) / 1024
 
     def user(self, *words: str, password: str = PASSWORD) -> str:
         """What `btc user` prints."""
@@ -82,20 +115,6 @@ class Door:
         scheme = "ws" if self.tls is None else "wss"
         address = f"{scheme}://127.0.0.1:{self.port}{path}"
         return connect(address, ssl=self.tls, additional_headers=headers, proxy=None, open_timeout=LONG)
-
-    def kill(self) -> None:
-        self.process.kill()
-        self._end()
-
-    def close(self) -> None:
-        self.process.terminate()
-        self._end()
-
-    def _end(self) -> None:
-        self.process.wait(LONG)
-        assert self.process.stdout is not None
-        self.lines += self.process.stdout.readlines()
-        self.process.stdout.close()
 
 
 class Reply:
@@ -149,6 +168,11 @@ def trusting() -> ssl.SSLContext:
     context.sslsocket_class = _Locked
     context.check_hostname, context.verify_mode = False, ssl.CERT_NONE
     return context
+
+
+def child_of(process: int) -> int:
+    """The first process that a process started."""
+    return int(Path(f"/proc/{process}/task/{process}/children").read_text(encoding="ascii").split()[0])
 
 
 def free_port() -> int:

@@ -361,7 +361,7 @@ def test_sessions_end_by_themselves(tmp_path: Path) -> None:
 
 def test_who_asks_but_never_reads_has_to_wait(door: Door) -> None:
     """Answers are never left out, so they would fill the memory."""
-    before = memory(door)
+    before = door.memory
     head = f"""GET /api/ws HTTP/1.1
 host: 127.0.0.1:{door.port}
 cookie: {door.log_in("vic")["cookie"]}
@@ -386,11 +386,5 @@ sec-websocket-key: AAAAAAAAAAAAAAAAAAAAAA==
                 connection.sendall(frame)
                 sent += 1
         assert sent < 1000
-    assert memory(door) - before < 100
+    assert door.memory - before < 100
     assert door.ask("GET", "/live").status == 200
-
-
-def memory(door: Door) -> float:
-    """Megabytes of the server's process."""
-    status = Path(f"/proc/{door.process.pid}/status").read_text(encoding="ascii")
-    return int(status.partition("VmRSS:")[2].split()[0]) / 1024

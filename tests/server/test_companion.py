@@ -11,11 +11,10 @@ import sys
 import tempfile
 from collections.abc import Iterator
 from contextlib import suppress
-from pathlib import Path
 
 import pytest
 
-from tests.server.doors import free_port
+from tests.server.doors import child_of, free_port
 from tests.task.layers import LONG, wait_until
 
 
@@ -59,8 +58,7 @@ def test_a_server_that_ends_by_itself_comes_back(environment: dict[str, str]) ->
         assert process.stdout is not None
         for _ in range(5):
             process.stdout.readline()
-        children = Path(f"/proc/{process.pid}/task/{process.pid}/children").read_text(encoding="ascii").split()
-        os.kill(int(children[0]), signal.SIGKILL)
+        os.kill(child_of(process.pid), signal.SIGKILL)
         assert process.stdout.readline() == "The server ended with exit code -9; it starts again.\n"
         assert process.stdout.readline().startswith("The server is up")
         assert answers(port)

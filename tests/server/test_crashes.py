@@ -11,8 +11,6 @@ import random
 import shutil
 import stat
 import statistics
-import subprocess
-import sys
 import tempfile
 import threading
 import time
@@ -33,7 +31,7 @@ from btlang.server.roles import Role
 from btlang.task.store import Store, open_store
 from btlang.task.task import FINAL, State
 from tests.profiles import amount
-from tests.server.doors import Door
+from tests.server.doors import Door, Program
 from tests.task.layers import LONG, wait_until
 
 NAME, MISSION = "otto", "tour"
@@ -42,34 +40,15 @@ BACK = 5.0
 _PAUSE = 0.005  # seconds between two requests of a client, and before the next try
 
 
-class Robot:
-    """`btc robot up` in a process of its own, beside a server; its folder stays."""
+class Robot(Program):
+    """`btc robot up` beside a server; its folder stays."""
 
     def __init__(self, door: Door) -> None:
-        self._environment = door.environment
+        super().__init__(door.environment, "robot", "up", "--name", NAME, "--speed", "max")
         self.start()
 
-    def start(self) -> None:
-        command = [sys.executable, "-m", "btlang", "robot", "up", "--name", NAME, "--speed", "max"]
-        self._process = subprocess.Popen(
-            command, env=self._environment, stdout=subprocess.PIPE, stderr=subprocess.STDOUT, text=True
-        )
-        assert self._process.stdout is not None
-        line = self._process.stdout.readline()
-        assert line.startswith(f"The robot '{NAME}' is up"), line + self._process.stdout.read()
-
-    def kill(self) -> None:
-        self._process.kill()
-        self._end()
-
-    def close(self) -> None:
-        self._process.terminate()
-        self._end()
-
-    def _end(self) -> None:
-        self._process.wait(LONG)
-        assert self._process.stdout is not None
-        self._process.stdout.close()
+    def start(self, beginning: str = f"The robot '{NAME}' is up") -> None:
+        super().start(beginning)
 
 
 class Client(ABC):

@@ -25,7 +25,7 @@ from btlang.server.fleet import VALID, Fleet, pin_in
 from btlang.server.reach import STREAM
 from btlang.server.sockets import FORBIDDEN
 from tests.server.cable import Cable
-from tests.server.doors import Door, Reply, close_code, received
+from tests.server.doors import Door, Reply, child_of, close_code, received
 from tests.task.layers import LONG, wait_until
 
 
@@ -53,8 +53,7 @@ class Elsewhere:
 
     def dialer(self) -> int:
         """The process that dials."""
-        children = Path(f"/proc/{self.process.pid}/task/{self.process.pid}/children").read_text(encoding="ascii")
-        return int(children.split()[0])
+        return child_of(self.process.pid)
 
     def close(self) -> None:
         self.process.terminate()

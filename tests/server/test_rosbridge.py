@@ -35,7 +35,7 @@ from tests.ros.client import LATCHED, Client
 from tests.ros.conftest import _found, _interfaces, _isolated  # noqa: F401
 from tests.ros.domains import free_domain
 from tests.server.bridge_client import Page
-from tests.server.doors import Door, close_code
+from tests.server.doors import Door, child_of, close_code
 from tests.task.layers import wait_until
 
 EVIL = "https://evil.example"
@@ -362,11 +362,6 @@ def test_the_bridge_ends_with_the_server(robot: Robot) -> None:
             door.process.kill()
             wait_until(lambda: len(robot.cancelled) == count + 1)
             wait_until(lambda: not Path(f"/proc/{child}").exists())
-
-
-def child_of(process: int) -> int:
-    """The process that the server started."""
-    return int(Path(f"/proc/{process}/task/{process}/children").read_text().split()[0])
 
 
 def trail(door: Door) -> list[str]:
