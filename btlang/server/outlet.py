@@ -62,7 +62,7 @@ class Outlet:
         """Of which the messages are taken."""
         self._topics: dict[str, deque[str]] = {}
         self._length = 0  # of answers and topics
-        self._full = False
+        self._full = self._is_closed = False
         self._news, self._answers, self._taken = asyncio.Event(), asyncio.Event(), asyncio.Event()
 
     def put(self, news: News) -> None:
@@ -108,9 +108,14 @@ class Outlet:
 
     async def wait_for_room(self) -> None:
         """Until a client that asks for much has read most of what he got."""
-        while len(self._queue) > _MOST // 2 or self._length > _MUCH:
+        while not self._is_closed and (len(self._queue) > _MOST // 2 or self._length > _MUCH):
             self._taken.clear()
             await self._taken.wait()
+
+    def close(self) -> None:
+        """Nobody reads any more: so nobody waits for room, and what was asked before is still done."""
+        self._is_closed = True
+        self._taken.set()
 
     def take(self) -> list[str]:
         """What there is, in the order of its coming; statuses come last, each the newest."""

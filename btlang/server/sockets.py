@@ -67,9 +67,7 @@ class Visitor:
         if self._code:
             self._talk.cancel()
         try:
-            await asyncio.wait({self._talk, sending}, return_when=asyncio.FIRST_COMPLETED)
-            if not self._talk.done():
-                return  # nobody is there any more
+            await asyncio.wait({self._talk})
         finally:
             sending.cancel()
             self._talk.cancel()
@@ -99,6 +97,7 @@ class Visitor:
                 self.allowance.use(now())
                 for text in outlet.take():
                     await self.socket.send_text(text)
+        outlet.close()
 
 
 class Sockets:

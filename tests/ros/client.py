@@ -34,10 +34,10 @@ class Heard:
             self.messages.append(message)
             self._news.notify_all()
 
-    def wait(self, wanted: Callable[[Any], object] = lambda message: True) -> Any:
-        """The last message, or else the first one after it, that is as wanted."""
+    def wait(self, wanted: Callable[[Any], object] = lambda message: True, since: int | None = None) -> Any:
+        """The first message from number `since` on (by default the last one) that is as wanted."""
         with self._news:
-            at = max(len(self.messages) - 1, 0)
+            at = max(len(self.messages) - 1, 0) if since is None else since
 
             def found() -> bool:
                 nonlocal at

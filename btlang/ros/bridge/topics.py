@@ -7,6 +7,7 @@ import time
 from collections.abc import Callable
 
 from rclpy.clock import Clock, ClockType
+from rclpy.duration import Duration
 from rclpy.node import Node
 from rclpy.qos import DurabilityPolicy, QoSProfile, ReliabilityPolicy
 from rclpy.serialization import deserialize_message
@@ -27,6 +28,7 @@ _DISCOVERED = 5.0  # seconds in which the publishers of a topic are found
 _MOST_BYTES = 4 * MOST_CHARACTERS  # of a message as ROS sends it: JSON may have fewer characters than that
 _DEPTH, _MOST_DEPTH = 10, 100  # messages that wait for a client: by default, and at most
 _LONGEST = 3_600_000  # milliseconds
+_HEARD = Duration(seconds=0.2)  # for listeners to confirm what was published
 
 
 class Subscription:
@@ -167,7 +169,8 @@ class Publisher:
         self._publisher.publish(filled(self.cls, fields, self._node.get_clock().now().to_msg))
 
     def end(self) -> None:
-        """Nothing is published any more."""
+        """Nothing is published any more; the last message, which may be a stop, is heard first."""
+        self._publisher.wait_for_all_acked(_HEARD)
         self._node.destroy_publisher(self._publisher)
 
 
