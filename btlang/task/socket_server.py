@@ -73,7 +73,7 @@ class SocketServer:
         """Takes no more commands; those under way are answered first. May be called twice."""
         with self._answered:
             self._answered.wait_for(lambda: not self._busy, _LEAVE)
-        self._closed = True
+            self._closed = True
         for each, path in zip(self._sockets, self._paths, strict=True):
             with suppress(OSError):
                 each.shutdown(socket.SHUT_RDWR)
@@ -89,11 +89,7 @@ class SocketServer:
             try:
                 connection, _ = self._sockets[which].accept()
             except TimeoutError:
-                if not os.path.exists(self._paths[which]):
-                    with suppress(OSError, MissionError):
-                        socket_folder()
-                        self._sockets[which].close()
-                        self._sockets[which] = _listening(self._paths[which])
+                self._look(which)
                 continue
             except OSError:
                 if self._closed:
@@ -101,6 +97,14 @@ class SocketServer:
                 continue
             connection.settimeout(None)
             take(connection)
+
+    def _look(self, which: int) -> None:
+        with self._answered:  # so that nothing is made anew once it is closed
+            if not self._closed and not os.path.exists(self._paths[which]):
+                with suppress(OSError, MissionError):
+                    socket_folder()
+                    self._sockets[which].close()
+                    self._sockets[which] = _listening(self._paths[which])
 
     def _begin(self, connection: socket.socket) -> None:
         threading.Thread(target=self._serve, args=(connection,), daemon=True, name="btlang caller").start()

@@ -13,8 +13,11 @@ from pathlib import Path
 import pytest
 
 from btlang.cli import main
+from btlang.task import socket_server
 from btlang.task.emergency import EmergencyStop, latch_path, shut_latch
+from btlang.task.messages import Answer
 from btlang.task.paths import data_folder, socket_path
+from btlang.task.socket_server import SocketServer
 from btlang.task.task import State
 
 from .layers import ask, layer_in, robot_up, submit, wait_for, wait_until
@@ -72,6 +75,16 @@ def test_a_robot_whose_sockets_were_taken_away(folder: Path, capsys: pytest.Capt
         wait_until(lambda: os.path.exists(socket_path("q")) and os.path.exists(socket_path("q", stop=True)))
         wait_until(lambda: answer_of(socket_path("q", stop=True)) == b"stopped\n")
     capsys.readouterr()
+
+
+def test_a_door_that_is_closed_leaves_no_socket(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(socket_server, "_LOOK", 0.0002)  # so that it often looks just then
+    for _ in range(100):
+        door = SocketServer("q", lambda data, person: Answer(True), lambda person: None)
+        door.start()
+        door.close()
+        assert not os.path.exists(socket_path("q"))
+        assert not os.path.exists(socket_path("q", stop=True))
 
 
 def test_all_robots_that_are_up_are_stopped(folder: Path, capsys: pytest.CaptureFixture[str]) -> None:
