@@ -50,12 +50,5 @@ def _changed(
                 text, before, made = text[: span.start] + words + text[span.end :], span.start, made + 1
         if not made:
             break
-        source, count = _with_text(source, text), count + made
+        source, count = source.with_text(text), count + made
     return source, count
-
-
-def _with_text(source: Source, text: str) -> Source:
-    return Source(
-        text, source.name, source.folder, source.roots,
-        hidden=source.hidden, hides_includes=source.hides_includes, may_load=source.may_load,
-    )  # fmt: skip

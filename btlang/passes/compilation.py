@@ -14,9 +14,10 @@ from btlang.vocabulary.lexicon import Lexicon
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import TypeVar
+    from typing import TypeAlias, TypeVar
 
     Result = TypeVar("Result")
+    Origins: TypeAlias = dict[int, tuple[Node, Ast]]
 
 
 class Compilation:
@@ -35,10 +36,13 @@ class Compilation:
         needs_command: bool = True,
         grows: bool = False,
         warnings: Iterable[Diagnostic] = (),
+        origins: Origins | None = None,
     ) -> None:
         self.vocabulary = vocabulary
         self.needs_command = needs_command
         self.grows = grows
+        self.origins = origins
+        """The nodes by their identities, each with the syntax that it was made of; noted only where this is a dict."""
         self.warnings: list[Diagnostic] = list(warnings)
         self.ordered: list[Definition] = []
         """The definitions, used ones before their users."""

@@ -29,7 +29,8 @@ _CHAINS = {"sequence": "Sequence", "all": "Sequence", "fallback": "Fallback", "a
 def lower_names(compilation: Compilation) -> Iterator[Diagnostic]:
     """The tree of a mission: each definition, then its commands. BT005 where there is no command but must be one."""
     mission, ordered = compilation.mission, compilation.ordered
-    scope = Scope((definition.name for definition in ordered), compilation.vocabulary.types)
+    names = (definition.name for definition in ordered)
+    scope = Scope(names, compilation.vocabulary.types, compilation.origins)
     for definition in ordered:
         lowered = lower(definition.body, scope)
         scope.bodies.append((definition.name, lowered.node))
@@ -48,12 +49,27 @@ def lower_names(compilation: Compilation) -> Iterator[Diagnostic]:
 
 def lower(root: ast.Ast, scope: Scope) -> Lowered:
     """The tree of a command or condition."""
-    return fold(root, ast.parts, lambda item, done: _LOWER[type(item)](item, done, scope))
+    one = lower_one if scope.origins is None else _noted
+    return fold(root, ast.parts, lambda item, done: one(item, done, scope))
 
 
 def lower_one(item: ast.Ast, done: list[Lowered], scope: Scope) -> Lowered:
     """What one piece of syntax makes of its lowered parts."""
     return _LOWER[type(item)](item, done, scope)
+
+
+def _noted(item: ast.Ast, done: list[Lowered], scope: Scope) -> Lowered:
+    """As `lower_one`, and notes what the node was made of."""
+    assert scope.origins is not None
+    lowered = lower_one(item, done, scope)
+    node = lowered.node
+    scope.origins[id(node)] = node, item
+    for rule in ast.parts(item) if isinstance(item, ast.Chain) else ():
+        if isinstance(rule, ast.Whenever):  # one inside the other, round the other commands
+            scope.origins[id(node)] = node, rule
+            node = node.children[2]
+            scope.origins.setdefault(id(node), (node, item))
+    return lowered
 
 
 def _negated(negated: bool, condition: Node) -> Node:

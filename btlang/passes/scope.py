@@ -8,6 +8,10 @@ from btlang.tree import ast
 from btlang.tree.node import Node
 from btlang.vocabulary.value_type import ValueType
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.passes.compilation import Origins
+
 
 class Scope:
     """State of lowering one mission, whose defined names and types of values are given.
@@ -15,10 +19,11 @@ class Scope:
     `skipping` are the names whose trees can end SKIPPED, `endless` those whose trees run until they fail, `free` the
     keys of the mission's values that the tree of a name needs from outside, in their order, `parameters` the types of
     its parameters. `bodies` are the subtrees, used ones before their users. `made` is how many keys of its own it has
-    made.
+    made. `origins` are the nodes by their identities with the syntax that they were made of, if anybody asks for it.
     """
 
-    def __init__(self, names: Iterable[str], types: Mapping[str, ValueType]) -> None:
+    def __init__(self, names: Iterable[str], types: Mapping[str, ValueType], origins: Origins | None = None) -> None:
+        self.origins = origins
         self._types = types
         self.skipping: set[str] = set()
         self.endless: set[str] = set()

@@ -44,6 +44,10 @@ def lines_of(
         if isinstance(item, str):
             found.append(INDENT * depth + item)
             continue
+        kept = printer.kept_lines(item)
+        if kept:
+            found += (f"{INDENT * depth}{line}" if line else "" for line in kept)
+            continue
         said, room = printer.say(item), width - len(INDENT) * depth
         line = "" if is_longer(said.pieces, room) else printer.line(item, said, among)
         too_long = not line or len(line) > room

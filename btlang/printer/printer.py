@@ -80,6 +80,7 @@ class Printer:
         self._reads_on: dict[tuple[Piece, Piece], bool] = {}
         self._parameters: dict[str, dict[str, str]] = {}
         self._comments: dict[int, tuple[ast.Ast, tuple[str, ...]]] = {}  # with its node, too
+        self._kept: dict[int, tuple[ast.Ast, tuple[str, ...]]] = {}
         for defined in names:
             name, types = (
                 (defined.name, dict(defined.parameters)) if isinstance(defined, ast.Definition) else (defined, {})
@@ -94,6 +95,8 @@ class Printer:
             return self._said[id(node)][1]
 
         def combine(item: ast.Ast, parts: list[Doc]) -> Doc:
+            if id(item) in self._kept:
+                return self._said[id(item)][1]
             said: Doc = self._printers[type(item)](item, parts, self)
             if any(part.in_lines for part in parts) or any(isinstance(part, ast.Whenever) for part in ast.parts(item)):
                 said = said.replace(in_lines=True)
@@ -103,6 +106,18 @@ class Printer:
             return said
 
         return fold(node, ast.parts, combine)
+
+    def keep(self, node: ast.Ast, said: Doc, lines: tuple[str, ...] = ()) -> None:
+        """Says a node in these words from now on, such as those of a text; as a statement in `lines`, if there are any.
+
+        Nothing of what holds it may have been said before.
+        """
+        self._said[id(node)] = node, said
+        self._kept[id(node)] = node, lines
+
+    def kept_lines(self, node: ast.Ast) -> tuple[str, ...]:
+        """See `keep`."""
+        return self._kept.get(id(node), (node, ()))[1]
 
     def statement(self, node: ast.Ast, joined: str = "") -> str:
         """A line of its own, or one of several that make a chain of the operator `joined`."""

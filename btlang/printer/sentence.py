@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from typing import Any
 
 _LEVELS = {"sequence": THEN, "fallback": OR, "parallel": AND}
-_CHAINS = {
+CHAINS = {
     **{operator: (_LEVELS.get(operator, THEN), role) for role, operator in reversed(CONNECTIVES.items())},
     "any": (OR, "or"), "all": (AND, "and"),
 }  # fmt: skip
@@ -50,7 +50,7 @@ def _name(node: ast.Name, _parts: list[Doc], printer: Printer) -> Doc:
 
 
 def _chain(node: ast.Chain, parts: list[Doc], printer: Printer) -> Doc:
-    level, role = _CHAINS[node.operator]
+    level, role = CHAINS[node.operator]
     word = printer.word(role)
     inner = [printer.inside(p, p.level <= level or p.reaches or printer.reads_on(p, word)) for p in parts[:-1]]
     inner.append(printer.inside(parts[-1], parts[-1].level <= level))

@@ -40,6 +40,13 @@ class Source:
         self.may_load = may_load
         self._starts: list[int] | None = None
 
+    def with_text(self, text: str) -> Source:
+        """Another text in its place."""
+        return Source(
+            text, self.name, self.folder, self.roots,
+            hidden=self.hidden, hides_includes=self.hides_includes, may_load=self.may_load,
+        )  # fmt: skip
+
     def position(self, offset: int) -> tuple[int, int]:
         """Line and column of a character offset, both from 1, as editors count them."""
         starts = self._line_starts()

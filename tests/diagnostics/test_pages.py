@@ -20,6 +20,7 @@ from btlang.cli import CRASHED, main
 from btlang.diagnostics.codes import CODES, NAMES
 from btlang.diagnostics.explain import PAGES
 from tests.conftest import take_away_what_is_missed
+from tests.editing.edited import edit_sample
 from tests.ros.bound import bind_words
 from tests.task.schedules import read_schedules
 from tests.task.up import REFUSALS, read_rules, restored, robot_for
@@ -55,6 +56,8 @@ def said(example: Example, page: str, folder: Path, capsys: pytest.CaptureFixtur
     if example.of == "command":
         [btc, *command] = shlex.split(example.text)
         assert btc == "btc"
+    elif example.of == "edit":
+        return edit_sample(example.text), capsys.readouterr().err
     elif example.of == "schedule":
         return read_schedules(example.text.splitlines()), capsys.readouterr().err
     else:

@@ -1,8 +1,9 @@
 """Every code of a message has a bad sample in `bad/`, and its exact output beside it.
 
 A sample is compiled with `btc check`; a first line `# btc VERB FILE ...` asks for another command, and `# ros FILE`
-binds the words of a keyword file to ROS 2. `# schedules ZONE` reads each further line as the rule of a schedule, and
-`# restored` goes on with the mission from a saved run of another one. Commands for a robot that is up find one.
+binds the words of a keyword file to ROS 2. `# schedules ZONE` reads each further line as the rule of a schedule,
+`# edit JSON` does an edit with the rest, and `# restored` goes on with the mission from a saved run of another one.
+Commands for a robot that is up find one.
 """
 
 from __future__ import annotations
@@ -16,6 +17,7 @@ import pytest
 from btlang.cli import CRASHED, main
 from btlang.diagnostics.codes import CODES
 from tests.conftest import matches_golden, take_away_what_is_missed, without_pointer
+from tests.editing.edited import edit_sample
 from tests.ros.bound import bind_words
 from tests.task.schedules import read_schedules
 from tests.task.up import REFUSALS, restored, robot_for
@@ -34,6 +36,8 @@ def test_message(sample: Path, capsys: pytest.CaptureFixture[str], monkeypatch: 
     elif first.startswith("# schedules"):
         rules = sample.read_text(encoding="utf-8").splitlines()[1:]
         code = read_schedules(rules, first.removeprefix("# schedules").strip())
+    elif first.startswith("# edit "):
+        code = edit_sample(sample.read_text(encoding="utf-8"))
     elif first == "# restored":
         problem = restored(sample.read_text(encoding="utf-8"))
         print(problem, file=sys.stderr)

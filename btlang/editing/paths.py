@@ -1,0 +1,52 @@
+"""Ways from a mission to its nodes, by which they are found again in a text that was changed."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from btlang.editing.syntax import Syntax, Unplaced
+from btlang.editing.writing import Change
+from btlang.tree import ast
+
+
+def path_of(node: ast.Ast, program: ast.Program) -> list[tuple[str, int | str | None]]:
+    """The way from a mission to a node of it; definitions go by their names, as they may stand in any order."""
+    slots = Syntax.slots_of(program)
+    path: list[tuple[str, int | str | None]] = []
+    while node is not program:
+        slot = slots[id(node)]
+        path.append((slot.field, node.name if isinstance(node, ast.Definition) else slot.at))
+        node = slot.parent
+    return path[::-1]
+
+
+def at_path(path: Sequence[tuple[str, int | str | None]], program: ast.Program) -> ast.Ast:
+    """The node at the end of a way. Raises Unplaced."""
+    node: ast.Ast = program
+    for field, at in path:
+        part = getattr(node, field, None)
+        if isinstance(at, str):
+            part = next((each for each in program.definitions if each.name == at), None)
+        elif at is not None:
+            part = part[at] if isinstance(part, tuple) and at < len(part) else None
+        if not isinstance(part, ast.Ast):
+            raise Unplaced("no English says it there")
+        node = part
+    return node
+
+
+def place_of(focus: ast.Ast | None, program: ast.Program, read: ast.Program) -> tuple[int, int]:
+    """Where something of a mission stands in its text, once it is read again."""
+    try:
+        span = read.span if focus is None else at_path(path_of(focus, program), read).span
+    except (Unplaced, KeyError):
+        return 0, 0
+    return (span.start, span.end) if focus is not None else (0, 0)
+
+
+def difference(old: str, new: str) -> Change:
+    """The smallest change that makes one text of another."""
+    most = min(len(old), len(new))
+    start = next((i for i in range(most) if old[i] != new[i]), most)
+    end = next((i for i in range(most - start) if old[-1 - i] != new[-1 - i]), most - start)
+    return Change(start, len(old) - end, new[start : len(new) - end])

@@ -1,0 +1,170 @@
+"""The syntax tree of a mission with its tree: who holds each node, what a node of the tree was made of, and changes."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from btlang.passes import LOWERING, run_passes
+from btlang.passes.compilation import Compilation
+from btlang.record import Record
+from btlang.tree import ast
+from btlang.tree.node import Node, Tree
+from btlang.vocabulary.lexicon import Lexicon
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.passes.compilation import Origins
+
+
+class Slot(Record):
+    """Where a node of the syntax stands: the field of its parent, and its number there if that holds several."""
+
+    parent: ast.Ast
+    field: str
+    at: int | None
+
+
+class Step(Record):
+    """Siblings that others take the place of: `old` becomes `new`, both perhaps nothing.
+
+    They stand in `parent`; if that holds several, from number `at` on. Several new ones make a chain of the `operator`.
+    """
+
+    parent: ast.Ast
+    field: str
+    at: int | None
+    old: tuple[ast.Ast, ...]
+    new: tuple[ast.Ast, ...]
+    operator: str = "sequence"
+
+
+class Unplaced(Exception):
+    """What a form needs can't be taken out of it. The text says what."""
+
+
+class Syntax:
+    """Of one mission that can be read. Included missions are no part of it."""
+
+    def __init__(self, mission: ast.Program, vocabulary: Lexicon) -> None:
+        self.mission = mission
+        self.vocabulary = vocabulary
+        self.nodes = ast.parents_first(mission)
+        self.slots = self.slots_of(mission)
+
+    @staticmethod
+    def slots_of(mission: ast.Program) -> dict[int, Slot]:
+        """Where each node stands, by its identity."""
+        slots: dict[int, Slot] = {}
+        for node in ast.parents_first(mission):
+            for field in node.parts:
+                part = getattr(node, field)
+                if type(part) is tuple:
+                    slots.update((id(each), Slot(node, field, i)) for i, each in enumerate(part))
+                elif part is not None:
+                    slots[id(part)] = Slot(node, field, None)
+        return slots
+
+    def lowered(self) -> tuple[Tree, list[ast.Ast | None]]:
+        """The tree, and of each of its nodes, in the order of `Tree.walk`, the syntax that says it, None for what is
+        said elsewhere."""
+        origins: Origins = {}
+        tree = run_passes(Compilation(self.vocabulary, self.mission, origins=origins), LOWERING).tree
+        return tree, [
+            found if found is not None and id(found) in self.slots else None for found in _sources(tree, origins)
+        ]
+
+    def holder(self, node: ast.Ast) -> ast.Ast:
+        """What a node stands in."""
+        return self.slots[id(node)].parent
+
+    def steps(
+        self, old: Sequence[ast.Ast], new: Sequence[ast.Ast], at: int | None = None, operator: str = "sequence"
+    ) -> list[Step]:
+        """What changes if some siblings become others, innermost first; the last step is one in the program.
+
+        `new` may be empty. For an insertion into a chain `old` has the chain alone, and `at` is the place among its
+        items. Where no chain is, several new ones make one of the `operator`. Raises Unplaced.
+        """
+        steps = []
+        if at is not None:
+            [chain] = old
+            step = Step(chain, "items", at, (), tuple(new), getattr(chain, "operator", operator))
+        else:
+            slot = self.slots[id(old[0])]
+            operator = getattr(slot.parent, "operator", operator)
+            step = Step(slot.parent, slot.field, slot.at, tuple(old), tuple(new), operator)
+        while True:
+            steps.append(step)
+            if isinstance(step.parent, ast.Program):
+                return steps
+            slot = self.slots[id(step.parent)]
+            operator = getattr(slot.parent, "operator", step.operator)
+            step = Step(slot.parent, slot.field, slot.at, (step.parent,), _held(step), operator)
+
+    def changed(self, last: Step) -> ast.Program:
+        """The mission after the last of some steps. Raises Unplaced."""
+        if last.field == "definitions":
+            held = _put(self.mission.definitions, last)
+            return self.mission.replace(definitions=held)  # type: ignore[no-any-return]
+        body = _one(last.new, last.operator)
+        return self.mission.replace(body=body)  # type: ignore[no-any-return]
+
+
+def are_equal(one: Tree, other: Tree) -> bool:
+    """Whether two trees are, in whatever order their subtrees were defined."""
+    return (one.root, one.name) == (other.root, other.name) and dict(one.subtrees) == dict(other.subtrees)
+
+
+def _sources(tree: Tree, origins: Origins) -> list[ast.Ast | None]:
+    """A node that no syntax was lowered to belongs to the one around it."""
+    found: list[ast.Ast | None] = []
+    for root in (tree.root, *(node for _, node in tree.subtrees)):
+        stack: list[tuple[Node, ast.Ast | None]] = [(root, None)]
+        while stack:
+            node, around = stack.pop()
+            own = origins.get(id(node), (node, around))[1]
+            found.append(own)
+            stack.extend((child, own) for child in reversed(node.children))
+    return found
+
+
+def _put(items: tuple[ast.Ast, ...], step: Step) -> tuple[ast.Ast, ...]:
+    assert step.at is not None
+    return (*items[: step.at], *step.new, *items[step.at + len(step.old) :])
+
+
+def _held(step: Step) -> tuple[ast.Ast, ...]:
+    """What takes the place of the parent of a step."""
+    parent = step.parent
+    if isinstance(parent, ast.Chain):
+        items: list[ast.Ast] = []
+        for item in _put(parent.items, step):
+            melts = type(item) is ast.Chain and item.operator == parent.operator and not item.bracketed
+            items += item.items if melts and isinstance(item, ast.Chain) else (item,)
+        if len(items) > 1:
+            return (parent.replace(items=tuple(items)),)
+        return tuple(items)
+    if step.at is not None:
+        items = list(_put(getattr(parent, step.field), step))
+        if not items and isinstance(parent, ast.Exact):
+            return ()
+        if isinstance(parent, ast.AtLeast) and len(items) < max(parent.number, 2):
+            raise Unplaced("at least so many must be left")
+        return (parent.replace(items=tuple(items)),)
+    if step.new:
+        return (parent.replace(**{step.field: _one(step.new, step.operator)}),)
+    if step.field == "otherwise":
+        return (parent.replace(otherwise=None),)
+    has_more = getattr(parent, "otherwise", None) is not None
+    if step.field == "condition" or isinstance(parent, ast.Definition) or has_more:
+        raise Unplaced("what holds it needs it")
+    return ()
+
+
+def _one(items: Sequence[ast.Ast], operator: str) -> ast.Ast | None:
+    """Some siblings as one node."""
+    if not items:
+        return None
+    if len(items) == 1:
+        return items[0]
+    return ast.Chain(operator, tuple(items), False, items[0].span)
