@@ -26,7 +26,8 @@ class Story:
         self._mission, self._nodes, self._about = mission, nodes, about
         self._history = FailureHistory(nodes)  # type: ignore[arg-type]  # which asks for nodes and parents only
         self._began: dict[int, tuple[float, Node]] = {}
-        self._done: list[str] = []
+        self.notes: list[tuple[float, int, str]] = []
+        """What was done: when it began, the number of the node (-1: none), and the words."""
         self._ended: Ended | None = None
         self._latest = 0.0
 
@@ -41,9 +42,9 @@ class Story:
                     if self._is_said(node) or is_asked_wait(change.node):
                         self._changed(change.index, change.status, change.t, node, change.reason)
             elif isinstance(event, Chosen):
-                self._note(event.t, f"It chooses {event.name}, the {event.how} {event.type}.")
+                self._note(event.t, -1, f"It chooses {event.name}, the {event.how} {event.type}.")
             elif isinstance(event, FaultInjected | Notice):
-                self._note(event.t, f"{event.tag}: {event.text}")
+                self._note(event.t, -1, f"{event.tag}: {event.text}")
             elif isinstance(event, Ended):
                 self._ended = event
         return self
@@ -55,12 +56,13 @@ class Story:
         yield one_line(
             f"{about.get('mission') or 'A mission'}, {when}, on the robot {about.get('robot', 'simulated')}:"
         )
-        yield from self._done
+        yield from (self._line(t, text) for t, _, text in self.notes)
         for began, node in self._began.values():
             yield self._line(began, f"{self._mission.label(node)}: not over when the recording ended")
-        yield from self._ending()
+        yield from self.ending()
 
-    def _ending(self) -> Iterator[str]:
+    def ending(self) -> Iterator[str]:
+        """How it ended, and why."""
         ended = self._ended
         if ended is None:
             yield f"The recording ends after {self._latest:.1f} s, before the mission did."
@@ -75,6 +77,13 @@ class Story:
             yield f"{'There was nothing to do' if skipped else 'The mission succeeded'} after {ended.seconds:.1f} s."
         if ended.still is not True and ended.motion:
             yield one_line(f"{ended.motion}.")
+
+    @property
+    def failed(self) -> int:
+        """The number of the node whose failure ended it, -1 where none did."""
+        ended = self._ended
+        failed = ended is not None and not ended.stopped and ended.outcome == NAMES[FAILURE]
+        return self._failure(ended).index if ended is not None and failed else -1
 
     def _failure(self, ended: Ended) -> Failure:
         index = next(at for at in range(self._nodes.size) if self._nodes.path(at) == ended.path)
@@ -92,10 +101,10 @@ class Story:
         began = self._began.pop(index, (t, node))[0]
         ending = _ENDINGS.get(status, "")
         words = self._mission.label(node) + (f": {ending}" if ending else "") + (f" ({reason})" if reason else "")
-        self._note(began, words)
+        self._note(began, index, words)
 
-    def _note(self, t: float, text: str) -> None:
-        self._done.append(self._line(t, text))
+    def _note(self, t: float, index: int, text: str) -> None:
+        self.notes.append((t, index, one_line(text)))
 
     @staticmethod
     def _line(t: float, text: str) -> str:

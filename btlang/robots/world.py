@@ -9,6 +9,10 @@ from btlang.record import Record
 from btlang.robots.geometry import Point, Pose, Segment
 from btlang.text.time_of_day import USUAL_START
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
 PERSON_RADIUS = 0.25
 OBJECT_RADIUS = 0.05
 NEVER = float("inf")
@@ -122,3 +126,9 @@ class World(Record):
         others = tuple(known for known in self.places if known.name.lower() not in named)
         changed: World = self.replace(places=(*others, *named.values()))
         return changed
+
+    def as_map(self) -> dict[str, Any]:
+        """What is drawn of it, as in a world file."""
+        listed = {kind: getattr(self, kind) for kind in ("boxes", "places", "objects", "people")}
+        found: dict[str, Any] = {kind: [each.as_dict() for each in known] for kind, known in listed.items()}
+        return {"walls": self.walls, "dock": None if self.dock is None else self.dock.as_dict(), **found}

@@ -141,7 +141,7 @@ class Feed:
             yield {"type": "robot", **robot}
         if self._world is not None and not watcher.has_map:
             watcher.has_map = True
-            yield {"type": "map", **_map(self._world)}
+            yield {"type": "map", **self._world.as_map()}
         if self._scan != watcher.scan:
             watcher.scan = self._scan
             yield {"type": "scan", "ranges": self._scan}
@@ -206,10 +206,3 @@ def _scan(event: PeriodPassed) -> list[float | None]:
     """Metres to what is there, counter-clockwise from straight ahead; None where nothing is."""
     ranges = asked(lambda: [float(distance) for distance in event.robot.scan()]) or ()
     return [round(distance, 2) if isfinite(distance) else None for distance in ranges]
-
-
-def _map(world: World) -> dict[str, Any]:
-    """As in a world file."""
-    listed = {kind: getattr(world, kind) for kind in ("boxes", "places", "objects", "people")}
-    found: dict[str, Any] = {kind: [each.as_dict() for each in known] for kind, known in listed.items()}
-    return {"walls": world.walls, "dock": None if world.dock is None else world.dock.as_dict(), **found}

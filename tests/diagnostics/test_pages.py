@@ -21,6 +21,7 @@ from btlang.diagnostics.codes import CODES, NAMES
 from btlang.diagnostics.explain import PAGES
 from tests.conftest import take_away_what_is_missed
 from tests.editing.edited import edit_sample
+from tests.recording.trials import try_sample
 from tests.ros.bound import bind_words
 from tests.task.schedules import read_schedules
 from tests.task.up import REFUSALS, read_rules, restored, robot_for
@@ -58,6 +59,8 @@ def said(example: Example, page: str, folder: Path, capsys: pytest.CaptureFixtur
         assert btc == "btc"
     elif example.of == "edit":
         return edit_sample(example.text), capsys.readouterr().err
+    elif example.of == "mission to try":
+        return try_sample(example.text, "words.toml"), capsys.readouterr().err
     elif example.of == "schedule":
         return read_schedules(example.text.splitlines()), capsys.readouterr().err
     else:

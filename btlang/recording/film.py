@@ -1,0 +1,113 @@
+"""A run as data that a page can play, from its beginning to its end: of a recording, or of a trial."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+
+from btlang.api import Mission
+from btlang.engine.compile import outline
+from btlang.engine.status import NAMES
+from btlang.recording.reader import RecordedNodes
+from btlang.recording.story import Story
+from btlang.run.bus import BLOCK
+from btlang.run.events import LOGGED, Event, PeriodPassed, Sampled, StatusesChanged
+from btlang.run.json_log import as_json
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+MOST_CHANGES = 200_000
+"""Of statuses in a film; a longer run ends there."""
+_MOST_EVENTS = 20_000
+_MOST_STATES = 50_000
+
+
+class Film:
+    """A sink that keeps what happens in a run of a mission, up to MOST_CHANGES; `data` gives it out."""
+
+    policy = BLOCK
+
+    def __init__(self, mission: Mission, about: dict[str, str] | None = None) -> None:
+        self._mission, self._about = mission, about or {}
+        self._nodes = RecordedNodes(*outline(mission.tree))
+        self._story = Story(mission, self._nodes, self._about)
+        self._statuses: list[list[float | int]] = []
+        self._robot: list[list[Any]] = []
+        self._scans: list[list[Any]] = []
+        self._events: list[dict[str, Any]] = []
+        self._count, self._end = 0, 0.0
+        self.is_cut = False
+        """Whether more happened than it keeps."""
+
+    def take(self, events: Iterable[Event]) -> Film:
+        """All that happened."""
+        for event in events:
+            self(event)
+        return self
+
+    def __call__(self, event: Event) -> None:
+        """Keeps an event."""
+        if self.is_cut:
+            return
+        self._story.take((event,))
+        self._end = max(self._end, event.t)
+        if isinstance(event, StatusesChanged):
+            pairs = [number for index, status, _, _ in event.changes for number in (index, status)]
+            self._statuses.append([round(event.t, 3), *pairs])
+            self._count += len(pairs) // 2
+        elif isinstance(event, PeriodPassed):
+            self._take_state(event)
+        elif isinstance(event, Sampled) and event.scan:
+            ranges = [round(each, 2) if each != float("inf") else None for each in event.scan]
+            self._scans.append([round(event.t, 3), ranges])
+        elif isinstance(event, LOGGED):
+            self._events.append(as_json(event, self._mission.label))
+        many = self._count > MOST_CHANGES or len(self._events) > _MOST_EVENTS or len(self._robot) > _MOST_STATES
+        self.is_cut = many
+
+    def _take_state(self, event: PeriodPassed) -> None:
+        state = event.state
+        if state is None:
+            return
+        pose = state.pose
+        place = [None] * 3 if pose is None else [round(pose.x, 3), round(pose.y, 3), round(pose.heading, 1)]
+        battery = None if state.battery is None else round(state.battery, 1)
+        now = [*place, battery, state.left, state.right]
+        if not self._robot or self._robot[-1][1:] != now:
+            self._robot.append([round(event.t, 3), *now])
+
+    def data(self) -> dict[str, Any]:
+        """As JSON has it.
+
+        - `text`: the mission, "" where it had none; `nodes`: parent (-1: the root), id, words, and the characters of
+          the text that say it (None for none), in preorder; `names`: those of statuses;
+        - `statuses`: a time in seconds, then node and status (a number of `names`) in turn;
+        - `robot`: time, x, y (metres), heading (degrees), battery (percent), what the left and the right hand hold;
+        - `scans`: time and metres, counter-clockwise from straight ahead; `events`: see btlang/run/events.schema.json;
+        - `story`: time, node (-1: none) and words; `why`: how it ended; `failed`: the node that failed, or -1;
+        - `seconds`: how long it is; `is_cut`: whether more happened than is kept.
+        """
+        nodes, mission = self._nodes, self._mission
+        text = "" if mission.syntax is None else mission.syntax.span.source.text
+        listed = []
+        for index in range(nodes.size):
+            node, span = nodes.node(index), nodes.span(index)
+            is_here = span is not None and mission.syntax is not None and span.source is mission.syntax.span.source
+            place = [span.start, span.end] if span is not None and is_here else [None, None]
+            listed.append([nodes.parent(index), node.id, mission.label(node), *place])
+        return {
+            "about": self._about,
+            "text": text,
+            "names": list(NAMES),
+            "nodes": listed,
+            "statuses": self._statuses,
+            "robot": self._robot,
+            "scans": self._scans,
+            "events": self._events,
+            "story": [[round(t, 3), index, words] for t, index, words in self._story.notes],
+            "why": "\n".join(self._story.ending()),
+            "failed": self._story.failed,
+            "seconds": round(self._end, 3),
+            "is_cut": self.is_cut,
+        }

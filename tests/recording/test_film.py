@@ -1,0 +1,97 @@
+"""Runs as data that a page plays: trials, and recordings."""
+
+from __future__ import annotations
+
+import json
+from pathlib import Path
+
+import pytest
+
+from btlang.api import parse_tree
+from btlang.cli import main
+from btlang.diagnostics.errors import MissionError
+from btlang.recording.film import Film
+from btlang.recording.open import opened
+from btlang.recording.trial import tried
+
+TEXT = """\
+greet is say "hello" then wave
+go to the lab
+greet
+check that the battery is low  # which it isn't
+"""
+
+
+def final(data: dict[str, object]) -> dict[int, str]:
+    """The last status of each node."""
+    statuses: dict[int, str] = {}
+    names, changes = data["names"], data["statuses"]
+    assert isinstance(names, list)
+    assert isinstance(changes, list)
+    for _, *pairs in changes:
+        statuses.update((index, names[status]) for index, status in zip(pairs[::2], pairs[1::2], strict=True))
+    return statuses
+
+
+def test_a_trial() -> None:
+    data = json.loads(json.dumps(tried(parse_tree(TEXT))))
+    said = [TEXT[start:end] if start is not None else "" for *_, start, end in data["nodes"]]
+    assert said[0] == TEXT[TEXT.index("go") :].split("  #")[0]
+    assert said[1] == "go to the lab"
+    assert [node[:3] for node in data["nodes"]][:2] == [[-1, "Sequence", "Sequence"], [0, "GoTo", "go to lab"]]
+    failed = data["failed"]
+    assert said[failed] == "battery is low"
+    assert "battery is low" in data["why"]
+    assert [words for _, _, words in data["story"]][:3] == ["go to lab", 'say "hello"', "wave"]
+    assert final(data)[1] == "SUCCESS"
+    assert final(data)[failed] == "FAILURE"
+    times = [row[0] for row in data["robot"]]
+    assert times == sorted(times)
+    assert times[-1] <= data["seconds"]
+    assert data["map"]["places"]
+    assert data["stopped"] == ""
+    assert any(event.get("event") == "say" for event in data["events"])
+
+
+def test_a_trial_without_an_end() -> None:
+    data = tried(parse_tree("repeat: wave"), seconds=20.0)
+    assert data["stopped"] == "time limit"
+    assert data["seconds"] == pytest.approx(20.0, abs=0.2)
+    busy = tried(parse_tree("repeat: print hello"), patience=0.5)
+    assert busy["stopped"]
+
+
+def test_a_trial_is_the_same_again_with_a_seed() -> None:
+    mission = parse_tree("go to a random place\ngo to a random place\ngo to a random place")
+    one, two = (tried(mission, seed=7) for _ in range(2))
+    assert one["robot"] == two["robot"]
+    assert any(tried(mission, seed=seed)["robot"] != one["robot"] for seed in range(8, 12))
+
+
+def test_what_no_trial_may_do(tmp_path: Path) -> None:
+    (tmp_path / "words.toml").write_text(
+        '[[action]]\nid = "Jump"\nphrase = "jump"\ncall = "nowhere_at_all:jump"\nhelp = "x"\nexample = "jump"\n'
+    )
+    with pytest.raises(MissionError, match="BT211"):
+        tried(parse_tree("if battery is low, jump", keywords=[str(tmp_path / "words.toml")]))
+
+
+def test_a_film_of_a_recording_is_that_of_its_run(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    (tmp_path / "mission.txt").write_text(TEXT)
+    path = tmp_path / "run.mcap"
+    assert main(["run", str(tmp_path / "mission.txt"), "--speed", "max", "--quiet", "--record", str(path)]) == 1
+    capsys.readouterr()
+    with opened(str(path), ()) as (recording, mission, nodes):
+        film = Film(mission, dict(recording.about)).take(recording.events(nodes)).data()
+    ran = tried(parse_tree(TEXT))
+    for same in ("text", "nodes", "story", "failed"):
+        assert film[same] == ran[same]
+    assert final(film) == final(ran)
+    assert film["scans"]
+
+
+def test_a_film_has_a_greatest_length(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr("btlang.recording.film.MOST_CHANGES", 100)
+    data = tried(parse_tree("repeat 200 times: wave"))
+    assert data["is_cut"]
+    assert sum(len(row) // 2 for row in data["statuses"]) < 120
