@@ -42,7 +42,7 @@ def test_a_trial() -> None:
     failed = data["failed"]
     assert said[failed] == "battery is low"
     assert "battery is low" in data["why"]
-    assert [words for _, _, words in data["story"]][:3] == ["go to lab", 'say "hello"', "wave"]
+    assert [words for _, _, words in data["story"]][:3] == ["go to lab", "say hello", "wave"]
     assert final(data)[1] == "SUCCESS"
     assert final(data)[failed] == "FAILURE"
     times = [row[0] for row in data["robot"]]
@@ -87,7 +87,7 @@ def test_a_film_of_a_recording_is_that_of_its_run(tmp_path: Path, capsys: pytest
     for same in ("text", "nodes", "story", "failed"):
         assert film[same] == ran[same]
     assert final(film) == final(ran)
-    assert film["scans"]
+    assert len(film["robot"]) == len(ran["robot"])
 
 
 def test_a_film_has_a_greatest_length(monkeypatch: pytest.MonkeyPatch) -> None:
