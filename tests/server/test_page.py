@@ -72,8 +72,8 @@ def asked(app: Starlette, path: str) -> tuple[int, dict[str, str], str]:
     """The answer of an application to a request: its status, the headers that matter, and its text."""
     sent: list[dict[str, Any]] = []
 
-    async def receive() -> dict[str, Any]:
-        return {"type": "http.request"}
+    async def receive() -> Any:
+        await asyncio.Event().wait()  # there's no body
 
     async def send(message: Any) -> None:
         sent.append(message)
