@@ -181,7 +181,7 @@ def _statuses(watcher: _Watcher, watched: _Watched) -> Iterator[dict[str, Any]]:
     if watcher.run != run.id:
         watcher.run, watcher.codes = run.id, bytes([IDLE]) * run.nodes.size
         mission = watched.mission
-        nodes = [[path, node.id, mission.label(node)] for path, node in run.nodes.nodes]
+        nodes = [[path, node.id, mission.label(node), dict(node.ports)] for path, node in run.nodes.nodes]
         yield {"type": "run", "run": run.id, "task": watched.task, "outline": str(mission), "nodes": nodes}
     changed = watched.changed  # before the statuses, so that none of them is older
     codes = run.follower.codes() or watcher.codes

@@ -2,13 +2,19 @@
 
 from __future__ import annotations
 
+import asyncio
 import re
 import subprocess
 import sys
 from pathlib import Path
+from typing import Any
 
+from starlette.applications import Starlette
+
+from btlang.server.access import AccessError
 from btlang.server.openapi import ROUTES
 from btlang.server.outlet import TOPICS
+from btlang.server.pages import page_routes
 from btlang.server.rosbridge import OPERATIONS
 from btlang.task.layer import TaskLayer
 from tests.server.doors import Door
@@ -27,6 +33,64 @@ def test_the_client_of_the_page(door: Door, robot: TaskLayer, tmp_path: Path) ->
         done = subprocess.run(words, capture_output=True, text=True, timeout=30)
         assert done.returncode == code, done.stderr
         assert code or {"result", "run", "statuses", "change"} <= {*done.stdout.split()}
+
+
+class Nobody:
+    """Access for nobody, as far as the page needs it."""
+
+    async def identify(self, headers: object, *, changes: bool) -> None:
+        raise AccessError(401, "Log in first.")
+
+
+def test_the_plain_page_is_there_without_a_built_one(tmp_path: Path) -> None:
+    app = Starlette(routes=page_routes(Nobody(), built=tmp_path))  # type: ignore[arg-type]
+    assert asked(app, "/") == (303, {"location": "/login"}, "")
+    for path, words in (("/login", '<script type="module" src="/page/login.js">'), ("/page/index.js", "fetch(")):
+        status, _, text = asked(app, path)
+        assert status == 200
+        assert words in text
+
+
+def test_a_built_page_may_be_kept_and_its_nonces_not(tmp_path: Path) -> None:
+    (tmp_path / "files").mkdir()
+    (tmp_path / "files" / "main-AB12.js").write_text("start()" * 500)
+    (tmp_path / "index.html").write_text('<script nonce="NONCE">')
+    app = Starlette(routes=page_routes(Nobody(), built=tmp_path))  # type: ignore[arg-type]
+    status, headers, text = asked(app, "/page/main-AB12.js")
+    assert (status, headers["cache-control"]) == (200, "public, max-age=31536000, immutable")
+    assert text.startswith("start()")
+    nonces = set()
+    for _ in range(2):
+        _, headers, text = asked(app, "/login")
+        [nonce] = re.findall(r'nonce="([\w-]{20,})"', text)
+        assert f"style-src 'self' 'nonce-{nonce}';" in headers["content-security-policy"]
+        nonces.add(nonce)
+    assert len(nonces) == 2
+
+
+def asked(app: Starlette, path: str) -> tuple[int, dict[str, str], str]:
+    """The answer of an application to a request: its status, the headers that matter, and its text."""
+    sent: list[dict[str, Any]] = []
+
+    async def receive() -> Any:
+        await asyncio.Event().wait()  # there's no body
+
+    async def send(message: Any) -> None:
+        sent.append(message)
+
+    scope = {
+        "type": "http",
+        "method": "GET",
+        "path": path,
+        "raw_path": path.encode(),
+        "query_string": b"",
+        "headers": [],
+    }
+    asyncio.run(app({**scope, "root_path": "", "client": None, "server": None, "http_version": "1.1"}, receive, send))
+    wanted = ("location", "cache-control", "content-security-policy")
+    headers = {name.decode(): value.decode() for name, value in sent[0]["headers"]}
+    body = b"".join(message.get("body", b"") for message in sent[1:])
+    return sent[0]["status"], {name: headers[name] for name in wanted if name in headers}, body.decode()
 
 
 def test_the_page(door: Door) -> None:

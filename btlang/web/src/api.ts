@@ -1,0 +1,81 @@
+// Requests to the server that this page came from, and to no other.
+
+/** What the server answers to a command. */
+export interface Answer {
+  ok: boolean;
+  text: string;
+  code: string;
+  data: Record<string, any>;
+}
+
+/** Somebody who is logged in. */
+export interface Me {
+  user: string;
+  role: Role;
+}
+
+const ROLES = ["viewer", "operator", "editor", "administrator"] as const;
+export type Role = (typeof ROLES)[number];
+
+/** Whether somebody has a role, or one that may do more. */
+export function may(me: Me, role: Role): boolean {
+  return ROLES.indexOf(me.role) >= ROLES.indexOf(role);
+}
+
+/** A request that failed: the HTTP status (0: nobody answered), what the server says, and all of its answer. */
+export class RequestError extends Error {
+  constructor(
+    readonly status: number,
+    text: string,
+    readonly data: any = {},
+  ) {
+    super(text);
+  }
+}
+
+let csrf = "";
+
+/** The answer to a request, an object. Throws RequestError. */
+export async function request(method: string, path: string, body?: unknown, signal?: AbortSignal): Promise<any> {
+  let answer: Response;
+  try {
+    answer = await fetch(path, {
+      method,
+      headers: { "content-type": "application/json", "x-csrf-token": csrf },
+      ...(body === undefined ? {} : { body: JSON.stringify(body) }),
+      ...(signal ? { signal } : {}),
+    });
+  } catch (error) {
+    throw new RequestError(0, String(error));
+  }
+  const data = await answer.json().catch(() => ({}));
+  if (!answer.ok) throw new RequestError(answer.status, data.text ?? answer.statusText, data);
+  return data;
+}
+
+export const post = (path: string, body: unknown): Promise<any> => request("POST", path, body);
+
+/** Who is logged in, null for nobody. Throws RequestError if the server doesn't answer. */
+export async function whoAmI(): Promise<Me | null> {
+  try {
+    return known(await request("GET", "/api/me"));
+  } catch (error) {
+    if (error instanceof RequestError && error.status === 401) return null;
+    throw error;
+  }
+}
+
+/** Begins a session. Throws RequestError. */
+export async function logIn(name: string, password: string): Promise<Me> {
+  return known(await post("/api/login", { name, password }));
+}
+
+/** Ends the session. */
+export async function logOut(): Promise<void> {
+  await post("/api/logout", {});
+}
+
+function known(data: any): Me {
+  csrf = data.csrf ?? "";
+  return { user: data.user, role: data.role };
+}

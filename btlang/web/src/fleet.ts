@@ -1,0 +1,159 @@
+// What is known of the robots, from the messages of the server alone.
+import type { News } from "./socket";
+
+export const STATUSES = ["IDLE", "RUNNING", "SUCCESS", "FAILURE", "SKIPPED"] as const;
+export type Status = (typeof STATUSES)[number];
+
+/** A point of the world, in metres. */
+export type Point = [number, number];
+
+export interface WorldMap {
+  walls: Point[][];
+  boxes: { x: number; y: number; width: number; height: number }[];
+  places: { name: string; x: number; y: number; facing: number | null }[];
+  objects: { name: string; x: number; y: number; radius: number }[];
+  people: { name: string; x: number; y: number; radius: number }[];
+  dock: { x: number; y: number } | null;
+}
+
+/** A mission under way, or the latest one. `task` is 0 for the house rules between tasks. */
+export interface Run {
+  id: string;
+  task: number;
+  nodes: [path: string, id: string, label: string, ports?: Record<string, string>][];
+  statuses: Status[];
+}
+
+export interface Entry {
+  task: number;
+  wall: number;
+  event: Record<string, any>;
+}
+
+const MOST_ENTRIES = 500;
+const MOST_STEPS = 2000;
+
+/** One robot. `state` is null until it says something, and again when the connection or the robot is gone. */
+export class Robot {
+  up = false;
+  state: { stopped: string; paused: boolean; hindrance: string; pose: [number, number, number] | null; battery: number | null; left: string | null; right: string | null } | null = null;
+  map: WorldMap | null = null;
+  /** What its scanner saw, counter-clockwise from straight ahead, and where it was then. */
+  scan: { ranges: (number | null)[]; pose: [number, number, number] } | null = null;
+  /** The latest mission. */
+  run: Run | null = null;
+  /** What it does between missions. */
+  rules: Run | null = null;
+  entries: Entry[] = [];
+  path: Point[] = [];
+  goal = "";
+  says = "";
+  /** The task under way, 0 for none. */
+  task = 0;
+  /** Its next statuses are those that it had when the page came, not changes. */
+  fresh = false;
+
+  constructor(readonly name: string) {}
+}
+
+export type Kind = "up" | "away" | "run" | "statuses" | "robot" | "map" | "scan" | "event" | "change" | "offline";
+export type Watcher = (robot: Robot, kind: Kind, news: News | null) => void;
+
+/** All robots by their names. Watchers are called after each message has been taken in. */
+export class Fleet {
+  readonly robots = new Map<string, Robot>();
+  private watchers = new Set<Watcher>();
+
+  /** Until the function that it returns is called. */
+  watch(watcher: Watcher): () => void {
+    this.watchers.add(watcher);
+    return () => this.watchers.delete(watcher);
+  }
+
+  get(name: string): Robot {
+    let robot = this.robots.get(name);
+    if (!robot) this.robots.set(name, (robot = new Robot(name)));
+    return robot;
+  }
+
+  /** There is no connection: what was known may no longer be true. */
+  lose(): void {
+    for (const robot of this.robots.values()) {
+      robot.up = false;
+      robot.state = null;
+      this.tell(robot, "offline", null);
+    }
+  }
+
+  take(news: News): void {
+    const robot = this.get(news.robot);
+    if (news.type === "up") robot.up = robot.fresh = true;
+    else if (news.type === "away") {
+      robot.up = false;
+      robot.state = null;
+    } else if (news.type === "robot") this.state(robot, news);
+    else if (news.type === "map") robot.map = news as unknown as WorldMap;
+    else if (news.type === "scan") robot.scan = robot.state?.pose ? { ranges: news["ranges"], pose: robot.state.pose } : null;
+    else if (news.type === "change") {
+      if (news["state"] === "underway") robot.task = news["task"];
+      else if (robot.task === news["task"]) robot.task = 0;
+    } else if (news.type === "run") begin(robot, news);
+    else if (news.type === "statuses") {
+      const run = [robot.run, robot.rules].find((each) => each?.id === news["run"]);
+      if (!run) return;
+      for (const [index, status] of news["changes"] as [number, Status][]) {
+        run.statuses[index] = status;
+        if (!robot.fresh && run.task && isLeaf(run, index)) log(robot, { task: run.task, wall: news["t"], event: { event: status, name: run.nodes[index]![2] } });
+      }
+      robot.fresh = false;
+    } else if (news.type === "event") note(robot, news);
+    this.tell(robot, news.type as Kind, news);
+  }
+
+  private state(robot: Robot, news: News): void {
+    robot.state = news as unknown as Robot["state"];
+    const pose = robot.state?.pose;
+    if (!pose) return;
+    const last = robot.path.at(-1);
+    if (last && Math.hypot(last[0] - pose[0], last[1] - pose[1]) < 0.02) return;
+    robot.path.push([pose[0], pose[1]]);
+    if (robot.path.length > MOST_STEPS) robot.path.splice(0, MOST_STEPS / 2);
+  }
+
+  private tell(robot: Robot, kind: Kind, news: News | null): void {
+    for (const watcher of [...this.watchers]) watcher(robot, kind, news);
+  }
+}
+
+function begin(robot: Robot, news: News): void {
+  const again = robot.run?.id === news["run"];
+  const run: Run = { id: news["run"], task: news["task"], nodes: news["nodes"], statuses: news["nodes"].map(() => "IDLE") };
+  robot[run.task ? "run" : "rules"] = run;
+  robot.task = run.task;
+  if (again || !run.task) return;
+  robot.path = robot.path.slice(-1);
+  robot.goal = robot.says = "";
+}
+
+function note(robot: Robot, news: News): void {
+  const event = news["event"];
+  if (event.event === "navigate") robot.goal = event.name;
+  if (["arrive", "stop", "end"].includes(event.event)) robot.goal = "";
+  if (event.event === "say") robot.says = event.text;
+  log(robot, { task: news["task"], wall: event.wall, event });
+}
+
+function isLeaf(run: Run, index: number): boolean {
+  const next = run.nodes[index + 1];
+  return !next?.[0].startsWith(run.nodes[index]![0].replace(/\/?$/, "/"));
+}
+
+/** The numbers of the actions and conditions that run. */
+export function running(run: Run): number[] {
+  return run.statuses.flatMap((status, index) => (status === "RUNNING" && isLeaf(run, index) ? [index] : []));
+}
+
+function log(robot: Robot, entry: Entry): void {
+  robot.entries.push(entry);
+  if (robot.entries.length > MOST_ENTRIES) robot.entries.splice(0, MOST_ENTRIES / 10);
+}

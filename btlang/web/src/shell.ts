@@ -1,0 +1,133 @@
+// The frame around every screen: robots, tabs, who is logged in, and the emergency stop.
+import { logOut, request, type Me } from "./api";
+import { fill, h, openMenu } from "./dom";
+import { Fleet } from "./fleet";
+import { openRobots } from "./robots";
+import { Link } from "./socket";
+import { EmergencyStop } from "./stop";
+import { language, languages, setLanguage, t } from "./texts";
+import { setTheme, theme, THEMES } from "./theme";
+import { address, type Open, type View } from "./view";
+
+const ALL = ["tree", "tasks", "events", "robot", "map"];
+const TABS = { watch: "tab.watch", tasks: "tab.tasks", write: "tab.write", runs: "tab.runs" } as const;
+type Tab = keyof typeof TABS;
+const OPENERS: Record<Tab, () => Promise<Open>> = {
+  watch: async () => (await import("./watch/watch")).openWatch,
+  tasks: async () => (await import("./tasks/tasks")).openTasks,
+  write: async () => (await import("./write/write")).openWrite,
+  runs: async () => (await import("./look_back/look_back")).openLookBack,
+};
+
+/** `again` starts the page once more: for somebody else, or in another language. */
+export class Shell {
+  private fleet = new Fleet();
+  private link: Link;
+  private stop: EmergencyStop;
+  private robot = "";
+  private view: View | null = null;
+  private shown = 0;
+  private heard = "";
+  private tabs = h("nav", { class: "tabs", "aria-label": t("tabs") });
+  private place = h("a", { class: "robot", href: address("robots"), dir: "auto" });
+  private main = h("main", { tabindex: -1 });
+  private cut = h("p", { class: "cut", role: "status" });
+  private onRoute = () => void this.route();
+
+  constructor(
+    private me: Me,
+    private again: () => void,
+  ) {
+    this.link = new Link(
+      (news) => this.fleet.take(news),
+      (online) => this.connected(online),
+      () => this.leave(),
+    );
+    this.stop = new EmergencyStop(this.fleet, this.link, me, () => this.stopped());
+    const user = h("button", { type: "button", class: "user", "aria-haspopup": "menu", title: t(`role.${me.role}`) }, h("span", { dir: "auto" }, me.user));
+    user.addEventListener("click", () => this.openUserMenu(user));
+    const header = h("header", {}, this.place, this.tabs, user, this.stop.button);
+    fill(document.body, h("a", { class: "skip", href: "#main", onclick: (event: Event) => { event.preventDefault(); this.main.focus(); } }, t("skip")), header, this.cut, this.stop.banner, this.main);
+    addEventListener("hashchange", this.onRoute);
+    void request("GET", "/api/robots").then(({ robots }) => (robots as { name: string }[]).forEach(({ name }) => this.fleet.get(name)), () => undefined);
+    void this.route();
+  }
+
+  private close(): void {
+    removeEventListener("hashchange", this.onRoute);
+    this.view?.close();
+    this.stop.close();
+    this.link.close();
+  }
+
+  private leave(): void {
+    this.close();
+    this.again();
+  }
+
+  private connected(online: boolean): void {
+    fill(this.cut, online ? "" : t("offline"));
+    if (!online) this.fleet.lose();
+  }
+
+  private stopped(): string[] {
+    if (this.robot) return [this.robot];
+    const known = [...this.fleet.robots.keys()];
+    return known.length ? known : [""];
+  }
+
+  /** Addresses: #/robots, #/robots/NAME, #/robots/NAME/tasks, #/write/NAME, #/runs/... */
+  private async route(): Promise<void> {
+    const [first = "robots", ...rest] = location.hash.slice(2).split("/").filter(Boolean).map(decoded);
+    if (first === "robots") this.robot = rest.shift() ?? "";
+    else if (!this.robot) this.robot = [...this.fleet.robots.keys()][0] ?? "";
+    const tab: Tab | null = first === "write" || first === "runs" ? first : !this.robot ? null : rest[0] === "tasks" ? "tasks" : "watch";
+    this.listen(tab);
+    this.showTabs(tab);
+    this.stop.show();
+    const turn = ++this.shown;
+    const open = tab ? await OPENERS[tab]() : openRobots;
+    if (turn !== this.shown) return;
+    this.view?.close();
+    this.view = open({ me: this.me, fleet: this.fleet, link: this.link, robot: this.robot, path: rest });
+    document.title = [this.robot, tab ? t(TABS[tab]) : t("robots"), "btlang"].filter(Boolean).join(" · ");
+    fill(this.main, this.view.element);
+  }
+
+  private listen(tab: Tab | null): void {
+    const wanted = tab ? { topics: ALL, rate: 20, ...(this.robot ? { robots: [this.robot] } : {}) } : { topics: ["robot", "tasks"], rate: 2 };
+    if (this.heard === JSON.stringify(wanted)) return;
+    this.heard = JSON.stringify(wanted);
+    this.link.subscribe(wanted);
+  }
+
+  private showTabs(current: Tab | null): void {
+    fill(this.place, this.robot || t("robots"));
+    this.place.setAttribute("aria-label", this.robot ? t("robots.choose", { robot: this.robot }) : t("robots"));
+    const addresses: Record<Tab, string> = {
+      watch: address("robots", this.robot),
+      tasks: address("robots", this.robot, "tasks"),
+      write: address("write"),
+      runs: address("runs"),
+    };
+    const tabs = (Object.keys(TABS) as Tab[]).filter((tab) => this.robot || tab === "write" || tab === "runs");
+    fill(this.tabs, ...tabs.map((tab) => h("a", { href: addresses[tab], "aria-current": tab === current && "page" }, t(TABS[tab]))));
+  }
+
+  private openUserMenu(button: HTMLElement): void {
+    const { left, bottom } = button.getBoundingClientRect();
+    openMenu(left, bottom + 4, this.me.user, [
+      ...languages.filter(([name]) => name !== language()).map(([name, label]) => ({ label, run: () => { setLanguage(name); this.leave(); } })),
+      ...THEMES.filter((name) => name !== theme()).map((name) => ({ label: t(`theme.${name}`), run: () => setTheme(name) })),
+      { label: t("logout"), run: () => void logOut().finally(() => this.leave()) },
+    ]);
+  }
+}
+
+function decoded(part: string): string {
+  try {
+    return decodeURIComponent(part);
+  } catch {
+    return part;
+  }
+}

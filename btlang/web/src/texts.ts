@@ -1,0 +1,35 @@
+// All words that people see are in texts/*.json; this chooses the language and fills in names and numbers.
+import de from "./texts/de.json";
+import en from "./texts/en.json";
+
+export type Key = keyof typeof en;
+const LANGUAGES: Record<string, Record<string, string>> = { en, de };
+const KEPT = "btlang.language";
+
+/** The language of the page: the chosen one, else the browser's, else English. */
+export function language(): string {
+  const wanted = localStorage.getItem(KEPT) ?? navigator.language.slice(0, 2);
+  return wanted in LANGUAGES ? wanted : "en";
+}
+
+/** Keeps the language; the page has to be drawn again. */
+export function setLanguage(name: string): void {
+  localStorage.setItem(KEPT, name);
+}
+
+/** The languages with their own names. */
+export const languages: [string, string][] = Object.entries(LANGUAGES).map(([name, texts]) => [name, texts["language"] ?? name]);
+
+/** A text in the language of the page, with `{name}` filled in. */
+export function t(key: Key, values: Record<string, string | number> = {}): string {
+  const text = LANGUAGES[language()]?.[key] ?? en[key];
+  return text.replace(/\{(\w+)\}/g, (whole, name: string) => String(values[name] ?? whole));
+}
+
+/** A moment, given in seconds since 1970: the time, with the day if that isn't today. */
+export function moment(seconds: number): string {
+  const date = new Date(seconds * 1000);
+  const time = date.toLocaleTimeString(language(), { hour: "2-digit", minute: "2-digit", second: "2-digit" });
+  if (date.toDateString() === new Date().toDateString()) return time;
+  return `${date.toLocaleDateString(language(), { weekday: "short", day: "numeric", month: "short" })} ${time.slice(0, 5)}`;
+}

