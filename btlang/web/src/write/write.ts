@@ -1,52 +1,276 @@
-// The missions of the library: read, check, keep.
-import { may, request, RequestError } from "../api";
+// Missions: a list of those in the library, and one as English and tree side by side.
+import { may, request } from "../api";
 import { fill, h } from "../dom";
+import { command } from "../tasks/queue";
 import { t } from "../texts";
+import { TreeView } from "../tree/tree_view";
 import { address, type Context, type View } from "../view";
+import { ask } from "./ask";
+import { Editor, smallest } from "./editor";
+import { merge } from "./merge";
+import { Draft, FileStore, LibraryStore, Stale, type Kept, type Store } from "./store";
+import { TreeEdits } from "./tree_edits";
+import { Reader, type SaidNode, type Understood } from "./understood";
 
-/** See `View`. #/write/NAME opens a mission of the library. */
+const DRAFT_AFTER = 300; // milliseconds after a key
+
+/** See `View`. #/write lists, #/write/NAME opens a mission of the library, #/write/file/NAME a file. */
 export function openWrite(context: Context): View {
-  const name = context.path[0] ?? "";
-  const robot = `?robot=${encodeURIComponent(context.robot)}`;
+  const [first, second] = context.path;
+  if (first === "file" && second) return new Desk(context, new FileStore(second)).view;
+  return first ? new Desk(context, new LibraryStore(context, first)).view : openList(context);
+}
+
+function openList(context: Context): View {
   const list = h("ul", { class: "tasks" });
-  const title = h("input", { value: name, dir: "auto", required: true, readonly: name !== "" });
-  const text = h("textarea", { class: "mission", rows: 20, spellcheck: "false", dir: "auto", lang: "en" });
-  const said = h("pre", { class: "said", role: "status", lang: "en" });
-  let revision = 0;
-  const attempt = async (what: () => Promise<string>): Promise<void> => {
-    try {
-      fill(said, await what());
-    } catch (error) {
-      fill(said, error instanceof RequestError && error.data.data?.diff ? `${error.message}\n${error.data.data.diff}` : (error as Error).message);
-    }
-  };
-  const check = (): Promise<void> =>
-    attempt(async () => {
-      const { messages } = await request("POST", "/api/check", { text: text.value, robot: context.robot });
-      return messages.length ? messages.map((each: any) => each.text ?? JSON.stringify(each)).join("\n") : t("write.fine");
-    });
-  const keep = (): Promise<void> =>
-    attempt(async () => {
-      const answer = await request("PUT", `/api/missions/${encodeURIComponent(title.value)}${robot}`, { text: text.value, revision });
-      revision = answer.data.mission.number;
-      return answer.text;
-    });
-  const form = h(
-    "form",
-    { class: "card submit", onsubmit: (event: Event) => { event.preventDefault(); void keep(); } },
-    h("label", {}, t("write.name"), title),
-    h("label", {}, t("write.text"), text),
-    h("div", { class: "controls" }, h("button", { type: "button", onclick: () => void check() }, t("write.check")), may(context.me, "editor") && h("button", { class: "primary" }, t("write.keep"))),
-    said,
-  );
+  const robot = context.robot ? `?robot=${encodeURIComponent(context.robot)}` : "";
   void request("GET", `/api/missions${robot}`).then(
     ({ data }) => {
-      const missions = data.missions as { name: string; number: number; text: string }[];
-      fill(list, ...missions.map((each) => h("li", { class: "card" }, h("a", { class: "what", href: address("write", each.name), dir: "auto" }, each.name))));
-      const found = missions.find((each) => each.name === name);
-      if (found) [text.value, revision] = [found.text, found.number];
+      const missions = data.missions as { name: string; number: number; person: string }[];
+      const items = missions.map(({ name, number, person }) =>
+        h("li", { class: "card" }, h("span", { class: "number" }, number), h("a", { class: "what", href: address("write", name), dir: "auto" }, name), h("span", { class: "why", dir: "auto" }, person)),
+      );
+      fill(list, ...(items.length ? items : [h("li", { class: "empty" }, t("write.empty"))]));
     },
-    (error: Error) => fill(said, error.message),
+    (error: Error) => fill(list, h("li", { class: "problem", lang: "en" }, error.message)),
   );
-  return { element: h("section", { class: "page" }, h("h1", {}, t("tab.write")), list, form), close: () => undefined };
+  const begin = (): void =>
+    ask(t("write.new"), [{ name: "name", label: t("write.name"), required: true }], async ({ name }) => {
+      location.hash = address("write", name ?? "");
+      return "";
+    });
+  const button = h("button", { type: "button", class: "primary", onclick: begin }, t("write.new"));
+  return { element: h("section", { class: "page" }, h("div", { class: "title" }, h("h1", {}, t("tab.write")), may(context.me, "editor") && button), list), close: () => undefined };
+}
+
+/** One mission that somebody writes. */
+class Desk {
+  readonly view: View;
+  private state = h("span", { class: "state", role: "status" });
+  private problem = h("p", { class: "problem", role: "alert", lang: "en" });
+  private offered = h("div", { class: "offered" });
+  private messages = h("ol", { class: "messages", lang: "en" });
+  private outline = h("select", { "aria-label": t("write.outline") });
+  private text = h("div", { class: "text" });
+  private save = h("button", { type: "button", class: "primary", onclick: () => void this.keep() }, t("write.keep"));
+  private tree = new TreeView({ label: t("write.tree"), select: (node) => this.selected(node), activate: (node) => this.entered(node), menu: (node) => this.edits.commands(node) });
+  private reader: Reader;
+  private editor: Editor;
+  private edits: TreeEdits;
+  private draft: Draft;
+  private kept: Kept = { text: "", revision: 0 };
+  private nodes: SaidNode[] = [];
+  private understood = "";
+  private writing: ReturnType<typeof setTimeout> | undefined;
+  private mayWrite: boolean;
+  private leaving = (event: BeforeUnloadEvent): void => {
+    this.keepDraft();
+    if (this.isChanged) event.preventDefault();
+  };
+
+  constructor(
+    private context: Context,
+    private store: Store,
+  ) {
+    this.mayWrite = may(context.me, "editor");
+    this.draft = new Draft(store.key);
+    this.reader = new Reader(context.robot, (understood) => this.show(understood), (problem) => this.fail(problem));
+    this.editor = new Editor("", t("write.text"), {
+      reader: this.reader,
+      readOnly: true,
+      changed: (text) => this.changed(text),
+      moved: (at) => this.moved(at),
+      keys: [
+        { key: "Mod-s", run: () => void this.keep() },
+        { key: "F2", run: () => this.rename() },
+        { key: "Shift-Alt-f", run: () => void this.format() },
+        { key: "Mod-Enter", run: () => this.run() },
+      ],
+    });
+    this.edits = new TreeEdits(this.tree, this.editor, this.reader, (text) => this.fail(text), () => this.mayWrite);
+    this.text.append(this.editor.view.dom);
+    this.outline.addEventListener("change", () => this.editor.go(Number(this.outline.value)));
+    addEventListener("beforeunload", this.leaving);
+    this.view = { element: this.element(), close: () => this.close() };
+    void this.load();
+  }
+
+  private element(): HTMLElement {
+    const edit = h("button", { type: "button", "aria-haspopup": "menu" }, t("write.edit"));
+    edit.addEventListener("click", () => this.edits.menu(edit));
+    const tools = h(
+      "div",
+      { class: "controls" },
+      this.mayWrite && this.save,
+      h("button", { type: "button", onclick: () => this.run() }, t("write.run")),
+      this.mayWrite && h("button", { type: "button", title: "Shift+Alt+F", onclick: () => void this.format() }, t("write.format")),
+      this.mayWrite && h("button", { type: "button", title: "F2", onclick: () => this.rename() }, t("write.rename")),
+      this.mayWrite && h("button", { type: "button", title: "Ctrl+Z", onclick: () => this.editor.undo() }, t("write.undo")),
+      this.mayWrite && h("button", { type: "button", title: "Ctrl+Y", onclick: () => this.editor.redo() }, t("write.redo")),
+      this.outline,
+    );
+    const head = h("div", { class: "head" }, h("div", { class: "now" }, h("h1", { dir: "auto" }, this.store.name), this.state), tools);
+    const trunk = h(
+      "section",
+      { class: "stage card" },
+      this.mayWrite && h("div", { class: "doing" }, h("button", { type: "button", title: "Insert", onclick: () => this.edits.addSelected() }, t("write.add")), edit),
+      this.tree.element,
+    );
+    const words = h("section", { class: "stage card" }, this.text, this.problem, this.messages);
+    return h("div", { class: "desk" }, head, this.offered, words, trunk);
+  }
+
+  private close(): void {
+    this.keepDraft();
+    removeEventListener("beforeunload", this.leaving);
+    this.reader.close();
+    this.editor.close();
+    this.tree.close();
+  }
+
+  private get isChanged(): boolean {
+    return this.editor.text !== this.kept.text;
+  }
+
+  // -- keeping
+
+  private async load(): Promise<void> {
+    try {
+      this.kept = await this.store.load();
+    } catch (error) {
+      return this.fail((error as Error).message);
+    }
+    this.editor.apply([smallest("", this.kept.text)]);
+    this.editor.lock(!this.mayWrite);
+    const draft = this.draft.read();
+    if (draft && draft.text !== this.kept.text) this.offer(draft);
+    this.reader.read(this.editor.text);
+    this.tell();
+  }
+
+  /** A draft of an earlier visit. */
+  private offer(draft: Kept): void {
+    const take = (): void => {
+      fill(this.offered);
+      if (draft.revision === this.kept.revision) this.editor.text = draft.text;
+      else merge(t("write.draft_old"), this.kept, draft.text, (text) => (this.editor.text = text));
+    };
+    const drop = (): void => {
+      fill(this.offered);
+      this.draft.clear();
+    };
+    fill(this.offered, h("span", {}, t("write.draft")), h("button", { type: "button", class: "primary", onclick: take }, t("write.take_draft")), h("button", { type: "button", onclick: drop }, t("write.drop_draft")));
+  }
+
+  private async keep(): Promise<void> {
+    if (!this.mayWrite) return;
+    const text = this.editor.text;
+    fill(this.state, t("write.saving"));
+    try {
+      this.kept = await this.store.save(text, this.kept.revision);
+      if (this.editor.text === text) this.draft.clear();
+      this.fail("");
+    } catch (error) {
+      this.keepDraft();
+      if (error instanceof Stale) {
+        merge(error.message, error.theirs, text, (merged, from) => {
+          this.kept = from;
+          this.editor.text = merged;
+          this.tell();
+        });
+      } else this.fail(`${t("write.not_saved")} ${(error as Error).message}`);
+    }
+    this.tell();
+  }
+
+  private keepDraft(): void {
+    clearTimeout(this.writing);
+    if (!this.editor.view.state.readOnly && this.isChanged) this.draft.write({ text: this.editor.text, revision: this.kept.revision });
+  }
+
+  private tell(): void {
+    fill(this.state, t(this.isChanged ? "write.changed" : "write.saved"));
+  }
+
+  // -- the text
+
+  private changed(text: string): void {
+    this.reader.read(text);
+    clearTimeout(this.writing);
+    this.writing = setTimeout(() => this.keepDraft(), DRAFT_AFTER);
+    this.tell();
+  }
+
+  private show({ text, messages, nodes, outline }: Understood): void {
+    if (text !== this.editor.text) return;
+    this.understood = text;
+    this.editor.tell(messages);
+    const items = messages.map((each) =>
+      h("li", { class: each.severity }, h("button", { type: "button", onclick: () => this.editor.go(each.start) }, h("b", {}, each.code), ` ${each.message}`)),
+    );
+    fill(this.messages, ...(items.length ? items : [h("li", { class: "fine" }, t("write.fine"))]));
+    fill(this.outline, h("option", { value: "0" }, t("write.outline")), ...outline.map(({ name, start }) => h("option", { value: start }, name)));
+    this.tree.element.classList.toggle("stale", nodes === null);
+    if (!nodes) return;
+    this.nodes = nodes;
+    this.edits.set(nodes);
+    this.tree.setNodes(nodes, true);
+    this.moved(this.editor.view.state.selection.main.head);
+  }
+
+  /** The caret shows the node: the smallest that is said there. */
+  private moved(at: number): void {
+    if (this.understood !== this.editor.text) return;
+    let best: number | null = null;
+    let size = Infinity;
+    this.nodes.forEach(({ start, end }, index) => {
+      if (start === null || end === null || at < start || at > end || end - start >= size) return;
+      [best, size] = [index, end - start];
+    });
+    if (best !== null && best !== this.tree.selected) this.tree.select(best);
+  }
+
+  private selected(node: number): void {
+    const said = this.nodes[node];
+    if (said && said.start !== null && said.end !== null && this.understood === this.editor.text) this.editor.show(said.start, said.end);
+  }
+
+  private entered(node: number): void {
+    this.selected(node);
+    this.editor.view.focus();
+  }
+
+  private async format(): Promise<void> {
+    const text = this.editor.text;
+    const answer = await this.reader.service("format", text, {});
+    if (answer.ok && this.editor.text === text) this.editor.text = answer.text;
+    else this.fail(answer.messages?.[0]?.message ?? answer.text ?? "");
+  }
+
+  private rename(): void {
+    const text = this.editor.text;
+    const at = this.editor.view.state.selection.main.head;
+    void this.reader.service("rename", text, { at }).then((found) => {
+      if (!found.ok || !found.words) return this.fail(found.messages?.[0]?.message ?? t("write.no_name"));
+      ask(t("write.rename"), [{ name: "name", label: t("write.new_name"), value: found.words, required: true }], async ({ name }) => {
+        const answer = await this.reader.service("rename", text, { at, name });
+        if (!answer.ok) return answer.messages?.[0]?.message ?? answer.text;
+        if (this.editor.text !== text) return t("write.changed_meanwhile");
+        this.editor.apply(answer.changes);
+        return "";
+      });
+    });
+  }
+
+  /** Gives the mission to the robot. */
+  private run(): void {
+    void command(this.context, "submit", { text: this.editor.text }).then(
+      () => (location.hash = address("robots", this.context.robot)),
+      (error: Error) => this.fail(error.message),
+    );
+  }
+
+  private fail(problem: string): void {
+    fill(this.problem, problem);
+  }
 }

@@ -1,0 +1,214 @@
+// The text of a mission: messages under the words, their fixes, completion, hover, and one undo for text and tree.
+import { autocompletion, closeBrackets, closeBracketsKeymap, completionKeymap, type CompletionContext, type CompletionResult } from "@codemirror/autocomplete";
+import { defaultKeymap, history, historyKeymap, indentWithTab, isolateHistory, redo, undo } from "@codemirror/commands";
+import { bracketMatching, indentUnit } from "@codemirror/language";
+import { forEachDiagnostic, linter, lintGutter, lintKeymap, setDiagnostics, type Action, type Diagnostic } from "@codemirror/lint";
+import { highlightSelectionMatches, searchKeymap } from "@codemirror/search";
+import { Compartment, EditorState, StateEffect, StateField } from "@codemirror/state";
+import { Decoration, drawSelection, EditorView, highlightActiveLine, hoverTooltip, keymap, lineNumbers, type DecorationSet, type Tooltip } from "@codemirror/view";
+
+import { h } from "../dom";
+import { t } from "../texts";
+import type { Change, Message, Reader } from "./understood";
+
+/** `changed` is called after each change of the text, `moved` when the caret goes elsewhere. */
+export interface EditorOptions {
+  reader: Reader;
+  readOnly: boolean;
+  changed: (text: string) => void;
+  moved: (at: number) => void;
+  keys: { key: string; run: () => void }[];
+}
+
+const mark = StateEffect.define<{ from: number; to: number } | null>();
+const marked = StateField.define<DecorationSet>({
+  create: () => Decoration.none,
+  update(before, transaction) {
+    let now = before.map(transaction.changes);
+    for (const effect of transaction.effects) {
+      if (effect.is(mark)) now = effect.value && effect.value.from < effect.value.to ? Decoration.set(Decoration.mark({ class: "said" }).range(effect.value.from, effect.value.to)) : Decoration.none;
+    }
+    return now;
+  },
+  provide: (field) => EditorView.decorations.from(field),
+});
+
+const colours = EditorView.theme({
+  "&": { height: "100%", backgroundColor: "var(--surface)", color: "var(--text)", fontSize: "0.9375rem" },
+  "&.cm-focused": { outline: "2px solid var(--accent)", outlineOffset: "-2px" },
+  ".cm-scroller": { fontFamily: 'ui-monospace, "SF Mono", Consolas, monospace', lineHeight: "1.55" },
+  ".cm-content": { caretColor: "var(--text)", padding: "0.5rem 0" },
+  ".cm-gutters": { backgroundColor: "var(--surface)", color: "var(--muted)", border: "none" },
+  ".cm-activeLine": { backgroundColor: "color-mix(in srgb, var(--quiet-ground) 55%, transparent)" },
+  ".cm-cursor": { borderLeftColor: "var(--text)" },
+  "&.cm-focused > .cm-scroller > .cm-selectionLayer .cm-selectionBackground, .cm-selectionBackground": { backgroundColor: "color-mix(in srgb, var(--accent) 28%, transparent)" },
+  ".said": { backgroundColor: "var(--mark)", borderRadius: "2px" },
+  ".cm-tooltip": { backgroundColor: "var(--raised)", color: "var(--text)", border: "1px solid var(--line)", borderRadius: "6px", boxShadow: "0 4px 16px rgb(0 0 0 / 18%)", maxWidth: "min(34rem, 90vw)" },
+  ".cm-tooltip .about": { padding: "0.5rem 0.75rem", display: "grid", gap: "0.25rem" },
+  ".cm-tooltip-autocomplete ul li[aria-selected]": { backgroundColor: "var(--accent)", color: "var(--on-accent)" },
+  ".cm-diagnostic": { padding: "0.5rem 0.75rem", whiteSpace: "pre-wrap" },
+  ".cm-diagnosticAction": { backgroundColor: "var(--accent)", color: "var(--on-accent)", padding: "0.15rem 0.6rem", borderRadius: "4px", margin: "0.35rem 0.35rem 0 0" },
+  ".cm-panels": { backgroundColor: "var(--raised)", color: "var(--text)" },
+  ".cm-matchingBracket": { backgroundColor: "var(--quiet-ground) !important" },
+});
+
+export class Editor {
+  readonly view: EditorView;
+  private options: EditorOptions;
+  private readOnly = new Compartment();
+  private silent = false;
+
+  constructor(text: string, label: string, options: EditorOptions) {
+    this.options = options;
+    const nonce = document.querySelector<HTMLScriptElement>("script[nonce]")?.nonce ?? "";
+    this.view = new EditorView({
+      state: EditorState.create({
+        doc: text,
+        extensions: [
+          EditorView.cspNonce.of(nonce),
+          EditorState.phrases.of(phrases()),
+          EditorView.contentAttributes.of({ "aria-label": label, lang: "en", dir: "auto", spellcheck: "false", autocapitalize: "off" }),
+          EditorView.perLineTextDirection.of(true),
+          this.readOnly.of(EditorState.readOnly.of(options.readOnly)),
+          keymap.of([
+            ...options.keys.map(({ key, run }) => ({ key, run: () => (run(), true), preventDefault: true })),
+            { key: "Ctrl-.", mac: "Cmd-.", run: () => this.fix() },
+            ...closeBracketsKeymap, ...completionKeymap, ...lintKeymap, ...searchKeymap, ...historyKeymap, ...defaultKeymap, indentWithTab,
+          ]),
+          lineNumbers(), lintGutter(), linter(null), history(), drawSelection(), bracketMatching(), closeBrackets(), highlightActiveLine(), highlightSelectionMatches(),
+          indentUnit.of("  "), EditorView.lineWrapping, marked, colours,
+          autocompletion({ override: [(context) => this.complete(context)] }),
+          hoverTooltip((_, at) => this.about(at)),
+          EditorView.updateListener.of((update) => {
+            if (update.docChanged) options.changed(this.text);
+            if (update.selectionSet && !update.docChanged && !this.silent) options.moved(update.state.selection.main.head);
+          }),
+        ],
+      }),
+    });
+  }
+
+  get text(): string {
+    return this.view.state.doc.toString();
+  }
+
+  /** Puts another text in, which can be undone. */
+  set text(text: string) {
+    this.apply([smallest(this.text, text)]);
+  }
+
+  /** Changes of the text as one step of undo. `select` are characters of the new text. */
+  apply(changes: Change[], select?: [number, number]): void {
+    this.view.dispatch({
+      changes: changes.map(({ start, end, text }) => ({ from: start, to: end, insert: text })),
+      annotations: isolateHistory.of("full"),
+      ...(select ? { effects: mark.of({ from: select[0], to: select[1] }), scrollIntoView: true } : {}),
+    });
+  }
+
+  undo(): void {
+    undo(this.view);
+  }
+
+  redo(): void {
+    redo(this.view);
+  }
+
+  /** Marks characters, and brings them into view. */
+  show(start: number, end: number): void {
+    this.silent = true;
+    this.view.dispatch({ selection: { anchor: start }, effects: [mark.of({ from: start, to: end }), EditorView.scrollIntoView(start, { y: "nearest", yMargin: 40 })] });
+    this.silent = false;
+  }
+
+  /** Puts the caret there. */
+  go(at: number): void {
+    this.view.dispatch({ selection: { anchor: at }, scrollIntoView: true });
+    this.view.focus();
+  }
+
+  /** Puts messages under the words of the text as it is now. */
+  tell(messages: Message[]): void {
+    const length = this.view.state.doc.length;
+    const found = messages.map((each): Diagnostic => {
+      const from = Math.min(each.start, length);
+      return {
+        from,
+        to: Math.max(Math.min(each.end, length), from),
+        severity: each.severity,
+        message: [each.message, each.hint].filter(Boolean).join("\n"),
+        source: each.code,
+        actions: this.actions(each),
+      };
+    });
+    this.view.dispatch(setDiagnostics(this.view.state, found));
+  }
+
+  lock(locked: boolean): void {
+    this.view.dispatch({ effects: this.readOnly.reconfigure(EditorState.readOnly.of(locked)) });
+  }
+
+  close(): void {
+    this.view.destroy();
+  }
+
+  /** Does what the first message at the caret offers. */
+  fix(): boolean {
+    const at = this.view.state.selection.main.head;
+    const line = this.view.state.doc.lineAt(at);
+    let found: [Diagnostic, number, number] | null = null;
+    forEachDiagnostic(this.view.state, (each, from, to) => {
+      const here = from <= line.to && to >= line.from && each.actions?.length;
+      if (here && (!found || Math.abs(from - at) < Math.abs(found[1] - at))) found = [each, from, to];
+    });
+    if (!found) return false;
+    const [diagnostic, from, to] = found as [Diagnostic, number, number];
+    diagnostic.actions![0]!.apply(this.view, from, to);
+    return true;
+  }
+
+  private actions(message: Message): Action[] {
+    const changes = [...(message.readings.length ? message.readings : message.fix ? [message.fix] : [])];
+    return changes.map((change) => ({
+      name: t("write.fix", { words: change.text.length > 60 ? `${change.text.slice(0, 60)}…` : change.text }),
+      apply: () => this.apply([change]),
+    }));
+  }
+
+  private async complete(context: CompletionContext): Promise<CompletionResult | null> {
+    const word = context.matchBefore(/[\p{L}\p{N}'-]*/u);
+    if (!context.explicit && !word?.text && !/[ :,]$/.test(context.state.sliceDoc(Math.max(0, context.pos - 1), context.pos))) return null;
+    const text = context.state.sliceDoc();
+    const answer = await this.options.reader.service("complete", text, { at: context.pos });
+    const offers = (answer.completions ?? []) as { text: string; start: number; kind: string; help: string }[];
+    if (!offers.length || context.aborted) return null;
+    const from = Math.min(...offers.map(({ start }) => start));
+    return {
+      from,
+      options: offers.map(({ text: words, start, kind, help }) => ({ label: text.slice(from, start) + words, detail: kind, ...(help ? { info: help } : {}) })),
+    };
+  }
+
+  private async about(at: number): Promise<Tooltip | null> {
+    const { found } = await this.options.reader.service("hover", this.text, { at });
+    if (!found) return null;
+    const { words, help, example } = found as { words: string; help: string; example: string };
+    const lines = [words && h("strong", {}, words), help && h("span", {}, help), example && h("code", {}, example)];
+    return { pos: found.start, end: found.end, above: true, create: () => ({ dom: h("div", { class: "about", dir: "auto", lang: "en" }, ...lines) }) };
+  }
+}
+
+/** The smallest change that makes one text of another. */
+export function smallest(before: string, after: string): Change {
+  const most = Math.min(before.length, after.length);
+  let start = 0;
+  while (start < most && before[start] === after[start]) start++;
+  let same = 0;
+  while (same < most - start && before[before.length - 1 - same] === after[after.length - 1 - same]) same++;
+  return { start, end: before.length - same, text: after.slice(start, after.length - same) };
+}
+
+/** The editor's own words, where the language of the page has others. */
+function phrases(): Record<string, string> {
+  return { Find: t("cm.find"), Replace: t("cm.replace"), next: t("cm.next"), previous: t("cm.previous"), all: t("cm.all"), close: t("cm.close"), replace: t("cm.replace"), "replace all": t("cm.replace_all"), "match case": t("cm.case"), regexp: t("cm.regexp"), "by word": t("cm.word"), Diagnostics: t("cm.problems"), "No diagnostics": t("write.fine") };
+}

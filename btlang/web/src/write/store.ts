@@ -1,0 +1,133 @@
+// Where missions are kept: in the library of a robot, or in a file on this computer. And drafts, in the browser.
+import { request, RequestError } from "../api";
+import type { Context } from "../view";
+
+/** A mission as it is kept. `revision` is that of the store, for a stale save to be noticed. */
+export interface Kept {
+  text: string;
+  revision: number | string;
+}
+
+/** A save that was refused, since somebody else saved in between. */
+export class Stale extends Error {
+  constructor(
+    message: string,
+    readonly theirs: Kept,
+  ) {
+    super(message);
+  }
+}
+
+/** One mission. Throws RequestError. */
+export interface Store {
+  readonly key: string;
+  readonly name: string;
+  load(): Promise<Kept>;
+  /** Throws Stale, too. */
+  save(text: string, revision: Kept["revision"]): Promise<Kept>;
+}
+
+/** A mission of the library. */
+export class LibraryStore implements Store {
+  readonly key: string;
+  private query: string;
+
+  constructor(
+    context: Context,
+    readonly name: string,
+  ) {
+    this.key = `mission:${context.robot}:${name}`;
+    this.query = context.robot ? `?robot=${encodeURIComponent(context.robot)}` : "";
+  }
+
+  async load(): Promise<Kept> {
+    try {
+      const { data } = await request("GET", this.path);
+      const latest = (data.missions as { text: string; number: number }[]).reduce((one, other) => (other.number > one.number ? other : one));
+      return { text: latest.text, revision: latest.number };
+    } catch (error) {
+      if (error instanceof RequestError && error.status === 409 && error.data.code === NOT_KEPT) return { text: "", revision: 0 };
+      throw error;
+    }
+  }
+
+  async save(text: string, revision: Kept["revision"]): Promise<Kept> {
+    try {
+      const { data } = await request("PUT", this.path, { text, revision });
+      return { text, revision: data.mission.number };
+    } catch (error) {
+      throw stale(error);
+    }
+  }
+
+  private get path(): string {
+    return `/api/missions/${encodeURIComponent(this.name)}${this.query}`;
+  }
+}
+
+/** A file that the server was started with. */
+export class FileStore implements Store {
+  readonly key: string;
+
+  constructor(readonly name: string) {
+    this.key = `file:${name}`;
+  }
+
+  async load(): Promise<Kept> {
+    return known(await request("GET", this.path));
+  }
+
+  async save(text: string, revision: Kept["revision"]): Promise<Kept> {
+    try {
+      return { text, revision: known(await request("PUT", this.path, { text, revision })).revision };
+    } catch (error) {
+      throw stale(error);
+    }
+  }
+
+  private get path(): string {
+    return `/api/files/${encodeURIComponent(this.name)}`;
+  }
+}
+
+const NOT_KEPT = "BT187";
+
+/** A refusal that comes with what is kept by now. */
+function stale(error: unknown): unknown {
+  const kept = error instanceof RequestError && error.status === 409 ? error.data.data : null;
+  return kept && typeof kept.diff === "string" ? new Stale((error as Error).message, { text: kept.text, revision: kept.revision }) : error;
+}
+
+function known(answer: any): Kept {
+  return { text: answer.text ?? "", revision: answer.revision };
+}
+
+/** What somebody wrote and hasn't saved: it outlives the page, the connection and the server. */
+export class Draft {
+  constructor(private key: string) {}
+
+  /** The draft, with the revision that it began from; null if there is none. */
+  read(): Kept | null {
+    try {
+      return JSON.parse(localStorage.getItem(this.name) ?? "null");
+    } catch {
+      return null;
+    }
+  }
+
+  write(kept: Kept): void {
+    try {
+      localStorage.setItem(this.name, JSON.stringify(kept));
+    } catch {
+      // the browser's store is full or shut: the page itself still has the text
+    }
+  }
+
+  clear(): void {
+    localStorage.removeItem(this.name);
+  }
+
+  private get name(): string {
+    return `btlang.draft.${this.key}`;
+  }
+}

@@ -1,0 +1,210 @@
+// Editing by the tree: each command rewrites only the English that it touches, and is one step of undo.
+import { openMenu } from "../dom";
+import { t, type Key } from "../texts";
+import type { TreeView } from "../tree/tree_view";
+import { ask } from "./ask";
+import type { Editor } from "./editor";
+import { choose } from "./palette";
+import type { Reader, SaidNode } from "./understood";
+
+/** Those of btlang/editing/forms.py, with what they need. */
+const FORMS: Record<string, "" | "count" | "duration" | "time_of_day" | "condition"> = {
+  "repeat": "count", "forever": "", "retry": "count", "try": "", "within": "duration", "for": "duration", "up to": "duration", "every": "duration",
+  "after": "duration", "until time": "time_of_day", "if": "condition", "unless": "condition", "while": "condition", "until": "condition",
+  "provided": "condition", "stop when": "condition", "whenever": "condition", "in sequence": "", "in parallel": "", "in order": "",
+};
+const CONDITION_FORMS = ["not", "all of", "any of"];
+const EXAMPLES = { "": "", count: "3", duration: "10 s", time_of_day: "6 pm", condition: "" };
+const CHAINS = ["Sequence", "Fallback", "Parallel"];
+
+type Place = "before" | "after" | "inside";
+
+export class TreeEdits {
+  private nodes: SaidNode[] = [];
+  private held: { node: number; do: "copy" | "move"; words: string } | null = null;
+
+  constructor(
+    private tree: TreeView,
+    private editor: Editor,
+    private reader: Reader,
+    private say: (text: string) => void,
+    private mayEdit: () => boolean,
+  ) {
+    tree.element.addEventListener("keydown", (event) => this.press(event));
+  }
+
+  /** The nodes of the text as it is now. */
+  set(nodes: SaidNode[]): void {
+    this.nodes = nodes;
+  }
+
+  /** The commands for a node, for its menu. */
+  commands(node: number): { label: string; run: () => void }[] {
+    const said = this.nodes[node];
+    if (!said || !this.mayEdit() || said.start === null) return [];
+    const edits = said.edits ?? [];
+    const can = (name: string): boolean => !said.edits || edits.includes(name);
+    const item = (key: Key, run: () => void, wanted = true) => (wanted ? [{ label: t(key), run }] : []);
+    return [
+      ...item("write.add_after", () => this.add(node, "after"), can("insert")),
+      ...item("write.add_before", () => this.add(node, "before"), can("insert")),
+      ...item("write.add_inside", () => this.add(node, "inside"), can("inside")),
+      ...item("write.values", () => this.values(node), (said.values?.length ?? 0) > 0),
+      ...item("write.wrap", () => this.wrap(node), can("wrap")),
+      ...item("write.unwrap", () => this.edit({ do: "unwrap", node }), can("unwrap")),
+      ...item("write.turn", () => this.edit({ do: "turn", node }), can("turn")),
+      ...item("write.name_it", () => this.name(node), can("name")),
+      ...item("write.cut", () => this.hold(node, "move"), can("move")),
+      ...item("write.copy", () => this.hold(node, "copy"), can("copy")),
+      ...item("write.paste", () => this.paste(node, "after"), this.held !== null),
+      ...item("write.paste_inside", () => this.paste(node, "inside"), this.held !== null && can("inside")),
+      ...item("write.delete", () => this.edit({ do: "delete", node }), can("delete")),
+    ];
+  }
+
+  /** Opens the menu of the selected node below a button. */
+  menu(button: HTMLElement): void {
+    const node = this.tree.selected;
+    const commands = node === null ? [] : this.commands(node);
+    const { left, bottom } = button.getBoundingClientRect();
+    if (commands.length) openMenu(left, bottom + 4, t("write.edit"), commands);
+    else this.say(t("write.no_edit"));
+  }
+
+  /** Adds behind the selected node, or at the end. */
+  addSelected(): void {
+    const node = this.tree.selected ?? 0;
+    if (this.nodes.length) this.add(node, node === 0 && CHAINS.includes(this.nodes[0]!.id) ? "inside" : "after");
+  }
+
+  private press(event: KeyboardEvent): void {
+    const node = this.tree.selected;
+    const target = event.target as HTMLElement;
+    if (node === null || !this.mayEdit() || target.closest("input, select, textarea")) return;
+    const control = event.ctrlKey || event.metaKey;
+    const key = `${control ? "Ctrl+" : ""}${event.altKey ? "Alt+" : ""}${event.shiftKey && event.key.length > 1 ? "Shift+" : ""}${event.key.length === 1 ? event.key.toLowerCase() : event.key}`;
+    const does: Record<string, () => void> = {
+      "Delete": () => this.edit({ do: "delete", node }),
+      "Insert": () => this.add(node, "after"),
+      "Shift+Insert": () => this.add(node, "before"),
+      "F2": () => this.values(node),
+      "Ctrl+x": () => this.hold(node, "move"),
+      "Ctrl+c": () => this.hold(node, "copy"),
+      "Ctrl+v": () => this.paste(node, "after"),
+      "Alt+ArrowUp": () => this.step(node, -1),
+      "Alt+ArrowDown": () => this.step(node, 1),
+      "Ctrl+z": () => (event.shiftKey ? this.editor.redo() : this.editor.undo()),
+      "Ctrl+y": () => this.editor.redo(),
+    };
+    const run = does[key];
+    if (!run) return;
+    event.preventDefault();
+    event.stopPropagation();
+    run();
+  }
+
+  /** Does an edit on the server, and its change here; says what is wrong and returns it, "" for nothing. */
+  private async edit(edit: Record<string, unknown>): Promise<string> {
+    const text = this.editor.text;
+    const answer = await this.reader.service("edit", text, { edit });
+    if (!answer.ok) {
+      const problem = answer.messages?.[0] ? [answer.messages[0].message, answer.messages[0].hint].filter(Boolean).join("\n") : (answer.text ?? "");
+      this.say(problem);
+      return problem;
+    }
+    if (this.editor.text !== text) return t("write.changed_meanwhile");
+    this.editor.apply(answer.changes, [answer.start, answer.end]);
+    this.say("");
+    return "";
+  }
+
+  private add(node: number, place: Place): void {
+    const inside = place === "inside" && !["all", "any"].includes(this.nodes[node]?.id ?? "");
+    void choose(this.reader, this.editor.text, this.isCondition(node) && !inside, (words) => this.edit({ do: "insert", node, place, words }));
+  }
+
+  private wrap(node: number): void {
+    const conditions = this.isCondition(node);
+    const names = conditions ? CONDITION_FORMS : Object.keys(FORMS);
+    const siblings = this.following(node);
+    const needs = (values: Record<string, string>): string => FORMS[values["form"] ?? ""] ?? "";
+    ask(
+      t("write.wrap"),
+      [
+        { name: "form", label: t("write.form"), value: conditions ? "not" : "retry", options: names.map((value) => ({ value, label: t(`form.${value}` as Key) })) },
+        { name: "words", label: t("write.form_words"), value: EXAMPLES.count, required: true, shown: (values) => needs(values) !== "" },
+        ...(siblings.length ? [{ name: "count", label: t("write.count"), value: "1", number: { min: 1, max: siblings.length + 1 } }] : []),
+      ],
+      (values) => {
+        const count = Number(values["count"] ?? 1);
+        const last = count > 1 ? siblings[count - 2] : null;
+        return this.edit({ do: "wrap", node, last, form: values["form"], words: needs(values) ? values["words"] : "" });
+      },
+    );
+  }
+
+  private values(node: number): void {
+    const known = this.nodes[node]?.values ?? [];
+    if (!known.length) return this.say(t("write.no_values"));
+    ask(
+      t("write.values"),
+      known.map(([name, , value]) => ({ name, label: name.replaceAll("_", " "), value })),
+      async (values) => {
+        for (const [port, , before] of known) {
+          const wrong = values[port] === before ? "" : await this.edit({ do: "value", node, port, words: values[port] });
+          if (wrong) return wrong;
+        }
+        return "";
+      },
+    );
+  }
+
+  private name(node: number): void {
+    const siblings = this.following(node);
+    ask(
+      t("write.name_it"),
+      [
+        { name: "words", label: t("write.new_name"), required: true },
+        ...(siblings.length ? [{ name: "count", label: t("write.count"), value: "1", number: { min: 1, max: siblings.length + 1 } }] : []),
+      ],
+      ({ words, count }) => this.edit({ do: "name", node, words, last: Number(count ?? 1) > 1 ? siblings[Number(count) - 2] : null }),
+    );
+  }
+
+  private hold(node: number, what: "copy" | "move"): void {
+    this.held = { node, do: what, words: this.editor.text };
+    this.say(t(what === "move" ? "write.will_move" : "write.will_copy", { words: this.nodes[node]!.label }));
+  }
+
+  private paste(to: number, place: Place): void {
+    if (!this.held) return;
+    if (this.held.words !== this.editor.text) {
+      this.held = null;
+      return this.say(t("write.changed_meanwhile"));
+    }
+    const { node, do: what } = this.held;
+    this.held = null;
+    void this.edit({ do: what, node, to, place });
+  }
+
+  /** Moves a node past its sibling. */
+  private step(node: number, by: 1 | -1): void {
+    const siblings = this.siblings(node);
+    const to = siblings[siblings.indexOf(node) + by];
+    if (to !== undefined) void this.edit({ do: "move", node, to, place: by < 0 ? "before" : "after" });
+  }
+
+  private siblings(node: number): number[] {
+    const { parent, tree } = this.nodes[node]!;
+    return parent < 0 ? [node] : this.nodes.flatMap((each, index) => (each.parent === parent && each.tree === tree ? [index] : []));
+  }
+
+  private following(node: number): number[] {
+    const parent = this.nodes[this.nodes[node]!.parent];
+    return parent && CHAINS.includes(parent.id) ? this.siblings(node).filter((each) => each > node) : [];
+  }
+
+  private isCondition(node: number): boolean {
+    return this.nodes[node]?.sort === "condition";
+  }
+}

@@ -1,0 +1,103 @@
+// What the server understands of the text, always of the newest one: one request at a time, none for what is old by then.
+import { post, RequestError } from "../api";
+import type { TreeNode } from "../tree/tree_view";
+
+/** A change of the text: characters, and what takes their place. */
+export interface Change {
+  start: number;
+  end: number;
+  text: string;
+}
+
+/** A message about the text; see `as_data` in btlang/diagnostics/report.py. */
+export interface Message {
+  code: string;
+  severity: "error" | "warning";
+  message: string;
+  hint: string;
+  start: number;
+  end: number;
+  fix: Change | null;
+  readings: Change[];
+}
+
+export interface Named {
+  name: string;
+  kind: string;
+  start: number;
+  end: number;
+}
+
+/** A node of the tree with the characters that say it. */
+export interface SaidNode extends TreeNode {
+  start: number | null;
+  end: number | null;
+  sort?: "command" | "condition";
+  /** What can be changed of it: a port, its type, and the words of its value. */
+  values?: [port: string, kind: string, words: string][];
+}
+
+/** All that is known of a text. `nodes` is null where it can't be compiled. */
+export interface Understood {
+  text: string;
+  messages: Message[];
+  nodes: SaidNode[] | null;
+  outline: Named[];
+  sort: string;
+}
+
+/** Asks about texts of one robot. */
+export class Reader {
+  private text: string | null = null;
+  private busy = false;
+  private ended = false;
+  private retry: ReturnType<typeof setTimeout> | undefined;
+
+  constructor(
+    private robot: string,
+    private tell: (understood: Understood) => void,
+    private fail: (problem: string) => void,
+  ) {}
+
+  /** Asks about a text, after which `tell` is called, unless there is a newer one by then. */
+  read(text: string): void {
+    this.text = text;
+    if (!this.busy) void this.ask();
+  }
+
+  /** Something else about a text: an answer of the server, or null if it can't be had. */
+  async service(kind: string, text: string, more: object): Promise<any> {
+    try {
+      return await post(`/api/${kind}`, { text, ...(this.robot ? { robot: this.robot } : {}), ...more });
+    } catch (error) {
+      return error instanceof RequestError && error.data.messages ? error.data : { ok: false, messages: [], text: (error as Error).message };
+    }
+  }
+
+  close(): void {
+    this.ended = true;
+    clearTimeout(this.retry);
+  }
+
+  private async ask(): Promise<void> {
+    this.busy = true;
+    while (this.text !== null && !this.ended) {
+      const text = this.text;
+      this.text = null;
+      try {
+        const answer = await post("/api/document", { text, ...(this.robot ? { robot: this.robot } : {}) });
+        if (this.text === null && !this.ended) {
+          this.tell({ text, messages: answer.messages ?? [], nodes: answer.nodes ?? null, outline: answer.outline ?? [], sort: answer.sort ?? "english" });
+          this.fail("");
+        }
+      } catch (error) {
+        if (this.text === null && !this.ended) {
+          this.fail((error as Error).message);
+          const again = error instanceof RequestError && (error.status === 0 || error.status >= 500);
+          if (again) this.retry = setTimeout(() => this.read(text), 1000);
+        }
+      }
+    }
+    this.busy = false;
+  }
+}
