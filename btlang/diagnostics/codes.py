@@ -199,6 +199,7 @@ _ALL = (
     Code("BT200", "btc serve needs the Python package {package}, which isn't installed.",
          "Install it: pip install 'btlang[server]'"),
     Code("BT201", "The server can't listen at {place}: {reason}."),
+    Code("BT210", "'{words}' can't be renamed: {reason}."),
 )  # fmt: skip
 
 CODES = {entry.code: entry for entry in _ALL}
