@@ -32,6 +32,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any, TypeVar
 
+    from btlang.passes.compilation import Origins
     from btlang.robots.registry import Connect
     from btlang.run.runner import Outcome
     from btlang.tree.dump import Outline
@@ -48,6 +49,7 @@ def parse_tree(
     main: str = "",
     language: str = ENGLISH,
     values: Mapping[str, object] = {},
+    origins: Origins | None = None,
 ) -> Mission:
     """Compiles a mission in English, or a tree: a text that begins with `<` is XML of BehaviorTree.CPP, with `{` JSON.
 
@@ -55,8 +57,8 @@ def parse_tree(
     installed packs, or functions decorated with `action` or `condition`. `world` is the path of a world file, or its
     text, by default the world that ships. `main` is the ID of the tree to run, if XML or JSON has several. `language`
     is that of the mission: "en", "es" or the folder of another one. `values` are what the mission may use by these
-    names though it doesn't set them, or others of the same kind: a run gets them (`Session.prepare`). Raises
-    MissionError with all diagnostics.
+    names though it doesn't set them, or others of the same kind: a run gets them (`Session.prepare`). `origins` gets
+    the nodes by their identities, each with the syntax that it was made of. Raises MissionError with all diagnostics.
     """
     source = Source(text) if isinstance(text, str) else text
     with gc_paused:
@@ -65,7 +67,7 @@ def parse_tree(
         if isinstance(read, Tree):
             compilation = run_passes(Compilation(vocabulary, tree=read))
             return Mission(compilation.tree, vocabulary, world, tuple(compilation.warnings))
-        compilation = run_passes(Compilation(vocabulary, read.mission, warnings=read.warnings))
+        compilation = run_passes(Compilation(vocabulary, read.mission, warnings=read.warnings, origins=origins))
     program = read.mission
     return Mission(compilation.tree, vocabulary, world, tuple(compilation.warnings), program, tuple(all_facts(program)))
 

@@ -199,9 +199,10 @@ _ALL = (
     Code("BT200", "btc serve needs the Python package {package}, which isn't installed.",
          "Install it: pip install 'btlang[server]'"),
     Code("BT201", "The server can't listen at {place}: {reason}."),
-    Code("BT211", "'{words}' can't be tried: what it does stands in {file}, and might move a real robot.",
+    Code("BT210", "'{words}' can't be renamed: {reason}."),
+    Code("BT220", "The tree can't be changed like this: {reason}."),
+    Code("BT221", "'{words}' can't be tried: what it does stands in {file}, and might move a real robot.",
          "Test it with fakes: btc help test"),
-    Code("BT210", "The tree can't be changed like this: {reason}."),
 )  # fmt: skip
 
 CODES = {entry.code: entry for entry in _ALL}

@@ -1,1 +1,1 @@
-"""Missions as editors need them: what stands where, and changes of their trees as changes of their texts."""
+"""What an editor asks of a text: its tree and outline, help, completions, names, and changes by the tree."""

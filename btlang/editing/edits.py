@@ -8,14 +8,15 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
-from btlang.api import mission_vocabulary
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
+from btlang.editing.changes import Change, changed
 from btlang.editing.forms import FORMS, amount_of
 from btlang.editing.paths import at_path, difference, path_of, place_of
 from btlang.editing.syntax import Step, Syntax, Unplaced, are_equal
 from btlang.editing.values import valued
-from btlang.editing.writing import Change, Writer
+from btlang.editing.words import Words
+from btlang.editing.writing import Writer
 from btlang.frontends.mission.reader import read_mission
 from btlang.frontends.table import frontend_of
 from btlang.passes import compile_mission, lower_mission
@@ -27,8 +28,7 @@ from btlang.vocabulary.lexicon import Lexicon
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.api import World
-    from btlang.vocabulary.entry import Entry
+    from typing import Any
 
 
 class Edit(Record):
@@ -57,7 +57,7 @@ class Edit(Record):
 
 
 def read_edit(data: object) -> Edit:
-    """An edit from JSON: an object with its fields. Raises MissionError (BT210)."""
+    """An edit from JSON: an object with its fields. Raises MissionError (BT220)."""
     fields = data if isinstance(data, dict) else {}
     for name, value in fields.items():
         kind = int if name in ("node", "last", "to") else str
@@ -70,7 +70,7 @@ def read_edit(data: object) -> Edit:
 
 
 def _refused(reason: str, span: Span = NOWHERE) -> MissionError:
-    return MissionError([diagnostic("BT210", span, reason=reason)])
+    return MissionError([diagnostic("BT220", span, reason=reason)])
 
 
 class Edited(Record):
@@ -82,26 +82,20 @@ class Edited(Record):
     end: int
 
 
-def edit(
-    text: str | Source,
-    wanted: Edit,
-    *,
-    keywords: Sequence[str | Entry] = (),
-    world: World | None = None,
-    language: str = "en",
-) -> Edited:
-    """A mission in English after an edit. Raises MissionError: BT210 if the edit can't be done or said, any other code
-    for what would be wrong with the mission then, or is wrong with it now.
+def edit(source: Source, words: Words, edit: Edit) -> dict[str, Any]:
+    """`changes` of a mission in English, and `start` and `end` of what they touched, in the text that they make.
+
+    Raises MissionError: BT220 if the edit can't be done or said, any other code for what would be wrong with the
+    mission then, or is wrong with it now.
     """
-    source = Source(text) if isinstance(text, str) else text
     if frontend_of(source) != "english":
-        raise MissionError([diagnostic("BT001", Span(source, 0, 1), file=source.name, reason="it isn't English")])
-    vocabulary, _ = mission_vocabulary(source, keywords, world, language)
-    editor = Editor(source, vocabulary)
+        raise _refused("it isn't English")
+    editor = Editor(source, words.vocabulary(source))
     try:
-        return editor.edited(wanted)
+        done = editor.edited(edit)
     except Unplaced as error:
-        raise _refused(str(error), editor.span(wanted)) from None
+        raise _refused(str(error), editor.span(edit)) from None
+    return {"changes": [done.change.as_dict()], "start": done.start, "end": done.end}
 
 
 class Editor:
@@ -145,7 +139,7 @@ class Editor:
     def copy(self, wanted: Edit) -> _Done:
         nodes = self._nodes(wanted)
         target = self._target(wanted)
-        if self._takes_condition(target, wanted.place) != self._is_condition(nodes[0]):
+        if self._takes_condition(target, wanted.place) != self._syntax.is_condition(nodes[0]):
             raise Unplaced("a condition stands where a condition is asked for, and a command elsewhere")
         copies = [node.replace(bracketed=True) if isinstance(node, ast.Chain) else node.replace() for node in nodes]
         steps = self._placed(target, wanted.place, copies)
@@ -169,14 +163,14 @@ class Editor:
         after = syntax.changed(steps[-1])
         change = writer.written(steps, after, gone=writer.comments_of(old, self._source.text))
         final = Syntax(program, self._vocabulary).changed(wanted_steps[-1])
-        return change.applied(text), final, focus
+        return changed(text, [change]), final, focus
 
     def wrap(self, wanted: Edit) -> _Done:
         nodes = self._nodes(wanted)
         if wanted.form not in FORMS:
             raise Unplaced(f"there is no form '{wanted.form}'; there are {', '.join(FORMS)}")
         form = FORMS[wanted.form]
-        if form.of_conditions != self._is_condition(nodes[0]):
+        if form.of_conditions != self._syntax.is_condition(nodes[0]):
             raise Unplaced(f"it is {'no' if form.of_conditions else 'a'} condition")
         around = self._syntax.holder(nodes[0])
         operator = around.operator if isinstance(around, ast.Chain) else "sequence"
@@ -193,7 +187,7 @@ class Editor:
     def unwrap(self, wanted: Edit) -> _Done:
         node = self._node(wanted.node)
         parts = ast.parts(node)
-        if not self._is_condition(node):
+        if not self._syntax.is_condition(node):
             parts = [part for part in parts if part is not getattr(node, "condition", None)]
         if not parts:
             raise Unplaced("it holds nothing that could take its place")
@@ -201,7 +195,7 @@ class Editor:
         for part in parts:  # a body's commands become those of what is around it
             is_body = not isinstance(node, ast.Chain) and isinstance(part, ast.Chain) and part.operator == "sequence"
             new += ast.parts(part) if is_body else (part,)
-        operator = "all" if self._is_condition(node) else "sequence"
+        operator = "all" if self._syntax.is_condition(node) else "sequence"
         return self._write(self._syntax.steps((node,), new, operator=operator), new[0])
 
     def turn(self, wanted: Edit) -> _Done:
@@ -213,7 +207,7 @@ class Editor:
             first = self._writer().words(node, roles[node.negated], roles[not node.negated])
         elif isinstance(node, ast.Not):
             new = node.condition
-        elif self._is_condition(node):
+        elif self._syntax.is_condition(node):
             new = ast.Not(node, node.span)
         elif isinstance(node, ast.Chain):
             new = node.replace(items=node.items[::-1])
@@ -247,7 +241,7 @@ class Editor:
             change = writer.written([step], program, near)
         except (Unplaced, MissionError):
             change = writer.written([step], program)
-        source = self._source.with_text(change.applied(self._source.text))
+        source = self._source.with_text(changed(self._source.text, [change]))
         syntax = Syntax(read_mission(source, self._vocabulary).mission, self._vocabulary)
         used = ast.Name(name, (), nodes[0].span)
         path = [path_of(node, mission) for node in nodes]
@@ -255,7 +249,7 @@ class Editor:
         after = syntax.changed(steps[-1])
         writer = Writer(source, syntax)
         change = writer.written(steps, after, gone=writer.comments_of(steps[0].old, self._source.text))
-        return change.applied(source.text), after, used
+        return changed(source.text, [change]), after, used
 
     # -- parts of edits
 
@@ -279,7 +273,7 @@ class Editor:
             return syntax.steps((slot.parent,), new, slot.at + behind)
         if isinstance(target, ast.Chain) and target.operator == "sequence" and slot.at is None:
             return syntax.steps((target,), new, len(target.items) if behind else 0)
-        operator = "all" if self._is_condition(target) else "sequence"
+        operator = "all" if self._syntax.is_condition(target) else "sequence"
         return syntax.steps((target,), (target, *new) if behind else (*new, target), operator=operator)
 
     def _writer(self) -> Writer:
@@ -292,7 +286,7 @@ class Editor:
         return self._done(self._writer().written(steps, program, first=first), program, focus)
 
     def _done(self, change: Change, program: ast.Program, focus: ast.Ast | None) -> _Done:
-        return change.applied(self._source.text), program, focus
+        return changed(self._source.text, [change]), program, focus
 
     def _read(self, words: str, is_condition: bool) -> list[ast.Ast]:
         """New commands or a condition, where all names of the mission are known."""
@@ -315,7 +309,7 @@ class Editor:
 
     def _takes_condition(self, target: ast.Ast, place: str) -> bool:
         """Whether conditions stand there, and no commands."""
-        return self._is_condition(target) and (place != "inside" or isinstance(target, ast.Chain | ast.AtLeast))
+        return self._syntax.is_condition(target) and (place != "inside" or isinstance(target, ast.Chain | ast.AtLeast))
 
     def _target(self, wanted: Edit) -> ast.Ast:
         if wanted.to is None:
@@ -338,19 +332,6 @@ class Editor:
         if slots[0].parent is not slots[1].parent or not isinstance(slots[0].parent, ast.Chain):
             raise Unplaced("they don't stand side by side")
         return list(slots[0].parent.items[one : other + 1])
-
-    def _is_condition(self, node: ast.Ast) -> bool:
-        """Whether it is one, and no command."""
-        while isinstance(node, ast.Name):
-            name = node.name
-            node = next(each.body for each in ast.all_definitions(self._syntax.mission) if each.name == name)
-        if isinstance(node, ast.Chain):
-            return node.operator in ("all", "any")
-        if isinstance(node, ast.Phrase):
-            return node.entry.sort == "condition"
-        if isinstance(node, ast.Exact):
-            return node.is_condition
-        return isinstance(node, ast.Not | ast.AtLeast | ast.Compared)
 
     def _statement(self, node: ast.Ast) -> ast.Ast:
         """The statement of the mission, or the definition, in which a node stands."""

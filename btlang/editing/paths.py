@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from btlang.editing.changes import Change
 from btlang.editing.syntax import Syntax, Unplaced
-from btlang.editing.writing import Change
 from btlang.tree import ast
 
 

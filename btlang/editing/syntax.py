@@ -69,9 +69,24 @@ class Syntax:
         said elsewhere."""
         origins: Origins = {}
         tree = run_passes(Compilation(self.vocabulary, self.mission, origins=origins), LOWERING).tree
-        return tree, [
-            found if found is not None and id(found) in self.slots else None for found in _sources(tree, origins)
-        ]
+        return tree, self.sources(tree, origins)
+
+    def sources(self, tree: Tree, origins: Origins) -> list[ast.Ast | None]:
+        """As `lowered`, of a tree that was made with `origins`."""
+        return [node if id(node) in self.slots else None for node in _sources(tree, origins)]
+
+    def is_condition(self, node: ast.Ast) -> bool:
+        """Whether it is one, and no command."""
+        while isinstance(node, ast.Name):
+            name = node.name
+            node = next(each.body for each in ast.all_definitions(self.mission) if each.name == name)
+        if isinstance(node, ast.Chain):
+            return node.operator in ("all", "any")
+        if isinstance(node, ast.Phrase):
+            return node.entry.sort == "condition"
+        if isinstance(node, ast.Exact):
+            return node.is_condition
+        return isinstance(node, ast.Not | ast.AtLeast | ast.Compared)
 
     def holder(self, node: ast.Ast) -> ast.Ast:
         """What a node stands in."""

@@ -13,6 +13,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import chain, pairwise
 
 from btlang.diagnostics.errors import MissionError
+from btlang.editing.changes import Change, changed
 from btlang.editing.lines import Lines, comments_in, indented
 from btlang.editing.syntax import Step, Syntax, Unplaced, are_equal
 from btlang.frontends.mission.reader import read_mission
@@ -22,7 +23,6 @@ from btlang.printer.mission import printer_of
 from btlang.printer.pieces import MARK, Piece
 from btlang.printer.printer import LOOSE, WHOLE, Doc, Printer, bracketed
 from btlang.printer.sentence import CHAINS, statements
-from btlang.record import Record
 from btlang.text.source import Source
 from btlang.text.words import split
 from btlang.tree import ast
@@ -35,18 +35,6 @@ _WAYS = ("as it stands", "in brackets", "anew")
 """How what isn't touched is written within a line that is."""
 
 NO_COMMENTS: Counter[str] = Counter()
-
-
-class Change(Record):
-    """Characters of a text, and what takes their place."""
-
-    start: int
-    end: int
-    text: str
-
-    def applied(self, text: str) -> str:
-        """The text with the change."""
-        return text[: self.start] + self.text + text[self.end :]
 
 
 class Writer:
@@ -86,7 +74,7 @@ class Writer:
         tried: set[Change] = set()
         wrong: list[MissionError] = []
         for change in chain(first, self._changes(steps, wanted, near, gone)):
-            if change not in tried and self._means(change.applied(self._source.text), tree, wanted, kept, wrong):
+            if change not in tried and self._means(changed(self._source.text, [change]), tree, wanted, kept, wrong):
                 return change
             tried.add(change)
         if len(wrong) == len(tried) > 0:

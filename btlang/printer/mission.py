@@ -13,7 +13,9 @@ from btlang.tree import ast
 from btlang.vocabulary.lexicon import Lexicon
 
 
-def english(node: ast.Ast, vocabulary: Lexicon, *, brackets: str = "needed", names: Iterable[str] = ()) -> str:
+def english(
+    node: ast.Ast, vocabulary: Lexicon, *, brackets: str = "needed", names: Iterable[str | ast.Definition] = ()
+) -> str:
     """Canonical English of any AST; a Mission is its facts, its definitions and then its commands.
 
     Each is on a line, or in a block where a line cannot say it.

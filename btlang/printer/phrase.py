@@ -26,8 +26,7 @@ def phrase_of(node: Node, vocabulary: Lexicon) -> str:
     """
     if node.id == SUBTREE:
         return _filled_name(node)
-    computed = node.id in ("Script", "ScriptCondition") or any(text.startswith("{_") for _, text in node.ports)
-    if node.span is not None and (computed or node.port(MEASURED)) and node.span.text[:1] not in MARKUP:
+    if node.span is not None and is_written(node) and node.span.text[:1] not in MARKUP:
         return node.span.text
     if node.id == "Choose":
         return vocabulary.values.choice_words(Choice(node.port("how"), node.port("type"), node.port("output")))
@@ -38,6 +37,12 @@ def phrase_of(node: Node, vocabulary: Lexicon) -> str:
     if node.id in ("AlwaysSuccess", "AlwaysFailure"):
         return vocabulary.word("nothing" if node.id == "AlwaysSuccess" else "fail")
     return leaf_words(node.id, dict(node.ports), vocabulary) or described(node)
+
+
+def is_written(node: Node) -> bool:
+    """Whether its words are those of the text that it came from: its ports don't say them."""
+    computed = node.id in ("Script", "ScriptCondition") or any(text.startswith("{_") for _, text in node.ports)
+    return computed or bool(node.port(MEASURED))
 
 
 def _filled_name(node: Node) -> str:

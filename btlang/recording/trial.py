@@ -25,14 +25,14 @@ def tried(mission: Mission, seconds: float = 600.0, patience: float = 6.0, seed:
     """The film of a run (see Film.data) of at most so many seconds of the mission and `patience` seconds of real time,
     with the `map` of its world, and what `stopped` it: "" if it ended by itself.
 
-    Raises MissionError for a mission that can't be run, and BT211 for one with words that are no words of btlang: what
+    Raises MissionError for a mission that can't be run, and BT221 for one with words that are no words of btlang: what
     they do might move a real robot.
     """
     for node in mission.tree.walk():
         entry = mission.vocabulary.entry(node.id)
         if entry is not None and not str(entry.call).startswith(_OURS):
             words = mission.label(node)
-            raise MissionError([diagnostic("BT211", node.span or NOWHERE, words=words, file=entry.file)])
+            raise MissionError([diagnostic("BT221", node.span or NOWHERE, words=words, file=entry.file)])
     mission.check()
     film = Film(mission)
     session = Session("simulated", world=mission.world)

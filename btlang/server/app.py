@@ -9,16 +9,17 @@ from functools import partial
 
 from starlette.applications import Starlette
 from starlette.requests import Request
-from starlette.responses import JSONResponse, PlainTextResponse, Response
+from starlette.responses import PlainTextResponse, Response
 from starlette.routing import Route, WebSocketRoute
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocket
 
 from btlang.diagnostics.errors import MissionError
+from btlang.editing.words import Words
 from btlang.server.access import COOKIE, Access, AccessError, address_of
 from btlang.server.accounts import LONGEST, Accounts, Identity
-from btlang.server.bodies import json_object, text_in
-from btlang.server.checking import DOES, Checker, Words
+from btlang.server.bodies import JsonResponse, json_object, text_in
+from btlang.server.checking import DOES, Checker, arguments_of
 from btlang.server.clients import Clients
 from btlang.server.fleet import Fleet
 from btlang.server.joining import Joins
@@ -71,7 +72,7 @@ class Api:
             *(route for path, kind in LIBRARY.items() for route in self._library(path, kind)),
             *(self._route(f"/api/{kind}", partial(self._text, kind), "POST") for kind in DOES),
             self._route("/metrics", self._metrics, "GET"),
-            Route("/openapi.json", lambda request: JSONResponse(document())),
+            Route("/openapi.json", lambda request: JsonResponse(document())),
             *page_routes(self.access),
             Route("/live", _word("live")),
             Route("/ready", _word("ready")),
@@ -133,13 +134,13 @@ class Api:
                 return await do(request)
             except AccessError as error:
                 headers = {"retry-after": f"{error.wait + 1:.0f}"} if error.wait else None
-                return JSONResponse({"ok": False, "text": error.reason, "code": ""}, error.status, headers)
+                return JsonResponse({"ok": False, "text": error.reason, "code": ""}, error.status, headers)
             except StoreError:  # whose text has paths
                 text = "The server can't read or write its data: the disk may be full."
-                return JSONResponse({"ok": False, "text": text, "code": ""}, 503)
+                return JsonResponse({"ok": False, "text": text, "code": ""}, 503)
             except MissionError as error:
                 first = error.diagnostics[0]
-                return JSONResponse({"ok": False, "text": str(error), "code": first.code}, 400)
+                return JsonResponse({"ok": False, "text": str(error), "code": first.code}, 400)
 
         return Route(path, answered, methods=[method])
 
@@ -150,7 +151,7 @@ class Api:
         data = await json_object(request)
         address = address_of(request)
         identity, secret = await self.access.log_in(text_in(data, "name"), text_in(data, "password"), address)
-        response = JSONResponse(self._described(identity))
+        response = JsonResponse(self._described(identity))
         response.set_cookie(COOKIE, secret, int(LONGEST), secure=True, httponly=True, samesite="strict")
         return response
 
@@ -160,12 +161,12 @@ class Api:
         ended = "" if data.get("everywhere") is True else identity.id
         await asyncio.to_thread(self.accounts.log_out, identity.user, ended)
         await self.sockets.check()
-        response = JSONResponse({"ok": True})
+        response = JsonResponse({"ok": True})
         response.delete_cookie(COOKIE, secure=True, httponly=True, samesite="strict")
         return response
 
     async def _me(self, request: Request) -> Response:
-        return JSONResponse(self._described(await self._who(request)))
+        return JsonResponse(self._described(await self._who(request)))
 
     async def _robots(self, request: Request) -> Response:
         await self._who(request)
@@ -173,7 +174,7 @@ class Api:
         listed = [
             {"name": each.name, "up": each.is_up, "seen": each.seen, "elsewhere": each.is_elsewhere} for each in links
         ]
-        return JSONResponse({"robots": listed})
+        return JsonResponse({"robots": listed})
 
     async def _stop(self, request: Request) -> Response:
         identity = await self._who(request)
@@ -192,6 +193,7 @@ class Api:
         identity = await self._who(request)
         data = await json_object(request)
         text, robot = text_in(data, "text"), str(data.get("robot", ""))
+        arguments = arguments_of(kind, data, text)
         words = self.link(robot).words if robot or self.robots.links else Words()
         if "world" in data:
             name = text_in(data, "world")
@@ -205,7 +207,9 @@ class Api:
                 words = words.in_world(name, str(found.data["worlds"][0]["text"]))
             except (LookupError, TypeError):  # a robot may say anything
                 raise AccessError(503, f"The robot didn't send the world '{name}'.") from None
-        return JSONResponse(await self.checker.answer(kind, text, words))
+        page = str(data.get("page", "")) if identity.is_session else None  # a program doesn't type
+        written = await self.checker.answer(kind, text, words, arguments, identity.user, page)
+        return Response(written, media_type="application/json")
 
     async def _metrics(self, request: Request) -> Response:
         await self._who(request)
@@ -263,7 +267,7 @@ class _Headers:
 
 
 def _answer(answer: Answer) -> Response:
-    return JSONResponse(answer.as_json(), 200 if answer.ok else 409)
+    return JsonResponse(answer.as_json(), 200 if answer.ok else 409)
 
 
 def _word(word: str) -> Callable[[Request], Response]:
@@ -275,4 +279,4 @@ async def _no_socket(socket: WebSocket) -> None:
 
 
 def _not_found(*_: object) -> Response:
-    return JSONResponse({"ok": False, "text": "There's nothing at this address.", "code": ""}, 404)
+    return JsonResponse({"ok": False, "text": "There's nothing at this address.", "code": ""}, 404)

@@ -1,4 +1,4 @@
-"""JSON from outside: how much of it is read, and what is refused."""
+"""JSON from outside: how much of it is read, and what is refused; and answers in JSON."""
 
 from __future__ import annotations
 
@@ -6,6 +6,7 @@ import asyncio
 import json
 
 from starlette.requests import ClientDisconnect, Request
+from starlette.responses import Response
 
 from btlang.server.access import AccessError
 
@@ -16,6 +17,15 @@ if TYPE_CHECKING:
 MOST_BYTES = 1_000_000
 """Of the body of a request."""
 _PATIENCE = 15.0  # seconds for it
+
+
+class JsonResponse(Response):
+    """In ASCII: half a character of UTF-16, which a client may have sent, has no other encoding."""
+
+    media_type = "application/json"
+
+    def render(self, content: Any) -> bytes:
+        return json.dumps(content, separators=(",", ":")).encode()
 
 
 async def json_object(request: Request) -> dict[str, Any]:

@@ -1,4 +1,4 @@
-"""Missions that are written elsewhere: checked, completed, explained and laid out, in a process of its own.
+"""Missions that are written elsewhere: what is asked of a text, answered in a process of its own.
 
 A long text, or one that is made to take long, ends with that process. Nothing here imports the code of words.
 """
@@ -6,104 +6,154 @@ A long text, or one that is made to take long, ends with that process. Nothing h
 from __future__ import annotations
 
 import asyncio
+import json
 import multiprocessing
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
+from weakref import WeakValueDictionary
 
-from btlang.api import format_mission, parse_tree, world_vocabulary
+from btlang.api import format_mission
 from btlang.diagnostics.errors import MissionError
-from btlang.diagnostics.report import as_data
-from btlang.frontends.mission.completion.completer import completions
+from btlang.editing.completion import complete
+from btlang.editing.document import document
+from btlang.editing.edits import edit, read_edit
+from btlang.editing.hover import hover
+from btlang.editing.messages import messages
+from btlang.editing.palette import palette
+from btlang.editing.rename import rename
+from btlang.editing.words import Words
+from btlang.record import Record
 from btlang.server.access import AccessError
-from btlang.text.escaping import one_line
+from btlang.server.bodies import text_in
+from btlang.server.utf16 import Units, in_units
 from btlang.text.source import Source
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from btlang.diagnostics.diagnostic import Diagnostic
-
 MOST_CHARACTERS = 200_000
 _PATIENCE = 10.0  # seconds for one text
-_MOST_OFFERS = 200
 
 
-class Words:
-    """Where the words of a robot are: keyword files, world and language. The world is a file, or the text of one."""
+class TextQuery(Record):
+    """What may be asked of a text: `help` is a line about it, `do` takes the source, the words, and the arguments that
+    it `needs` or only `takes`: `at`, a place in the text, `name`, a text, or `edit` (btlang.editing.edits.Edit).
+    """
 
-    def __init__(
-        self, keywords: Sequence[str] = (), world: str | None = None, language: str = "en", world_text: str = ""
-    ) -> None:
-        self.keywords, self.language = keywords, language
-        self.world = Source(world_text, "world", roots=()) if world_text else world
-
-    def in_world(self, name: str, text: str) -> Words:
-        """These words with the places of a world in a text; `name` is what messages show."""
-        other = Words(self.keywords, language=self.language)
-        other.world = Source(text, one_line(name), roots=())
-        return other
-
-
-def _messages(problems: Iterable[Diagnostic]) -> list[dict[str, Any]]:
-    return [as_data(problem) for problem in problems]
+    help: str
+    do: Callable[..., dict[str, Any]]
+    needs: tuple[str, ...] = ()
+    takes: tuple[str, ...] = ()
 
 
 def _check(source: Source, words: Words) -> dict[str, Any]:
-    mission = parse_tree(source, keywords=words.keywords, world=words.world, language=words.language)
-    return {"messages": _messages(mission.warnings), "outline": str(mission)}
+    mission = words.mission(source)
+    return {"messages": messages(mission.warnings, source), "outline": str(mission)}
 
 
 def _explain(source: Source, words: Words) -> dict[str, Any]:
-    mission = parse_tree(source, keywords=words.keywords, world=words.world, language=words.language)
-    return {"messages": _messages(mission.warnings), "explanation": mission.explain()}
+    mission = words.mission(source)
+    return {"messages": messages(mission.warnings, source), "explanation": mission.explain()}
 
 
 def _format(source: Source, words: Words) -> dict[str, Any]:
-    laid_out = format_mission(source, keywords=words.keywords, world=words.world, language=words.language)
-    return {"messages": [], "text": laid_out}
+    return {"text": format_mission(source, keywords=words.keywords, world=words.world, language=words.language)}
 
 
-def _complete(source: Source, words: Words) -> dict[str, Any]:
-    found = completions(source.text, world_vocabulary(words.keywords, words.world, words.language))
-    return {"messages": [], "completions": [each.as_dict() for each in found[:_MOST_OFFERS]]}
+DOES: Mapping[str, TextQuery] = {
+    "check": TextQuery("What is wrong with a mission.", _check),
+    "complete": TextQuery("What may follow at a place, by default the end.", complete, takes=("at",)),
+    "document": TextQuery("All that an editor shows of a text: messages, tree and outline.", document),
+    "edit": TextQuery("A change of a mission by its tree.", edit, needs=("edit",)),
+    "explain": TextQuery("How a mission is understood.", _explain),
+    "format": TextQuery("A mission in the usual layout.", _format),
+    "hover": TextQuery("What was understood at a place, with help.", hover, needs=("at",)),
+    "palette": TextQuery("All that can be put into a mission, by topic.", palette),
+    "rename": TextQuery("What gives a definition and its uses another name.", rename, needs=("at",), takes=("name",)),
+}
 
 
-DOES: Mapping[str, Callable[[Source, Words], dict[str, Any]]] = {
-    "check": _check, "complete": _complete, "explain": _explain, "format": _format,
-}  # fmt: skip
+def arguments_of(kind: str, data: Mapping[str, Any], text: str) -> dict[str, Any]:
+    """The further arguments of a request, with places as characters of its text. Raises AccessError (400)."""
+    asked = DOES[kind]
+    given = {name: data[name] for name in asked.takes if data.get(name) is not None}
+    given |= {name: data.get(name) for name in asked.needs}
+    if "at" in given:
+        units = Units(text)
+        if type(given["at"]) is not int or not 0 <= given["at"] <= units.length:
+            raise AccessError(400, "'at' must be a place in the text, a whole number of UTF-16 units.")
+        given["at"] = units.character(given["at"])
+    if "name" in given:
+        text_in(given, "name")
+    if "edit" in given:
+        given["edit"] = read_edit(given["edit"])
+    return given
 
 
-def answer(kind: str, text: str, words: Words) -> dict[str, Any]:
-    """What is asked of a text, with what is wrong with it as data."""
+def answer(kind: str, text: str, words: Words, arguments: Mapping[str, Any] = {}) -> dict[str, Any]:
+    """What is asked of a text, with what is wrong with it as data; places are in UTF-16 units."""
+    source = Source(text, "mission", roots=())
     try:
-        return {"ok": True, **DOES[kind](Source(text, "mission", roots=()), words)}
+        found = {"ok": True, "messages": [], **DOES[kind].do(source=source, words=words, **arguments)}
     except MissionError as error:
-        return {"ok": False, "messages": _messages(error.diagnostics)}
+        found = {"ok": False, "messages": messages(error.diagnostics, source)}
+    return in_units(found, text)
+
+
+def _written(kind: str, text: str, words: Words, arguments: Mapping[str, Any]) -> bytes:
+    """The answer as JSON in ASCII: half a character of UTF-16 has no other encoding."""
+    return json.dumps(answer(kind, text, words, arguments), separators=(",", ":")).encode()
 
 
 class Checker:
-    """For one event loop."""
+    """For one event loop. Texts take turns, one of each user at a time."""
 
     def __init__(self) -> None:
         self._process: ProcessPoolExecutor | None = None
         self._turn = asyncio.Lock()
+        self._own_turns: WeakValueDictionary[str, asyncio.Lock] = WeakValueDictionary()
+        self._newest: dict[tuple[str, str, str], object] = {}
 
-    async def answer(self, kind: str, text: str, words: Words) -> dict[str, Any]:
-        """As the function `answer`. Raises AccessError (413, 422) for a text that is too long, or takes too long."""
+    async def answer(
+        self,
+        kind: str,
+        text: str,
+        words: Words,
+        arguments: Mapping[str, Any] = {},
+        user: str = "",
+        page: str | None = None,
+    ) -> bytes:
+        """As the function `answer`, as JSON. Of a page, which types faster than texts are read, only the newest request
+        of a kind waits. Raises AccessError: 413 and 422 for a text that is too long, or takes too long, 409 for a
+        request that a newer one replaced.
+        """
         if len(text) > MOST_CHARACTERS:
             raise AccessError(413, f"A mission may have {MOST_CHARACTERS:,} characters.")
-        async with self._turn:
-            if self._process is None:
-                self._process = ProcessPoolExecutor(1, multiprocessing.get_context("spawn"))
-            loop = asyncio.get_running_loop()
-            try:
-                async with asyncio.timeout(_PATIENCE):
-                    return await loop.run_in_executor(self._process, answer, kind, text, words)
-            except (TimeoutError, BrokenProcessPool):
-                self.close()
-                raise AccessError(422, "This text takes too long to read.") from None
+        asked, place = object(), (user, page or "", kind)
+        own_turn = self._own_turns.setdefault(user, asyncio.Lock())
+        if page is not None:
+            self._newest[place] = asked
+        try:
+            async with own_turn, self._turn:
+                if page is not None and self._newest.get(place) is not asked:
+                    raise AccessError(409, "A newer request of the page replaced this one.")
+                return await self._done(kind, text, words, arguments)
+        finally:
+            if self._newest.get(place) is asked:
+                del self._newest[place]
+
+    async def _done(self, kind: str, text: str, words: Words, arguments: Mapping[str, Any]) -> bytes:
+        if self._process is None:
+            self._process = ProcessPoolExecutor(1, multiprocessing.get_context("spawn"))
+        loop = asyncio.get_running_loop()
+        try:
+            async with asyncio.timeout(_PATIENCE):
+                return await loop.run_in_executor(self._process, _written, kind, text, words, arguments)
+        except (TimeoutError, BrokenProcessPool):
+            self.close()
+            raise AccessError(422, "This text takes too long to read.") from None
 
     def close(self) -> None:
         """Ends the process, whatever it does."""

@@ -8,7 +8,7 @@ import time
 from collections.abc import AsyncGenerator, Callable
 from contextlib import aclosing, suppress
 
-from btlang.server.checking import Words
+from btlang.editing.words import Words
 from btlang.server.outlet import STATES, News, Outlet
 from btlang.server.reach import LocalSockets
 from btlang.task.messages import Answer, Command, as_json

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 
+from btlang.server.checking import DOES, TextQuery
 from btlang.task.messages import schema
 from btlang.task.task import Kind
 
@@ -13,6 +14,7 @@ if TYPE_CHECKING:
 
 VERSION = "1"
 _TEXT: dict[str, Any] = {"type": "string"}
+_NUMBER: dict[str, Any] = {"type": "integer"}
 _ROBOT: dict[str, Any] = {
     "name": "robot",
     "in": "query",
@@ -29,7 +31,22 @@ def _object(*required: str, **properties: dict[str, Any]) -> dict[str, Any]:
 LIBRARY = {"/api/missions": Kind.MISSION, "/api/worlds": Kind.WORLD, "/api/robot-files": Kind.ROBOT}
 """What the library has, by the paths of its routes."""
 _WORLD = {"type": "string", "description": "The name of a world of the library, instead of the world of the robot."}
-_WRITTEN = _object("text", text=_TEXT, robot=_TEXT, world=_WORLD)
+_PAGE = {"type": "string", "description": "Which page of a session asks; only its newest request of a kind waits."}
+_ARGUMENTS: dict[str, dict[str, Any]] = {
+    "at": {"type": "integer", "minimum": 0, "description": "A place in the text, in UTF-16 units."},
+    "edit": _object(
+        "do",
+        "node",
+        **dict.fromkeys(("node", "last", "to"), _NUMBER),
+        **dict.fromkeys(("do", "place", "form", "port", "words"), _TEXT),
+    ),
+    "name": {"type": "string", "description": "The new name; without it, what would be renamed."},
+}
+
+
+def _written(query: TextQuery) -> dict[str, Any]:
+    further = {name: _ARGUMENTS[name] for name in (*query.needs, *query.takes)}
+    return _object("text", *query.needs, text=_TEXT, robot=_TEXT, world=_WORLD, page=_PAGE, **further)
 
 
 def _library(path: str, called: str) -> dict[tuple[str, str], tuple[str, dict[str, Any] | None]]:
@@ -54,10 +71,7 @@ ROUTES: dict[tuple[str, str], tuple[str, dict[str, Any] | None]] = {
     **_library("/api/missions", "mission"),
     **_library("/api/worlds", "world"),
     **_library("/api/robot-files", "robot file"),
-    ("POST", "/api/check"): ("What is wrong with a mission.", _WRITTEN),
-    ("POST", "/api/complete"): ("What may follow a text.", _WRITTEN),
-    ("POST", "/api/explain"): ("How a mission is understood.", _WRITTEN),
-    ("POST", "/api/format"): ("A mission in the usual layout.", _WRITTEN),
+    **{("POST", f"/api/{name}"): (query.help, _written(query)) for name, query in DOES.items()},
     ("GET", "/metrics"): ("Figures for Prometheus.", None),
     ("GET", "/live"): ("Whether the server is alive; without log-in.", None),
     ("GET", "/ready"): ("Whether it takes requests; without log-in.", None),

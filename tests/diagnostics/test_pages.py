@@ -3,8 +3,9 @@
 A label, an empty line and indented lines are an example. Labels are `Wrong:` and `Right:` for a mission, `Wrong
 keyword file:`, `Wrong world:` and `Wrong robot:` for a file that a mission is used with, `Wrong ros keyword file:` for
 one whose words are bound to ROS 2, `Wrong schedule:` for the rule of a schedule, `Wrong house rules:` for those of a
-robot, `Wrong restored mission:` for one that goes on from a saved run, `Wrong command:` for a command, and `The file
-NAME:` for a file beside it. `, saved as ENCODING` may end a label. Commands for a robot that is up find one.
+robot, `Wrong restored mission:` for one that goes on from a saved run, `Wrong rename:` for a new name in an editor,
+`Wrong command:` for a command, and `The file NAME:` for a file beside it. `, saved as ENCODING` may end a label.
+Commands for a robot that is up find one.
 """
 
 from __future__ import annotations
@@ -21,6 +22,7 @@ from btlang.diagnostics.codes import CODES, NAMES
 from btlang.diagnostics.explain import PAGES
 from tests.conftest import take_away_what_is_missed
 from tests.editing.edited import edit_sample
+from tests.editing.renames import refusal
 from tests.recording.trials import try_sample
 from tests.ros.bound import bind_words
 from tests.task.schedules import read_schedules
@@ -63,6 +65,9 @@ def said(example: Example, page: str, folder: Path, capsys: pytest.CaptureFixtur
         return try_sample(example.text, "words.toml"), capsys.readouterr().err
     elif example.of == "schedule":
         return read_schedules(example.text.splitlines()), capsys.readouterr().err
+    elif example.of == "rename":
+        problem = refusal(example.text)
+        return 2 if problem else 0, problem
     else:
         (folder / "example.txt").write_text(example.text, encoding=example.encoding)
         if example.of in ("house rules", "restored mission"):

@@ -8,8 +8,11 @@ from collections.abc import Sequence
 
 from btlang.api import parse_tree
 from btlang.diagnostics.errors import MissionError
+from btlang.editing.changes import Change, changed
 from btlang.editing.edits import Edit, Edited, edit, read_edit
 from btlang.editing.syntax import Syntax
+from btlang.editing.words import Words
+from btlang.text.source import Source
 from btlang.tree import ast
 
 
@@ -19,7 +22,7 @@ def edit_sample(text: str) -> int:
     """
     first, _, mission = text.partition("\n")
     try:
-        edit(mission, read_edit(json.loads(first.removeprefix("# edit "))))
+        edit(Source(mission), Words(), read_edit(json.loads(first.removeprefix("# edit "))))
     except MissionError as error:
         print(error, file=sys.stderr)
         return 2
@@ -40,7 +43,10 @@ def edited(text: str, do: str, words: str, *, last: str = "", to: str = "", nth:
     """An edit of the node that is said by some words; what else is wanted is said by words, too."""
     numbers = {key: number(text, value) for key, value in (("last", last), ("to", to)) if value}
     with_words = more.pop("given", "")
-    return edit(text, Edit(do, number(text, words, nth), **numbers, **more, words=with_words))  # type: ignore[arg-type]
+    wanted = Edit(do, number(text, words, nth), **numbers, **more, words=with_words)  # type: ignore[arg-type]
+    made = edit(Source(text), Words(), wanted)
+    [change] = (Change(**each) for each in made["changes"])
+    return Edited(changed(text, [change]), change, made["start"], made["end"])
 
 
 def statements(text: str) -> Sequence[ast.Ast]:

@@ -15,12 +15,16 @@ COMMANDS = "uvwxyz"
 CONDITIONS = "pqrs"
 
 
+ENTRIES = (
+    *(Entry("action", letter.upper(), (letter,)) for letter in COMMANDS),
+    *(Entry("condition", letter.upper(), (letter,)) for letter in CONDITIONS),
+    Entry("action", "Murmur", ("murmur {text}",), slots=(SlotSpec("text", "text"),)),
+)
+
+
 @cache
 def letters() -> Lexicon:
-    entries = [Entry("action", letter.upper(), (letter,)) for letter in COMMANDS]
-    entries += [Entry("condition", letter.upper(), (letter,)) for letter in CONDITIONS]
-    entries.append(Entry("action", "Murmur", ("murmur {text}",), slots=(SlotSpec("text", "text"),)))
-    return load_vocabulary(entries)
+    return load_vocabulary(ENTRIES)
 
 
 def read(text: str, parser: str = "shunting-yard") -> ast.Program:

@@ -72,7 +72,7 @@ def test_what_no_trial_may_do(tmp_path: Path) -> None:
     (tmp_path / "words.toml").write_text(
         '[[action]]\nid = "Jump"\nphrase = "jump"\ncall = "nowhere_at_all:jump"\nhelp = "x"\nexample = "jump"\n'
     )
-    with pytest.raises(MissionError, match="BT211"):
+    with pytest.raises(MissionError, match="BT221"):
         tried(parse_tree("if battery is low, jump", keywords=[str(tmp_path / "words.toml")]))
 
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import asyncio
+import json
 import re
 from contextlib import closing
 from pathlib import Path
@@ -13,13 +14,22 @@ import pytest
 from starlette.applications import Starlette
 from starlette.routing import Route
 
+from btlang.editing.edits import Edit
+from btlang.editing.words import Words
 from btlang.server import checking
 from btlang.server.access import AccessError
 from btlang.server.accounts import Accounts
 from btlang.server.app import Api
-from btlang.server.checking import Checker, Words, answer
+from btlang.server.checking import Checker, answer
 from btlang.server.openapi import ROUTES, document
 from tests.server.doors import Door
+
+ARGUMENTS: dict[str, dict[str, Any]] = {
+    "hover": {"at": 0},
+    "rename": {"at": 0},
+    "edit": {"edit": Edit("insert", 0, words="wave")},
+}
+"""What kinds need beside the text."""
 
 
 def test_a_mission_is_checked_and_explained(door: Door) -> None:
@@ -43,7 +53,7 @@ def test_a_mission_is_checked_and_explained(door: Door) -> None:
     "text", ["", "\0", "\ud800", 'words "evil.toml"\nhop', 'include "/etc/passwd"', "( " * 3000, "<root/>"]
 )
 def test_any_text_has_an_answer(kind: str, text: str) -> None:
-    found = answer(kind, text, Words())
+    found = answer(kind, text, Words(), ARGUMENTS.get(kind, {}))
     assert isinstance(found["ok"], bool)
     assert "root:" not in str(found)
 
@@ -52,7 +62,8 @@ def test_checking_runs_no_python(tmp_path: Path) -> None:
     (tmp_path / "hop.py").write_text(f"open({str(tmp_path / 'ran')!r}, 'w').close()\ndef hop(): return True\n")
     (tmp_path / "hop.toml").write_text('[[action]]\nphrase = "hop"\nid = "Hop"\ncall = "hop:hop"\n')
     words = Words((str(tmp_path / "hop.toml"),))
-    assert all(answer(kind, "hop then wave", words)["ok"] for kind in checking.DOES)
+    text = "round is hop then wave; round"
+    assert all(answer(kind, text, words, ARGUMENTS.get(kind, {}))["ok"] for kind in checking.DOES)
     assert not (tmp_path / "ran").exists()
 
 
@@ -66,7 +77,7 @@ def test_a_text_that_takes_too_long_ends_with_its_process(monkeypatch: pytest.Mo
             with pytest.raises(AccessError, match="may have"):
                 await checker.answer("check", "wave " * 100_000, Words())
             monkeypatch.setattr(checking, "_PATIENCE", 20.0)
-            assert (await checker.answer("check", "wave", Words()))["ok"]
+            assert json.loads(await checker.answer("check", "wave", Words()))["ok"]
 
     asyncio.run(asked())
 

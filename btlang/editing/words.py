@@ -1,0 +1,45 @@
+"""The words that a text is read with, as plain data: they may be sent to another process."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from btlang.api import Mission, mission_vocabulary, parse_tree, world_vocabulary
+from btlang.diagnostics.errors import MissionError
+from btlang.text.escaping import one_line
+from btlang.text.source import Source
+from btlang.vocabulary.lexicon import Lexicon
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.passes.compilation import Origins
+
+
+class Words:
+    """Where the words of a robot are: keyword files, world and language. The world is a file, or the text of one."""
+
+    def __init__(
+        self, keywords: Sequence[str] = (), world: str | None = None, language: str = "en", world_text: str = ""
+    ) -> None:
+        self.keywords, self.language = keywords, language
+        self.world = Source(world_text, "world", roots=()) if world_text else world
+
+    def in_world(self, name: str, text: str) -> Words:
+        """These words with the places of a world in a text; `name` is what messages show."""
+        other = Words(self.keywords, language=self.language)
+        other.world = Source(text, one_line(name), roots=())
+        return other
+
+    def mission(self, source: Source, origins: Origins | None = None) -> Mission:
+        """A text compiled with them; `origins` as for `parse_tree`. Raises MissionError."""
+        return parse_tree(source, keywords=self.keywords, world=self.world, language=self.language, origins=origins)
+
+    def vocabulary(self, source: Source) -> Lexicon:
+        """Those that a text is read with; files that it names and that can't be used are left out.
+
+        Raises MissionError for words that can't be used themselves.
+        """
+        try:
+            return mission_vocabulary(source, self.keywords, self.world, self.language)[0]
+        except MissionError:
+            return world_vocabulary(self.keywords, self.world, self.language)
