@@ -16,19 +16,31 @@ if TYPE_CHECKING:
 
 
 class Words:
-    """Where the words of a robot are: keyword files, world and language. The world is a file, or the text of one."""
+    """Where the words of a robot are: keyword files, world and language. The world is a file, or the text of one.
+
+    `file` is the path that texts belong to, if the user named one: what they name is looked for beside it.
+    """
 
     def __init__(
-        self, keywords: Sequence[str] = (), world: str | None = None, language: str = "en", world_text: str = ""
+        self,
+        keywords: Sequence[str] = (),
+        world: str | None = None,
+        language: str = "en",
+        world_text: str = "",
+        file: str = "",
     ) -> None:
-        self.keywords, self.language = keywords, language
+        self.keywords, self.language, self.file = keywords, language, file
         self.world = Source(world_text, "world", roots=()) if world_text else world
 
     def in_world(self, name: str, text: str) -> Words:
         """These words with the places of a world in a text; `name` is what messages show."""
-        other = Words(self.keywords, language=self.language)
+        other = Words(self.keywords, language=self.language, file=self.file)
         other.world = Source(text, one_line(name), roots=())
         return other
+
+    def source(self, text: str) -> Source:
+        """A text that somebody writes; of no file, it can't include any."""
+        return Source(text, self.file, may_load=True) if self.file else Source(text, "mission", roots=())
 
     def mission(self, source: Source, origins: Origins | None = None) -> Mission:
         """A text compiled with them; `origins` as for `parse_tree`. Raises MissionError."""

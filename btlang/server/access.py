@@ -38,14 +38,14 @@ class AccessError(Exception):
 
 
 class Access:
-    """Decides by the accounts. `key` signs CSRF tokens.
+    """Decides by the accounts. `key` signs CSRF tokens. `cookie` is the name of the cookie of sessions.
 
     The disk is only touched in threads, and not for somebody who was here a moment ago: it may be slow, and everybody
     may stop the robot at any time.
     """
 
-    def __init__(self, accounts: Accounts, key: str) -> None:
-        self.accounts = accounts
+    def __init__(self, accounts: Accounts, key: str, cookie: str = COOKIE) -> None:
+        self.accounts, self.cookie = accounts, cookie
         self._known: dict[str, tuple[Identity | None, float]] = {}
         self._verifier = Verifier()
         self._signer = Signer(key, salt="csrf")
@@ -94,7 +94,7 @@ class Access:
             if identity is None or identity.is_session:
                 raise AccessError(401, "This token isn't valid.")
             return identity
-        identity = await self._identity(_cookie(headers.get("cookie", "")))
+        identity = await self._identity(_cookie(headers.get("cookie", ""), self.cookie))
         if identity is None or not identity.is_session:
             raise AccessError(401, "Log in first.")
         if changes and not (is_same_site(headers) and self._is_csrf(identity, headers.get(CSRF, ""))):
@@ -143,9 +143,9 @@ def address_of(connection: HTTPConnection) -> str:
     return connection.client.host if connection.client is not None else ""
 
 
-def _cookie(header: str) -> str:
+def _cookie(header: str, name: str) -> str:
     try:
-        morsel = SimpleCookie(header).get(COOKIE)
+        morsel = SimpleCookie(header).get(name)
     except CookieError:
         return ""
     return morsel.value if morsel is not None else ""

@@ -10,7 +10,7 @@ from functools import partial
 from starlette.applications import Starlette
 from starlette.requests import Request
 from starlette.responses import PlainTextResponse, Response
-from starlette.routing import Route, WebSocketRoute
+from starlette.routing import BaseRoute, Route, WebSocketRoute
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocket
 
@@ -51,18 +51,32 @@ _HEADERS = {
 
 
 class Api:
-    """What the routes do. `ros` are the names of the ROS 2 graph that are allowed."""
+    """What the routes do. `ros` are the names of the ROS 2 graph that are allowed. Texts are read with `words`, if they
+    are given, in place of those of a robot.
+    """
 
-    def __init__(self, accounts: Accounts, key: str, robots: Robots | None = None, ros: Sequence[str] = ()) -> None:
-        self.accounts, self.robots = accounts, robots or Robots()
-        self.access, self.checker = Access(accounts, key), Checker()
+    def __init__(
+        self,
+        accounts: Accounts,
+        key: str,
+        robots: Robots | None = None,
+        ros: Sequence[str] = (),
+        words: Words | None = None,
+        cookie: str = COOKIE,
+    ) -> None:
+        self.accounts, self.robots, self.words = accounts, robots or Robots(), words
+        self.access, self.checker = Access(accounts, key, cookie), Checker()
         self.sockets, self.clients = Sockets(self.access), Clients(self.robots, self.send)
         self.rosbridge = Rosbridge(self.access, ros) if ros else None
         self.joins = Joins(Fleet(accounts.database), self.robots, self.access)
 
     def app(self) -> ASGIApp:
         """The ASGI application."""
-        routes = [
+        return _Headers(Starlette(routes=self.routes(), lifespan=self._life, exception_handlers={404: _not_found}))
+
+    def routes(self) -> list[BaseRoute]:
+        """All that it answers."""
+        return [
             self._route("/api/login", self._log_in, "POST"),
             self._route("/api/logout", self._log_out, "POST"),
             self._route("/api/me", self._me, "GET"),
@@ -83,7 +97,6 @@ class Api:
             ),
             WebSocketRoute("/api/join", self.joins.serve),
         ]
-        return _Headers(Starlette(routes=routes, lifespan=self._life, exception_handlers={404: _not_found}))
 
     async def check(self) -> None:
         """The accounts have changed: who may no longer be here is sent away."""
@@ -151,9 +164,18 @@ class Api:
         data = await json_object(request)
         address = address_of(request)
         identity, secret = await self.access.log_in(text_in(data, "name"), text_in(data, "password"), address)
+        return self._logged_in(identity, secret)
+
+    def _logged_in(self, identity: Identity, secret: str) -> Response:
         response = JsonResponse(self._described(identity))
-        response.set_cookie(COOKIE, secret, int(LONGEST), secure=True, httponly=True, samesite="strict")
+        response.set_cookie(value=secret, max_age=int(LONGEST), **self._cookie)
         return response
+
+    @property
+    def _cookie(self) -> dict[str, Any]:
+        """Over plain HTTP, browsers take no cookie of the name that needs TLS."""
+        name = self.access.cookie
+        return {"key": name, "secure": name == COOKIE, "httponly": True, "samesite": "strict"}
 
     async def _log_out(self, request: Request) -> Response:
         identity = await self._who(request)
@@ -162,7 +184,7 @@ class Api:
         await asyncio.to_thread(self.accounts.log_out, identity.user, ended)
         await self.sockets.check()
         response = JsonResponse({"ok": True})
-        response.delete_cookie(COOKIE, secure=True, httponly=True, samesite="strict")
+        response.delete_cookie(**self._cookie)
         return response
 
     async def _me(self, request: Request) -> Response:
@@ -194,7 +216,7 @@ class Api:
         data = await json_object(request)
         text, robot = text_in(data, "text"), str(data.get("robot", ""))
         arguments = arguments_of(kind, data, text)
-        words = self.link(robot).words if robot or self.robots.links else Words()
+        words = self.words or (self.link(robot).words if robot or self.robots.links else Words())
         if "world" in data:
             name = text_in(data, "world")
             if not name:

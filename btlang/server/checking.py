@@ -94,7 +94,7 @@ def arguments_of(kind: str, data: Mapping[str, Any], text: str) -> dict[str, Any
 
 def answer(kind: str, text: str, words: Words, arguments: Mapping[str, Any] = {}) -> dict[str, Any]:
     """What is asked of a text, with what is wrong with it as data; places are in UTF-16 units."""
-    source = Source(text, "mission", roots=())
+    source = words.source(text)
     try:
         found = {"ok": True, "messages": [], **DOES[kind].do(source=source, words=words, **arguments)}
     except MissionError as error:

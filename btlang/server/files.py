@@ -29,8 +29,8 @@ if TYPE_CHECKING:
 class Files:
     """Of these the one that `words` belong to can be saved; the others, which it includes, are shown.
 
-    A revision is a hash of the content, "" for a file that isn't there. Methods raise MissionError for one that can't be
-    read (BT001, BT002) or written (BT009), and AccessError (403, 404).
+    A revision is a hash of the content, "" for a file that isn't there. Methods raise MissionError for one that can't
+    be read (BT001, BT002) or written (BT009), and AccessError (403, 404).
     """
 
     def __init__(self, words: Words) -> None:

@@ -83,17 +83,20 @@ def outdated(command: Put, called: str, latest: Revision | None) -> Answer:
     with what differs from that.
     """
     before = "" if latest is None else latest.text
-    lines = _differences(before.splitlines(), command.text.splitlines())
     number = 0 if latest is None else latest.number
     problem = refused(
         f"The {called} '{command.name}'", f"has changed since revision {command.revision}: it has {number}"
     )
-    data = {"revision": number, "text": before, "diff": "\n".join(lines)}
+    data = {"revision": number, "text": before, "diff": differences(before, command.text)}
     return Answer(False, str(problem), data, problem.diagnostics[0].code)
 
 
-def _differences(before: list[str], after: list[str]) -> Iterable[str]:
+def differences(before: str, after: str) -> str:
     """A unified diff; of long texts with everything between the first and the last difference."""
+    return "\n".join(_differences(before.splitlines(), after.splitlines()))
+
+
+def _differences(before: list[str], after: list[str]) -> Iterable[str]:
     if max(len(before), len(after)) <= _MOST_LINES:
         return unified_diff(before, after, "latest", "yours", lineterm="")
     begin = _common(before, after)

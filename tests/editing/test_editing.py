@@ -61,7 +61,7 @@ def places(data: object) -> list[tuple[int, int]]:
     return [place for part in data for place in places(part)] if isinstance(data, list | tuple) else []
 
 
-@searches(100, 5000, deadline=None)
+@searches(80, 800, deadline=None)
 @given(_texts, st.data())
 def test_any_text_has_an_answer_within_it(text: str, data: st.DataObject) -> None:
     shown = document(Source(text, roots=()), LETTERS)
@@ -73,7 +73,7 @@ def test_any_text_has_an_answer_within_it(text: str, data: st.DataObject) -> Non
     palette(Source(text, roots=()), LETTERS)
 
 
-@searches(30, 2000, deadline=None)
+@searches(30, 400, deadline=None)
 @given(trees.missions())
 def test_nodes_are_those_of_the_tree(mission: Any) -> None:
     source = Source(printed(mission, letters()))

@@ -1,9 +1,10 @@
 """Every code of a message has a bad sample in `bad/`, and its exact output beside it.
 
 A sample is compiled with `btc check`; a first line `# btc VERB FILE ...` asks for another command, and `# ros FILE`
-binds the words of a keyword file to ROS 2. `# schedules ZONE` reads each further line as the rule of a schedule,
-`# edit JSON` does an edit with the rest, `# try FILE` tries it with the words of a keyword file, and `# restored` goes
-on with the mission from a saved run of another one. Commands for a robot that is up find one.
+binds the words of a keyword file to ROS 2. `# schedules ZONE` reads each further line as the rule of a schedule. With
+the rest, `# edit JSON` does an edit, `# rename OLD -> NEW` gives something another name, `# try FILE` tries it with the
+words of a keyword file, and `# restored` goes on with it from a saved run of another mission. Commands for a robot that
+is up find one.
 """
 
 from __future__ import annotations
@@ -18,6 +19,7 @@ from btlang.cli import CRASHED, main
 from btlang.diagnostics.codes import CODES
 from tests.conftest import matches_golden, take_away_what_is_missed, without_pointer
 from tests.editing.edited import edit_sample
+from tests.editing.renames import refusal
 from tests.recording.trials import try_sample
 from tests.ros.bound import bind_words
 from tests.task.schedules import read_schedules
@@ -39,6 +41,10 @@ def test_message(sample: Path, capsys: pytest.CaptureFixture[str], monkeypatch: 
         code = read_schedules(rules, first.removeprefix("# schedules").strip())
     elif first.startswith("# edit "):
         code = edit_sample(sample.read_text(encoding="utf-8"))
+    elif first.startswith("# rename "):
+        problem = refusal(sample.read_text(encoding="utf-8").replace("# rename ", "# ", 1))
+        print(problem, file=sys.stderr)
+        code = 2 if problem else 0
     elif first.startswith("# try "):
         code = try_sample(sample.read_text(encoding="utf-8"), first.removeprefix("# try "))
     elif first == "# restored":
