@@ -229,7 +229,10 @@ def test_nobody_else_comes_in(edited: Any, folder: Path) -> None:
     assert (folder / "tour.txt").read_text() == MISSION
 
 
-def test_the_cookie_is_for_this_site_and_its_scripts_cannot_read_it(folder: Path) -> None:
+def test_the_cookie_is_for_this_site_and_its_scripts_cannot_read_it(
+    tmp_path_factory: pytest.TempPathFactory,
+) -> None:
+    folder = tmp_path_factory.mktemp("c")
     with closing(Editor(folder, "--no-browser")) as up:
         reply = up.ask("POST", "/api/login", {"token": up.token}, origin=f"http://127.0.0.1:{up.port}")
         cookie = reply.headers["set-cookie"].lower()
