@@ -70,6 +70,11 @@ export async function logIn(name: string, password: string): Promise<Me> {
   return known(await post("/api/login", { name, password }));
 }
 
+/** Begins the session of `btc edit`, whose address has a token that is good once. Throws RequestError. */
+export async function enter(token: string): Promise<Me> {
+  return known(await post("/api/login", { token }));
+}
+
 /** Ends the session. */
 export async function logOut(): Promise<void> {
   await post("/api/logout", {});

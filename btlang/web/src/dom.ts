@@ -55,8 +55,13 @@ export function oncePerFrame(draw: () => void): () => void {
 /** A list of commands at a point of the window, closed by a click elsewhere, by Escape, or by a choice. */
 export function openMenu(x: number, y: number, label: string, items: { label: string; run: () => void }[]): void {
   const before = document.activeElement as HTMLElement | null;
-  const menu = h("div", { class: "menu", role: "menu", popover: "auto", "aria-label": label });
+  const menu = h("div", { class: "menu", role: "menu", popover: "manual", "aria-label": label });
+  // not the browser's own dismissal: it takes the end of a right click for one elsewhere
+  const elsewhere = (event: Event): void => {
+    if (!menu.contains(event.target as Node)) close();
+  };
   const close = () => {
+    removeEventListener("pointerdown", elsewhere, true);
     menu.remove();
     before?.focus();
   };
@@ -65,15 +70,17 @@ export function openMenu(x: number, y: number, label: string, items: { label: st
   );
   menu.append(...buttons);
   menu.addEventListener("keydown", (event) => {
+    if (event.key === "Escape" || event.key === "Tab") {
+      event.preventDefault();
+      return close();
+    }
     const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
     if (step === undefined) return;
     event.preventDefault();
     const at = buttons.indexOf(document.activeElement as HTMLButtonElement);
     buttons[(at + step + buttons.length) % buttons.length]?.focus();
   });
-  menu.addEventListener("toggle", (event) => {
-    if ((event as ToggleEvent).newState === "closed" && menu.isConnected) close();
-  });
+  addEventListener("pointerdown", elsewhere, true);
   document.body.append(menu);
   menu.showPopover();
   menu.style.left = `${Math.max(8, Math.min(x, innerWidth - menu.offsetWidth - 8))}px`;

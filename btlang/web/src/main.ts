@@ -1,14 +1,17 @@
 // Start: who is logged in sees the shell, everybody else the log-in.
-import { whoAmI } from "./api";
+import { enter as enterByToken, request, whoAmI } from "./api";
 import { fill, h } from "./dom";
 import { showLogin } from "./login";
 import { Shell } from "./shell";
 import { language, t } from "./texts";
 import { applyTheme } from "./theme";
+import { address } from "./view";
 
 async function start(): Promise<void> {
   document.documentElement.lang = language();
   applyTheme();
+  const token = /^#token=([\w-]+)$/.exec(location.hash)?.[1];
+  if (token) return openFile(token);
   if (location.pathname === "/login") return showLogin(enter);
   let me;
   try {
@@ -20,6 +23,18 @@ async function start(): Promise<void> {
   }
   if (me) new Shell(me, start);
   else showLogin(enter);
+}
+
+/** The file of `btc edit`. */
+async function openFile(token: string): Promise<void> {
+  try {
+    await enterByToken(token);
+    const { data } = await request("GET", "/api/files");
+    history.replaceState(null, "", `/${address("write", "file", data.files[0].name)}`);
+    await start();
+  } catch (error) {
+    fill(document.body, h("main", { class: "alone" }, h("p", { role: "alert", lang: "en" }, (error as Error).message)));
+  }
 }
 
 function enter(): void {

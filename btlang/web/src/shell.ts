@@ -82,6 +82,7 @@ export class Shell {
     if (first === "robots") this.robot = rest.shift() ?? "";
     else if (!this.robot) this.robot = [...this.fleet.robots.keys()][0] ?? "";
     const tab: Tab | null = first === "write" || first === "runs" ? first : !this.robot ? null : rest[0] === "tasks" ? "tasks" : "watch";
+    document.body.classList.toggle("file", first === "write" && rest[0] === "file"); // of `btc edit`, which has no robots
     this.listen(tab);
     this.showTabs(tab);
     this.stop.show();

@@ -98,8 +98,8 @@ function stale(error: unknown): unknown {
   return kept && typeof kept.diff === "string" ? new Stale((error as Error).message, { text: kept.text, revision: kept.revision }) : error;
 }
 
-function known(answer: any): Kept {
-  return { text: answer.text ?? "", revision: answer.revision };
+function known({ data }: any): Kept {
+  return { text: data.text ?? "", revision: data.revision };
 }
 
 /** What somebody wrote and hasn't saved: it outlives the page, the connection and the server. */

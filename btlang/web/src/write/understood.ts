@@ -48,6 +48,7 @@ export interface Understood {
 
 /** Asks about texts of one robot. */
 export class Reader {
+  private page = crypto.randomUUID?.() ?? String(Math.random());
   private text: string | null = null;
   private busy = false;
   private ended = false;
@@ -68,7 +69,7 @@ export class Reader {
   /** Something else about a text: an answer of the server, or null if it can't be had. */
   async service(kind: string, text: string, more: object): Promise<any> {
     try {
-      return await post(`/api/${kind}`, { text, ...(this.robot ? { robot: this.robot } : {}), ...more });
+      return await post(`/api/${kind}`, { ...this.asked(text), ...more });
     } catch (error) {
       return error instanceof RequestError && error.data.messages ? error.data : { ok: false, messages: [], text: (error as Error).message };
     }
@@ -79,13 +80,17 @@ export class Reader {
     clearTimeout(this.retry);
   }
 
+  private asked(text: string): object {
+    return { text, page: this.page, ...(this.robot ? { robot: this.robot } : {}) };
+  }
+
   private async ask(): Promise<void> {
     this.busy = true;
     while (this.text !== null && !this.ended) {
       const text = this.text;
       this.text = null;
       try {
-        const answer = await post("/api/document", { text, ...(this.robot ? { robot: this.robot } : {}) });
+        const answer = await post("/api/document", this.asked(text));
         if (this.text === null && !this.ended) {
           this.tell({ text, messages: answer.messages ?? [], nodes: answer.nodes ?? null, outline: answer.outline ?? [], sort: answer.sort ?? "english" });
           this.fail("");

@@ -102,7 +102,7 @@ class Desk {
       "div",
       { class: "controls" },
       this.mayWrite && this.save,
-      h("button", { type: "button", onclick: () => this.run() }, t("write.run")),
+      this.context.robot && h("button", { type: "button", title: "Ctrl+Enter", onclick: () => this.run() }, t("write.run")),
       this.mayWrite && h("button", { type: "button", title: "Shift+Alt+F", onclick: () => void this.format() }, t("write.format")),
       this.mayWrite && h("button", { type: "button", title: "F2", onclick: () => this.rename() }, t("write.rename")),
       this.mayWrite && h("button", { type: "button", title: "Ctrl+Z", onclick: () => this.editor.undo() }, t("write.undo")),
@@ -117,7 +117,7 @@ class Desk {
       this.tree.element,
     );
     const words = h("section", { class: "stage card" }, this.text, this.problem, this.messages);
-    return h("div", { class: "desk" }, head, this.offered, words, trunk);
+    return h("div", { class: "desk" }, head, this.offered, h("div", { class: "panes" }, words, trunk));
   }
 
   private close(): void {
