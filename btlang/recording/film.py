@@ -80,8 +80,8 @@ class Film:
     def data(self) -> dict[str, Any]:
         """As JSON has it.
 
-        - `text`: the mission, "" where it had none; `nodes`: parent (-1: the root), id, words, and the characters of
-          the text that say it (None for none), in preorder; `names`: those of statuses;
+        - `text`: the mission, "" where it had none; `nodes`: in preorder, with the number of the parent (-1: the root)
+          and the characters of the text that say it (None for none); `names`: those of statuses;
         - `statuses`: a time in seconds, then node and status (a number of `names`) in turn;
         - `robot`: time, x, y (metres), heading (degrees), battery (percent), what the left and the right hand hold;
         - `scans`: time and metres, counter-clockwise from straight ahead; `events`: see btlang/run/events.schema.json;
@@ -94,8 +94,13 @@ class Film:
         for index in range(nodes.size):
             node, span = nodes.node(index), nodes.span(index)
             is_here = span is not None and mission.syntax is not None and span.source is mission.syntax.span.source
-            place = [span.start, span.end] if span is not None and is_here else [None, None]
-            listed.append([nodes.parent(index), node.id, mission.label(node), *place])
+            start, end = (span.start, span.end) if span is not None and is_here else (None, None)
+            listed.append(
+                {
+                    "parent": nodes.parent(index), "id": node.id, "label": mission.label(node), "ports": node.ports,
+                    "start": start, "end": end,
+                }
+            )  # fmt: skip
         return {
             "about": self._about,
             "text": text,

@@ -142,6 +142,22 @@ def read_recording(path: str) -> Recording:
     return Recording(about, files, tuple(entries))
 
 
+def read_about(path: str) -> dict[str, str]:
+    """What a recording says of itself, from its beginning; nothing if it can't be read."""
+    from mcap.exceptions import McapError
+    from mcap.records import Metadata
+    from mcap.stream_reader import StreamReader
+
+    try:
+        with open(path, "rb") as file:
+            for record in StreamReader(file, emit_chunks=True, record_size_limit=MOST_BYTES).records:
+                if isinstance(record, Metadata) and record.name == ABOUT:
+                    return dict(record.metadata)
+    except (OSError, McapError, struct.error, EOFError, ValueError):
+        pass
+    return {}
+
+
 def _event(topic: str, data: Mapping[str, Any], run: str, nodes: RecordedNodes) -> Event | None:
     if topic == STATUSES.topic:
         common = data["t"], run, data["number"], data["wall"]

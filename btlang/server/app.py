@@ -9,7 +9,7 @@ from functools import partial
 
 from starlette.applications import Starlette
 from starlette.requests import Request
-from starlette.responses import PlainTextResponse, Response
+from starlette.responses import FileResponse, PlainTextResponse, Response
 from starlette.routing import BaseRoute, Route, WebSocketRoute
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 from starlette.websockets import WebSocket
@@ -19,7 +19,7 @@ from btlang.editing.words import Words
 from btlang.server.access import COOKIE, Access, AccessError, address_of
 from btlang.server.accounts import LONGEST, Accounts, Identity
 from btlang.server.bodies import JsonResponse, json_object, text_in
-from btlang.server.checking import DOES, Checker, arguments_of
+from btlang.server.checking import ASKED, TRIES, Checker, arguments_of
 from btlang.server.clients import Clients
 from btlang.server.fleet import Fleet
 from btlang.server.joining import Joins
@@ -27,6 +27,7 @@ from btlang.server.links import RobotLink, Robots
 from btlang.server.metrics import metrics
 from btlang.server.openapi import LIBRARY, VERSION, document
 from btlang.server.pages import page_routes
+from btlang.server.recordings import listed, path_of
 from btlang.server.roles import NEEDED
 from btlang.server.rosbridge import Rosbridge
 from btlang.server.sockets import Sockets
@@ -65,7 +66,7 @@ class Api:
         cookie: str = COOKIE,
     ) -> None:
         self.accounts, self.robots, self.words = accounts, robots or Robots(), words
-        self.access, self.checker = Access(accounts, key, cookie), Checker()
+        self.access, self.checker, self.trials = Access(accounts, key, cookie), Checker(), Checker()
         self.sockets, self.clients = Sockets(self.access), Clients(self.robots, self.send)
         self.rosbridge = Rosbridge(self.access, ros) if ros else None
         self.joins = Joins(Fleet(accounts.database), self.robots, self.access)
@@ -84,7 +85,10 @@ class Api:
             self._route("/api/stop", self._stop, "POST"),
             self._route("/api/commands", self._command, "POST"),
             *(route for path, kind in LIBRARY.items() for route in self._library(path, kind)),
-            *(self._route(f"/api/{kind}", partial(self._text, kind), "POST") for kind in DOES),
+            *(self._route(f"/api/{kind}", partial(self._text, kind), "POST") for kind in ASKED),
+            self._route("/api/recordings", self._recordings, "GET"),
+            self._route("/api/recordings/{name}", self._recording, "GET"),
+            self._route("/api/films/{name}", self._film, "GET"),
             self._route("/metrics", self._metrics, "GET"),
             Route("/openapi.json", lambda request: JsonResponse(document())),
             *page_routes(self.access),
@@ -138,6 +142,7 @@ class Api:
                 await following
             self.access.close()
             self.checker.close()
+            self.trials.close()
             if self.rosbridge is not None:
                 await self.rosbridge.close()
 
@@ -230,8 +235,25 @@ class Api:
             except (LookupError, TypeError):  # a robot may say anything
                 raise AccessError(503, f"The robot didn't send the world '{name}'.") from None
         page = str(data.get("page", "")) if identity.is_session else None  # a program doesn't type
-        written = await self.checker.answer(kind, text, words, arguments, identity.user, page)
+        checker = self.trials if kind in TRIES else self.checker
+        written = await checker.answer(kind, text, words, arguments, identity.user, page)
         return Response(written, media_type="application/json")
+
+    async def _recordings(self, request: Request) -> Response:
+        await self._who(request)
+        folder = self.link(request.query_params.get("robot", "")).recordings
+        return JsonResponse({"ok": True, "recordings": await asyncio.to_thread(listed, folder)})
+
+    async def _recording(self, request: Request) -> Response:
+        return FileResponse(await self._recorded(request), media_type="application/octet-stream")
+
+    async def _film(self, request: Request) -> Response:
+        return Response(await self.trials.film(await self._recorded(request)), media_type="application/json")
+
+    async def _recorded(self, request: Request) -> str:
+        await self._who(request)
+        folder = self.link(request.query_params.get("robot", "")).recordings
+        return await asyncio.to_thread(path_of, folder, request.path_params["name"])
 
     async def _metrics(self, request: Request) -> Response:
         await self._who(request)

@@ -24,8 +24,10 @@ from btlang.editing.palette import palette
 from btlang.editing.rename import rename
 from btlang.editing.words import Words
 from btlang.record import Record
+from btlang.recording.trial import tried
 from btlang.server.access import AccessError
 from btlang.server.bodies import text_in
+from btlang.server.recordings import film
 from btlang.server.utf16 import Units, in_units
 from btlang.text.source import Source
 
@@ -75,9 +77,19 @@ DOES: Mapping[str, TextQuery] = {
 }
 
 
+def _try(source: Source, words: Words) -> dict[str, Any]:
+    mission = words.mission(source)
+    return {"messages": messages(mission.warnings, source), **tried(mission)}
+
+
+TRIES: Mapping[str, TextQuery] = {"try": TextQuery("A run of a mission in the simulated world, as a film.", _try)}
+"""What takes longer: it has a process of its own."""
+ASKED = {**DOES, **TRIES}
+
+
 def arguments_of(kind: str, data: Mapping[str, Any], text: str) -> dict[str, Any]:
     """The further arguments of a request, with places as characters of its text. Raises AccessError (400)."""
-    asked = DOES[kind]
+    asked = ASKED[kind]
     given = {name: data[name] for name in asked.takes if data.get(name) is not None}
     given |= {name: data.get(name) for name in asked.needs}
     if "at" in given:
@@ -96,7 +108,7 @@ def answer(kind: str, text: str, words: Words, arguments: Mapping[str, Any] = {}
     """What is asked of a text, with what is wrong with it as data; places are in UTF-16 units."""
     source = words.source(text)
     try:
-        found = {"ok": True, "messages": [], **DOES[kind].do(source=source, words=words, **arguments)}
+        found = {"ok": True, "messages": [], **ASKED[kind].do(source=source, words=words, **arguments)}
     except MissionError as error:
         found = {"ok": False, "messages": messages(error.diagnostics, source)}
     return in_units(found, text)
@@ -139,18 +151,23 @@ class Checker:
             async with own_turn, self._turn:
                 if page is not None and self._newest.get(place) is not asked:
                     raise AccessError(409, "A newer request of the page replaced this one.")
-                return await self._done(kind, text, words, arguments)
+                return await self._done(_written, kind, text, words, arguments)
         finally:
             if self._newest.get(place) is asked:
                 del self._newest[place]
 
-    async def _done(self, kind: str, text: str, words: Words, arguments: Mapping[str, Any]) -> bytes:
+    async def film(self, path: str) -> bytes:
+        """That of a recording, as JSON. Raises AccessError (422) if it takes too long."""
+        async with self._turn:
+            return await self._done(film, path)
+
+    async def _done(self, do: Callable[..., bytes], *given: object) -> bytes:
         if self._process is None:
             self._process = ProcessPoolExecutor(1, multiprocessing.get_context("spawn"))
         loop = asyncio.get_running_loop()
         try:
             async with asyncio.timeout(_PATIENCE):
-                return await loop.run_in_executor(self._process, _written, kind, text, words, arguments)
+                return await loop.run_in_executor(self._process, do, *given)
         except (TimeoutError, BrokenProcessPool):
             self.close()
             raise AccessError(422, "This text takes too long to read.") from None

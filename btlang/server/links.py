@@ -38,6 +38,8 @@ class RobotLink:
         self.seen = seen
         """When it last said something, in seconds since 1970."""
         self.words = Words()
+        self.recordings = ""
+        """The folder of its recordings, "" if they aren't on this computer."""
         self._reach: Reach = reach or LocalSockets(name)
         self._outlets: set[Outlet] = set()
         self._catching_up: dict[Outlet, asyncio.Task[None]] = {}  # those that don't know the latest change yet
@@ -163,6 +165,7 @@ class RobotLink:
         if kind == "hello":
             if not self.is_elsewhere:  # its files are not on this computer
                 self.words = Words(**message.get("words", {}))
+                self.recordings = str(message.get("recordings", ""))
             self._change = int(message["change"])
             self._up.set()
             self._tell(self._beginning)

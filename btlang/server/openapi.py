@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cache
 
-from btlang.server.checking import DOES, TextQuery
+from btlang.server.checking import ASKED, TextQuery
 from btlang.task.messages import schema
 from btlang.task.task import Kind
 
@@ -71,12 +71,16 @@ ROUTES: dict[tuple[str, str], tuple[str, dict[str, Any] | None]] = {
     **_library("/api/missions", "mission"),
     **_library("/api/worlds", "world"),
     **_library("/api/robot-files", "robot file"),
-    **{("POST", f"/api/{name}"): (query.help, _written(query)) for name, query in DOES.items()},
+    **{("POST", f"/api/{name}"): (query.help, _written(query)) for name, query in ASKED.items()},
+    ("GET", "/api/recordings"): ("The recordings of a robot on this computer.", None),
+    ("GET", "/api/recordings/{name}"): ("One, as MCAP.", None),
+    ("GET", "/api/films/{name}"): ("One as data that a page plays.", None),
     ("GET", "/metrics"): ("Figures for Prometheus.", None),
     ("GET", "/live"): ("Whether the server is alive; without log-in.", None),
     ("GET", "/ready"): ("Whether it takes requests; without log-in.", None),
     ("GET", "/openapi.json"): ("This document; without log-in.", None),
 }
+_RECORDED = ("/api/recordings", "/api/films")
 _OPEN = ("/api/login", "/live", "/ready", "/openapi.json")
 
 
@@ -92,7 +96,7 @@ def document() -> dict[str, Any]:
         if body is not None:
             described["requestBody"] = {"required": True, "content": {"application/json": {"schema": body}}}
         parameters = [_NAME] if "{name}" in path else []
-        parameters += [_ROBOT] if path.removesuffix("/{name}") in LIBRARY else []
+        parameters += [_ROBOT] if path.removesuffix("/{name}") in (*LIBRARY, *_RECORDED) else []
         if parameters:
             described["parameters"] = parameters
         if path in _OPEN:

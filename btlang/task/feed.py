@@ -49,12 +49,18 @@ class Feed:
     """`sinks` makes the sinks of a run; `watch` tells what happens, beginning with what is now.
 
     `robot` gives what keeps the robot from working, `words` are where its words and its world are, `world` is its map
-    where it has one. Methods may be called from any thread.
+    where it has one, `recordings` the folder of its recordings, "" for none. Methods may be called from any thread.
     """
 
     def __init__(
-        self, store: Store, robot: Callable[[], dict[str, Any]], words: dict[str, Any], world: World | None = None
+        self,
+        store: Store,
+        robot: Callable[[], dict[str, Any]],
+        words: dict[str, Any],
+        world: World | None = None,
+        recordings: str = "",
     ) -> None:
+        self._recordings = recordings
         self._store, self._robot, self._words, self._world = store, robot, words, world
         self._watchers: list[_Watcher] = []
         self._current: _Watched | None = None
@@ -89,7 +95,8 @@ class Feed:
             watcher.runs.append(self._current)
         self._watchers.append(watcher)
         try:
-            yield {"type": "hello", "change": watcher.change, "words": self._words}
+            hello = {"change": watcher.change, "words": self._words, "recordings": self._recordings}
+            yield {"type": "hello", **hello}
             with suppress(StoreError):  # it is closed, or can't be read
                 yield from self._messages(watcher, 1.0 / min(max(rate, least), most))
         finally:

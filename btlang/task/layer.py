@@ -85,7 +85,10 @@ class TaskLayer:
         self._real = speed == "real"
         self.emergency = EmergencyStop(latch_path(folder), self.session.emergency_stop)
         knows = self.reader.world is not None or not getattr(self.session.robot, "moves_by_itself", True)
-        self.feed = Feed(self.store, self._hindrances, self.reader.words, self.session.world if knows else None)
+        self.feed = Feed(
+            self.store, self._hindrances, self.reader.words, self.session.world if knows else None,
+            "" if recordings is None else os.path.abspath(recordings),
+        )  # fmt: skip
         self.emergency.listeners.append(self.feed.wake)
         self.manager = Manager(self.store, keeps, self._needs)
         self.executor = Executor(

@@ -35,10 +35,11 @@ def final(data: dict[str, object]) -> dict[int, str]:
 
 def test_a_trial() -> None:
     data = json.loads(json.dumps(tried(parse_tree(TEXT))))
-    said = [TEXT[start:end] if start is not None else "" for *_, start, end in data["nodes"]]
+    said = ["" if node["start"] is None else TEXT[node["start"] : node["end"]] for node in data["nodes"]]
     assert said[0] == TEXT[TEXT.index("go") :].split("  #")[0]
     assert said[1] == "go to the lab"
-    assert [node[:3] for node in data["nodes"]][:2] == [[-1, "Sequence", "Sequence"], [0, "GoTo", "go to lab"]]
+    shown = [(node["parent"], node["id"], node["label"]) for node in data["nodes"]]
+    assert shown[:2] == [(-1, "Sequence", "Sequence"), (0, "GoTo", "go to lab")]
     failed = data["failed"]
     assert said[failed] == "battery is low"
     assert "battery is low" in data["why"]

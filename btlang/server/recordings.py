@@ -1,0 +1,66 @@
+"""The recordings of a robot on this computer: listed, sent, and as films for pages."""
+
+from __future__ import annotations
+
+import json
+import os
+import re
+from contextlib import suppress
+
+from btlang.diagnostics.errors import MissionError
+from btlang.recording.film import Film
+from btlang.recording.open import opened
+from btlang.recording.reader import read_about
+from btlang.robots.world_problem import read_world
+from btlang.server.access import AccessError
+from btlang.server.utf16 import in_units
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+_NAME = re.compile(r"[\w-]+(\.\d+)?\.mcap", re.ASCII)
+_MOST = 200  # in a list, the newest
+
+
+def listed(folder: str) -> list[dict[str, Any]]:
+    """Name, size in bytes, time (seconds since 1970) and task of each, newest first. Raises AccessError (404)."""
+    found: list[tuple[float, str, int]] = []
+    with suppress(OSError):
+        for entry in os.scandir(_checked(folder)):
+            if _NAME.fullmatch(entry.name):
+                status = entry.stat()
+                found.append((status.st_mtime, entry.name, status.st_size))
+    recordings = []
+    for time, name, size in sorted(found, reverse=True)[:_MOST]:
+        about = read_about(os.path.join(folder, name))
+        task = int(about["task"]) if about.get("task", "").isdigit() else 0
+        recordings.append(
+            {"name": name, "bytes": size, "time": time, "task": task, "mission": about.get("mission", "")}
+        )
+    return recordings
+
+
+def path_of(folder: str, name: str) -> str:
+    """The file of one. Raises AccessError (404)."""
+    path = os.path.join(_checked(folder), name)
+    if not _NAME.fullmatch(name) or not os.path.isfile(path):
+        raise AccessError(404, "There's no such recording.")
+    return path
+
+
+def film(path: str) -> bytes:
+    """See btlang.recording.film.Film.data, with the `map` of the world, as JSON; runs nothing."""
+    try:
+        with opened(path, ()) as (recording, mission, nodes):
+            data = Film(mission, dict(recording.about)).take(recording.events(nodes)).data()
+            data["map"] = read_world(mission.world).as_map()
+    except MissionError as error:
+        return json.dumps({"ok": False, "text": str(error), "code": error.diagnostics[0].code}).encode()
+    return json.dumps({"ok": True, **in_units(data, data["text"])}, default=str).encode()
+
+
+def _checked(folder: str) -> str:
+    if not folder:
+        raise AccessError(404, "The recordings of this robot aren't on this computer.")
+    return folder
