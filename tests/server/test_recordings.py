@@ -42,7 +42,7 @@ def test_recordings_of_a_folder(tmp_path: Path, capsys: pytest.CaptureFixture[st
 
 
 def test_recordings_of_a_robot(door: Door) -> None:
-    for path in ("/api/recordings", "/api/recordings/x.mcap", "/api/films/x.mcap", "/api/films/..%2Fx.mcap"):
+    for path in ("/api/recordings", "/api/recordings/x.mcap", "/api/films/x.mcap"):
         assert door.ask("GET", path).status == 401
         reply = door.ask("GET", path, **door.log_in("vic"))
         assert reply.status in (200, 404, 409), path

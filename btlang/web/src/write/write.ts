@@ -1,11 +1,12 @@
 // Missions: a list of those in the library, and one as English and tree side by side.
 import { may, request } from "../api";
 import { fill, h } from "../dom";
+import { Player, type Film } from "../look_back/player";
 import { command } from "../tasks/queue";
 import { t } from "../texts";
 import { TreeView } from "../tree/tree_view";
 import { address, type Context, type View } from "../view";
-import { ask } from "./ask";
+import { ask, show } from "./ask";
 import { Editor, smallest } from "./editor";
 import { merge } from "./merge";
 import { Draft, FileStore, LibraryStore, Stale, type Kept, type Store } from "./store";
@@ -85,6 +86,7 @@ class Desk {
         { key: "F2", run: () => this.rename() },
         { key: "Shift-Alt-f", run: () => void this.format() },
         { key: "Mod-Enter", run: () => this.run() },
+        { key: "Alt-Enter", run: () => void this.attempt() },
       ],
     });
     this.edits = new TreeEdits(this.tree, this.editor, this.reader, (text) => this.fail(text), () => this.mayWrite);
@@ -103,6 +105,7 @@ class Desk {
       { class: "controls" },
       this.mayWrite && this.save,
       this.context.robot && h("button", { type: "button", title: "Ctrl+Enter", onclick: () => this.run() }, t("write.run")),
+      h("button", { type: "button", title: "Alt+Enter", onclick: () => void this.attempt() }, t("write.try")),
       this.mayWrite && h("button", { type: "button", title: "Shift+Alt+F", onclick: () => void this.format() }, t("write.format")),
       this.mayWrite && h("button", { type: "button", title: "F2", onclick: () => this.rename() }, t("write.rename")),
       this.mayWrite && h("button", { type: "button", title: "Ctrl+Z", onclick: () => this.editor.undo() }, t("write.undo")),
@@ -260,6 +263,17 @@ class Desk {
         return "";
       });
     });
+  }
+
+  /** Runs the mission in the simulated world, on the server. */
+  private async attempt(): Promise<void> {
+    fill(this.state, t("write.trying"));
+    const film = await this.reader.service("try", this.editor.text, {});
+    this.tell();
+    if (!film.ok) return this.fail(film.messages?.[0]?.message ?? film.text ?? "");
+    const player = new Player(film as Film);
+    const dialog = show(t("write.try"), player.element, h("div", { class: "controls" }, h("button", { type: "button", onclick: () => dialog.close() }, t("close"))));
+    dialog.addEventListener("close", () => player.close());
   }
 
   /** Gives the mission to the robot. */
