@@ -33,3 +33,8 @@ export function moment(seconds: number): string {
   if (date.toDateString() === new Date().toDateString()) return time;
   return `${date.toLocaleDateString(language(), { weekday: "short", day: "numeric", month: "short" })} ${time.slice(0, 5)}`;
 }
+
+/** A text from outside, in which characters that only control how others are shown are seen. */
+export function visible(text: string): string {
+  return text.replace(/[\u0000-\u001f\u007f-\u009f\u200e\u200f\u202a-\u202e\u2066-\u2069]/g, "\ufffd");
+}

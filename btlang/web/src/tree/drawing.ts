@@ -1,7 +1,7 @@
 // One node as SVG. A status is a colour, a shape and a word, so that nobody needs the colour.
 import { s, set } from "../dom";
 import type { Status } from "../fleet";
-import { t } from "../texts";
+import { t, visible } from "../texts";
 import type { Item, TreeNode } from "./items";
 
 const LINE = 16;
@@ -40,7 +40,8 @@ function width(text: string, font: string): number {
   return found ?? text.length * 8;
 }
 
-function cut(text: string, font: string): string {
+function cut(given: string, font: string): string {
+  const text = visible(given);
   const whole = width(text, font);
   if (whole <= WIDEST) return text;
   return `${text.slice(0, Math.max(1, Math.floor((text.length * WIDEST) / whole) - 1)).trimEnd()}…`;
@@ -64,7 +65,7 @@ export class Drawing {
   element(item: Item, node: TreeNode, name: string, folded: number | null, toggle: () => void): SVGGElement {
     const texts = this.texts(node);
     const middle = item.height / 2;
-    const sign = s("g", { class: "fold", onclick: (event: Event) => { event.stopPropagation(); toggle(); }, transform: `translate(${item.width - 14} ${middle})` });
+    const sign = s("g", { class: "fold", "aria-hidden": "true", onclick: (event: Event) => { event.stopPropagation(); toggle(); }, transform: `translate(${item.width - 14} ${middle})` });
     if (folded !== null) {
       sign.append(s("circle", { r: 9 }), s("text", { y: 4 }, item.open ? "−" : folded > 99 ? "99" : folded));
     }
@@ -98,9 +99,11 @@ export class Drawing {
 export function showStatus(element: SVGGElement, status: Status, node: TreeNode): void {
   element.dataset["status"] = status;
   element.querySelector(".status")?.setAttribute("d", SHAPES[status]);
-  set(element, { "aria-label": `${label(node)}, ${t(`status.${status}`)}` });
+  const shown = element.querySelector(".words")?.textContent ?? "";
+  const name = shown.endsWith("…") ? `${shown} ${label(node)}` : label(node); // a name begins with what is seen of it
+  set(element, { "aria-label": `${name}, ${t(`status.${status}`)}` });
 }
 
 export function label(node: TreeNode): string {
-  return node.label && node.label !== node.id ? `${node.id}: ${node.label}` : node.id;
+  return visible(node.label && node.label !== node.id ? `${node.id}: ${node.label}` : node.id);
 }

@@ -24,7 +24,7 @@ export function inWords(event: Record<string, any>): string {
 
 /** The log, of which only the newest lines are shown. New ones come at its end. */
 export class LogView {
-  readonly element = h("ol", { class: "log", role: "log", "aria-label": t("log"), tabindex: 0 });
+  readonly element = h("ol", { class: "log", "aria-live": "polite", "aria-label": t("log"), tabindex: 0 });
   private last: Entry | null = null;
   private lastWords = "";
 

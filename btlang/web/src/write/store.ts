@@ -40,15 +40,11 @@ export class LibraryStore implements Store {
     this.query = context.robot ? `?robot=${encodeURIComponent(context.robot)}` : "";
   }
 
+  /** From the list, since asking for one that isn't there is an error. */
   async load(): Promise<Kept> {
-    try {
-      const { data } = await request("GET", this.path);
-      const latest = (data.missions as { text: string; number: number }[]).reduce((one, other) => (other.number > one.number ? other : one));
-      return { text: latest.text, revision: latest.number };
-    } catch (error) {
-      if (error instanceof RequestError && error.status === 409 && error.data.code === NOT_KEPT) return { text: "", revision: 0 };
-      throw error;
-    }
+    const { data } = await request("GET", `/api/missions${this.query}`);
+    const found = (data.missions as { name: string; text: string; number: number }[]).find(({ name }) => name === this.name);
+    return found ? { text: found.text, revision: found.number } : { text: "", revision: 0 };
   }
 
   async save(text: string, revision: Kept["revision"]): Promise<Kept> {
@@ -89,8 +85,6 @@ export class FileStore implements Store {
     return `/api/files/${encodeURIComponent(this.name)}`;
   }
 }
-
-const NOT_KEPT = "BT187";
 
 /** A refusal that comes with what is kept by now. */
 function stale(error: unknown): unknown {
