@@ -93,7 +93,7 @@ export class Fleet {
       robot.state = null;
     } else if (news.type === "robot") this.state(robot, news);
     else if (news.type === "map") robot.map = news as unknown as WorldMap;
-    else if (news.type === "scan") robot.scan = robot.state?.pose ? { ranges: news["ranges"], pose: robot.state.pose } : null;
+    else if (news.type === "scan") robot.scan = news["pose"] ? { ranges: news["ranges"], pose: news["pose"] } : null;
     else if (news.type === "change") {
       if (news["state"] === "underway") robot.task = news["task"];
       else if (robot.task === news["task"]) robot.task = 0;
