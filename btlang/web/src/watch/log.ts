@@ -24,7 +24,8 @@ export function inWords(event: Record<string, any>): string {
 
 /** The log, of which only the newest lines are shown. New ones come at its end. */
 export class LogView {
-  readonly element = h("ol", { class: "log", role: "log", "aria-label": t("log"), tabindex: 0 });
+  private lines = h("ol");
+  readonly element = h("div", { class: "log", role: "log", "aria-label": t("log"), tabindex: 0 }, this.lines);
   private last: Entry | null = null;
   private lastWords = "";
 
@@ -37,11 +38,11 @@ export class LogView {
       const words = inWords(entry.event);
       if (!words || words === this.lastWords) continue; // several parts of a robot say that they were stopped
       this.lastWords = words;
-      this.element.append(
+      this.lines.append(
         h("li", { class: BAD.has(entry.event["event"]) ? "bad" : null }, h("time", {}, moment(entry.wall)), h("span", { dir: "auto" }, words)),
       );
     }
-    while (this.element.childElementCount > NEWEST) this.element.firstElementChild!.remove();
+    while (this.lines.childElementCount > NEWEST) this.lines.firstElementChild!.remove();
     this.last = entries.at(-1) ?? this.last;
     if (atEnd) this.element.scrollTop = this.element.scrollHeight;
   }
