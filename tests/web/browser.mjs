@@ -8,7 +8,7 @@ import { chromium as playwright } from "playwright-core";
 
 chromium.setGraphicsMode = false;
 const axe = readFileSync(`${dirname(createRequire(import.meta.url).resolve("axe-core"))}/axe.min.js`, "utf8");
-const MISSING = /status of 401|ERR_(INTERNET_DISCONNECTED|CONNECTION_REFUSED)|WebSocket/;
+const REFUSED = /status of (400|401|409)|ERR_(INTERNET_DISCONNECTED|CONNECTION_REFUSED)|WebSocket/;
 
 /** Calls `act` with a page; then there must have been no error, no violation of the policy, and no request elsewhere. */
 export async function visit(base, act, options = {}) {
@@ -20,7 +20,7 @@ export async function visit(base, act, options = {}) {
     const page = await context.newPage();
     const faults = [];
     page.on("pageerror", (error) => faults.push(error.message));
-    page.on("console", (message) => message.type() === "error" && !MISSING.test(message.text()) && faults.push(message.text()));
+    page.on("console", (message) => message.type() === "error" && !REFUSED.test(message.text()) && faults.push(message.text()));
     page.on("request", (request) => !request.url().startsWith(base) && !request.url().startsWith("data:") && faults.push(request.url()));
     await act(page, context);
     assert.deepEqual(faults, []);
@@ -42,7 +42,7 @@ export async function logIn(page, base, name, password) {
 export async function accessible(page, where) {
   const { violations } = await page.evaluate(`${axe}; axe.run(document, { resultTypes: ["violations"] })`);
   const serious = violations.filter(({ impact }) => impact === "serious" || impact === "critical");
-  const shown = serious.map(({ id, nodes }) => `${where}: ${id}: ${nodes.map(({ html, failureSummary }) => `${html.slice(0, 150)} ${failureSummary}`).join("\n")}`);
+  const shown = serious.map(({ id, nodes }) => `${where}: ${id}: ${nodes.map(({ html, failureSummary }) => `${html.slice(0, 1500)} ${failureSummary}`).join("\n")}`);
   assert.deepEqual(shown, []);
 }
 

@@ -3,12 +3,26 @@
 from __future__ import annotations
 
 from pathlib import Path
+from typing import Any
 
+import pytest
+
+from tests.profiles import amount
 from tests.server.doors import PASSWORD
 from tests.web.packages import installed, node
 
 HERE = Path(__file__).parent
 
 
+def only_long(test: Any) -> Any:
+    return pytest.mark.long(pytest.mark.skipif(not amount(0, 1), reason="takes seconds: with -m long")(test))
+
+
 def test_log_in_watch_stop_release(robot: str) -> None:
     node(HERE / "scenario.mjs", robot, PASSWORD, folder=installed(HERE))
+
+
+@only_long
+def test_every_screen(robot: str, tmp_path: Path) -> None:
+    node(HERE / "screens.mjs", robot, PASSWORD, str(tmp_path), folder=installed(HERE))
+    assert len(list(tmp_path.glob("*.png"))) > 20

@@ -28,12 +28,19 @@ export class LogView {
   readonly element = h("div", { class: "log", role: "log", "aria-label": t("log"), tabindex: 0 }, this.lines);
   private last: Entry | null = null;
   private lastWords = "";
+  private atEnd = true;
+
+  constructor() {
+    this.element.addEventListener("scroll", () => {
+      const { scrollTop, clientHeight, scrollHeight } = this.element;
+      this.atEnd = scrollTop + clientHeight >= scrollHeight - 8;
+    });
+  }
 
   /** Adds what is new. */
   update(entries: Entry[]): void {
     const known = this.last ? entries.lastIndexOf(this.last) : -1;
     const fresh = entries.slice(known + 1).slice(-NEWEST);
-    const atEnd = this.element.scrollTop + this.element.clientHeight >= this.element.scrollHeight - 4;
     for (const entry of fresh) {
       const words = inWords(entry.event);
       if (!words || words === this.lastWords) continue; // several parts of a robot say that they were stopped
@@ -44,6 +51,6 @@ export class LogView {
     }
     while (this.lines.childElementCount > NEWEST) this.lines.firstElementChild!.remove();
     this.last = entries.at(-1) ?? this.last;
-    if (atEnd) this.element.scrollTop = this.element.scrollHeight;
+    if (this.atEnd && fresh.length) this.element.scrollTop = this.element.scrollHeight;
   }
 }

@@ -23,7 +23,7 @@ export function openWrite(context: Context): View {
   const check = (): Promise<void> =>
     attempt(async () => {
       const { messages } = await request("POST", "/api/check", { text: text.value, robot: context.robot });
-      return messages.length ? messages.map((each: any) => each.text ?? JSON.stringify(each)).join("\n") : t("write.fine");
+      return messages.length ? messages.map((each: any) => `${each.line}:${each.column}  ${each.message} ${each.hint}`).join("\n") : t("write.fine");
     });
   const keep = (): Promise<void> =>
     attempt(async () => {
