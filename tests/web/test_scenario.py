@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 from typing import Any
 
@@ -26,3 +27,14 @@ def test_log_in_watch_stop_release(robot: str) -> None:
 def test_every_screen(robot: str, tmp_path: Path) -> None:
     node(HERE / "screens.mjs", robot, PASSWORD, str(tmp_path), folder=installed(HERE))
     assert len(list(tmp_path.glob("*.png"))) > 20
+
+
+@only_long
+def test_large_trees(robot: str) -> None:
+    """Figures for a quiet machine are in docs/page.md; these bounds also hold on a busy one."""
+    figures = json.loads(node(HERE / "figures.mjs", robot, PASSWORD, folder=installed(HERE)))
+    print(figures)
+    for size, found in figures.items():
+        assert found["opened"] < 1000, (size, found)
+        assert found["still"]["frames"] > 20, (size, found)
+        assert found["drawn"] < 400, (size, found)

@@ -4,6 +4,7 @@ import type { Entry } from "../fleet";
 import { moment, t, type Key } from "../texts";
 
 const NEWEST = 200;
+const PERIOD = 200; // milliseconds
 const SAID: Record<string, Key> = {
   RUNNING: "log.running", SUCCESS: "log.success", FAILURE: "log.failure", SKIPPED: "log.skipped",
   say: "log.say", print: "log.print", navigate: "log.navigate", choose: "log.choose", arrive: "log.arrive", bump: "log.bump",
@@ -29,6 +30,8 @@ export class LogView {
   private last: Entry | null = null;
   private lastWords = "";
   private atEnd = true;
+  private entries: Entry[] = [];
+  private timer = 0;
 
   constructor() {
     this.element.addEventListener("scroll", () => {
@@ -37,8 +40,15 @@ export class LogView {
     });
   }
 
-  /** Adds what is new. */
+  /** Adds what is new, a few times in a second. */
   update(entries: Entry[]): void {
+    this.entries = entries;
+    this.timer ||= window.setTimeout(() => this.add(), PERIOD);
+  }
+
+  private add(): void {
+    this.timer = 0;
+    const { entries } = this;
     const known = this.last ? entries.lastIndexOf(this.last) : -1;
     const fresh = entries.slice(known + 1).slice(-NEWEST);
     for (const entry of fresh) {
