@@ -66,6 +66,7 @@ class Feed:
         self._current: _Watched | None = None
         self._state: RobotState | None = None
         self._scan: list[float | None] = []
+        self._scanned_from: list[float] | None = None
         self._next_scan = 0.0
         store.listeners.append(self.wake)
 
@@ -108,7 +109,7 @@ class Feed:
             self._state = event.state
             if self._watchers and event.wall >= self._next_scan:
                 self._next_scan = event.wall + _SCANS
-                self._scan = _scan(event)
+                self._scan, self._scanned_from = _scan(event), _place(event.state)
         elif isinstance(event, StatusesChanged):
             watched.changed = event.wall
         for watcher in tuple(self._watchers):
@@ -151,7 +152,7 @@ class Feed:
             yield {"type": "map", **self._world.as_map()}
         if self._scan != watcher.scan:
             watcher.scan = self._scan
-            yield {"type": "scan", "ranges": self._scan}
+            yield {"type": "scan", "ranges": self._scan, "pose": self._scanned_from}
 
 
 class _Watcher:
@@ -203,10 +204,13 @@ def _state(state: RobotState | None) -> dict[str, Any]:
     """Rounded, so that a robot at rest has nothing new."""
     if state is None:
         return {"pose": None, "battery": None, "left": None, "right": None}
-    pose = state.pose
-    place = None if pose is None else [round(pose.x, 3), round(pose.y, 3), round(pose.heading, 1)]
     battery = None if state.battery is None else round(state.battery, 1)
-    return {"pose": place, "battery": battery, "left": state.left, "right": state.right}
+    return {"pose": _place(state), "battery": battery, "left": state.left, "right": state.right}
+
+
+def _place(state: RobotState | None) -> list[float] | None:
+    pose = None if state is None else state.pose
+    return None if pose is None else [round(pose.x, 3), round(pose.y, 3), round(pose.heading, 1)]
 
 
 def _scan(event: PeriodPassed) -> list[float | None]:

@@ -1,19 +1,44 @@
-"""A first user in a browser, with a robot: writes a mission, mends it, changes its tree, tries, keeps, runs and stops it."""
+"""The page in a browser, with a robot and its server as people start them."""
 
 from __future__ import annotations
 
 import json
-import os
 from pathlib import Path
+from typing import Any
 
+import pytest
+
+from tests.profiles import amount
 from tests.server.doors import PASSWORD
 from tests.web.packages import installed, node
 
+HERE = Path(__file__).parent
 
-def test_a_first_user(robot: str) -> None:
-    here = Path(__file__).parent
-    pictures = os.environ.get("BTLANG_PICTURES")  # a folder
-    words = [robot, "ed", PASSWORD, *([pictures] if pictures else [])]
-    said = node(here / "scenario.mjs", *words, folder=installed(here))
-    problems = json.loads(said.splitlines()[-1])
-    assert not problems, "\n".join(problems)
+
+def only_long(test: Any) -> Any:
+    return pytest.mark.long(pytest.mark.skipif(not amount(0, 1), reason="takes seconds: with -m long")(test))
+
+
+def test_log_in_watch_stop_release(robot: str) -> None:
+    node(HERE / "scenario.mjs", robot, PASSWORD, folder=installed(HERE))
+
+
+def test_a_first_user_writes_a_mission(robot: str) -> None:
+    node(HERE / "first_user.mjs", robot, PASSWORD, folder=installed(HERE))
+
+
+@only_long
+def test_every_screen(robot: str, tmp_path: Path) -> None:
+    node(HERE / "screens.mjs", robot, PASSWORD, str(tmp_path), folder=installed(HERE))
+    assert len(list(tmp_path.glob("*.png"))) > 20
+
+
+@only_long
+def test_large_trees(robot: str) -> None:
+    """Figures for a quiet machine are in docs/page.md; these bounds also hold on a busy one."""
+    figures = json.loads(node(HERE / "figures.mjs", robot, PASSWORD, folder=installed(HERE)))
+    print(figures)
+    for size, found in figures.items():
+        assert found["opened"] < 1000, (size, found)
+        assert found["still"]["frames"] > 20, (size, found)
+        assert found["drawn"] < 400, (size, found)

@@ -22,6 +22,8 @@ export interface Run {
   task: number;
   nodes: [path: string, id: string, label: string, ports?: Record<string, string>][];
   statuses: Status[];
+  /** Which nodes are actions and conditions. */
+  leaves: boolean[];
 }
 
 export interface Entry {
@@ -93,7 +95,7 @@ export class Fleet {
       robot.state = null;
     } else if (news.type === "robot") this.state(robot, news);
     else if (news.type === "map") robot.map = news as unknown as WorldMap;
-    else if (news.type === "scan") robot.scan = robot.state?.pose ? { ranges: news["ranges"], pose: robot.state.pose } : null;
+    else if (news.type === "scan") robot.scan = news["pose"] ? { ranges: news["ranges"], pose: news["pose"] } : null;
     else if (news.type === "change") {
       if (news["state"] === "underway") robot.task = news["task"];
       else if (robot.task === news["task"]) robot.task = 0;
@@ -103,7 +105,7 @@ export class Fleet {
       if (!run) return;
       for (const [index, status] of news["changes"] as [number, Status][]) {
         run.statuses[index] = status;
-        if (!robot.fresh && run.task && isLeaf(run, index)) log(robot, { task: run.task, wall: news["t"], event: { event: status, name: run.nodes[index]![2] } });
+        if (!robot.fresh && run.task && run.leaves[index]) log(robot, { task: run.task, wall: news["t"], event: { event: status, name: run.nodes[index]![2] } });
       }
       robot.fresh = false;
     } else if (news.type === "event") note(robot, news);
@@ -127,7 +129,7 @@ export class Fleet {
 
 function begin(robot: Robot, news: News): void {
   const again = robot.run?.id === news["run"];
-  const run: Run = { id: news["run"], task: news["task"], nodes: news["nodes"], statuses: news["nodes"].map(() => "IDLE") };
+  const run: Run = { id: news["run"], task: news["task"], nodes: news["nodes"], statuses: news["nodes"].map(() => "IDLE"), leaves: leavesOf(news["nodes"]) };
   robot[run.task ? "run" : "rules"] = run;
   robot.task = run.task;
   if (again || !run.task) return;
@@ -143,14 +145,13 @@ function note(robot: Robot, news: News): void {
   log(robot, { task: news["task"], wall: event.wall, event });
 }
 
-function isLeaf(run: Run, index: number): boolean {
-  const next = run.nodes[index + 1];
-  return !next?.[0].startsWith(run.nodes[index]![0].replace(/\/?$/, "/"));
+function leavesOf(nodes: Run["nodes"]): boolean[] {
+  return nodes.map(([path], index) => !nodes[index + 1]?.[0].startsWith(path.replace(/\/?$/, "/")));
 }
 
 /** The numbers of the actions and conditions that run. */
 export function running(run: Run): number[] {
-  return run.statuses.flatMap((status, index) => (status === "RUNNING" && isLeaf(run, index) ? [index] : []));
+  return run.statuses.flatMap((status, index) => (status === "RUNNING" && run.leaves[index] ? [index] : []));
 }
 
 function log(robot: Robot, entry: Entry): void {

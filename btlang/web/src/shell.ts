@@ -11,6 +11,7 @@ import { address, type Open, type View } from "./view";
 
 const ALL = ["tree", "tasks", "events", "robot", "map"];
 const TABS = { watch: "tab.watch", tasks: "tab.tasks", write: "tab.write", runs: "tab.runs" } as const;
+const LATEST = "btlang.robot";
 type Tab = keyof typeof TABS;
 const OPENERS: Record<Tab, () => Promise<Open>> = {
   watch: async () => (await import("./watch/watch")).openWatch,
@@ -80,7 +81,8 @@ export class Shell {
   private async route(): Promise<void> {
     const [first = "robots", ...rest] = location.hash.slice(2).split("/").filter(Boolean).map(decoded);
     if (first === "robots") this.robot = rest.shift() ?? "";
-    else if (!this.robot) this.robot = [...this.fleet.robots.keys()][0] ?? "";
+    else this.robot ||= sessionStorage.getItem(LATEST) ?? [...this.fleet.robots.keys()][0] ?? "";
+    sessionStorage.setItem(LATEST, this.robot);
     const tab: Tab | null = first === "write" || first === "runs" ? first : !this.robot ? null : rest[0] === "tasks" ? "tasks" : "watch";
     document.body.classList.toggle("file", first === "write" && rest[0] === "file"); // of `btc edit`, which has no robots
     this.listen(tab);

@@ -26,12 +26,17 @@ export function t(key: Key, values: Record<string, string | number> = {}): strin
   return text.replace(/\{(\w+)\}/g, (whole, name: string) => String(values[name] ?? whole));
 }
 
+/** How people here write times, in the language of the page. */
+function locale(): string {
+  return navigator.languages.find((each) => each.startsWith(language())) ?? language();
+}
+
 /** A moment, given in seconds since 1970: the time, with the day if that isn't today. */
 export function moment(seconds: number): string {
   const date = new Date(seconds * 1000);
-  const time = date.toLocaleTimeString(language(), { hour: "2-digit", minute: "2-digit", second: "2-digit" });
+  const time = date.toLocaleTimeString(locale(), { hour: "2-digit", minute: "2-digit", second: "2-digit" });
   if (date.toDateString() === new Date().toDateString()) return time;
-  return `${date.toLocaleDateString(language(), { weekday: "short", day: "numeric", month: "short" })} ${time.slice(0, 5)}`;
+  return `${date.toLocaleDateString(locale(), { weekday: "short", day: "numeric", month: "short" })} ${time.slice(0, 5)}`;
 }
 
 /** A text from outside, in which characters that only control how others are shown are seen. */

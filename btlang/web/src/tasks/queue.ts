@@ -52,7 +52,8 @@ export class Queue {
     this.unwatch();
   }
 
-  private async ask(): Promise<void> {
+  /** Asks the robot now. */
+  async ask(): Promise<void> {
     if (this.asking) {
       this.again = true;
       return;

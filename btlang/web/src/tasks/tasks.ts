@@ -27,7 +27,7 @@ export function openTasks(context: Context): View {
     } catch (error) {
       fill(problem, (error as Error).message);
     }
-    await listSchedules();
+    await Promise.all([listSchedules(), queue.ask()]); // a new order is no change of a task
   };
   const button = (key: Key, run: () => Promise<void>, what: string): HTMLElement =>
     h("button", { type: "button", "aria-label": `${t(key)}: ${what}`, onclick: () => void run() }, t(key));

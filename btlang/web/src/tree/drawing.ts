@@ -23,7 +23,7 @@ const SHAPES: Record<Status, string> = {
 /** What control nodes are drawn with, as on whiteboards. */
 const SIGNS: Record<string, string> = {
   Sequence: "→", ReactiveSequence: "⇢", SequenceWithMemory: "→*", Fallback: "?", ReactiveFallback: "?⇢", Parallel: "⇉",
-  ParallelAll: "⇉", Inverter: "¬", IfThenElse: "if", WhileDoElse: "while", SubTree: "▣",
+  ParallelAll: "⇉", Inverter: "¬", SubTree: "▣",
 };
 
 const pen = document.createElement("canvas").getContext("2d");
@@ -72,10 +72,10 @@ export class Drawing {
     return s(
       "g",
       { class: "node", id: name, transform: `translate(${item.x} ${item.y})`, role: "treeitem" },
-      s("title", {}, [label(node), ...node.ports.map(([port, value]) => `${port} = ${value}`)].join("\n")),
+      s("title", {}, whole(node)),
       s("rect", { width: item.width, height: item.height, rx: 7 }),
       s("path", { class: "status", transform: `translate(16 ${middle})` }),
-      ...texts.map(({ text, kind }, line) => s("text", { class: kind, x: GLYPH, y: TOP + LINE * line + 12 }, text)),
+      ...texts.flatMap(({ text, kind }, line) => [s("text", { class: kind, x: GLYPH, y: TOP + LINE * line + 12 }, text), " "]), // spaces part words for screen readers
       folded !== null && sign,
     );
   }
@@ -87,8 +87,8 @@ export class Drawing {
     const words = node.label || node.id;
     const texts = [{ text: cut(sign ? `${sign}  ${words}` : words, main), font: main, kind: "words" }];
     if (!this.details) return texts;
-    const conditions = node.ports.filter(([port]) => port.startsWith("_"));
-    const ports = node.ports.filter(([port]) => !port.startsWith("_"));
+    const conditions = portsOf(node).filter(([port]) => port.startsWith("_"));
+    const ports = portsOf(node).filter(([port]) => !port.startsWith("_"));
     for (const [port, value] of conditions) texts.push({ text: cut(`${port.slice(1)}: ${value}`, small), font: small, kind: "condition" });
     for (const [port, value] of ports.slice(0, MOST_PORTS)) texts.push({ text: cut(`${port} = ${value}`, small), font: small, kind: "port" });
     return texts;
@@ -100,10 +100,20 @@ export function showStatus(element: SVGGElement, status: Status, node: TreeNode)
   element.dataset["status"] = status;
   element.querySelector(".status")?.setAttribute("d", SHAPES[status]);
   const shown = element.querySelector(".words")?.textContent ?? "";
-  const name = shown.endsWith("…") ? `${shown} ${label(node)}` : label(node); // a name begins with what is seen of it
+  const name = shown.endsWith("…") ? `${shown} ${whole(node)}` : whole(node); // a name begins with what is seen of it
   set(element, { "aria-label": `${name}, ${t(`status.${status}`)}` });
 }
 
+/** With all that is cut in the drawing, and what is only shown on demand. */
+function whole(node: TreeNode): string {
+  return [label(node), ...portsOf(node).map(([port, value]) => visible(`${port} = ${value}`))].join("\n");
+}
+
 export function label(node: TreeNode): string {
-  return visible(node.label && node.label !== node.id ? `${node.id}: ${node.label}` : node.id);
+  return visible(node.label.startsWith(node.id) ? node.label : node.label ? `${node.id}: ${node.label}` : node.id);
+}
+
+/** Those that the words of a node don't have already, as in "Repeat num_cycles=2". */
+function portsOf(node: TreeNode): TreeNode["ports"] {
+  return node.ports.filter(([port, value]) => !node.label.includes(`${port}=${value}`));
 }

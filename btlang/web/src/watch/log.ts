@@ -4,6 +4,7 @@ import type { Entry } from "../fleet";
 import { moment, t, type Key } from "../texts";
 
 const NEWEST = 200;
+const PERIOD = 200; // milliseconds
 const SAID: Record<string, Key> = {
   RUNNING: "log.running", SUCCESS: "log.success", FAILURE: "log.failure", SKIPPED: "log.skipped",
   say: "log.say", print: "log.print", navigate: "log.navigate", choose: "log.choose", arrive: "log.arrive", bump: "log.bump",
@@ -24,25 +25,42 @@ export function inWords(event: Record<string, any>): string {
 
 /** The log, of which only the newest lines are shown. New ones come at its end. */
 export class LogView {
-  readonly element = h("ol", { class: "log", "aria-live": "polite", "aria-label": t("log"), tabindex: 0 });
+  private lines = h("ol");
+  readonly element = h("div", { class: "log", role: "log", "aria-label": t("log"), tabindex: 0 }, this.lines);
   private last: Entry | null = null;
   private lastWords = "";
+  private atEnd = true;
+  private entries: Entry[] = [];
+  private timer = 0;
 
-  /** Adds what is new. */
+  constructor() {
+    this.element.addEventListener("scroll", () => {
+      const { scrollTop, clientHeight, scrollHeight } = this.element;
+      this.atEnd = scrollTop + clientHeight >= scrollHeight - 8;
+    });
+  }
+
+  /** Adds what is new, a few times in a second. */
   update(entries: Entry[]): void {
+    this.entries = entries;
+    this.timer ||= window.setTimeout(() => this.add(), PERIOD);
+  }
+
+  private add(): void {
+    this.timer = 0;
+    const { entries } = this;
     const known = this.last ? entries.lastIndexOf(this.last) : -1;
     const fresh = entries.slice(known + 1).slice(-NEWEST);
-    const atEnd = this.element.scrollTop + this.element.clientHeight >= this.element.scrollHeight - 4;
     for (const entry of fresh) {
       const words = inWords(entry.event);
       if (!words || words === this.lastWords) continue; // several parts of a robot say that they were stopped
       this.lastWords = words;
-      this.element.append(
+      this.lines.append(
         h("li", { class: BAD.has(entry.event["event"]) ? "bad" : null }, h("time", {}, moment(entry.wall)), h("span", { dir: "auto" }, words)),
       );
     }
-    while (this.element.childElementCount > NEWEST) this.element.firstElementChild!.remove();
+    while (this.lines.childElementCount > NEWEST) this.lines.firstElementChild!.remove();
     this.last = entries.at(-1) ?? this.last;
-    if (atEnd) this.element.scrollTop = this.element.scrollHeight;
+    if (this.atEnd && fresh.length) this.element.scrollTop = this.element.scrollHeight;
   }
 }

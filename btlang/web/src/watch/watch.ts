@@ -12,6 +12,7 @@ import { Failure } from "./failure";
 import { LogView } from "./log";
 import { MapView } from "./map";
 
+const MOST_RUNNING = 12; // that are listed
 const RESTING = 2; // nodes of the tree of a robot that has nothing to do
 
 /** See `View`. */
@@ -101,7 +102,7 @@ class Watch implements View {
     const shown = JSON.stringify([run?.id, leaves]);
     if (this.running.dataset["shown"] === shown) return;
     this.running.dataset["shown"] = shown;
-    fill(this.running, ...leaves.map((leaf) => h("li", { dir: "auto" }, run!.nodes[leaf]![2])));
+    fill(this.running, ...leaves.slice(0, MOST_RUNNING).map((leaf) => h("li", { dir: "auto" }, run!.nodes[leaf]![2])));
     if (this.follow.getAttribute("aria-pressed") === "true" && leaves.length) this.tree.bring(leaves[0]!);
   }
 

@@ -1,0 +1,61 @@
+// A browser without a window, for the scenarios.
+import assert from "node:assert/strict";
+import { readFileSync } from "node:fs";
+import { createRequire } from "node:module";
+import { dirname } from "node:path";
+import chromium from "@sparticuz/chromium";
+import { chromium as playwright } from "playwright-core";
+
+chromium.setGraphicsMode = false;
+const axe = readFileSync(`${dirname(createRequire(import.meta.url).resolve("axe-core"))}/axe.min.js`, "utf8");
+const REFUSED = /status of (400|401|409)|ERR_(INTERNET_DISCONNECTED|CONNECTION_REFUSED)|WebSocket/;
+
+/** Calls `act` with a page; then there must have been no error, no violation of the policy, and no request elsewhere. */
+export async function visit(base, act, options = {}) {
+  const args = chromium.args.filter((each) => each !== "--single-process");
+  const browser = await playwright.launch({ args: [...args, "--no-sandbox", "--disable-gpu"], executablePath: await chromium.executablePath(), headless: true });
+  try {
+    const context = await browser.newContext({ ignoreHTTPSErrors: true, viewport: { width: 1280, height: 800 }, locale: "en-GB", ...options });
+    context.setDefaultTimeout(15_000);
+    const page = await context.newPage();
+    const faults = [];
+    page.on("pageerror", (error) => faults.push(error.message));
+    page.on("console", (message) => message.type() === "error" && !REFUSED.test(message.text()) && faults.push(message.text()));
+    page.on("request", (request) => !request.url().startsWith(base) && !request.url().startsWith("data:") && faults.push(request.url()));
+    await act(page, context);
+    assert.deepEqual(faults, []);
+  } finally {
+    await browser.close();
+  }
+}
+
+/** Logs in; the page then shows the robots. */
+export async function logIn(page, base, name, password) {
+  await page.goto(base);
+  await page.fill("[name=name]", name);
+  await page.fill("[name=password]", password);
+  await page.click("form button");
+  await page.waitForSelector(".robots a");
+}
+
+/** Fails where axe finds a serious fault of accessibility. */
+export async function accessible(page, where) {
+  const { violations } = await page.evaluate(`${axe}; axe.run(document, { resultTypes: ["violations"] })`);
+  const serious = violations.filter(({ impact }) => impact === "serious" || impact === "critical");
+  const shown = serious.map(({ id, nodes }) => `${where}: ${id}: ${nodes.map(({ html, failureSummary }) => `${html.slice(0, 1500)} ${failureSummary}`).join("\n")}`);
+  assert.deepEqual(shown, []);
+}
+
+/** Gives the robot of the page a mission. */
+export async function submit(page, text) {
+  await page.click("summary");
+  await page.fill(".submit textarea", text);
+  await page.click(".submit .primary");
+  await page.waitForFunction(() => document.querySelector(".submit .said").textContent);
+  await page.click("summary");
+}
+
+/** Nothing is wider than the window. */
+export async function fits(page) {
+  assert.ok((await page.evaluate(() => document.documentElement.scrollWidth - innerWidth)) <= 0, "it's wider than the window");
+}

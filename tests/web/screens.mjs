@@ -1,0 +1,113 @@
+// Every screen, with the mouse and with the keyboard, in two languages and both themes. Pictures go into a folder.
+import assert from "node:assert/strict";
+import { accessible, fits, logIn, submit, visit } from "./browser.mjs";
+
+const [base, password, pictures] = process.argv.slice(2);
+const NARROW = { width: 360, height: 740 };
+const WIDE = { width: 1280, height: 800 };
+
+await visit(base, async (page) => {
+  const until = (text, where = "main") => page.waitForFunction(([text, where]) => [...document.querySelectorAll(where)].some((each) => each.textContent.includes(text)), [text, where]);
+  const current = () => page.evaluate(() => document.getElementById(document.querySelector("[role=tree]").getAttribute("aria-activedescendant"))?.getAttribute("aria-label"));
+  const look = async (name) => {
+    for (const theme of ["dark", "light"]) {
+      for (const size of [NARROW, WIDE]) {
+        await page.evaluate((theme) => (document.documentElement.dataset.theme = theme), theme);
+        await page.setViewportSize(size);
+        await page.waitForTimeout(300);
+        await fits(page);
+        await page.screenshot({ path: `${pictures}/${name}_${theme}_${size.width}.png` });
+        await accessible(page, `${name}, ${theme}, ${size.width}`);
+      }
+    }
+  };
+
+  await page.goto(base);
+  await page.fill("[name=name]", "olga");
+  await page.fill("[name=password]", "a wrong one");
+  await page.click("form button");
+  await until("The name or the password is wrong.");
+  await look("log_in");
+  await logIn(page, base, "olga", password);
+  await look("robots");
+
+  // Why a mission failed, with its words.
+  await page.click(".robots a");
+  await submit(page, "# It can't work.\nwave\nsay hello then fail");
+  await until("say hello then fail", ".failure mark");
+  await look("failure");
+
+  // The tree, by keys alone.
+  await submit(page, "repeat 2 times: wave then nod\nif the battery is low then say \"Help\"\ngo to the cafe\nwait 10 minutes");
+  await until("go to cafe", ".running");
+  await page.focus("[role=tree]");
+  await page.keyboard.press("Home");
+  assert.match(await current(), /^Sequence, running/);
+  await page.keyboard.press("ArrowRight");
+  assert.match(await current(), /^Repeat/);
+  await page.keyboard.press("ArrowLeft");
+  assert.equal(await page.getAttribute(".node[aria-selected=true]", "aria-expanded"), "false");
+  await page.keyboard.press("ArrowRight");
+  await page.keyboard.press("ArrowRight");
+  assert.match(await current(), /^Sequence/);
+  await page.keyboard.press("End");
+  assert.match(await current(), /wait/);
+  await page.keyboard.type("go");
+  assert.match(await current(), /go to cafe/);
+  await page.keyboard.press("/");
+  await page.keyboard.type("nod");
+  await page.keyboard.press("Enter");
+  assert.match(await current(), /nod/);
+  await until("1/1", ".count");
+  await page.click(".toolbar button[aria-pressed]");
+  await page.waitForSelector(".node .port");
+  await page.click(".toolbar button[aria-label='Turn the tree']");
+  await page.click(".toolbar button[aria-label='Fit into the window']");
+  await look("watch");
+  await page.click(".controls button");
+  await until("Go on", ".controls");
+  await until("Paused", ".pill");
+  await page.click(".controls button");
+  await until("Pause", ".controls");
+
+  // The queue and a schedule.
+  await page.click(".tabs a[href$='/tasks']");
+  await page.waitForSelector(".submit");
+  for (const words of ["wave", "nod"]) {
+    await page.fill(".submit textarea", words);
+    await page.click(".submit .primary");
+    await until("is queued", ".submit .said");
+    await until(words, ".tasks .what");
+  }
+  await page.click("button[aria-label='Earlier: nod']");
+  await page.waitForFunction(() => [...document.querySelectorAll("ol.tasks .what")].map((each) => each.textContent).join().endsWith("nod,wave"));
+  await page.fill(".submit textarea", "wave");
+  await page.fill(".submit input", "every day at 25:00");
+  await page.click(".submit .primary");
+  await page.waitForFunction(() => document.querySelector(".submit .problem").textContent);
+  await page.fill(".submit input", "every day at 9:00");
+  await page.click(".submit .primary");
+  await until("every day at", "ul.tasks .pill");
+  await look("tasks");
+  await page.click("button[aria-label^='Remove']");
+  await until("There are no schedules.");
+  for (const words of ["wave", "nod"]) await page.click(`ol.tasks button[aria-label='Cancel: ${words}']`);
+  await page.waitForFunction(() => document.querySelectorAll("ol.tasks > .card").length === 1);
+
+  await page.click(".tabs a[href$='/runs']");
+  await until("cancelled", ".pill");
+  await look("look_back");
+  await page.click(".tabs a[href$='/write']");
+  await page.fill(".mission", "wave then ndo");
+  await page.click(".controls button");
+  await until("ndo", ".said");
+  await look("write");
+
+  // Another language, and somebody who leaves.
+  await page.click(".user");
+  await page.keyboard.press("Enter");
+  await until("Zusehen", ".tabs");
+  await page.click(".user");
+  await page.click("[role=menuitem]:last-child");
+  await page.waitForSelector("[name=password]");
+});
