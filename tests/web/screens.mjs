@@ -28,7 +28,7 @@ await visit(base, async (page) => {
   await page.click("form button");
   await until("The name or the password is wrong.");
   await look("log_in");
-  await logIn(page, base, "olga", password);
+  await logIn(page, base, "ed", password);
   await look("robots");
 
   // Why a mission failed, with its words.
@@ -98,9 +98,18 @@ await visit(base, async (page) => {
   await until("cancelled", ".pill");
   await look("look_back");
   await page.click(".tabs a[href$='/write']");
-  await page.fill(".mission", "wave then ndo");
-  await page.click(".controls button");
-  await until("ndo", ".said");
+  await page.waitForSelector(".page ul");
+  await page.goBack();
+  await page.getByRole("link", { name: "Replay" }).click();
+  await page.waitForSelector(".film .outcome.bad");
+  assert.equal(await page.textContent(".film-text mark"), "fail");
+  await look("film");
+  await page.click(".tabs a[href$='/write']");
+  await page.evaluate(() => (location.hash = "#/write/tour"));
+  await page.waitForSelector(".cm-content[contenteditable=true]");
+  await page.click(".cm-content");
+  await page.keyboard.insertText("wave then ndo");
+  await until("ndo", ".messages");
   await look("write");
 
   // Another language, and somebody who leaves.

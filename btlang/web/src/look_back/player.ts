@@ -59,7 +59,7 @@ export class Player {
     this.element = h(
       "section",
       { class: "film" },
-      h("p", { class: film.failed >= 0 || film.stopped ? "outcome bad" : "outcome", lang: "en" }, [film.stopped && `${t("film.stopped")} ${film.stopped}.`, film.why, film.is_cut && t("film.cut")].filter(Boolean).join("\n")),
+      h("p", { class: film.failed >= 0 || film.stopped ? "outcome bad" : "outcome", lang: "en", tabindex: 0 }, [film.stopped && `${t("film.stopped")} ${film.stopped}.`, film.why, film.is_cut && t("film.cut")].filter(Boolean).join("\n")),
       h("div", { class: "panes" }, h("div", { class: "stage card" }, this.tree.element), h("div", { class: "side" }, h("div", { class: "card place" }, this.map.canvas), h("div", { class: "card events" }, h("h2", {}, t("log")), this.story), film.text && h("div", { class: "card" }, this.words))),
       h("div", { class: "timeline card" }, this.button, this.slider, this.clock, this.speed, failure),
     );
