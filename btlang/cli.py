@@ -368,6 +368,7 @@ _ELSEWHERE = {
     "task": "btlang.task.command",
     "serve": "btlang.server.command",
     "user": "btlang.server.user_command",
+    "edit": "btlang.server.edit_command",
     "sim-ros": "btlang.ros.simulator.command",
     "ros-node": "btlang.ros.mission.command",
     "serve-actions": "btlang.ros.serving.command",

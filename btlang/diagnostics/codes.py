@@ -6,7 +6,7 @@ BT07x worlds, BT08x the Python behind the words and what else has to be installe
 BT10x ROS 2, BT11x missions as ROS 2 nodes, BT12x trees in XML, BT13x trees that were not written as missions,
 BT14x nodes said by their ids, BT15x lists, words that stand for names, and what is forbidden,
 BT16x times of day, BT17x sentences that people mean in two ways, BT18x tests and robots
-that are up, BT19x tasks and schedules.
+that are up, BT19x tasks and schedules, BT20x the server, BT21x editors.
 
 BT05x and others that are warnings have a `name`, by which a mission silences them: `# allow: two readings`.
 Each code has a page in `pages/`, which `btc explain` prints.
@@ -196,10 +196,12 @@ _ALL = (
     Code("BT197", "The tasks of {place} are run already by {owner}.", "End that first, or use another store."),
     Code("BT198", "The command '{name}' can't be read: {reason}."),
     Code("BT199", "The robot '{name}' doesn't answer.", "See whether it is up: btc robot status"),
-    Code("BT200", "btc serve needs the Python package {package}, which isn't installed.",
+    Code("BT200", "btc {verb} needs the Python package {package}, which isn't installed.",
          "Install it: pip install 'btlang[server]'"),
     Code("BT201", "The server can't listen at {place}: {reason}."),
     Code("BT210", "'{words}' can't be renamed: {reason}."),
+    Code("BT211", "This installation of btlang has no page to edit with.",
+         "Install it again where npm can be reached: pip install --force-reinstall 'btlang[server]'"),
 )  # fmt: skip
 
 CODES = {entry.code: entry for entry in _ALL}

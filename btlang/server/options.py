@@ -1,4 +1,4 @@
-"""The options of `btc serve` and `btc user`."""
+"""The options of `btc serve`, `btc user` and `btc edit`."""
 
 from __future__ import annotations
 
@@ -28,6 +28,15 @@ def add_serve_options(parser: argparse.ArgumentParser) -> None:
         metavar="NAME",
         help="a name of ROS 2 that clients of rosbridge may use, such as '/btlang/*'; may be given several times",
     )
+
+
+def add_edit_options(parser: argparse.ArgumentParser) -> None:
+    """Those of `btc edit` that are not those of all words and worlds."""
+    parser.add_argument("--port", type=int, default=0, metavar="PORT", help="where it listens (default: a free one)")
+    parser.add_argument(
+        "--no-browser", action="store_false", dest="browser", help="print the address without opening the browser"
+    )
+    parser.add_argument("file", metavar="FILE", help="mission, there or not")
 
 
 def add_user_options(parser: argparse.ArgumentParser) -> None:

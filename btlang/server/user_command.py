@@ -23,7 +23,7 @@ if TYPE_CHECKING:
 
 def serve(options: argparse.Namespace) -> int:
     """Does the verb `user`; returns the exit code. Raises MissionError."""
-    require_server()
+    require_server("user")
     from btlang.server.accounts import Accounts
 
     accounts = Accounts(server_folder(), tell_changes)

@@ -28,11 +28,11 @@ _ENDED = 0, 2, 130, 143
 _PACKAGES = ("argon2", "cryptography", "itsdangerous", "starlette", "uvicorn", "websockets")
 
 
-def require_server() -> None:
-    """Raises MissionError (BT200) if a package of the extra `server` isn't installed."""
+def require_server(verb: str = "serve") -> None:
+    """Raises MissionError (BT200) if a package of the extra `server` isn't installed; `verb` is what needs it."""
     for package in _PACKAGES:
         if find_spec(package) is None:
-            raise MissionError([diagnostic("BT200", NOWHERE, package=package)])
+            raise MissionError([diagnostic("BT200", NOWHERE, verb=verb, package=package)])
 
 
 class Companion:

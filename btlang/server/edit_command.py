@@ -1,0 +1,17 @@
+"""What `btc edit` does: a page for one file, until Ctrl-C."""
+
+from __future__ import annotations
+
+from btlang.task.companion import require_server
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    import argparse
+
+
+def serve(options: argparse.Namespace) -> int:
+    """Does the verb `edit`; returns the exit code. Raises MissionError."""
+    require_server("edit")
+    from btlang.server.editor import edit
+
+    return edit(options)

@@ -1,0 +1,291 @@
+"""`btc edit`: one user, one file, nobody else."""
+
+from __future__ import annotations
+
+import os
+import re
+import signal
+import stat
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from contextlib import closing
+from pathlib import Path
+from typing import Any
+
+import pytest
+from websockets.exceptions import InvalidStatus
+
+from btlang.cli import main
+from btlang.editing.words import Words
+from btlang.server import editor
+from btlang.server.accounts import Accounts
+from btlang.server.files import Files
+from tests.server.doors import Door, Reply
+from tests.task.layers import LONG, wait_until
+
+_CODE = """
+import sys
+from pathlib import Path
+from btlang.server import editor
+editor.PAGE = Path(__import__("btlang").__file__)
+from btlang.cli import main
+sys.exit(main(sys.argv[1:]))
+"""  # whether the page is built or not
+MISSION = 'include "tea.txt"\npour tea then wave\n'
+
+
+class Editor(Door):
+    """`btc edit` for a file of a folder."""
+
+    def __init__(self, folder: Path, *options: str, **environment: str) -> None:
+        self.folder, self.tls = folder, None
+        self.environment = {**os.environ, "XDG_RUNTIME_DIR": str(folder), "TMPDIR": str(folder), **environment}
+        self._command = [sys.executable, "-c", _CODE, "edit", str(folder / "tour.txt"), *options]
+        self.start("Edit ")
+        address = re.search(r"http://127\.0\.0\.1:(\d+)/login#token=(\S+)", self.lines[0])
+        assert address is not None, self.lines
+        self.port, self.token = int(address[1]), address[2]
+
+    def enter(self) -> dict[str, str]:
+        """The headers of the page."""
+        reply = self.ask("POST", "/api/login", {"token": self.token})
+        assert reply.status == 200, reply.body
+        return {"cookie": reply.headers["set-cookie"].partition(";")[0], "x_csrf_token": reply.data["csrf"]}
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    return tmp_path_factory.mktemp("e")
+
+
+@pytest.fixture(scope="module")
+def edited(folder: Path) -> Iterator[Editor]:
+    write(folder)
+    with closing(Editor(folder, "--no-browser")) as up:
+        up.page = up.enter()  # type: ignore[attr-defined]
+        yield up
+
+
+def write(folder: Path) -> None:
+    (folder / "tour.txt").write_text(MISSION)
+    (folder / "tea.txt").write_text("pour tea is say tea\n")
+    (folder / "secret.txt").write_text("root:x\n")
+
+
+def save(up: Any, text: str, revision: str, name: str = "tour.txt", **headers: str) -> Reply:
+    reply: Reply = up.ask("PUT", f"/api/files/{name}", {"text": text, "revision": revision}, **{**up.page, **headers})
+    return reply
+
+
+def opened(up: Any, name: str = "tour.txt") -> Any:
+    return up.ask("GET", f"/api/files/{name}", **up.page).data["data"]
+
+
+def test_the_file_is_read_saved_and_shown_with_what_it_includes(edited: Any, folder: Path) -> None:
+    write(folder)
+    me = edited.ask("GET", "/api/me", **edited.page).data
+    assert (me["user"], me["role"]) == ("you", "administrator")
+    listed = edited.ask("GET", "/api/files", **edited.page).data["data"]["files"]
+    assert listed == [{"name": "tour.txt", "saves": True}, {"name": "tea.txt", "saves": False}]
+    assert opened(edited, "tea.txt")["text"] == "pour tea is say tea\n"
+    now = opened(edited)
+    assert now["text"] == MISSION
+    shown = edited.ask("POST", "/api/document", {"text": MISSION}, **edited.page).data
+    assert [each["label"] for each in shown["nodes"]] == ["Sequence", "pour tea", "wave", "say tea"]
+    saved = save(edited, MISSION + "nod\n", now["revision"]).data
+    assert saved["ok"]
+    assert (folder / "tour.txt").read_text() == MISSION + "nod\n"
+    assert opened(edited)["revision"] == saved["data"]["revision"]
+
+
+def test_a_stale_save_is_refused_with_the_difference(edited: Any, folder: Path) -> None:
+    write(folder)
+    before = opened(edited)["revision"]
+    (folder / "tour.txt").write_text(MISSION + "dock\n")
+    refused = save(edited, MISSION + "nod\n", before)
+    assert (refused.status, refused.data["code"]) == (409, "BT187")
+    assert "-dock\n+nod" in refused.data["data"]["diff"]
+    assert (folder / "tour.txt").read_text() == MISSION + "dock\n"
+    assert save(edited, MISSION + "nod\n", refused.data["data"]["revision"]).status == 200
+    together = opened(edited)["revision"]
+    texts = [f"wave\nsay {number}\n" for number in range(4)]
+    replies: list[Reply] = []
+    threads = [
+        threading.Thread(target=lambda text=text: replies.append(save(edited, text, together))) for text in texts
+    ]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join(LONG)
+    assert sorted(each.status for each in replies) == [200, 409, 409, 409]
+
+
+def test_a_file_that_vanished_is_made_again_only_if_asked(edited: Any, folder: Path) -> None:
+    write(folder)
+    before = opened(edited)["revision"]
+    (folder / "tour.txt").unlink()
+    assert opened(edited) == {"text": "", "revision": ""}
+    refused = save(edited, "wave\n", before)
+    assert (refused.status, refused.data["data"]["revision"]) == (409, "")
+    assert save(edited, "wave\n", "").status == 200
+    assert (folder / "tour.txt").read_text() == "wave\n"
+
+
+def test_files_that_cannot_be_used_have_their_codes(edited: Any, folder: Path) -> None:
+    write(folder)
+    file = folder / "tour.txt"
+    file.write_bytes(b"wave\xff\n")
+    for reply in (edited.ask("GET", "/api/files/tour.txt", **edited.page), save(edited, "nod\n", "")):
+        assert (reply.status, reply.data["code"]) == (400, "BT002")
+    assert file.read_bytes() == b"wave\xff\n"
+    file.write_text("x" * 200_001)
+    assert edited.ask("GET", "/api/files/tour.txt", **edited.page).data["code"] == "BT001"
+    file.unlink()
+    file.mkdir()
+    assert save(edited, "nod\n", "").data["code"] == "BT001"
+    file.rmdir()
+    os.mkfifo(file)
+    assert edited.ask("GET", "/api/files/tour.txt", **edited.page).data["code"] == "BT001"
+    file.unlink()
+
+
+def test_line_ends_and_modes_stay(edited: Any, folder: Path) -> None:
+    file = folder / "tour.txt"
+    file.write_bytes(b"\xef\xbb\xbfwave\r\nnod\r\n")
+    file.chmod(0o640)
+    assert save(edited, "wave\ndock\n", opened(edited)["revision"]).status == 200
+    assert file.read_bytes() == b"\xef\xbb\xbfwave\r\ndock\r\n"
+    assert stat.S_IMODE(file.stat().st_mode) == 0o640
+    assert save(edited, "wave\n", opened(edited)["revision"]).status == 200
+    assert [path.name for path in folder.iterdir() if path.suffix == ".new"] == []
+
+
+@pytest.mark.skipif(os.geteuid() == 0, reason="root may write anything")
+def test_a_protected_file_is_shown_and_not_saved(edited: Any, folder: Path) -> None:
+    write(folder)
+    (folder / "tour.txt").chmod(0o400)
+    assert opened(edited)["text"] == MISSION
+    reply = save(edited, "nod\n", opened(edited)["revision"])
+    assert (reply.status, reply.data["code"]) == (400, "BT009")
+    (folder / "tour.txt").chmod(0o600)
+
+
+def test_no_other_file_is_reached(edited: Any, folder: Path) -> None:
+    write(folder)
+    for name in (
+        "secret.txt",
+        "../tour.txt",
+        "%2e%2e/tour.txt",
+        "/etc/passwd",
+        str(folder / "secret.txt"),
+        "tour.txt%00",
+        "",
+    ):
+        reply = edited.ask("GET", f"/api/files/{name}", **edited.page)
+        assert "root:" not in str(reply.body), name
+        assert reply.status in (404, 307), name
+        assert save(edited, "nod\n", "", name).status in (403, 404, 307), name
+    assert save(edited, "nod\n", opened(edited, "tea.txt")["revision"], "tea.txt").status == 403
+    (folder / "tour.txt").write_text(f'include "{folder}/../../../etc/passwd"\nwave\n')
+    assert len(edited.ask("GET", "/api/files", **edited.page).data["data"]["files"]) == 1
+
+
+@pytest.mark.parametrize(
+    "body",
+    [
+        {},
+        {"text": "nod"},
+        {"text": 1, "revision": ""},
+        {"text": "a", "revision": None},
+        {"text": "\ud800", "revision": ""},
+    ],
+)
+def test_bad_saves_are_refused(edited: Any, folder: Path, body: object) -> None:
+    write(folder)
+    assert edited.ask("PUT", "/api/files/tour.txt", body, **edited.page).status == 400
+    assert (folder / "tour.txt").read_text() == MISSION
+
+
+def test_nobody_else_comes_in(edited: Any, folder: Path) -> None:
+    write(folder)
+    page = edited.page
+    for path in ("/api/files", "/api/files/tour.txt", "/api/me"):
+        assert edited.ask("GET", path).status == 401
+        assert edited.ask("GET", path, **{**page, "host": f"evil.example:{edited.port}"}).status == 400
+        assert edited.ask("GET", path, **{**page, "host": "127.0.0.1.evil.example"}).status == 400
+    for token in (edited.token, "", "x", "\ud800", "x" * 100_000):  # the first one was used
+        assert edited.ask("POST", "/api/login", {"token": token}).status == 401
+    assert edited.ask("POST", "/api/login", {"name": "you", "password": ""}).status == 400
+    assert edited.ask("POST", "/api/login", {"token": edited.token}, origin="http://evil.example").status == 403
+    for origin in ("http://evil.example", "http://127.0.0.1:1", f"http://localhost:{edited.port}", "null"):
+        assert save(edited, "nod\n", opened(edited)["revision"], origin=origin).status == 403
+        with pytest.raises(InvalidStatus):
+            edited.socket(cookie=page["cookie"], origin=origin)
+    assert save(edited, "nod\n", opened(edited)["revision"], x_csrf_token="").status == 403
+    with pytest.raises(InvalidStatus):
+        edited.socket(cookie=page["cookie"], host=f"evil.example:{edited.port}")
+    assert (folder / "tour.txt").read_text() == MISSION
+
+
+def test_the_cookie_is_for_this_site_and_its_scripts_cannot_read_it(tmp_path: Path) -> None:
+    with closing(Editor(tmp_path, "--no-browser")) as up:
+        reply = up.ask("POST", "/api/login", {"token": up.token}, origin=f"http://127.0.0.1:{up.port}")
+        cookie = reply.headers["set-cookie"].lower()
+        assert cookie.startswith(f"btlang-{up.port}=")
+        assert all(part in cookie for part in ("httponly", "samesite=strict", "path=/"))
+        assert "secure" not in cookie
+        up.process.send_signal(signal.SIGINT)
+        up.process.wait(LONG)
+    assert [path.name for path in tmp_path.iterdir() if path.name.startswith("btlang-")] == []
+
+
+def test_a_token_is_good_for_a_minute(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    from starlette.testclient import TestClient
+
+    words = Words(file=str(tmp_path / "tour.txt"))
+    with closing(Accounts(str(tmp_path / "accounts"), clock=lambda: 0.0)) as accounts:
+        api = editor.EditorApi(accounts, Files(words), words, 1)
+        client: Any = TestClient(api.app(), base_url="http://127.0.0.1:1")
+        later = time.monotonic() + editor._OPEN + 1
+        monkeypatch.setattr(editor.time, "monotonic", lambda: later)
+        late = client.post("/api/login", json={"token": api.ticket})
+        assert (late.status_code, "too old" in late.json()["text"]) == (401, True)
+
+
+def test_the_browser_gets_the_address_in_a_private_file(tmp_path: Path) -> None:
+    seen, browser = tmp_path / "seen", tmp_path / "browser.sh"
+    browser.write_text(
+        f'#!/bin/sh\n(echo "$1"; ls -ld "${{1#file://}}"; cat "${{1#file://}}") > {seen}.part\nmv {seen}.part {seen}\n'
+    )
+    browser.chmod(0o700)
+    with closing(Editor(tmp_path, BROWSER=f"{browser} %s")) as up:
+        wait_until(seen.exists)
+        address, mode, page = seen.read_text().split("\n", 2)
+        assert up.token not in address
+        assert mode.startswith("-rw-------")
+        assert f"/login#token={up.token}" in page
+
+
+@pytest.mark.parametrize(
+    ("name", "code"), [("nowhere/tour.txt", "BT009"), (".", "BT001"), ("binary.txt", "BT002"), ("long.txt", "BT001")]
+)
+def test_what_cannot_be_edited_says_so_at_once(
+    name: str, code: str, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(editor, "PAGE", Path(__file__))
+    (tmp_path / "binary.txt").write_bytes(b"\xff")
+    (tmp_path / "long.txt").write_text("x" * 300_000)
+    assert main(["edit", str(tmp_path / name)]) == 2
+    assert f"error {code}: " in capsys.readouterr().err
+
+
+def test_without_the_page_it_says_how_to_get_it(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(editor, "PAGE", Path("nowhere"))
+    assert main(["edit", "tour.txt"]) == 2
+    assert "pip install" in capsys.readouterr().err
+    with pytest.raises(SystemExit):
+        main(["edit", "-"])
