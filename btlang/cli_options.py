@@ -213,10 +213,7 @@ def _run_options(parser: argparse.ArgumentParser) -> None:
         "--picture", type=picture(".svg", ".png", ".gif"), metavar="FILE", help="draw the run: .svg, .png or .gif"
     )
     parser.add_argument(
-        "--tree-picture",
-        type=picture(".svg", ".png"),
-        metavar="FILE",
-        help="draw the tree with the final status of every node",
+        "--tree-picture", type=picture(".svg", ".png"), metavar="FILE", help="draw the tree with every final status"
     )
     parser.add_argument("--lines", action="store_true", help="print plain lines, even on a terminal")
     parser.add_argument("--quiet", action="store_true", help="print only errors")
@@ -224,9 +221,15 @@ def _run_options(parser: argparse.ArgumentParser) -> None:
     add_robot_options(parser)
 
 
-def _elsewhere(module: str, name: str) -> Callable[[argparse.ArgumentParser], None]:
-    """Options that a module adds which only their verb needs."""
-    return lambda parser: getattr(import_module(module), name)(parser)
+def _elsewhere(module: str, name: str, words: bool = False) -> Callable[[argparse.ArgumentParser], None]:
+    """Options that a module adds which only their verb needs, perhaps after those of words."""
+
+    def add(parser: argparse.ArgumentParser) -> None:
+        if words:
+            _words_options(parser)
+        getattr(import_module(module), name)(parser)
+
+    return add
 
 
 def _replay_options(parser: argparse.ArgumentParser) -> None:
@@ -361,7 +364,10 @@ _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "format": ("format missions: indentation, spaces, empty lines", _format_options),
     "sim-ros": ("run the simulated robot as a ROS 2 node", _sim_ros_options),
     "ros-node": ("run missions for other programs, as a ROS 2 node", _ros_node_options),
-    "serve-actions": ("serve btlang's actions as ROS 2 actions", _serving_options),
+    "serve-actions": (
+        "serve btlang's actions as ROS 2 actions",
+        _elsewhere("btlang.ros.serving.command", "add_serving_options", True),
+    ),
     "completion": ("print a script that completes btc in a shell", _completion_options),
     "help": ("show this help, or that of a verb", _help_options),
     "version": ("print the version", lambda _: None),
