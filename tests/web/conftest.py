@@ -32,7 +32,7 @@ def page() -> Path:
 
 @pytest.fixture(scope="module")
 def robot(page: Path) -> Iterator[str]:
-    """The address of `btc robot up --serve` in the museum, with the operator olga and the administrator ann."""
+    """The address of `btc robot up --serve` in the museum, with the operator olga, the editor ed and the administrator ann."""
     with tempfile.TemporaryDirectory(prefix="bt") as folder:
         environment = {**os.environ, "XDG_DATA_HOME": f"{folder}/data", "XDG_RUNTIME_DIR": folder}
         port = str(free_port())
@@ -43,7 +43,7 @@ def robot(page: Path) -> Iterator[str]:
             up.start("The robot 'robot' is up")
             assert up.process.stdout is not None
             assert up.process.stdout.readline() == f"The server is up: https://127.0.0.1:{port}\n"
-            for name, role in (("olga", "operator"), ("ann", "administrator")):
+            for name, role in (("olga", "operator"), ("ed", "editor"), ("ann", "administrator")):
                 subprocess.run(
                     [sys.executable, "-m", "btlang", "user", "add", name, "--role", role], env=environment,
                     input=f"{PASSWORD}\n", text=True, capture_output=True, check=True, timeout=LONG,

@@ -2,8 +2,9 @@
 import { accessible, end, faults, launch, logIn, open, picture, until, write, written } from "./browser.mjs";
 
 const [base, password] = process.argv.slice(2);
+const HOSTILE = "<script>alert(1)</script><img src=x onerror=alert(2)>\u202e\u0007\u001b[2J";
 const browser = await launch();
-const page = await open(browser, base);
+const page = await open(browser, base, { expected: /409/ }); // a browser notes that there is no such mission yet
 await page.goto(`${base}/login#/robots/robot`);
 await page.waitForSelector("[name=name]");
 await accessible(page, "log-in");
@@ -35,7 +36,7 @@ await until(page, () => /up to 3 times|3 times/.test(document.querySelector(".cm
 await settled();
 await picture(page, "wrapped");
 await page.keyboard.press("Escape");
-await page.click("text=Save");
+await page.click('button:text-is("Save")');
 await until(page, () => document.querySelector(".state").textContent === "Saved");
 const text = await written(page);
 if (!text.includes("fountain") || !text.includes("4 times")) faults.push(`text: ${text}`);
@@ -49,6 +50,18 @@ await page.waitForSelector(".latch .release");
 await picture(page, "stopped");
 await page.click(".latch .release");
 await page.waitForSelector(".latch", { state: "detached" });
+
+await page.goto(`${base}/#/write/${encodeURIComponent(HOSTILE)}`);
+await write(page, `say "${HOSTILE}"`);
+await page.waitForSelector(".tree:not(.stale) .node");
+await page.waitForSelector(".messages li");
+if (await page.$("main script, main img")) faults.push("markup of a mission is in the document");
+await picture(page, "hostile");
+
+await page.evaluate(() => (document.documentElement.dataset.theme = "dark"));
+await page.setViewportSize({ width: 360, height: 740 });
+await picture(page, "narrow");
+if (await page.evaluate(() => document.documentElement.scrollWidth > innerWidth)) faults.push("wider than 360 pixels");
 await end(browser);
 
 /** A command of the menu of a node whose name begins so. */

@@ -55,7 +55,7 @@ export function oncePerFrame(draw: () => void): () => void {
 /** A list of commands at a point of the window, closed by a click elsewhere, by Escape, or by a choice. */
 export function openMenu(x: number, y: number, label: string, items: { label: string; run: () => void }[]): void {
   const before = document.activeElement as HTMLElement | null;
-  const menu = h("div", { class: "menu", role: "menu", popover: "auto", "aria-label": label });
+  const menu = h("div", { class: "menu", role: "menu", popover: "manual", tabindex: -1, "aria-label": label }); // "auto" would close as the right button is let go
   const close = () => {
     menu.remove();
     before?.focus();
@@ -65,14 +65,18 @@ export function openMenu(x: number, y: number, label: string, items: { label: st
   );
   menu.append(...buttons);
   menu.addEventListener("keydown", (event) => {
+    if (event.key === "Escape") close();
     const step = { ArrowDown: 1, ArrowUp: -1 }[event.key];
     if (step === undefined) return;
     event.preventDefault();
     const at = buttons.indexOf(document.activeElement as HTMLButtonElement);
     buttons[(at + step + buttons.length) % buttons.length]?.focus();
   });
+  menu.addEventListener("focusout", (event) => {
+    if (!menu.contains(event.relatedTarget as Node | null)) menu.hidePopover();
+  });
   menu.addEventListener("toggle", (event) => {
-    if ((event as ToggleEvent).newState === "closed" && menu.isConnected) close();
+    if ((event as ToggleEvent).newState === "closed") menu.remove();
   });
   document.body.append(menu);
   menu.showPopover();
