@@ -2,9 +2,9 @@
 import { end, faults, launch, logIn, open, picture, until, write, written } from "./browser.mjs";
 
 const [base, password] = process.argv.slice(2);
-const browser = await launch();
+const [browser, second] = [await launch(), await launch()]; // each with cookies of its own
 const expected = /409/; // a browser notes that there is no such mission yet, and the refusal of a stale save
-const [one, other] = [await open(browser, base, { expected }), await open(browser, base, { expected })];
+const [one, other] = [await open(browser, base, { expected }), await open(second, base, { expected })];
 for (const [page, name] of [[one, "ed"], [other, "ann"]]) await logIn(page, base, name, password, "#/robots/robot");
 for (const page of [one, other]) await page.goto(`${base}/#/write/shared`);
 await write(one, 'say "one".');
@@ -24,6 +24,7 @@ await saved(other);
 await one.reload();
 await one.waitForSelector(".cm-content");
 await until(one, () => document.querySelector(".cm-content").textContent.includes("other"));
+await second.close();
 await end(browser);
 
 async function save(page) {

@@ -24,7 +24,7 @@ export function inWords(event: Record<string, any>): string {
 
 /** The log, of which only the newest lines are shown. New ones come at its end. */
 export class LogView {
-  readonly element = h("ol", { class: "log", role: "log", "aria-label": t("log"), tabindex: 0 });
+  readonly element = h("div", { class: "log", role: "log", "aria-label": t("log"), tabindex: 0 });
   private last: Entry | null = null;
   private lastWords = "";
 
@@ -38,7 +38,7 @@ export class LogView {
       if (!words || words === this.lastWords) continue; // several parts of a robot say that they were stopped
       this.lastWords = words;
       this.element.append(
-        h("li", { class: BAD.has(entry.event["event"]) ? "bad" : null }, h("time", {}, moment(entry.wall)), h("span", { dir: "auto" }, words)),
+        h("p", { class: BAD.has(entry.event["event"]) ? "bad" : null }, h("time", {}, moment(entry.wall)), h("span", { dir: "auto" }, words)),
       );
     }
     while (this.element.childElementCount > NEWEST) this.element.firstElementChild!.remove();

@@ -5,7 +5,7 @@ import { bracketMatching, indentUnit } from "@codemirror/language";
 import { forEachDiagnostic, linter, lintGutter, lintKeymap, setDiagnostics, type Action, type Diagnostic } from "@codemirror/lint";
 import { highlightSelectionMatches, searchKeymap } from "@codemirror/search";
 import { Compartment, EditorState, StateEffect, StateField } from "@codemirror/state";
-import { Decoration, drawSelection, EditorView, highlightActiveLine, hoverTooltip, keymap, lineNumbers, type DecorationSet, type Tooltip } from "@codemirror/view";
+import { Decoration, drawSelection, EditorView, highlightActiveLine, highlightSpecialChars, hoverTooltip, keymap, lineNumbers, type DecorationSet, type Tooltip } from "@codemirror/view";
 
 import { h } from "../dom";
 import { t } from "../texts";
@@ -75,7 +75,7 @@ export class Editor {
             { key: "Ctrl-.", mac: "Cmd-.", run: () => this.fix() },
             ...closeBracketsKeymap, ...completionKeymap, ...lintKeymap, ...searchKeymap, ...historyKeymap, ...defaultKeymap, indentWithTab,
           ]),
-          lineNumbers(), lintGutter(), linter(null), history(), drawSelection(), bracketMatching(), closeBrackets(), highlightActiveLine(), highlightSelectionMatches(),
+          lineNumbers(), highlightSpecialChars(), lintGutter(), linter(null), history(), drawSelection(), bracketMatching(), closeBrackets(), highlightActiveLine(), highlightSelectionMatches(),
           indentUnit.of("  "), EditorView.lineWrapping, marked, colours,
           autocompletion({ override: [(context) => this.complete(context)] }),
           hoverTooltip((_, at) => this.about(at)),
