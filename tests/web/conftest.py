@@ -32,7 +32,7 @@ def page() -> Path:
 
 @pytest.fixture(scope="module")
 def robot(page: Path) -> Iterator[str]:
-    """The address of `btc robot up --serve` in the museum, with the operator olga, the editor ed and the administrator ann."""
+    """The address of `btc robot up --serve` in the museum. Users: olga (operator), ed (editor), ann (administrator)."""
     with tempfile.TemporaryDirectory(prefix="bt") as folder:
         environment = {**os.environ, "XDG_DATA_HOME": f"{folder}/data", "XDG_RUNTIME_DIR": folder}
         port = str(free_port())
