@@ -50,8 +50,7 @@ export class Shell {
     const header = h("header", {}, this.place, this.tabs, user, this.stop.button);
     fill(document.body, h("a", { class: "skip", href: "#main", onclick: (event: Event) => { event.preventDefault(); this.main.focus(); } }, t("skip")), header, this.cut, this.stop.banner, this.main);
     addEventListener("hashchange", this.onRoute);
-    void request("GET", "/api/robots").then(({ robots }) => (robots as { name: string }[]).forEach(({ name }) => this.fleet.get(name)), () => undefined);
-    void this.route();
+    void request("GET", "/api/robots").then(({ robots }) => (robots as { name: string }[]).forEach(({ name }) => this.fleet.get(name)), () => undefined).then(() => this.route());
   }
 
   private close(): void {
