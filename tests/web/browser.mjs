@@ -59,3 +59,16 @@ export async function submit(page, text) {
 export async function fits(page) {
   assert.ok((await page.evaluate(() => document.documentElement.scrollWidth - innerWidth)) <= 0, "it's wider than the window");
 }
+
+/** Writes another text into the mission that is open. */
+export async function replace(page, text) {
+  await page.waitForSelector('.text .cm-content[contenteditable="true"]:not([aria-readonly="true"])');
+  await page.click(".text .cm-content");
+  await page.keyboard.press("Control+A");
+  await page.keyboard.insertText(text);
+}
+
+/** The text of the mission that is open. */
+export async function written(page) {
+  return page.$$eval(".text .cm-line", (lines) => lines.map((line) => line.textContent).join("\n"));
+}

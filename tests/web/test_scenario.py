@@ -34,6 +34,11 @@ def test_every_screen(robot: str, tmp_path: Path) -> None:
 
 
 @only_long
+def test_two_editors_and_a_cut_link_lose_nothing(robot: str) -> None:
+    node(HERE / "two_editors.mjs", robot, PASSWORD, folder=installed(HERE))
+
+
+@only_long
 def test_large_trees(robot: str) -> None:
     """Figures for a quiet machine are in docs/page.md; these bounds also hold on a busy one."""
     figures = json.loads(node(HERE / "figures.mjs", robot, PASSWORD, folder=installed(HERE)))
