@@ -23,6 +23,7 @@ from btlang.editing.messages import messages
 from btlang.editing.palette import palette
 from btlang.editing.rename import rename
 from btlang.editing.words import Words
+from btlang.gc_pause import gc_paused
 from btlang.record import Record
 from btlang.recording.trial import tried
 from btlang.server.access import AccessError
@@ -116,7 +117,8 @@ def answer(kind: str, text: str, words: Words, arguments: Mapping[str, Any] = {}
 
 def _written(kind: str, text: str, words: Words, arguments: Mapping[str, Any]) -> bytes:
     """The answer as JSON in ASCII: half a character of UTF-16 has no other encoding."""
-    return json.dumps(answer(kind, text, words, arguments), separators=(",", ":")).encode()
+    with gc_paused:
+        return json.dumps(answer(kind, text, words, arguments), separators=(",", ":")).encode()
 
 
 class Checker:

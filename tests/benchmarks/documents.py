@@ -12,6 +12,7 @@ import json
 from collections.abc import Callable
 from contextlib import closing
 from functools import partial
+from itertools import count
 from statistics import median
 from time import perf_counter
 
@@ -41,13 +42,13 @@ def milliseconds(work: Callable[[], object], rounds: int) -> float:
 
 def here(text: str, rounds: int) -> None:
     """In this process."""
-    words = Words()
+    words, place = Words(), count(len(text) // 2)  # what may follow at the same place is remembered
     defined = text.index("task xaa")
     works: dict[str, Callable[[], object]] = {
         "text to tree": lambda: words.mission(Source(text)),
         "document": lambda: document(Source(text), words),
         "hover": lambda: hover(Source(text), len(text) // 2, words),
-        "complete": lambda: complete(Source(text), words, len(text) // 2),
+        "complete": lambda: complete(Source(text), words, next(place)),
         "rename": lambda: rename(Source(text), defined, words, "another task"),
         "palette": lambda: palette(Source(text), words),
     }
