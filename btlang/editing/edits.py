@@ -210,7 +210,7 @@ class Editor:
         elif self._syntax.is_condition(node):
             new = ast.Not(node, node.span)
         elif isinstance(node, ast.Chain):
-            new = node.replace(items=node.items[::-1])
+            return self._write(self._syntax.steps(node.items, node.items[::-1]), node.items[-1])
         else:
             raise Unplaced("it has no opposite")
         return self._write(self._syntax.steps((node,), (new,)), new, first)

@@ -211,6 +211,7 @@ class Writer:
 
     def _as_lines(self, step: Step, printer: Printer, near: ast.Ast | None, gone: Counter[str]) -> Iterator[Change]:
         """Statements that have lines of their own, as lines."""
+        yield from self._in_their_places(step, printer)
         place = self._line_place(step, near, bool(gone))
         if place is None:
             return
@@ -229,6 +230,25 @@ class Writer:
             yield Change(start, end, "\n" + text.removesuffix("\n"))
         else:
             yield Change(start, end, text if after or before.endswith("\n") else text.removesuffix("\n"))
+
+    def _in_their_places(self, step: Step, printer: Printer) -> Iterator[Change]:
+        """As many statements as there were, each in the lines of one of these: what stands between them stays."""
+        owned = [self._lines.own(node, step.parent) for node in step.old]
+        if len(owned) < 2 or len(owned) != len(step.new):
+            return
+        parts, places = [], []
+        for lines, node in zip(owned, step.new, strict=True):
+            if lines is None:
+                return
+            margin = self._lines.margin(lines.start)
+            parts.append(indented(lines_of(node, printer, WIDTH - len(margin), step.operator), margin))
+            places.append(self._lines.offsets(lines))
+        text = self._source.text
+        between = [text[end:start] for (_, end), (start, _) in pairwise(places)]
+        if not text[: places[-1][1]].endswith("\n"):
+            parts[-1] = parts[-1].removesuffix("\n")
+        joined = "".join(part + gap for part, gap in zip(parts, [*between, ""], strict=True))
+        yield Change(places[0][0], places[-1][1], joined)
 
     def _is_kept(self, node: ast.Ast) -> bool:
         return id(node) in self._given or id(node) in self._copies or id(node) in self._syntax.slots

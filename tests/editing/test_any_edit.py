@@ -11,6 +11,7 @@ from collections.abc import Sequence
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
+from btlang.diagnostics.errors import MissionError
 from btlang.editing.changes import changed
 from btlang.editing.edits import Edit, Editor
 from btlang.editing.lines import comments_in
@@ -118,13 +119,19 @@ def flat(node: Node) -> object:
     return node.id, node.ports, children
 
 
-def meant(tree: Tree, edit: Edit) -> Node | None:
-    """The main tree after an edit of a part of a chain, None where that is not said here."""
+def meant(text: str, edit: Edit) -> Node | None:
+    """The main tree after an edit of a part of a chain that is said, None where that is not said here."""
+    tree = tree_of(text)
+    syntax = Syntax(read_mission(Source(text), letters()).mission, letters())
+    said = syntax.lowered()[1][edit.node]
+    if said is None or not isinstance(syntax.holder(said), ast.Chain):
+        return None
     places = ways(tree)
     way, root = places[edit.node], tree.root
     node = at(root, way)
     parent = at(root, way[:-1]) if way else None
-    if parent is None or parent.id not in ("Sequence", "Fallback") or edit.last is not None:
+    is_implied = len(way) > 0 and syntax.lowered()[1][places.index(way[:-1])] is not syntax.holder(said)
+    if parent is None or is_implied or parent.id not in ("Sequence", "Fallback") or edit.last is not None:
         return None
     match edit.do:
         case "delete":
@@ -182,15 +189,19 @@ def outside(text: str, edit: Edit) -> list[str]:
 
 def check(text: str, edit: Edit) -> bool:
     """Whether the edit could be done."""
-    tree = tree_of(text)
     try:
         edited = Editor(Source(text), letters()).edited(edit)
     except Unplaced as error:
         said_why = "no English" not in str(error)
         assert said_why, (text, edit)
         return False
+    except MissionError as error:
+        codes = {each.code for each in error.diagnostics}
+        if edit.do != "insert" or not codes & {"BT028", "BT029"}:  # a command where a condition stands
+            raise
+        return False
     after = tree_of(edited.text)
-    wanted = meant(tree, edit)
+    wanted = meant(text, edit)
     if wanted is not None:
         assert flat(after.root) == flat(wanted), (text, edit, edited.text)
     assert not comments_in(text, letters().orthography) - comments_in(edited.text, letters().orthography)
