@@ -314,20 +314,6 @@ def _ros_node_options(parser: argparse.ArgumentParser) -> None:
     add_node_options(parser)
 
 
-def _serving_options(parser: argparse.ArgumentParser) -> None:
-    from btlang.ros.serving.command import add_serving_options
-
-    _words_options(parser)
-    add_serving_options(parser)
-
-
-def _edit_options(parser: argparse.ArgumentParser) -> None:
-    from btlang.server.options import add_edit_options
-
-    _words_options(parser)
-    add_edit_options(parser)
-
-
 def _completion_options(parser: argparse.ArgumentParser) -> None:
     from btlang.shell_completion import SHELLS
 
@@ -357,7 +343,7 @@ _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "task": ("give work to a robot that is up", _elsewhere("btlang.task.options", "add_task_options")),
     "serve": ("let others reach the robots that are up", _elsewhere("btlang.server.options", "add_serve_options")),
     "user": ("say who may come in through btc serve", _elsewhere("btlang.server.options", "add_user_options")),
-    "edit": ("write a mission in the browser", _edit_options),
+    "edit": ("write a mission in the browser", _elsewhere("btlang.server.options", "add_edit_options", True)),
     "mcp": ("let language models write and simulate missions, as an MCP server", _words_options),
     "examples": ("list, print or copy the example missions", _examples_options),
     "explain": ("show how a mission is understood, or explain a message code", _explain_options),
