@@ -13,7 +13,7 @@ from btlang.diagnostics.errors import MissionError
 from btlang.editing.changes import Change, changed
 from btlang.editing.forms import FORMS, amount_of
 from btlang.editing.paths import at_path, difference, path_of, place_of
-from btlang.editing.syntax import Step, Syntax, Unplaced, are_equal
+from btlang.editing.syntax import Step, Syntax, Unplaced, are_equal, joined
 from btlang.editing.values import valued
 from btlang.editing.words import Words
 from btlang.editing.writing import Writer
@@ -29,6 +29,8 @@ from btlang.vocabulary.lexicon import Lexicon
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
+
+    from btlang.editing.paths import Path
 
 
 class Edit(Record):
@@ -117,12 +119,10 @@ class Editor:
         if wanted.do not in _DOES:
             raise Unplaced(f"there is no edit '{wanted.do}'; there are {', '.join(_DOES)}")
         text, program, focus = _DOES[wanted.do](self, wanted)
-        source = self._source.with_text(text)
-        read = read_mission(source, self._vocabulary).mission
-        compile_mission(read, self._vocabulary)
-        if not are_equal(lower_mission(read, self._vocabulary), lower_mission(program, self._vocabulary)):
+        read = read_mission(self._source.with_text(text), self._vocabulary).mission
+        if not are_equal(compile_mission(read, self._vocabulary), lower_mission(program, self._vocabulary)):
             raise Unplaced("no English says it there")
-        start, end = place_of(focus, program, read)
+        start, end = place_of(focus, Syntax(program, self._vocabulary), read)
         return Edited(text, difference(self._source.text, text), start, end)
 
     # -- what is done, as the text and the syntax afterwards, and what of that was touched
@@ -154,16 +154,10 @@ class Editor:
         if any(target is inner for node in nodes for inner in ast.parents_first(node)):
             raise Unplaced("it can't come into itself")
         text, program, focus = self.copy(wanted)
-        source = self._source.with_text(text)
-        syntax = Syntax(read_mission(source, self._vocabulary).mission, self._vocabulary)
-        old = [at_path(path_of(node, program), syntax.mission) for node in nodes]
-        steps = syntax.steps(old, ())
-        wanted_steps = Syntax(program, self._vocabulary).steps(nodes, ())
-        writer = Writer(source, syntax)
-        after = syntax.changed(steps[-1])
-        change = writer.written(steps, after, gone=writer.comments_of(old, self._source.text))
-        final = Syntax(program, self._vocabulary).changed(wanted_steps[-1])
-        return changed(text, [change]), final, focus
+        copied = Syntax(program, self._vocabulary)
+        paths = [path_of(node, copied) for node in nodes]
+        text, _ = self._replaced(text, paths, ())
+        return text, copied.changed(copied.steps(nodes, ())[-1]), focus
 
     def wrap(self, wanted: Edit) -> _Done:
         nodes = self._nodes(wanted)
@@ -172,16 +166,14 @@ class Editor:
         form = FORMS[wanted.form]
         if form.of_conditions != self._syntax.is_condition(nodes[0]):
             raise Unplaced(f"it is {'no' if form.of_conditions else 'a'} condition")
-        around = self._syntax.holder(nodes[0])
-        operator = around.operator if isinstance(around, ast.Chain) else "sequence"
         if form.operator:
             if len(nodes) < 2:
                 raise Unplaced("that takes two or more")
-            new: ast.Ast = ast.Chain(form.operator, tuple(nodes), operator == form.operator, nodes[0].span)
+            new = joined(nodes, form.operator, self._operator(nodes[0]) == form.operator)
         else:
-            body = nodes[0] if len(nodes) == 1 else ast.Chain(operator, tuple(nodes), False, nodes[0].span)
             condition = self._read(wanted.words, True)[0] if form.needs == "condition" else None
-            new = form.made(body, condition or amount_of(form.needs, wanted.words, self._vocabulary))
+            what = condition or amount_of(form.needs, wanted.words, self._vocabulary)
+            new = form.made(joined(nodes, self._operator(nodes[0])), what)
         return self._write(self._syntax.steps(nodes, (new,)), new)
 
     def unwrap(self, wanted: Edit) -> _Done:
@@ -228,30 +220,39 @@ class Editor:
         name = " ".join(wanted.words.split())
         if not name or any(each.name == name for each in self._syntax.mission.definitions):
             raise Unplaced(f"the name '{name}' is used already" if name else "it needs a name")
-        around = self._syntax.holder(nodes[0])
-        operator = around.operator if isinstance(around, ast.Chain) else "sequence"
-        body = nodes[0] if len(nodes) == 1 else ast.Chain(operator, tuple(nodes), False, nodes[0].span)
+        body = joined(nodes, self._operator(nodes[0]))
         defined = ast.Definition(name, (), body, nodes[0].span, nodes[0].span)
         mission = self._syntax.mission
         step = Step(mission, "definitions", len(mission.definitions), (), (defined,))
-        writer = Writer(self._source, self._syntax)
-        program = self._syntax.changed(step)
+        writer, program = self._writer(), self._syntax.changed(step)
         near = self._statement(nodes[0])
         try:
             change = writer.written([step], program, near)
         except (Unplaced, MissionError):
             change = writer.written([step], program)
-        source = self._source.with_text(changed(self._source.text, [change]))
-        syntax = Syntax(read_mission(source, self._vocabulary).mission, self._vocabulary)
         used = ast.Name(name, (), nodes[0].span)
-        path = [path_of(node, mission) for node in nodes]
-        steps = syntax.steps([at_path(each, syntax.mission) for each in path], (used,))
-        after = syntax.changed(steps[-1])
-        writer = Writer(source, syntax)
-        change = writer.written(steps, after, gone=writer.comments_of(steps[0].old, self._source.text))
-        return changed(source.text, [change]), after, used
+        paths = [path_of(node, self._syntax) for node in nodes]
+        return *self._replaced(changed(self._source.text, [change]), paths, (used,)), used
 
     # -- parts of edits
+
+    def _replaced(self, text: str, paths: Sequence[Path], new: Sequence[ast.Ast]) -> tuple[str, ast.Program]:
+        """The second step of an edit, in the text that the first one made: other nodes in the place of those at the end
+        of some ways. Their comments go, as far as they stand elsewhere by then.
+        """
+        source = self._source.with_text(text)
+        syntax = Syntax(read_mission(source, self._vocabulary).mission, self._vocabulary)
+        old = [at_path(path, syntax.mission) for path in paths]
+        steps = syntax.steps(old, new)
+        after = syntax.changed(steps[-1])
+        writer = Writer(source, syntax)
+        change = writer.written(steps, after, gone=writer.comments_of(old, self._source.text))
+        return changed(text, [change]), after
+
+    def _operator(self, node: ast.Ast) -> str:
+        """Of the chain that a node is a part of, or would be with others in its place."""
+        around = self._syntax.holder(node)
+        return around.operator if isinstance(around, ast.Chain) else "sequence"
 
     def _placed(self, target: ast.Ast, place: str, new: Sequence[ast.Ast]) -> list[Step]:
         """What comes before, after or inside a node."""

@@ -2,25 +2,28 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-
 from btlang.editing.changes import Change
 from btlang.editing.syntax import Syntax, Unplaced
 from btlang.tree import ast
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import TypeAlias
 
-def path_of(node: ast.Ast, program: ast.Program) -> list[tuple[str, int | str | None]]:
+    Path: TypeAlias = list[tuple[str, int | str | None]]
+
+
+def path_of(node: ast.Ast, syntax: Syntax) -> Path:
     """The way from a mission to a node of it; definitions go by their names, as they may stand in any order."""
-    slots = Syntax.slots_of(program)
-    path: list[tuple[str, int | str | None]] = []
-    while node is not program:
-        slot = slots[id(node)]
+    path: Path = []
+    while node is not syntax.mission:
+        slot = syntax.slots[id(node)]
         path.append((slot.field, node.name if isinstance(node, ast.Definition) else slot.at))
         node = slot.parent
     return path[::-1]
 
 
-def at_path(path: Sequence[tuple[str, int | str | None]], program: ast.Program) -> ast.Ast:
+def at_path(path: Path, program: ast.Program) -> ast.Ast:
     """The node at the end of a way. Raises Unplaced."""
     node: ast.Ast = program
     for field, at in path:
@@ -35,13 +38,15 @@ def at_path(path: Sequence[tuple[str, int | str | None]], program: ast.Program) 
     return node
 
 
-def place_of(focus: ast.Ast | None, program: ast.Program, read: ast.Program) -> tuple[int, int]:
-    """Where something of a mission stands in its text, once it is read again."""
+def place_of(focus: ast.Ast | None, syntax: Syntax, read: ast.Program) -> tuple[int, int]:
+    """Where something of a mission stands in its text, once it is read again; nowhere for None."""
+    if focus is None:
+        return 0, 0
     try:
-        span = read.span if focus is None else at_path(path_of(focus, program), read).span
+        span = at_path(path_of(focus, syntax), read).span
     except (Unplaced, KeyError):
         return 0, 0
-    return (span.start, span.end) if focus is not None else (0, 0)
+    return span.start, span.end
 
 
 def difference(old: str, new: str) -> Change:

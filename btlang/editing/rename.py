@@ -166,7 +166,7 @@ def _verify(
     """The new text has to compile to the same tree, but for the name."""
     text = changed(source.text, changes)
     try:
-        renamed = words.mission(Source(text, source.name, source.folder, source.roots, may_load=source.may_load))
+        renamed = words.mission(source.with_text(text))
     except MissionError as error:
         mistake = next(each for each in error.diagnostics if each.is_error).message.rstrip(".")
         raise refuse(f"with this name, the mission would be wrong: {mistake}") from None

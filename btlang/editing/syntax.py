@@ -49,20 +49,15 @@ class Syntax:
         self.mission = mission
         self.vocabulary = vocabulary
         self.nodes = ast.parents_first(mission)
-        self.slots = self.slots_of(mission)
-
-    @staticmethod
-    def slots_of(mission: ast.Program) -> dict[int, Slot]:
+        self.slots: dict[int, Slot] = {}
         """Where each node stands, by its identity."""
-        slots: dict[int, Slot] = {}
-        for node in ast.parents_first(mission):
+        for node in self.nodes:
             for field in node.parts:
                 part = getattr(node, field)
                 if type(part) is tuple:
-                    slots.update((id(each), Slot(node, field, i)) for i, each in enumerate(part))
+                    self.slots.update((id(each), Slot(node, field, i)) for i, each in enumerate(part))
                 elif part is not None:
-                    slots[id(part)] = Slot(node, field, None)
-        return slots
+                    self.slots[id(part)] = Slot(node, field, None)
 
     def lowered(self) -> tuple[Tree, list[ast.Ast | None]]:
         """The tree, and of each of its nodes, in the order of `Tree.walk`, the syntax that says it, None for what is
@@ -121,13 +116,18 @@ class Syntax:
         if last.field == "definitions":
             held = _put(self.mission.definitions, last)
             return self.mission.replace(definitions=held)  # type: ignore[no-any-return]
-        body = _one(last.new, last.operator)
+        body = joined(last.new, last.operator) if last.new else None
         return self.mission.replace(body=body)  # type: ignore[no-any-return]
 
 
 def are_equal(one: Tree, other: Tree) -> bool:
     """Whether two trees are, in whatever order their subtrees were defined."""
     return (one.root, one.name) == (other.root, other.name) and dict(one.subtrees) == dict(other.subtrees)
+
+
+def joined(items: Sequence[ast.Ast], operator: str, bracketed: bool = False) -> ast.Ast:
+    """Some siblings as one node."""
+    return items[0] if len(items) == 1 else ast.Chain(operator, tuple(items), bracketed, items[0].span)
 
 
 def _sources(tree: Tree, origins: Origins) -> list[ast.Ast | None]:
@@ -167,19 +167,10 @@ def _held(step: Step) -> tuple[ast.Ast, ...]:
             raise Unplaced("at least so many must be left")
         return (parent.replace(items=tuple(items)),)
     if step.new:
-        return (parent.replace(**{step.field: _one(step.new, step.operator)}),)
+        return (parent.replace(**{step.field: joined(step.new, step.operator)}),)
     if step.field == "otherwise":
         return (parent.replace(otherwise=None),)
     has_more = getattr(parent, "otherwise", None) is not None
     if step.field == "condition" or isinstance(parent, ast.Definition) or has_more:
         raise Unplaced("what holds it needs it")
     return ()
-
-
-def _one(items: Sequence[ast.Ast], operator: str) -> ast.Ast | None:
-    """Some siblings as one node."""
-    if not items:
-        return None
-    if len(items) == 1:
-        return items[0]
-    return ast.Chain(operator, tuple(items), False, items[0].span)

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 
 from btlang.editing.syntax import Unplaced
 from btlang.printer.phrase import value_of
@@ -30,46 +31,48 @@ _FIELDS: Mapping[type[ast.Ast], Sequence[tuple[str, str]]] = {
 _COUNTED = frozenset(("num_cycles", "num_attempts", "rounds", "attempts"))  # the names of counts in trees, too
 
 
-def valued(node: ast.Ast, port: str) -> Place:
-    """Where a node has the value of a port. Raises Unplaced."""
+def places_of(node: ast.Ast) -> dict[str, Place]:
+    """The values that a node says or may say, by the names of ports and fields."""
     if isinstance(node, ast.Assign):
-        return Place(node.kind, node.text, lambda text: node.replace(text=text))
-    if isinstance(node, ast.Phrase | ast.Name | ast.Compared):
-        arguments = dict(node.arguments)
-        kinds = {slot.name: slot.type for slot in node.entry.slots} if isinstance(node, ast.Phrase) else {}
-        if isinstance(node, ast.Compared):
-            kinds = dict.fromkeys(arguments, node.kind)
-        if port in kinds:
+        return {node.key: Place(node.kind, node.text, partial(_with_field, node, "text"))}
+    if isinstance(node, ast.Compared):
+        known = {name: (node.kind, text) for name, text in node.arguments}
+    elif isinstance(node, ast.Phrase):
+        given = dict(node.arguments)
+        known = {slot.name: (slot.type, given.get(slot.name, slot.default or "")) for slot in node.entry.slots}
+    else:
+        fields = _FIELDS.get(type(node), ())
+        return {field: Place(kind, getattr(node, field), partial(_with_field, node, field)) for field, kind in fields}
+    order = tuple(known)
+    return {name: Place(*found, partial(_with_argument, node, order, name)) for name, found in known.items()}
 
-            def filled(text: str) -> ast.Ast:
-                given = {**arguments, port: text}
-                return node.replace(arguments=tuple((name, given[name]) for name in kinds if name in given))  # type: ignore[no-any-return]
 
-            return Place(kinds[port], arguments.get(port, ""), filled)
-    fields = _FIELDS.get(type(node), ())
-    wanted = [(field, kind) for field, kind in fields if (kind == "count") == (port in _COUNTED)]
-    if not wanted:
-        raise Unplaced(f"it has no value '{port}' in its words")
-    field, kind = wanted[0]
-    return Place(kind, getattr(node, field), lambda text: node.replace(**{field: text}))
+def _with_field(node: ast.Ast, field: str, text: str) -> ast.Ast:
+    return node.replace(**{field: text})  # type: ignore[no-any-return]
+
+
+def _with_argument(node: ast.Phrase | ast.Compared, order: Sequence[str], name: str, text: str) -> ast.Ast:
+    texts = {**dict(node.arguments), name: text}
+    return node.replace(arguments=tuple((each, texts[each]) for each in order if each in texts))  # type: ignore[no-any-return]
+
+
+def valued(node: ast.Ast, port: str) -> Place:
+    """Where a node has the value of a port, which in the tree may have another name. Raises Unplaced."""
+    places = places_of(node)
+    if port in places:
+        return places[port]
+    for place in places.values():
+        if isinstance(node, ast.Assign) or (type(node) in _FIELDS and (place.kind == "count") == (port in _COUNTED)):
+            return place
+    raise Unplaced(f"it has no value '{port}' in its words")
 
 
 def values_of(node: ast.Ast, vocabulary: Lexicon) -> list[tuple[str, str, str]]:
     """The values that a node says: name, type, and the words of each. Those that the mission computes are left out."""
-    found: list[tuple[str, str, str]] = []
-    if isinstance(node, ast.Assign):
-        found = [(node.key, node.kind, node.text)]
-    elif isinstance(node, ast.Compared):
-        found = [(name, node.kind, text) for name, text in node.arguments]
-    elif isinstance(node, ast.Phrase):
-        given = dict(node.arguments)
-        found = [(slot.name, slot.type, given.get(slot.name, slot.default or "")) for slot in node.entry.slots]
-    for field, kind in _FIELDS.get(type(node), ()):
-        found.append((field, kind, getattr(node, field)))
     return [
-        (name, kind, value_of(text, vocabulary.types[kind], vocabulary))
-        for name, kind, text in found
-        if text not in ("", "-1") and "{" not in text
+        (name, place.kind, value_of(place.text, vocabulary.types[place.kind], vocabulary))
+        for name, place in places_of(node).items()
+        if place.text not in ("", "-1") and "{" not in place.text
     ]
 
 

@@ -15,7 +15,7 @@ from itertools import chain, pairwise
 from btlang.diagnostics.errors import MissionError
 from btlang.editing.changes import Change, changed
 from btlang.editing.lines import Lines, comments_in, indented
-from btlang.editing.syntax import Step, Syntax, Unplaced, are_equal
+from btlang.editing.syntax import Step, Syntax, Unplaced, are_equal, joined
 from btlang.frontends.mission.reader import read_mission
 from btlang.passes import lower_mission
 from btlang.printer.blocks import lines_of
@@ -217,11 +217,11 @@ class Writer:
             return
         start, end, margin = place
         lines: list[str] = []
-        operator = step.operator
         for node in step.new:
-            items = statements(node) if operator == "sequence" and not self._is_kept(node) else [(node, operator)]
-            for item, joined in items:
-                lines += lines_of(item, printer, WIDTH - len(margin), joined)
+            is_block = step.operator == "sequence" and not self._is_kept(node)
+            items = statements(node) if is_block else [(node, step.operator)]
+            for item, among in items:
+                lines += lines_of(item, printer, WIDTH - len(margin), among)
         before, after = self._source.text[:start], self._source.text[end:]
         text = indented(lines, margin)
         missing = self._comments_in(self._source.text[start:end]) - self._comments_in(text) - gone
@@ -309,8 +309,7 @@ class Writer:
                     yield Change(start, start, said + joint)
 
     def _said_in_line(self, nodes: Sequence[ast.Ast], operator: str, printer: Printer) -> Iterator[str]:
-        node = nodes[0] if len(nodes) == 1 else ast.Chain(operator, tuple(nodes), False, nodes[0].span)
-        said = printer.say(node)
+        said = printer.say(joined(nodes, operator))
         if said.in_lines:
             return
         yield printer.text(said.pieces)
