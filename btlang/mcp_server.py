@@ -16,8 +16,8 @@ from btlang.diagnostics.diagnostic import Diagnostic, diagnostic
 from btlang.diagnostics.errors import MissionError, in_order
 from btlang.diagnostics.reading import MOST_BYTES
 from btlang.diagnostics.report import as_data
+from btlang.recording.trial import simulated
 from btlang.run.lines import Lines
-from btlang.session import Session
 from btlang.text.source import Source, Span
 from btlang.vocabulary.listing import listing, overview
 
@@ -26,8 +26,6 @@ if TYPE_CHECKING:
     import argparse
     from typing import Any
 
-_MOST_SECONDS = 3600.0  # of a mission
-_MOST_TICKS = 72_000
 _PATIENCE = 20.0  # seconds of real time that a simulation may take
 _MOST_LINES = 500  # of what happened
 _NAME = "<mission>"
@@ -96,25 +94,15 @@ class Tools:
         Returns what happened, the status at the end, what stopped it if it didn't end by itself, and why it failed.
         """
         mission = self._mission(text)
-        mission.check()
         lines: list[str] = []
-        rate = 20.0
-        limit = min(max(seconds, 0.0), _MOST_SECONDS, min(max(ticks, 1), _MOST_TICKS) / rate)
-        session = Session("simulated", world=mission.world)
         told = Lines(mission.label, mission.is_action, lines.append)
-        run = session.start(mission, speed="max", rate=rate, time_limit=limit, sinks=(told,))
-        outcome = run.wait(_PATIENCE)
-        stopped = "" if outcome is not None else "it took too long to simulate"
+        outcome, stopped = simulated(mission, told, seconds, _PATIENCE, ticks)
         if outcome is None:
-            run.stop()
-            outcome = run.wait(_PATIENCE)
-        if outcome is None:  # closing the session would wait for the command
             return {"ok": False, "stopped": "a command never returns", "lines": lines[:_MOST_LINES], "messages": []}
-        session.close()
         return {
             "ok": outcome.succeeded,
             "status": outcome.status.name,
-            "stopped": stopped or outcome.stopped,
+            "stopped": stopped,
             "why": outcome.why(),
             "seconds": round(outcome.seconds, 3),
             "ticks": outcome.ticks,

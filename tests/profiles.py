@@ -18,6 +18,11 @@ def amount(usual: int, long: int) -> int:
     return long if os.environ.get(LONG) else usual
 
 
+def only_long(test: Any) -> Any:
+    """A test that runs with `-m long` alone."""
+    return pytest.mark.long(pytest.mark.skipif(not amount(0, 1), reason="takes seconds: with -m long")(test))
+
+
 def searches(usual: int, long: int, **options: Any) -> Callable[[Any], Any]:
     """A property test draws so many examples in each run, and so many in a long one."""
 

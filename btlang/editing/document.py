@@ -15,7 +15,7 @@ from btlang.gc_pause import gc_paused
 from btlang.printer.mission import printer_of
 from btlang.printer.phrase import is_written
 from btlang.text.source import Source
-from btlang.tree.ast import Phrase
+from btlang.tree.ast import Phrase, Program
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -32,8 +32,9 @@ def document(source: Source, words: Words) -> dict[str, Any]:
     Where it compiles also:
 
     - `nodes`: those of `Tree.walk` with the number of their parent, -1 for none; `tree` is the name of their subtree.
-      One that can be changed (btlang.editing.edits) has its `sort`, "command" or "condition", the `edits` that may be
-      done with it, and its `values`: name, type and words of each;
+      One that can be changed (btlang.editing.edits) has the number of its `kind`;
+    - `kinds`: of each the `sort`, "command" or "condition", the `edits` that may be done, and the `values`: name, type
+      and words of each;
     - `outline`: see btlang.editing.outline.
     """
     sort = frontend_of(source)
@@ -45,10 +46,9 @@ def document(source: Source, words: Words) -> dict[str, Any]:
             return {"ok": False, "sort": sort, "messages": messages(error.diagnostics, source)}
         problems = [*mission.warnings, *_misnamed(mission)]
         nodes = _nodes(mission, source)
-        if mission.syntax is not None:
-            _add_edits(nodes, mission, origins)
+        kinds = [] if mission.syntax is None else _kinds(nodes, mission, mission.syntax, origins)
         return {
-            "ok": True, "sort": sort, "messages": messages(problems, source), "nodes": nodes,
+            "ok": True, "sort": sort, "messages": messages(problems, source), "nodes": nodes, "kinds": kinds,
             "outline": outline(mission, source),
         }  # fmt: skip
 
@@ -89,19 +89,24 @@ def _nodes(mission: Mission, source: Source) -> list[dict[str, Any]]:
     return found
 
 
-def _add_edits(nodes: list[dict[str, Any]], mission: Mission, origins: Origins) -> None:
-    """What can be changed of each node. What is said alike has the same values."""
-    assert mission.syntax is not None
-    syntax = Syntax(mission.syntax, mission.vocabulary)
-    vocabulary = printer_of(mission.syntax, mission.vocabulary).vocabulary
-    body = mission.syntax.body
-    known: dict[object, tuple[str, list[str], list[tuple[str, str, str]]]] = {}
+def _kinds(nodes: list[dict[str, Any]], mission: Mission, program: Program, origins: Origins) -> list[dict[str, Any]]:
+    """Gives each node the number of its kind. Most are alike: so all that is sent of them stands there once."""
+    syntax = Syntax(program, mission.vocabulary)
+    vocabulary = printer_of(program, mission.vocabulary).vocabulary
+    numbers: dict[object, int] = {}  # of phrases, and of what is the same of them and of forms
+    kinds: list[dict[str, Any]] = []
     for node, said in zip(nodes, syntax.sources(mission.tree, origins), strict=True):
         if said is None:
             continue
-        alike = (said.entry.id, said.arguments) if type(said) is Phrase else id(said)
-        if said is body or alike not in known:
+        phrase = (said.entry.id, said.arguments, said is program.body) if type(said) is Phrase else None
+        number = numbers.get(phrase)
+        if number is None:
             is_condition = syntax.is_condition(said)
-            found = abilities(said, is_condition, said is body), values_of(said, vocabulary)
-            known[alike] = "condition" if is_condition else "command", *found
-        node["sort"], node["edits"], node["values"] = known[alike]
+            edits, values = abilities(said, is_condition, said is program.body), values_of(said, vocabulary)
+            number = numbers.setdefault((is_condition, *edits, *values), len(kinds))
+            if number == len(kinds):
+                kinds.append({"sort": "condition" if is_condition else "command", "edits": edits, "values": values})
+            if phrase is not None:
+                numbers[phrase] = number
+        node["kind"] = number
+    return kinds

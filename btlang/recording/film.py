@@ -9,9 +9,11 @@ from btlang.engine.compile import outline
 from btlang.engine.status import NAMES
 from btlang.recording.reader import RecordedNodes
 from btlang.recording.story import Story
+from btlang.robots.world_problem import read_world
 from btlang.run.bus import BLOCK
 from btlang.run.events import LOGGED, Event, PeriodPassed, Sampled, StatusesChanged
 from btlang.run.json_log import as_json
+from btlang.run.robot_state import rounded_scan
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -59,21 +61,17 @@ class Film:
         elif isinstance(event, PeriodPassed):
             self._take_state(event)
         elif isinstance(event, Sampled) and event.scan:
-            ranges = [round(each, 2) if each != float("inf") else None for each in event.scan]
-            self._scans.append([round(event.t, 3), ranges])
+            self._scans.append([round(event.t, 3), rounded_scan(event.scan)])
         elif isinstance(event, LOGGED):
             self._events.append(as_json(event, self._mission.label))
-        many = self._count > MOST_CHANGES or len(self._events) > _MOST_EVENTS or len(self._robot) > _MOST_STATES
-        self.is_cut = many
+        full = self._count > MOST_CHANGES or len(self._events) > _MOST_EVENTS
+        self.is_cut = full or len(self._robot) > _MOST_STATES
 
     def _take_state(self, event: PeriodPassed) -> None:
         state = event.state
         if state is None:
             return
-        pose = state.pose
-        place = [None] * 3 if pose is None else [round(pose.x, 3), round(pose.y, 3), round(pose.heading, 1)]
-        battery = None if state.battery is None else round(state.battery, 1)
-        now = [*place, battery, state.left, state.right]
+        now: list[Any] = [*(state.place or (None, None, None)), state.charge, state.left, state.right]
         if not self._robot or self._robot[-1][1:] != now:
             self._robot.append([round(event.t, 3), *now])
 
@@ -86,7 +84,7 @@ class Film:
         - `robot`: time, x, y (metres), heading (degrees), battery (percent), what the left and the right hand hold;
         - `scans`: time and metres, counter-clockwise from straight ahead; `events`: see btlang/run/events.schema.json;
         - `story`: time, node (-1: none) and words; `why`: how it ended; `failed`: the node that failed, or -1;
-        - `seconds`: how long it is; `is_cut`: whether more happened than is kept.
+        - `seconds`: how long it is; `is_cut`: whether more happened than is kept; `map`: see World.as_map.
         """
         nodes, mission = self._nodes, self._mission
         text = "" if mission.syntax is None else mission.syntax.span.source.text
@@ -115,4 +113,5 @@ class Film:
             "failed": self._story.failed,
             "seconds": round(self._end, 3),
             "is_cut": self.is_cut,
+            "map": read_world(mission.world).as_map(),
         }

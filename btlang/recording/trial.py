@@ -6,13 +6,15 @@ from btlang.api import Mission
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.recording.film import Film
-from btlang.robots.world_problem import read_world
 from btlang.session import Session
 from btlang.text.source import NOWHERE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
+
+    from btlang.run.events import Sink
+    from btlang.run.runner import Outcome
 
 MOST_SECONDS = 3600.0
 """Of the mission's time."""
@@ -21,9 +23,38 @@ _RATE = 20.0
 _OURS = "btlang.actions."  # modules whose functions do nothing but lead the robot that they are given
 
 
+def simulated(
+    mission: Mission,
+    sink: Sink,
+    seconds: float,
+    patience: float,
+    ticks: int = _MOST_TICKS,
+    seed: int | None = None,
+) -> tuple[Outcome | None, str]:
+    """Runs a mission on the simulated robot, as fast as possible, for at most so many seconds of the mission and ticks.
+
+    The outcome, None for a mission with a command that never returns, and what stopped it: "" if it ended by itself. It
+    is stopped after `patience` seconds of real time. Raises MissionError for a mission that can't be run.
+    """
+    mission.check()
+    limit = min(max(seconds, 0.0), MOST_SECONDS, min(max(ticks, 1), _MOST_TICKS) / _RATE)
+    options = {} if seed is None else {"seed": seed}
+    session = Session("simulated", world=mission.world)
+    run = session.start(mission, speed="max", rate=_RATE, time_limit=limit, sinks=(sink,), **options)
+    outcome = run.wait(patience)
+    if outcome is not None:
+        session.close()
+        return outcome, outcome.stopped
+    run.stop()
+    outcome = run.wait(patience)
+    if outcome is not None:  # closing the session would wait for the command
+        session.close()
+    return outcome, "it took too long to simulate"
+
+
 def tried(mission: Mission, seconds: float = 600.0, patience: float = 6.0, seed: int | None = None) -> dict[str, Any]:
     """The film of a run (see Film.data) of at most so many seconds of the mission and `patience` seconds of real time,
-    with the `map` of its world, and what `stopped` it: "" if it ended by itself.
+    and what `stopped` it: "" if it ended by itself.
 
     Raises MissionError for a mission that can't be run, and BT221 for one with words that are no words of btlang: what
     they do might move a real robot.
@@ -33,18 +64,6 @@ def tried(mission: Mission, seconds: float = 600.0, patience: float = 6.0, seed:
         if entry is not None and not str(entry.call).startswith(_OURS):
             words = mission.label(node)
             raise MissionError([diagnostic("BT221", node.span or NOWHERE, words=words, file=entry.file)])
-    mission.check()
     film = Film(mission)
-    session = Session("simulated", world=mission.world)
-    limit = min(max(seconds, 0.0), MOST_SECONDS, _MOST_TICKS / _RATE)
-    options = {} if seed is None else {"seed": seed}
-    run = session.start(mission, speed="max", rate=_RATE, time_limit=limit, sinks=(film,), **options)
-    outcome = run.wait(patience)
-    stopped = "it takes too long to simulate"
-    if outcome is None:
-        run.stop()
-        run.wait(patience)
-    else:
-        stopped = outcome.stopped
-    session.close()
-    return {**film.data(), "map": read_world(mission.world).as_map(), "stopped": stopped}
+    _, stopped = simulated(mission, film, seconds, patience, seed=seed)
+    return {**film.data(), "stopped": stopped}

@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Iterable
+from math import isfinite
 
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.record import Record
@@ -20,6 +21,17 @@ class RobotState(Record):
     left: str | None = None
     right: str | None = None
 
+    @property
+    def place(self) -> list[float] | None:
+        """Metres and degrees for those who watch: rounded, so that a robot at rest has nothing new."""
+        pose = self.pose
+        return None if pose is None else [round(pose.x, 3), round(pose.y, 3), round(pose.heading, 1)]
+
+    @property
+    def charge(self) -> float | None:
+        """Percent of the battery, rounded likewise."""
+        return None if self.battery is None else round(self.battery, 1)
+
 
 def read_robot(robot: Any) -> RobotState | None:
     """The state of a robot, None where there is no robot. For the thread of the run."""
@@ -35,3 +47,8 @@ def asked(ask: Callable[[], Any]) -> Any:
         return ask()
     except (ActionFailed, AttributeError):
         return None
+
+
+def rounded_scan(ranges: Iterable[float]) -> list[float | None]:
+    """Metres for those who watch, counter-clockwise from straight ahead; None where nothing is."""
+    return [round(distance, 2) if isfinite(distance) else None for distance in ranges]

@@ -19,7 +19,6 @@ from starlette.responses import Response
 from starlette.routing import BaseRoute
 from starlette.types import ASGIApp
 
-import btlang
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.editing.words import Words
@@ -32,6 +31,7 @@ from btlang.server.door import listening
 from btlang.server.door import serve as serve_door
 from btlang.server.files import Files
 from btlang.server.links import Robots
+from btlang.server.pages import BUILT
 from btlang.server.roles import Role
 from btlang.task.messages import Answer, is_whole
 from btlang.text.escaping import one_line
@@ -42,7 +42,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     import argparse
 
-PAGE = Path(btlang.__file__).parent / "web" / "dist" / "index.html"
+PAGE = BUILT / "index.html"
 _HOST = "127.0.0.1"
 _USER = "you"
 _OPEN = 60.0  # seconds in which the address has to be opened

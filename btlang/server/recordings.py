@@ -11,7 +11,6 @@ from btlang.diagnostics.errors import MissionError
 from btlang.recording.film import Film
 from btlang.recording.open import opened
 from btlang.recording.reader import read_about
-from btlang.robots.world_problem import read_world
 from btlang.server.access import AccessError
 from btlang.server.utf16 import in_units
 
@@ -50,11 +49,10 @@ def path_of(folder: str, name: str) -> str:
 
 
 def film(path: str) -> bytes:
-    """See btlang.recording.film.Film.data, with the `map` of the world, as JSON; runs nothing."""
+    """See btlang.recording.film.Film.data, as JSON; runs nothing."""
     try:
         with opened(path, ()) as (recording, mission, nodes):
             data = Film(mission, dict(recording.about)).take(recording.events(nodes)).data()
-            data["map"] = read_world(mission.world).as_map()
     except MissionError as error:
         return json.dumps({"ok": False, "text": str(error), "code": error.diagnostics[0].code}).encode()
     return json.dumps({"ok": True, **in_units(data, data["text"])}, default=str).encode()

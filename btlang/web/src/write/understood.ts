@@ -46,6 +46,11 @@ export interface Understood {
   sort: string;
 }
 
+/** The nodes with what stands once for all of a kind. */
+function whole(answer: any): SaidNode[] | null {
+  return answer.nodes?.map((node: any) => ({ ...node, ...answer.kinds[node.kind] })) ?? null;
+}
+
 /** Asks about texts of one robot. */
 export class Reader {
   private page = crypto.randomUUID?.() ?? String(Math.random());
@@ -92,7 +97,7 @@ export class Reader {
       try {
         const answer = await post("/api/document", this.asked(text));
         if (this.text === null && !this.ended) {
-          this.tell({ text, messages: answer.messages ?? [], nodes: answer.nodes ?? null, outline: answer.outline ?? [], sort: answer.sort ?? "english" });
+          this.tell({ text, messages: answer.messages ?? [], nodes: whole(answer), outline: answer.outline ?? [], sort: answer.sort ?? "english" });
           this.fail("");
         }
       } catch (error) {
