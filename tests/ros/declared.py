@@ -184,7 +184,5 @@ def robot(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Iterator[Robot]:
     pytest.importorskip("rclpy", reason="ROS 2 is not installed")
     monkeypatch.setenv("ROS_AUTOMATIC_DISCOVERY_RANGE", "LOCALHOST")
     monkeypatch.setenv("FASTRTPS_DEFAULT_PROFILES_FILE", PROFILE)
-    # with shared memory, a peer that is killed may block who writes to it for a second
-    monkeypatch.setenv("FASTDDS_BUILTIN_TRANSPORTS", "UDPv4")
     with free_domain() as domain, Robot(tmp_path, domain) as made:
         yield made

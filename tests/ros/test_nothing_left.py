@@ -14,6 +14,8 @@ from tests.ros.client import check_nodes
 from tests.ros.processes import LONG, Command
 
 RUNS = amount(2, 20)
+SHARED = {"FASTDDS_BUILTIN_TRANSPORTS": None}
+"""As Fast DDS is by default: with shared memory."""
 
 
 def segments(process: int) -> set[str]:
@@ -30,14 +32,14 @@ def segments(process: int) -> set[str]:
 
 @pytest.mark.long
 def test_missions_in_a_row(start_sim: Callable[..., Command], domain: int, tmp_path: Path) -> None:
-    sim = start_sim("--speed", "1")
+    sim = start_sim("--speed", "1", **SHARED)
     check_nodes(domain, "btlang_sim")
     used = segments(sim.process.pid)
     assert used
     for number in range(RUNS):
         folder = tmp_path / str(number)
         folder.mkdir()
-        mission = Command(folder, domain, "run", "--robot", "ros", "-c", "print done", "--quiet")
+        mission = Command(folder, domain, "run", "--robot", "ros", "-c", "print done", "--quiet", **SHARED)
         own, until = set(), time.monotonic() + LONG
         while mission.process.poll() is None and time.monotonic() < until:
             own |= segments(mission.process.pid)
