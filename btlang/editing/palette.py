@@ -7,6 +7,7 @@ from collections.abc import Iterator
 from functools import lru_cache
 
 from btlang.diagnostics.errors import MissionError
+from btlang.editing.forms import FORMS
 from btlang.editing.words import Words
 from btlang.frontends.mission.reader import lexed, read_mission
 from btlang.frontends.table import frontend_of
@@ -30,15 +31,27 @@ _OWN = "this mission"
 
 
 def palette(source: Source, words: Words) -> dict[str, Any]:
-    """`topics`: each with its `topic` and its `items`, the names of the mission first.
+    """What can be put in, and put round what is there.
+
+    `topics`: each with its `topic` and its `items`, the names of the mission first.
 
     An item has its `words`, `help`, `example`, `sort` ("action", "condition", "form" or "name") and what to `insert`: a
-    whole command or condition, with examples in its slots. Raises MissionError for words that can't be used.
+    whole command or condition, with examples in its slots.
+
+    `forms`: what nodes can be wrapped in (btlang.editing.forms): `name`, `sort` of what it is round ("command" or
+    "condition"), what it `needs` and an `example` of that. Raises MissionError for words that can't be used.
     """
     vocabulary = words.vocabulary(source)
     own = [*_names(source, vocabulary)] if frontend_of(source) == "english" else []
     topics = [{"topic": _OWN, "items": own}] if own else []
-    return {"topics": [*topics, *_shipped(vocabulary)]}
+    return {"topics": [*topics, *_shipped(vocabulary)], "forms": [*_forms(vocabulary)]}
+
+
+def _forms(vocabulary: Lexicon) -> Iterator[dict[str, str]]:
+    for name, form in FORMS.items():
+        example = vocabulary.types[form.needs].example if form.needs in vocabulary.types else ""
+        sort = "condition" if form.of_conditions else "command"
+        yield {"name": name, "sort": sort, "needs": form.needs, "example": example}
 
 
 def _names(source: Source, vocabulary: Lexicon) -> Iterator[dict[str, str]]:

@@ -23,6 +23,7 @@ from btlang.editing.messages import messages
 from btlang.editing.palette import palette
 from btlang.editing.rename import rename
 from btlang.editing.words import Words
+from btlang.frontends.table import frontend_of
 from btlang.gc_pause import gc_paused
 from btlang.record import Record
 from btlang.recording.trial import tried
@@ -56,6 +57,12 @@ def _check(source: Source, words: Words) -> dict[str, Any]:
     return {"messages": messages(mission.warnings, source), "outline": str(mission)}
 
 
+def _english(source: Source, words: Words) -> dict[str, Any]:
+    mission = words.mission(source)
+    found = messages(mission.warnings, source)
+    return {"messages": found, "sort": frontend_of(source), "text": mission.to("english")}
+
+
 def _explain(source: Source, words: Words) -> dict[str, Any]:
     mission = words.mission(source)
     return {"messages": messages(mission.warnings, source), "explanation": mission.explain()}
@@ -70,6 +77,7 @@ DOES: Mapping[str, TextQuery] = {
     "complete": TextQuery("What may follow at a place, by default the end.", complete, takes=("at",)),
     "document": TextQuery("All that an editor shows of a text: messages, tree and outline.", document),
     "edit": TextQuery("A change of a mission by its tree.", edit, needs=("edit",)),
+    "english": TextQuery("A mission, which may be a tree in XML or JSON, in English.", _english),
     "explain": TextQuery("How a mission is understood.", _explain),
     "format": TextQuery("A mission in the usual layout.", _format),
     "hover": TextQuery("What was understood at a place, with help.", hover, needs=("at",)),

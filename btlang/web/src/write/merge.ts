@@ -6,12 +6,12 @@ import { EditorView, lineNumbers } from "@codemirror/view";
 import { h } from "../dom";
 import { t } from "../texts";
 import { show } from "./ask";
+import { mayStyle } from "./editor";
 import type { Kept } from "./store";
 
 /** Shows both; `take` gets the text that somebody made of them, and what it is made from. */
 export function merge(reason: string, theirs: Kept, mine: string, take: (text: string, from: Kept) => void): void {
-  const nonce = document.querySelector<HTMLScriptElement>("script[nonce]")?.nonce ?? "";
-  const common = [EditorView.cspNonce.of(nonce), EditorView.lineWrapping, lineNumbers()];
+  const common = [mayStyle(), EditorView.lineWrapping, lineNumbers()];
   const place = h("div", { class: "merge" });
   const dialog = show(
     t("write.stale"),

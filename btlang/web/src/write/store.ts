@@ -2,10 +2,16 @@
 import { request, RequestError } from "../api";
 import type { Context } from "../view";
 
-/** A mission as it is kept. `revision` is that of the store, for a stale save to be noticed. */
+/**
+ * A mission as it is kept. `revision` is that of the store, for a stale save to be noticed; `tree` and `copy` are the
+ * files of a tree that it is written for, `problem` what went wrong beside it.
+ */
 export interface Kept {
   text: string;
   revision: number | string;
+  tree?: string;
+  copy?: string;
+  problem?: string;
 }
 
 /** A save that was refused, since somebody else saved in between. */
@@ -23,6 +29,8 @@ export interface Store {
   readonly key: string;
   readonly name: string;
   load(): Promise<Kept>;
+  /** Where the English of a tree is kept, if this is a tree. */
+  english(): Store;
   /** Throws Stale, too. */
   save(text: string, revision: Kept["revision"]): Promise<Kept>;
 }
@@ -33,7 +41,7 @@ export class LibraryStore implements Store {
   private query: string;
 
   constructor(
-    context: Context,
+    readonly context: Context,
     readonly name: string,
   ) {
     this.key = `mission:${context.robot}:${name}`;
@@ -45,6 +53,10 @@ export class LibraryStore implements Store {
     const { data } = await request("GET", `/api/missions${this.query}`);
     const found = (data.missions as { name: string; text: string; number: number }[]).find(({ name }) => name === this.name);
     return found ? { text: found.text, revision: found.number } : { text: "", revision: 0 };
+  }
+
+  english(): Store {
+    return new LibraryStore(this.context, `${this.name} in English`);
   }
 
   async save(text: string, revision: Kept["revision"]): Promise<Kept> {
@@ -73,9 +85,14 @@ export class FileStore implements Store {
     return known(await request("GET", this.path));
   }
 
+  /** The server has it ready. */
+  english(): Store {
+    return this;
+  }
+
   async save(text: string, revision: Kept["revision"]): Promise<Kept> {
     try {
-      return { text, revision: known(await request("PUT", this.path, { text, revision })).revision };
+      return { ...known(await request("PUT", this.path, { text, revision })), text };
     } catch (error) {
       throw stale(error);
     }
@@ -93,7 +110,7 @@ function stale(error: unknown): unknown {
 }
 
 function known({ data }: any): Kept {
-  return { text: data.text ?? "", revision: data.revision };
+  return { ...data, text: data.text ?? "" };
 }
 
 /** What somebody wrote and hasn't saved: it outlives the page, the connection and the server. */

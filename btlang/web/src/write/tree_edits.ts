@@ -7,14 +7,14 @@ import type { Editor } from "./editor";
 import { choose } from "./palette";
 import type { Reader, SaidNode } from "./understood";
 
-/** Those of btlang/editing/forms.py, with what they need. */
-const FORMS: Record<string, "" | "count" | "duration" | "time_of_day" | "condition"> = {
-  "repeat": "count", "forever": "", "retry": "count", "try": "", "within": "duration", "for": "duration", "up to": "duration", "every": "duration",
-  "after": "duration", "until time": "time_of_day", "if": "condition", "unless": "condition", "while": "condition", "until": "condition",
-  "provided": "condition", "stop when": "condition", "whenever": "condition", "in sequence": "", "in parallel": "", "in order": "",
-};
-const CONDITION_FORMS = ["not", "all of", "any of"];
-const EXAMPLES = { "": "", count: "3", duration: "10 s", time_of_day: "6 pm", condition: "" };
+/** What nodes can be wrapped in; see `palette` in btlang/editing/palette.py. */
+interface Form {
+  name: string;
+  sort: "command" | "condition";
+  needs: string;
+  example: string;
+}
+
 const CHAINS = ["Sequence", "Fallback", "Parallel"];
 
 type Place = "before" | "after" | "inside";
@@ -50,7 +50,7 @@ export class TreeEdits {
       ...item("write.add_before", () => this.add(node, "before"), can("insert")),
       ...item("write.add_inside", () => this.add(node, "inside"), can("inside")),
       ...item("write.values", () => this.values(node), (said.values?.length ?? 0) > 0),
-      ...item("write.wrap", () => this.wrap(node), can("wrap")),
+      ...item("write.wrap", () => void this.wrap(node), can("wrap")),
       ...item("write.unwrap", () => this.edit({ do: "unwrap", node }), can("unwrap")),
       ...item("write.turn", () => this.edit({ do: "turn", node }), can("turn")),
       ...item("write.name_it", () => this.name(node), can("name")),
@@ -123,22 +123,24 @@ export class TreeEdits {
     void choose(this.reader, this.editor.text, this.isCondition(node) && !inside, (words) => this.edit({ do: "insert", node, place, words }));
   }
 
-  private wrap(node: number): void {
+  private async wrap(node: number): Promise<void> {
+    const answer = await this.reader.service("palette", this.editor.text, {});
+    if (!answer.ok) return this.say(answer.text ?? "");
     const conditions = this.isCondition(node);
-    const names = conditions ? CONDITION_FORMS : Object.keys(FORMS);
+    const forms = new Map((answer.forms as Form[]).filter(({ sort }) => conditions === (sort === "condition")).map((form) => [form.name, form]));
     const siblings = this.following(node);
-    const needs = (values: Record<string, string>): string => FORMS[values["form"] ?? ""] ?? "";
+    const needed = (values: Record<string, string>): string => forms.get(values["form"] ?? "")?.needs ?? "";
     ask(
       t("write.wrap"),
       [
-        { name: "form", label: t("write.form"), value: conditions ? "not" : "retry", options: names.map((value) => ({ value, label: t(`form.${value}` as Key) })) },
-        { name: "words", label: t("write.form_words"), value: EXAMPLES.count, required: true, shown: (values) => needs(values) !== "" },
+        { name: "form", label: t("write.form"), value: conditions ? "not" : "retry", options: [...forms.keys()].map((value) => ({ value, label: t(`form.${value}` as Key) })) },
+        { name: "words", label: t("write.form_words"), value: (values) => forms.get(values["form"] ?? "")?.example ?? "", required: true, shown: (values) => needed(values) !== "" },
         ...(siblings.length ? [{ name: "count", label: t("write.count"), value: "1", number: { min: 1, max: siblings.length + 1 } }] : []),
       ],
       (values) => {
         const count = Number(values["count"] ?? 1);
         const last = count > 1 ? siblings[count - 2] : null;
-        return this.edit({ do: "wrap", node, last, form: values["form"], words: needs(values) ? values["words"] : "" });
+        return this.edit({ do: "wrap", node, last, form: values["form"], words: needed(values) ? values["words"] : "" });
       },
     );
   }

@@ -47,8 +47,10 @@ function openList(context: Context): View {
 /** One mission that somebody writes. */
 class Desk {
   readonly view: View;
+  private title: HTMLElement;
   private state = h("span", { class: "state", role: "status" });
   private problem = h("p", { class: "problem", role: "alert", lang: "en" });
+  private origin = h("div", { class: "offered origin" });
   private offered = h("div", { class: "offered" });
   private messages = h("ol", { class: "messages", lang: "en" });
   private outline = h("select", { "aria-label": t("write.outline") });
@@ -74,6 +76,7 @@ class Desk {
     private store: Store,
   ) {
     this.mayWrite = may(context.me, "editor");
+    this.title = h("h1", { dir: "auto" }, store.name);
     this.draft = new Draft(store.key);
     this.reader = new Reader(context.robot, (understood) => this.show(understood), (problem) => this.fail(problem));
     this.editor = new Editor("", t("write.text"), {
@@ -112,7 +115,7 @@ class Desk {
       this.mayWrite && h("button", { type: "button", title: "Ctrl+Y", onclick: () => this.editor.redo() }, t("write.redo")),
       this.outline,
     );
-    const head = h("div", { class: "head" }, h("div", { class: "now" }, h("h1", { dir: "auto" }, this.store.name), this.state), tools);
+    const head = h("div", { class: "head" }, h("div", { class: "now" }, this.title, this.state), tools);
     const trunk = h(
       "section",
       { class: "stage card" },
@@ -120,7 +123,7 @@ class Desk {
       this.tree.element,
     );
     const words = h("section", { class: "stage card" }, this.text, this.problem, this.messages);
-    return h("div", { class: "desk" }, head, this.offered, h("div", { class: "panes" }, words, trunk));
+    return h("div", { class: "desk" }, head, this.origin, this.offered, h("div", { class: "panes" }, words, trunk));
   }
 
   private close(): void {
@@ -140,15 +143,28 @@ class Desk {
   private async load(): Promise<void> {
     try {
       this.kept = await this.store.load();
+      if (/^\s*[<{]/.test(this.kept.text)) this.kept = await this.inEnglish(this.kept);
     } catch (error) {
       return this.fail((error as Error).message);
     }
+    fill(this.title, this.store.name);
     this.editor.apply([smallest("", this.kept.text)]);
     this.editor.lock(!this.mayWrite);
     const draft = this.draft.read();
     if (draft && draft.text !== this.kept.text) this.offer(draft);
     this.reader.read(this.editor.text);
     this.tell();
+  }
+
+  /** A tree in XML or JSON as a mission beside it, which is there already or begins with its English. */
+  private async inEnglish(kept: Kept): Promise<Kept> {
+    const answer = await this.reader.service("english", kept.text, {});
+    if (!answer.ok || answer.sort === "english") return kept;
+    const tree = this.store.name;
+    this.store = this.store.english();
+    this.draft = new Draft(this.store.key);
+    const copy = await this.store.load();
+    return { ...copy, text: copy.revision ? copy.text : answer.text, tree, copy: this.store.name };
   }
 
   /** A draft of an earlier visit. */
@@ -170,14 +186,14 @@ class Desk {
     const text = this.editor.text;
     fill(this.state, t("write.saving"));
     try {
-      this.kept = await this.store.save(text, this.kept.revision);
+      this.kept = { ...this.kept, problem: "", ...(await this.store.save(text, this.kept.revision)) };
       if (this.editor.text === text) this.draft.clear();
       this.fail("");
     } catch (error) {
       this.keepDraft();
       if (error instanceof Stale) {
         merge(error.message, error.theirs, text, (merged, from) => {
-          this.kept = from;
+          this.kept = { ...this.kept, ...from };
           this.editor.text = merged;
           this.tell();
         });
@@ -192,7 +208,9 @@ class Desk {
   }
 
   private tell(): void {
-    fill(this.state, t(this.isChanged ? "write.changed" : "write.saved"));
+    const { tree, copy, revision, problem } = this.kept;
+    fill(this.state, this.isChanged ? t("write.changed") : revision ? t("write.saved") : "");
+    fill(this.origin, tree && copy && t("write.of_tree", { tree, copy }), problem && h("span", { class: "problem", lang: "en" }, problem));
   }
 
   // -- the text
