@@ -29,7 +29,7 @@ export class RequestError extends Error {
     text: string,
     readonly data: any = {},
   ) {
-    super(text);
+    super(text.replace(/^btc: error BT\d+: /, "")); // which is for a terminal
   }
 }
 
