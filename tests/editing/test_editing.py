@@ -78,9 +78,10 @@ def test_any_text_has_an_answer_within_it(text: str, data: st.DataObject) -> Non
 def test_nodes_are_those_of_the_tree(mission: Any) -> None:
     source = Source(printed(mission, letters()))
     nodes = document(source, LETTERS)["nodes"]
-    walked = list(LETTERS.mission(source).tree.walk())
+    read = LETTERS.mission(source)
+    walked = list(read.tree.walk())
     assert [(each["id"], each["ports"], each["name"]) for each in nodes] == [(n.id, n.ports, n.name) for n in walked]
-    assert [each["label"] for each in nodes] == [LETTERS.mission(source).label(node) for node in walked]
+    assert [each["label"] for each in nodes] == [read.label(node) for node in walked]
     children: list[list[str]] = [[] for _ in nodes]
     for each in nodes:
         if each["parent"] >= 0:
