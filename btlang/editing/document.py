@@ -19,9 +19,41 @@ from btlang.tree.ast import Phrase, Program
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from typing import Any
 
     from btlang.passes.compilation import Origins
+
+
+class _Read:
+    """A text that was read: its mission, None for one that doesn't compile, and what is wrong with it."""
+
+    def __init__(self, source: Source, words: Words) -> None:
+        self.of, self.source, self.sort = _told_apart(source, words), source, frontend_of(source)
+        self.origins: Origins = {}
+        self.mission: Mission | None = None
+        self.problems: Sequence[Diagnostic] = ()
+        try:
+            self.mission = words.mission(source, self.origins)
+        except MissionError as error:
+            self.problems = error.diagnostics
+        else:
+            self.problems = (*self.mission.warnings, *_misnamed(self.mission))
+
+    def told(self) -> dict[str, Any]:
+        ok = self.mission is not None
+        return {"ok": ok, "sort": self.sort, "messages": messages(self.problems, self.source)}
+
+
+_kept: list[_Read] = []
+"""What was read for its messages last: only the next document may use it, as files that it names may change later."""
+
+
+def text_messages(source: Source, words: Words) -> dict[str, Any]:
+    """`ok`, `sort` and `messages` of a document. That of the same text is faster if it is the next one."""
+    with gc_paused:
+        _kept[:] = [_Read(source, words)]
+        return _kept[0].told()
 
 
 def document(source: Source, words: Words) -> dict[str, Any]:
@@ -37,20 +69,21 @@ def document(source: Source, words: Words) -> dict[str, Any]:
       and words of each;
     - `outline`: see btlang.editing.outline.
     """
-    sort = frontend_of(source)
     with gc_paused:
-        origins: Origins = {}
-        try:
-            mission = words.mission(source, origins)
-        except MissionError as error:
-            return {"ok": False, "sort": sort, "messages": messages(error.diagnostics, source)}
-        problems = [*mission.warnings, *_misnamed(mission)]
-        nodes = _nodes(mission, source)
-        kinds = [] if mission.syntax is None else _kinds(nodes, mission, mission.syntax, origins)
-        return {
-            "ok": True, "sort": sort, "messages": messages(problems, source), "nodes": nodes, "kinds": kinds,
-            "outline": outline(mission, source),
-        }  # fmt: skip
+        kept = _kept.pop() if _kept else None
+        read = kept if kept is not None and kept.of == _told_apart(source, words) else _Read(source, words)
+        mission = read.mission
+        if mission is None:
+            return read.told()
+        nodes = _nodes(mission, read.source)
+        kinds = [] if mission.syntax is None else _kinds(nodes, mission, mission.syntax, read.origins)
+        return {**read.told(), "nodes": nodes, "kinds": kinds, "outline": outline(mission, read.source)}
+
+
+def _told_apart(source: Source, words: Words) -> tuple[object, ...]:
+    """What decides how a text is read, but for the files that it names."""
+    world = words.world.text if isinstance(words.world, Source) else words.world
+    return source.text, source.name, tuple(words.keywords), world, words.language
 
 
 def _misnamed(mission: Mission) -> tuple[Diagnostic, ...]:

@@ -16,7 +16,7 @@ from weakref import WeakValueDictionary
 from btlang.api import format_mission
 from btlang.diagnostics.errors import MissionError
 from btlang.editing.completion import complete
-from btlang.editing.document import document
+from btlang.editing.document import document, text_messages
 from btlang.editing.edits import edit, read_edit
 from btlang.editing.hover import hover
 from btlang.editing.messages import messages
@@ -81,6 +81,7 @@ DOES: Mapping[str, TextQuery] = {
     "explain": TextQuery("How a mission is understood.", _explain),
     "format": TextQuery("A mission in the usual layout.", _format),
     "hover": TextQuery("What was understood at a place, with help.", hover, needs=("at",)),
+    "messages": TextQuery("What is wrong with a text, as its document says it.", text_messages),
     "palette": TextQuery("All that can be put into a mission, by topic.", palette),
     "rename": TextQuery("What gives a definition and its uses another name.", rename, needs=("at",), takes=("name",)),
 }

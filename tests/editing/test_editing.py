@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 
 from btlang.diagnostics.errors import MissionError
 from btlang.editing.completion import complete
-from btlang.editing.document import document
+from btlang.editing.document import document, text_messages
 from btlang.editing.hover import hover
 from btlang.editing.palette import palette
 from btlang.editing.words import Words
@@ -87,6 +87,27 @@ def test_nodes_are_those_of_the_tree(mission: Any) -> None:
         if each["parent"] >= 0:
             children[each["parent"]].append(each["id"])
     assert children == [[child.id for child in node.children] for node in walked]
+
+
+@given(
+    st.lists(st.tuples(st.sampled_from(("messages", "document")), st.sampled_from(("wave\n", "wavee\n", "<a/>", TEA))))
+)
+def test_messages_before_a_document_change_nothing_but_its_time(asked: list[tuple[str, str]]) -> None:
+    for what, text in asked:
+        source = Source(text, roots=())
+        found = (text_messages if what == "messages" else document)(source, SHIPPED)
+        fresh = document(Source(text, "another", roots=()), SHIPPED)
+        assert found == ({key: fresh[key] for key in ("ok", "sort", "messages")} if what == "messages" else fresh)
+
+
+def test_a_document_is_read_anew_once_it_was_told(tmp_path: Path) -> None:
+    included = tmp_path / "tea.txt"
+    source = Source('include "tea.txt"\npour tea\n', str(tmp_path / "x.txt"))
+    included.write_text("pour tea is nod\n")
+    assert text_messages(source, SHIPPED)["ok"]
+    assert "nod" in [each["label"] for each in document(source, SHIPPED)["nodes"]]
+    included.write_text("pour tea is wave\n")
+    assert "wave" in [each["label"] for each in document(source, SHIPPED)["nodes"]]
 
 
 def test_a_document_has_its_tree_and_outline(tmp_path: Path) -> None:

@@ -37,18 +37,16 @@ export interface SaidNode extends TreeNode {
   values?: [port: string, kind: string, words: string][];
 }
 
-/** All that is known of a text. `nodes` is null where it can't be compiled. */
-export interface Understood {
-  text: string;
-  messages: Message[];
-  nodes: SaidNode[] | null;
-  outline: Named[];
-  sort: string;
+/** Who is told of a text: first what is wrong with it, then its tree if it compiles. */
+export interface Listener {
+  checked: (text: string, messages: Message[], compiles: boolean) => void;
+  understood: (text: string, nodes: SaidNode[], outline: Named[]) => void;
+  failed: (problem: string) => void;
 }
 
 /** The nodes with what stands once for all of a kind. */
-function whole(answer: any): SaidNode[] | null {
-  return answer.nodes?.map((node: any) => ({ ...node, ...answer.kinds[node.kind] })) ?? null;
+function whole(answer: any): SaidNode[] {
+  return answer.nodes.map((node: any) => ({ ...node, ...answer.kinds[node.kind] }));
 }
 
 /** Asks about texts of one robot. */
@@ -61,11 +59,10 @@ export class Reader {
 
   constructor(
     private robot: string,
-    private tell: (understood: Understood) => void,
-    private fail: (problem: string) => void,
+    private listener: Listener,
   ) {}
 
-  /** Asks about a text, after which `tell` is called, unless there is a newer one by then. */
+  /** Asks about a text, of which the listener is told, unless there is a newer one by then. */
   read(text: string): void {
     this.text = text;
     if (!this.busy) void this.ask();
@@ -94,15 +91,17 @@ export class Reader {
     while (this.text !== null && !this.ended) {
       const text = this.text;
       this.text = null;
+      const isNewest = (): boolean => this.text === null && !this.ended;
       try {
-        const answer = await post("/api/document", this.asked(text));
-        if (this.text === null && !this.ended) {
-          this.tell({ text, messages: answer.messages ?? [], nodes: whole(answer), outline: answer.outline ?? [], sort: answer.sort ?? "english" });
-          this.fail("");
-        }
+        const { ok, messages } = await post("/api/messages", this.asked(text));
+        if (!isNewest()) continue;
+        this.listener.checked(text, messages, ok);
+        this.listener.failed("");
+        const answer = ok && (await post("/api/document", this.asked(text)));
+        if (answer.nodes && isNewest()) this.listener.understood(text, whole(answer), answer.outline);
       } catch (error) {
-        if (this.text === null && !this.ended) {
-          this.fail((error as Error).message);
+        if (isNewest()) {
+          this.listener.failed((error as Error).message);
           const again = error instanceof RequestError && (error.status === 0 || error.status >= 500);
           if (again) this.retry = setTimeout(() => this.read(text), 1000);
         }

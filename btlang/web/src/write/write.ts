@@ -11,7 +11,7 @@ import { Editor, smallest } from "./editor";
 import { merge } from "./merge";
 import { Draft, FileStore, LibraryStore, Stale, type Kept, type Store } from "./store";
 import { TreeEdits } from "./tree_edits";
-import { Reader, type SaidNode, type Understood } from "./understood";
+import { Reader, type Message, type Named, type SaidNode } from "./understood";
 
 const DRAFT_AFTER = 300; // milliseconds after a key
 
@@ -78,7 +78,11 @@ class Desk {
     this.mayWrite = may(context.me, "editor");
     this.title = h("h1", { dir: "auto" }, store.name);
     this.draft = new Draft(store.key);
-    this.reader = new Reader(context.robot, (understood) => this.show(understood), (problem) => this.fail(problem));
+    this.reader = new Reader(context.robot, {
+      checked: (text, messages, compiles) => this.check(text, messages, compiles),
+      understood: (text, nodes, outline) => this.understand(text, nodes, outline),
+      failed: (problem) => this.fail(problem),
+    });
     this.editor = new Editor("", t("write.text"), {
       reader: this.reader,
       readOnly: true,
@@ -222,17 +226,21 @@ class Desk {
     this.tell();
   }
 
-  private show({ text, messages, nodes, outline }: Understood): void {
+  private check(text: string, messages: Message[], compiles: boolean): void {
     if (text !== this.editor.text) return;
-    this.understood = text;
     this.editor.tell(messages);
     const items = messages.map((each) =>
       h("li", { class: each.severity }, h("button", { type: "button", onclick: () => this.editor.go(each.start) }, h("b", {}, each.code), ` ${each.message}`)),
     );
     fill(this.messages, ...(items.length ? items : [h("li", { class: "fine" }, t("write.fine"))]));
+    if (!compiles) this.tree.element.classList.add("stale");
+  }
+
+  private understand(text: string, nodes: SaidNode[], outline: Named[]): void {
+    if (text !== this.editor.text) return;
+    this.understood = text;
     fill(this.outline, h("option", { value: "0" }, t("write.outline")), ...outline.map(({ name, start }) => h("option", { value: start }, name)));
-    this.tree.element.classList.toggle("stale", nodes === null);
-    if (!nodes) return;
+    this.tree.element.classList.remove("stale");
     this.nodes = nodes;
     this.edits.set(nodes);
     this.tree.setNodes(nodes, true);
