@@ -89,15 +89,16 @@ def test_nodes_are_those_of_the_tree(mission: Any) -> None:
     assert children == [[child.id for child in node.children] for node in walked]
 
 
-@given(
-    st.lists(st.tuples(st.sampled_from(("messages", "document")), st.sampled_from(("wave\n", "wavee\n", "<a/>", TEA))))
-)
-def test_messages_before_a_document_change_nothing_but_its_time(asked: list[tuple[str, str]]) -> None:
-    for what, text in asked:
+@given(st.data())
+def test_messages_before_a_document_change_nothing_but_its_time(data: st.DataObject) -> None:
+    texts = ("wave\n", "wavee\n", "<a/>", TEA)
+    alone = {text: document(Source(text, roots=()), SHIPPED) for text in texts}
+    for text, first in data.draw(st.lists(st.tuples(st.sampled_from(texts), st.booleans()))):
         source = Source(text, roots=())
-        found = (text_messages if what == "messages" else document)(source, SHIPPED)
-        fresh = document(Source(text, "another", roots=()), SHIPPED)
-        assert found == ({key: fresh[key] for key in ("ok", "sort", "messages")} if what == "messages" else fresh)
+        if first:
+            assert text_messages(source, SHIPPED) == {key: alone[text][key] for key in ("ok", "sort", "messages")}
+        else:
+            assert document(source, SHIPPED) == alone[text]
 
 
 def test_a_document_is_read_anew_once_it_was_told(tmp_path: Path) -> None:
