@@ -40,6 +40,7 @@ if TYPE_CHECKING:
 _STOP = "stop"
 _TOLD_TO_STOP = "the robot was stopped"
 _STOPPING = 5.0  # seconds for which a robot that was stopped is told zero velocity
+_ANSWERED = 1.0  # seconds that its own stop gets to answer before a mission begins
 _HEARTBEAT = 3.5  # seconds in which DDS learns for sure what has arrived
 _LAST_WORDS = 2.0  # seconds that servers get to answer at the end
 
@@ -146,7 +147,8 @@ class RosRobot:
         self.stop()
 
     def enable(self) -> None:
-        """Takes commands again."""
+        """Takes commands again, once the robot's own stop has answered: one that comes later would end the first."""
+        self._services.confirm(_ANSWERED)
         self._latch.open()
 
     def close(self) -> None:

@@ -112,8 +112,9 @@ class Services:
     def confirm(self, seconds: float) -> None:
         """Waits until all that was fired is answered, but so long at most."""
         until = time.monotonic() + seconds
-        for event in self._fired:
-            event.wait(max(0.0, until - time.monotonic()))
+        for event in tuple(self._fired):
+            if event.wait(max(0.0, until - time.monotonic())):
+                self._fired.remove(event)
 
     def _send(self, name: str, fields: dict[str, Any], answered: Callable[[Any], object]) -> None:
         client, request = self._clients[name], self._types[name].Request(**fields)

@@ -209,6 +209,14 @@ def test_its_own_emergency_stop(start_sim, client: Client):
     assert states.next().position[0] == arm < 3.0
 
 
+def test_what_is_asked_for_after_a_stop_counts(sim, client: Client):
+    voice = client.publisher(String, "/speech")
+    for number in range(5):
+        assert client.call(Trigger, "/stop").success
+        voice.publish(String(data=f"number {number}"))
+        sim.wait_for(f'says "number {number}"')
+
+
 def test_namespace_and_the_time_of_the_system(start_sim, client: Client):
     start_sim("--namespace", "/robots/anna", "--no-clock")
     stamp = client.hear(Odometry, "/robots/anna/odom").wait().header.stamp

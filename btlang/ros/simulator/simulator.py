@@ -98,8 +98,9 @@ class Simulator:
         return Moment(seconds, stamp(seconds))
 
     def _stop(self, request: Trigger.Request, response: Trigger.Response) -> Trigger.Response:
-        """In the thread of the executor, at once: it waits for no step."""
+        """In the thread of the executor, at once: it waits for no step. What is asked for from now on counts again."""
         self.robot.stop()
+        self._calls.post(self.robot.enable)
         response.success = True
         return response
 
