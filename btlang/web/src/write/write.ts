@@ -48,6 +48,7 @@ function openList(context: Context): View {
 class Desk {
   readonly view: View;
   private state = h("span", { class: "state", role: "status" });
+  private company = h("p", { class: "company", role: "status", dir: "auto" });
   private problem = h("p", { class: "problem", role: "alert", lang: "en" });
   private offered = h("div", { class: "offered" });
   private messages = h("ol", { class: "messages", lang: "en" });
@@ -64,6 +65,7 @@ class Desk {
   private understood = "";
   private writing: ReturnType<typeof setTimeout> | undefined;
   private mayWrite: boolean;
+  private unwatch: () => void;
   private leaving = (event: BeforeUnloadEvent): void => {
     this.keepDraft();
     if (this.isChanged) event.preventDefault();
@@ -93,6 +95,7 @@ class Desk {
     this.text.append(this.editor.view.dom);
     this.outline.addEventListener("change", () => this.editor.go(Number(this.outline.value)));
     addEventListener("beforeunload", this.leaving);
+    this.unwatch = context.presence.watch(() => this.meet());
     this.view = { element: this.element(), close: () => this.close() };
     void this.load();
   }
@@ -120,11 +123,13 @@ class Desk {
       this.tree.element,
     );
     const words = h("section", { class: "stage card" }, this.text, this.problem, this.messages);
-    return h("div", { class: "desk" }, head, this.offered, h("div", { class: "panes" }, words, trunk));
+    return h("div", { class: "desk" }, head, this.company, this.offered, h("div", { class: "panes" }, words, trunk));
   }
 
   private close(): void {
     this.keepDraft();
+    this.unwatch();
+    this.context.presence.write("", false);
     removeEventListener("beforeunload", this.leaving);
     this.reader.close();
     this.editor.close();
@@ -193,6 +198,13 @@ class Desk {
 
   private tell(): void {
     fill(this.state, t(this.isChanged ? "write.changed" : "write.saved"));
+    this.context.presence.write(this.store.name, this.isChanged);
+  }
+
+  /** Who else has it open, before anybody saves. */
+  private meet(): void {
+    const company = this.context.presence.company;
+    if (company !== this.company.textContent) fill(this.company, company);
   }
 
   // -- the text
