@@ -1,5 +1,5 @@
 // Missions: a list of those in the library, and one as English and tree side by side.
-import { may, request } from "../api";
+import { may, request, type RequestError } from "../api";
 import { fill, h } from "../dom";
 import { Player, type Film } from "../look_back/player";
 import { command } from "../tasks/queue";
@@ -14,6 +14,7 @@ import { TreeEdits } from "./tree_edits";
 import { Reader, type SaidNode, type Understood } from "./understood";
 
 const DRAFT_AFTER = 300; // milliseconds after a key
+const AGAIN = 1000; // milliseconds until a mission is asked for again
 
 /** See `View`. #/write lists, #/write/NAME opens a mission of the library, #/write/file/NAME a file. */
 export function openWrite(context: Context): View {
@@ -65,6 +66,7 @@ class Desk {
   private understood = "";
   private writing: ReturnType<typeof setTimeout> | undefined;
   private mayWrite: boolean;
+  private closed = false;
   private unwatch: () => void;
   private leaving = (event: BeforeUnloadEvent): void => {
     this.keepDraft();
@@ -127,6 +129,7 @@ class Desk {
   }
 
   private close(): void {
+    this.closed = true;
     this.keepDraft();
     this.unwatch();
     this.context.presence.write("", false);
@@ -146,14 +149,23 @@ class Desk {
     try {
       this.kept = await this.store.load();
     } catch (error) {
-      return this.fail((error as Error).message);
+      return this.loadLater(error as RequestError);
     }
+    if (this.closed) return;
+    this.fail("");
     this.editor.apply([smallest("", this.kept.text)]);
     this.editor.lock(!this.mayWrite);
     const draft = this.draft.read();
     if (draft && draft.text !== this.kept.text) this.offer(draft);
     this.reader.read(this.editor.text);
     this.tell();
+  }
+
+  /** As soon as the robot is back. */
+  private loadLater(error: RequestError): void {
+    this.fail(this.draft.read() ? `${error.message} ${t("write.draft_waits")}` : error.message);
+    const passes = error.status === 0 || error.status === 404 || error.status >= 500; // 404: a server that has just begun knows no robot
+    if (passes) setTimeout(() => this.closed || void this.load(), AGAIN);
   }
 
   /** A draft of an earlier visit. */
@@ -180,7 +192,11 @@ class Desk {
       this.fail("");
     } catch (error) {
       this.keepDraft();
-      if (error instanceof Stale) {
+      if (error instanceof Stale && error.theirs.text === text) {
+        this.kept = error.theirs; // an earlier save arrived, but not its answer
+        this.draft.clear();
+        this.fail("");
+      } else if (error instanceof Stale) {
         merge(error.message, error.theirs, text, (merged, from) => {
           this.kept = from;
           this.editor.text = merged;
