@@ -3,6 +3,7 @@ import { may, request, type RequestError } from "../api";
 import { fill, h } from "../dom";
 import { Player, type Film } from "../look_back/player";
 import { command } from "../tasks/queue";
+import { askSchedule } from "../tasks/schedule";
 import { t } from "../texts";
 import { TreeView } from "../tree/tree_view";
 import { address, type Context, type View } from "../view";
@@ -110,6 +111,7 @@ class Desk {
       { class: "controls" },
       this.mayWrite && this.save,
       this.context.robot && h("button", { type: "button", title: "Ctrl+Enter", onclick: () => this.run() }, t("write.run")),
+      this.store instanceof LibraryStore && may(this.context.me, "operator") && h("button", { type: "button", onclick: () => this.schedule() }, t("write.schedule")),
       h("button", { type: "button", title: "Alt+Enter", onclick: () => void this.attempt() }, t("write.try")),
       this.mayWrite && h("button", { type: "button", title: "Shift+Alt+F", onclick: () => void this.format() }, t("write.format")),
       this.mayWrite && h("button", { type: "button", title: "F2", onclick: () => this.rename() }, t("write.rename")),
@@ -310,6 +312,12 @@ class Desk {
       () => (location.hash = address("robots", this.context.robot)),
       (error: Error) => this.fail(error.message),
     );
+  }
+
+  /** Lets the robot do it later, as it's kept. */
+  private schedule(): void {
+    if (this.isChanged || !this.kept.revision) return this.fail(t("write.save_first"));
+    askSchedule(this.context, this.store.name, (rule) => fill(this.state, t("submit.scheduled", { rule })));
   }
 
   private fail(problem: string): void {
