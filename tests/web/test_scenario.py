@@ -25,6 +25,10 @@ def test_a_first_user_writes_a_mission(robot: str, tmp_path: Path) -> None:
     node(HERE / "first_user.mjs", robot, PASSWORD, *pictures, folder=installed(HERE))
 
 
+def test_nodes_are_dragged(robot: str) -> None:
+    node(HERE / "drag.mjs", robot, PASSWORD, folder=installed(HERE))
+
+
 @only_long
 def test_a_picture_in_which_something_moved_differs(robot: str, tmp_path: Path) -> None:
     node(HERE / "moved.mjs", robot, PASSWORD, str(HERE / "golden"), str(tmp_path), folder=installed(HERE))
