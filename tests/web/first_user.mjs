@@ -124,6 +124,8 @@ await visit(base, async (page) => {
   const [due, now] = [new Date(next * 1000), new Date()];
   assert.equal(due.toDateString(), new Date(now.getFullYear(), now.getMonth(), now.getDate() + 1).toDateString());
   assert.equal(`${due.getHours()}:${due.getMinutes()}`, "8:30");
+  await page.click("ul.tasks button[aria-label='Remove: tea']");
+  await page.waitForSelector("ul.tasks .empty");
 
   // yesterday's failure, and its words
   await page.click(".tabs a[href$='/runs']");
