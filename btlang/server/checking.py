@@ -8,6 +8,8 @@ from __future__ import annotations
 import asyncio
 import json
 import multiprocessing
+import os
+import threading
 from collections.abc import Callable, Mapping
 from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
@@ -130,6 +132,18 @@ def _written(kind: str, text: str, words: Words, arguments: Mapping[str, Any]) -
         return json.dumps(answer(kind, text, words, arguments), separators=(",", ":")).encode()
 
 
+def _end_with_server() -> None:
+    """In the process of a checker, which otherwise outlives a server that was killed."""
+    threading.Thread(target=_wait_for_end, daemon=True).start()
+
+
+def _wait_for_end() -> None:
+    server = multiprocessing.parent_process()
+    if server is not None:
+        server.join()
+        os._exit(1)
+
+
 class Checker:
     """For one event loop. Texts take turns, one of each user at a time."""
 
@@ -174,7 +188,7 @@ class Checker:
 
     async def _done(self, do: Callable[..., bytes], *given: object) -> bytes:
         if self._process is None:
-            self._process = ProcessPoolExecutor(1, multiprocessing.get_context("spawn"))
+            self._process = ProcessPoolExecutor(1, multiprocessing.get_context("spawn"), _end_with_server)
         loop = asyncio.get_running_loop()
         try:
             async with asyncio.timeout(_PATIENCE):

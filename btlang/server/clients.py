@@ -12,6 +12,7 @@ from btlang.server.accounts import Identity
 from btlang.server.bodies import read_object
 from btlang.server.links import RobotLink, Robots
 from btlang.server.outlet import TOPICS
+from btlang.server.presence import Presence
 from btlang.server.sockets import Visitor
 from btlang.task.allowance import Allowance
 from btlang.task.messages import Answer, Command, read_command
@@ -31,7 +32,7 @@ class Clients:
     def __init__(self, robots: Robots, do: Do) -> None:
         self.greeting: dict[str, Any] | None = {"type": "auth_required"}
         self.refusal: dict[str, Any] = {"type": "auth_invalid", "text": "This token isn't valid."}
-        self._robots, self._do = robots, do
+        self._robots, self._do, self._presence = robots, do, Presence()
         self._watchers: dict[Visitor, tuple[frozenset[str] | None, dict[str, int]]] = {}
         """With the robots that they watch, None for all, and the last changes that they know."""
         robots.came = self._came
@@ -60,6 +61,7 @@ class Clients:
             self._unsubscribe(visitor)
             for task in waiting:
                 task.cancel()
+            self._presence.leave(visitor)
 
     async def _answer(self, visitor: Visitor, text: str) -> None:
         number: Any = None
@@ -82,8 +84,10 @@ class Clients:
         if kind == "unsubscribe":
             self._unsubscribe(visitor)
             return {"ok": True}
+        if kind == "presence":
+            return {"ok": True, "page": self._presence.show(visitor, data)}
         if kind != "command":
-            raise AccessError(400, "'type' must be command, subscribe, unsubscribe or ping.")
+            raise AccessError(400, "'type' must be command, subscribe, unsubscribe, presence or ping.")
         robot = data.pop("robot", "")
         answer = await self._do(visitor.identity, str(robot), read_command(data), visitor.address)
         return answer.as_json()

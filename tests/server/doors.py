@@ -54,8 +54,9 @@ class Program:
     def _end(self) -> None:
         self.process.wait(LONG)
         assert self.process.stdout is not None
-        self.lines += self.process.stdout.readlines()
-        self.process.stdout.close()
+        if not self.process.stdout.closed:  # else it was killed before
+            self.lines += self.process.stdout.readlines()
+            self.process.stdout.close()
 
 
 class Door(Program):

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import re
 import signal
@@ -23,7 +24,7 @@ from btlang.editing.words import Words
 from btlang.server import editor
 from btlang.server.accounts import Accounts
 from btlang.server.files import Files, TreeFiles, english_beside, tree_sort
-from tests.server.doors import Door, Reply
+from tests.server.doors import Door, Reply, received
 from tests.task.layers import LONG, wait_until
 
 _CODE = """
@@ -104,6 +105,17 @@ def test_the_file_is_read_saved_and_shown_with_what_it_includes(edited: Any, fol
     assert saved["ok"]
     assert (folder / "tour.txt").read_text() == MISSION + "nod\n"
     assert opened(edited)["revision"] == saved["data"]["revision"]
+
+
+def test_two_windows_hear_of_each_other(edited: Any) -> None:
+    cookie = edited.page["cookie"]
+    place = {"type": "presence", "robot": "", "screen": "write", "mission": "tour.txt", "changing": True}
+    with edited.socket(cookie=cookie) as one, edited.socket(cookie=cookie) as other:
+        for each in (one, other):
+            each.send(json.dumps(place))
+        while len(people := received(one, type="people")["people"]) < 2:
+            pass
+        assert [each["user"] for each in people] == ["you", "you"]
 
 
 def test_a_stale_save_is_refused_with_the_difference(edited: Any, folder: Path) -> None:

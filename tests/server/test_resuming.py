@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 from collections.abc import Iterator
 from contextlib import closing
+from pathlib import Path
 from typing import Any
 
 import pytest
@@ -14,7 +15,7 @@ from btlang.server.outlet import _MOST
 from btlang.task.layer import TaskLayer
 from btlang.task.task import State
 from tests.server.doors import Door, received
-from tests.task.layers import LONG, submit, wait_for
+from tests.task.layers import LONG, submit, wait_for, wait_until
 from tests.task.places import a_task
 
 
@@ -60,6 +61,16 @@ def test_a_server_that_was_killed_is_made_up_for(own_door: Door, token: dict[str
         subscribe(connection, after={"robot": known})
         wait_for(robot, submit(robot, "wave"), State.COMPLETED)
         assert numbers_until(connection, known + 8) == list(range(known + 1, known + 9))
+
+
+def test_a_server_that_was_killed_leaves_no_process(own_door: Door, token: dict[str, str]) -> None:
+    assert own_door.ask("POST", "/api/check", {"text": "wave"}, **token).status == 200
+    children = Path(f"/proc/{own_door.process.pid}/task/{own_door.process.pid}/children").read_text().split()
+    assert children
+    own_door.process.kill()
+    wait_until(lambda: not any(Path("/proc", child).exists() for child in children))
+    own_door.kill()
+    own_door.start()
 
 
 def test_more_was_missed_than_may_wait(own_door: Door, token: dict[str, str], robot: TaskLayer) -> None:

@@ -10,8 +10,10 @@ chromium.setGraphicsMode = false;
 const axe = readFileSync(`${dirname(createRequire(import.meta.url).resolve("axe-core"))}/axe.min.js`, "utf8");
 const REFUSED = /status of (400|401|409)|ERR_(INTERNET_DISCONNECTED|CONNECTION_REFUSED)|WebSocket/;
 
-/** Calls `act` with a page; then there must have been no error, no violation of the policy, and no request elsewhere. */
-export async function visit(base, act, options = {}) {
+/** Calls `act` with a page; then there must have been no error but those `expected`, no violation of the policy, and no
+ *  request elsewhere.
+ */
+export async function visit(base, act, options = {}, expected = REFUSED) {
   const args = chromium.args.filter((each) => each !== "--single-process");
   const browser = await playwright.launch({ args: [...args, "--no-sandbox", "--disable-gpu"], executablePath: await chromium.executablePath(), headless: true });
   try {
@@ -20,7 +22,7 @@ export async function visit(base, act, options = {}) {
     const page = await context.newPage();
     const faults = [];
     page.on("pageerror", (error) => faults.push(error.message));
-    page.on("console", (message) => message.type() === "error" && !REFUSED.test(message.text()) && faults.push(message.text()));
+    page.on("console", (message) => message.type() === "error" && !expected.test(message.text()) && faults.push(message.text()));
     page.on("request", (request) => !request.url().startsWith(base) && !request.url().startsWith("data:") && faults.push(request.url()));
     await act(page, context);
     assert.deepEqual(faults, []);

@@ -5,14 +5,25 @@ from __future__ import annotations
 import fcntl
 import os
 import tempfile
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
 
+from btlang.task.missions import MissionReader
+from btlang.task.task import State
 from hatch_build import build_page
+from tests.task.layers import layer_in, submit, wait_for
 from tests.web.packages import ROOT, WEB
 from tests.web.served import served
+
+YESTERDAY = """# Evening round
+say "good evening"
+go to the fountain
+go to the cafe within 3 s
+say "good night"
+"""
 
 
 @pytest.fixture(scope="session")
@@ -27,8 +38,22 @@ def page() -> Path:
     return WEB / "dist"
 
 
+def fail_yesterday(folder: Path, world: str) -> None:
+    """A robot with this folder did a mission yesterday, which failed and was recorded."""
+    recordings, begins = folder / "recordings", time.time() - 86_400
+    with layer_in(folder, reader=MissionReader((), world), recordings=str(recordings), begins=begins) as layer:
+        wait_for(layer, submit(layer, YESTERDAY), State.FAILED)
+    for recording in recordings.iterdir():
+        os.utime(recording, (begins, begins))
+
+
 @pytest.fixture(scope="module")
 def robot(page: Path) -> Iterator[str]:
-    """The address of a robot in the museum."""
-    with served("--speed", "4", "--world", str(ROOT / "examples" / "worlds" / "museum.toml")) as address:
+    """The address of a robot in the museum, whose mission of yesterday failed."""
+    world = str(ROOT / "examples" / "worlds" / "museum.toml")
+
+    def prepare(data: Path) -> None:
+        fail_yesterday(data / "btlang" / "robots" / "robot", world)
+
+    with served("--speed", "4", "--world", world, prepare=prepare) as address:
         yield address

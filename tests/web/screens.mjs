@@ -100,7 +100,7 @@ await visit(base, async (page) => {
   await page.click(".tabs a[href$='/write']");
   await page.waitForSelector(".page ul");
   await page.goBack();
-  await page.getByRole("link", { name: "Replay" }).click();
+  await page.locator("li", { hasText: "It can't work." }).getByRole("link", { name: "Replay" }).click();
   await page.waitForSelector(".film .outcome.bad");
   assert.equal(await page.textContent(".film-text mark"), "fail");
   await look("film");

@@ -6,8 +6,9 @@ import os
 import subprocess
 import sys
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from contextlib import closing, contextmanager
+from pathlib import Path
 
 from tests.server.doors import PASSWORD, Program, free_port
 from tests.web.packages import LONG
@@ -16,10 +17,12 @@ USERS = (("olga", "operator"), ("ed", "editor"), ("ann", "administrator"))
 
 
 @contextmanager
-def served(*options: str) -> Iterator[str]:
-    """The address of `btc robot up --serve`, with the users olga, ed and ann."""
+def served(*options: str, prepare: Callable[[Path], object] | None = None) -> Iterator[str]:
+    """The address of `btc robot up --serve`, with the users olga, ed and ann; `prepare` gets its data folder before."""
     with tempfile.TemporaryDirectory(prefix="bt") as folder:
         environment = {**os.environ, "XDG_DATA_HOME": f"{folder}/data", "XDG_RUNTIME_DIR": folder}
+        if prepare is not None:
+            prepare(Path(folder, "data"))
         port = str(free_port())
         with closing(Program(environment, "robot", "up", "--serve", "--port", port, *options)) as up:
             up.start("The robot 'robot' is up")

@@ -7,7 +7,9 @@ import os
 from contextlib import closing
 from pathlib import Path
 
-from tests.profiles import only_long
+import pytest
+
+from tests.profiles import amount, only_long
 from tests.server.doors import PASSWORD, Program
 from tests.web.packages import installed, node
 
@@ -18,8 +20,20 @@ def test_log_in_watch_stop_release(robot: str) -> None:
     node(HERE / "scenario.mjs", robot, PASSWORD, folder=installed(HERE))
 
 
-def test_a_first_user_writes_a_mission(robot: str) -> None:
-    node(HERE / "first_user.mjs", robot, PASSWORD, folder=installed(HERE))
+@pytest.mark.long
+def test_a_first_user_writes_a_mission(robot: str, tmp_path: Path) -> None:
+    """With pictures of each step in a long run."""
+    pictures = [str(HERE / "golden"), str(tmp_path)] if amount(0, 1) else []
+    node(HERE / "first_user.mjs", robot, PASSWORD, *pictures, folder=installed(HERE))
+
+
+def test_nodes_are_dragged(robot: str) -> None:
+    node(HERE / "drag.mjs", robot, PASSWORD, folder=installed(HERE))
+
+
+@only_long
+def test_a_picture_in_which_something_moved_differs(robot: str, tmp_path: Path) -> None:
+    node(HERE / "moved.mjs", robot, PASSWORD, str(HERE / "golden"), str(tmp_path), folder=installed(HERE))
 
 
 @only_long

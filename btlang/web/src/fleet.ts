@@ -38,6 +38,8 @@ const MOST_STEPS = 2000;
 /** One robot. `state` is null until it says something, and again when the connection or the robot is gone. */
 export class Robot {
   up = false;
+  /** The server says that it can't reach it. */
+  away = false;
   state: { stopped: string; paused: boolean; hindrance: string; pose: [number, number, number] | null; battery: number | null; left: string | null; right: string | null } | null = null;
   map: WorldMap | null = null;
   /** What its scanner saw, counter-clockwise from straight ahead, and where it was then. */
@@ -81,7 +83,7 @@ export class Fleet {
   /** There is no connection: what was known may no longer be true. */
   lose(): void {
     for (const robot of this.robots.values()) {
-      robot.up = false;
+      robot.up = robot.away = false;
       robot.state = null;
       this.tell(robot, "offline", null);
     }
@@ -89,9 +91,9 @@ export class Fleet {
 
   take(news: News): void {
     const robot = this.get(news.robot);
-    if (news.type === "up") robot.up = robot.fresh = true;
+    if (news.type === "up") [robot.up, robot.fresh, robot.away] = [true, true, false];
     else if (news.type === "away") {
-      robot.up = false;
+      [robot.up, robot.away] = [false, true];
       robot.state = null;
     } else if (news.type === "robot") this.state(robot, news);
     else if (news.type === "map") robot.map = news as unknown as WorldMap;

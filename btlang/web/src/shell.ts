@@ -2,6 +2,7 @@
 import { logOut, request, type Me } from "./api";
 import { fill, h, openMenu } from "./dom";
 import { Fleet } from "./fleet";
+import { Presence } from "./presence";
 import { openRobots } from "./robots";
 import { Link } from "./socket";
 import { EmergencyStop } from "./stop";
@@ -25,6 +26,7 @@ export class Shell {
   private fleet = new Fleet();
   private link: Link;
   private stop: EmergencyStop;
+  private presence: Presence;
   private robot = "";
   private view: View | null = null;
   private shown = 0;
@@ -39,15 +41,17 @@ export class Shell {
     private me: Me,
     private again: () => void,
   ) {
+    this.presence = new Presence(me.user, () => this.link);
     this.link = new Link(
       (news) => this.fleet.take(news),
       (online) => this.connected(online),
       () => this.leave(),
+      (others) => this.presence.meet(others),
     );
     this.stop = new EmergencyStop(this.fleet, this.link, me, () => this.stopped());
     const user = h("button", { type: "button", class: "user", "aria-haspopup": "menu", title: t(`role.${me.role}`) }, h("span", { dir: "auto" }, me.user));
     user.addEventListener("click", () => this.openUserMenu(user));
-    const header = h("header", {}, this.place, this.tabs, user, this.stop.button);
+    const header = h("header", {}, this.place, this.tabs, this.presence.button, user, this.stop.button);
     fill(document.body, h("a", { class: "skip", href: "#main", onclick: (event: Event) => { event.preventDefault(); this.main.focus(); } }, t("skip")), header, this.cut, this.stop.banner, this.main);
     addEventListener("hashchange", this.onRoute);
     void request("GET", "/api/robots").then(({ robots }) => (robots as { name: string }[]).forEach(({ name }) => this.fleet.get(name)), () => undefined).then(() => this.route());
@@ -91,7 +95,8 @@ export class Shell {
     const open = tab ? await OPENERS[tab]() : openRobots;
     if (turn !== this.shown) return;
     this.view?.close();
-    this.view = open({ me: this.me, fleet: this.fleet, link: this.link, robot: this.robot, path: rest });
+    this.presence.look(this.robot, tab ?? "robots");
+    this.view = open({ me: this.me, fleet: this.fleet, link: this.link, presence: this.presence, robot: this.robot, path: rest });
     document.title = [this.robot, tab ? t(TABS[tab]) : t("robots"), "btlang"].filter(Boolean).join(" · ");
     fill(this.main, this.view.element);
   }

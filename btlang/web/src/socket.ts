@@ -14,18 +14,36 @@ interface Subscription {
   rate: number;
 }
 
+/** What a page shows. `mission` is the name of the one that is open, `changing` that it isn't saved. */
+export interface Place {
+  robot: string;
+  screen: string;
+  mission: string;
+  changing: boolean;
+}
+
+/** A page that is open somewhere, and what it shows. */
+export interface OpenPage extends Place {
+  page: number;
+  user: string;
+}
+
 const REVOKED = 4001;
 const AGAIN = 1000; // milliseconds until it tries again
 const SILENCE = 4000; // milliseconds without a word after which it asks whether anybody is there
 const PATIENCE = 35_000; // milliseconds for an answer, as the server has for a robot
 
-/** `take` gets all news, `changed` whether there is a connection now, `left` that the session has ended. */
+/** `take` gets all news, `changed` whether there is a connection now, `left` that the session has ended, `met` the other
+ *  pages that are open now.
+ */
 export class Link {
   online = false;
   private socket: WebSocket | null = null;
   private number = 0;
   private waiting = new Map<number, (answer: Answer) => void>();
   private subscription: Subscription | null = null;
+  private place: Place | null = null;
+  private page = 0;
   private after: Record<string, number> = {};
   private heard = 0;
   private asked = false;
@@ -35,6 +53,7 @@ export class Link {
     private take: (news: News) => void,
     private changed: (online: boolean) => void,
     private left: () => void,
+    private met: (others: OpenPage[]) => void,
   ) {
     this.connect();
     setInterval(() => this.look(), SILENCE / 2);
@@ -45,6 +64,13 @@ export class Link {
   subscribe(subscription: Subscription): void {
     this.subscription = subscription;
     this.ask();
+  }
+
+  /** Says what this page shows from now on, also after each cut. */
+  show(place: Place): void {
+    if (JSON.stringify(place) === JSON.stringify(this.place)) return;
+    this.place = place;
+    this.introduce();
   }
 
   /** The answer of a robot to a command. Rejected if there is no connection, or it's cut before the answer. */
@@ -82,6 +108,7 @@ export class Link {
     const waiting = [...this.waiting.values()];
     this.waiting.clear();
     for (const each of waiting) each(null as unknown as Answer);
+    this.met([]);
     this.changed(false);
     if (code === REVOKED || code === 4003) this.left();
     else setTimeout(() => this.socket ?? this.connect(), AGAIN);
@@ -108,6 +135,7 @@ export class Link {
       this.online = true;
       this.changed(true);
       this.ask();
+      this.introduce();
     } else if (message.type === "auth_required") {
       this.left();
     } else if (message.type === "lost") {
@@ -115,6 +143,8 @@ export class Link {
     } else if (message.type === "result") {
       this.waiting.get(message.id)?.(message);
       this.waiting.delete(message.id);
+    } else if (message.type === "people") {
+      this.met((message.people as OpenPage[]).filter(({ page }) => page !== this.page));
     } else if (message.robot !== undefined) {
       if (message.type === "change") this.after[message.robot] = message.number;
       if (message.type === "up") this.begin(message as News);
@@ -129,6 +159,12 @@ export class Link {
 
   private ask(): void {
     if (this.online && this.subscription) this.say({ type: "subscribe", ...this.subscription, after: this.after });
+  }
+
+  private introduce(): void {
+    if (!this.online || !this.place) return;
+    const id = this.say({ type: "presence", ...this.place });
+    this.waiting.set(id, (answer: any) => (this.page = answer?.page ?? 0));
   }
 
   private say(message: object): number {

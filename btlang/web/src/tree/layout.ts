@@ -74,3 +74,10 @@ export function lines(item: Item, direction: Direction, area: DOMRect): string {
   }
   return drawn.join("");
 }
+
+/** A line beside an item where another one may come, as the `d` of a path. */
+export function gap(item: Item, direction: Direction, after: boolean): string {
+  const { x, y, width, height } = item;
+  if (direction === "down") return `M${after ? x + width + SIBLINGS / 2 : x - SIBLINGS / 2} ${y - 4}v${height + 8}`;
+  return `M${x - 4} ${after ? y + height + SIBLINGS / 2 : y - SIBLINGS / 2}h${width + 8}`;
+}

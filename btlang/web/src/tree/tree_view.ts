@@ -2,10 +2,11 @@
 import { h, oncePerFrame, openMenu, s, set } from "../dom";
 import type { Status } from "../fleet";
 
+import { TreeDrag, type DragOptions } from "./drag";
 import { Drawing, label, showStatus } from "./drawing";
 import { Items, type Item, type TreeNode } from "./items";
 import { TreeKeys } from "./keys";
-import { lines, place, type Direction } from "./layout";
+import { gap, lines, place, type Direction } from "./layout";
 import { toolbar } from "./toolbar";
 
 export type { TreeNode } from "./items";
@@ -39,13 +40,15 @@ export class TreeView {
   private drawing = new Drawing("system-ui, sans-serif");
   private edges = s("path", { class: "edges", role: "none" });
   private layer = s("g", { role: "none" });
-  private scaled = s("g", { role: "none" }, this.edges, this.layer);
+  private dropMark = s("path", { class: "drop", role: "none" });
+  private scaled = s("g", { role: "none" }, this.edges, this.layer, this.dropMark);
   private svg = s("svg", { role: "none" }, this.scaled);
   private plane = h("div", { class: "plane", role: "none" }, this.svg);
   readonly scroll: HTMLElement;
   private redraw = oncePerFrame(() => this.draw());
   private paint = oncePerFrame(() => this.paintStatuses());
   private unseen = false;
+  private drag: TreeDrag | null = null;
   private resized = new ResizeObserver(() => (this.unseen ? this.begin() : this.redraw()));
 
   constructor(private options: TreeOptions) {
@@ -65,6 +68,7 @@ export class TreeView {
 
   /** Shows another tree; with `keep` the same one after an edit, so folds, selection and place stay where they can. */
   setNodes(nodes: readonly TreeNode[], keep = false): void {
+    this.drag?.cancel();
     const open = keep ? new Set(this.items.rows.filter((item) => item.open).map((item) => item.node)) : null;
     const selected = keep ? this.selected : null;
     this.nodes = nodes;
@@ -126,6 +130,28 @@ export class TreeView {
     const box = this.drawn.get(item)?.getBoundingClientRect() ?? this.scroll.getBoundingClientRect();
     openMenu(x ?? box.left + 20, y ?? box.bottom, label(this.nodes[item.node]!), commands);
     return true;
+  }
+
+  /** Lets nodes be dragged onto others. */
+  letDrag(options: DragOptions): void {
+    this.drag = new TreeDrag(this, options);
+  }
+
+  /** The item of a node that an element of this tree is, or is a part of. */
+  itemAt(element: Element | null): Item | null {
+    const found = element?.closest(".node");
+    return (found && this.scroll.contains(found) && this.items.rows[Number(found.id.split("-")[1])]) || null;
+  }
+
+  /** Shows that an item is being dragged. */
+  lift(item: Item, lifted: boolean): void {
+    this.scroll.classList.toggle("dragging", lifted);
+    this.drawn.get(item)?.classList.toggle("lifted", lifted);
+  }
+
+  /** Marks where something would be dropped: before or after an item; null for nowhere. */
+  showDrop(item: Item | null, after: boolean): void {
+    this.dropMark.setAttribute("d", item ? gap(item, this.direction, after) : "");
   }
 
   fold(item: Item): void {
@@ -208,8 +234,7 @@ export class TreeView {
   }
 
   private clicked(event: Event, act: (item: Item) => void): void {
-    const element = (event.target as Element).closest(".node");
-    const item = element && this.items.rows[Number(element.id.split("-")[1])];
+    const item = this.itemAt(event.target as Element);
     if (item) act(item);
   }
 

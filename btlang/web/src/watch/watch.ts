@@ -30,6 +30,7 @@ class Watch implements View {
   private title = h("h1", { dir: "auto" });
   private says = h("p", { class: "says", dir: "auto", "aria-live": "polite" });
   private problem = h("p", { class: "problem", role: "alert" });
+  private gone = h("p", { class: "gone", role: "status" });
   private controls = h("div", { class: "controls", role: "group", "aria-label": t("watch.controls") });
   private tree = new TreeView({ label: t("watch.tree") });
   private empty = h("p", { class: "empty" }, t("watch.nothing"));
@@ -49,7 +50,7 @@ class Watch implements View {
     this.element = h(
       "section",
       { class: "watch" },
-      h("div", { class: "head" }, h("div", { class: "now" }, this.pill, this.title), this.controls, this.problem),
+      h("div", { class: "head" }, h("div", { class: "now" }, this.pill, this.title), this.controls, this.problem, this.gone),
       h("div", { class: "stage card" }, this.failure.element, h("div", { class: "doing" }, this.running, this.follow), this.empty, this.tree.element),
       h(
         "div",
@@ -83,6 +84,8 @@ class Watch implements View {
     const [kind, words] = state(robot);
     this.pill.className = `pill ${kind}`;
     fill(this.pill, words);
+    fill(this.gone, robot.away && t("watch.gone"));
+    this.tree.element.classList.toggle("stale", robot.away);
     fill(this.title, task ? called(task) : robot.name);
     fill(this.says, robot.says && `“${robot.says}”`);
     this.map.redraw();
@@ -98,7 +101,7 @@ class Watch implements View {
       this.tree.setStatuses(run.statuses.entries());
     }
     this.run = run;
-    const leaves = run ? running(run) : [];
+    const leaves = run && this.robot.up ? running(run) : [];
     const shown = JSON.stringify([run?.id, leaves]);
     if (this.running.dataset["shown"] === shown) return;
     this.running.dataset["shown"] = shown;

@@ -10,6 +10,7 @@ export interface Field {
   options?: { value: string; label: string }[];
   required?: boolean;
   number?: { min: number; max: number };
+  type?: "date" | "time";
   shown?: (values: Record<string, string>) => boolean;
 }
 
@@ -21,7 +22,7 @@ export function ask(title: string, fields: Field[], does: (values: Record<string
     const props = { name: field.name, dir: "auto", required: field.required ?? false };
     const input = field.options
       ? h("select", props, ...field.options.map(({ value, label }) => h("option", { value, selected: value === field.value }, label)))
-      : h("input", { ...props, value: typeof field.value === "string" ? field.value : "", autocomplete: "off", ...(field.number ? { type: "number", ...field.number } : {}) });
+      : h("input", { ...props, value: typeof field.value === "string" ? field.value : "", autocomplete: "off", type: field.type, ...(field.number ? { type: "number", ...field.number } : {}) });
     inputs.set(field.name, input);
     labels.set(field.name, h("label", {}, field.label, input));
   }

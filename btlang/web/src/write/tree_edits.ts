@@ -21,6 +21,7 @@ type Place = "before" | "after" | "inside";
 
 export class TreeEdits {
   private nodes: SaidNode[] = [];
+  private words = "";
   private held: { node: number; do: "copy" | "move"; words: string } | null = null;
 
   constructor(
@@ -31,19 +32,24 @@ export class TreeEdits {
     private mayEdit: () => boolean,
   ) {
     tree.element.addEventListener("keydown", (event) => this.press(event));
+    tree.letDrag({
+      can: (node) => this.isCurrent && this.mayEdit() && this.can(node, "move"),
+      accepts: (node, to) => this.isCurrent && this.nodes[to]?.start !== null && this.isCondition(node) === this.isCondition(to),
+      drop: (node, to, place) => void this.edit({ do: "move", node, to, place }),
+    });
   }
 
   /** The nodes of the text as it is now. */
   set(nodes: SaidNode[]): void {
     this.nodes = nodes;
+    this.words = this.editor.text;
   }
 
   /** The commands for a node, for its menu. */
   commands(node: number): { label: string; run: () => void }[] {
     const said = this.nodes[node];
     if (!said || !this.mayEdit() || said.start === null) return [];
-    const edits = said.edits ?? [];
-    const can = (name: string): boolean => !said.edits || edits.includes(name);
+    const can = (name: string): boolean => this.can(node, name);
     const item = (key: Key, run: () => void, wanted = true) => (wanted ? [{ label: t(key), run }] : []);
     return [
       ...item("write.add_after", () => this.add(node, "after"), can("insert")),
@@ -204,6 +210,16 @@ export class TreeEdits {
   private following(node: number): number[] {
     const parent = this.nodes[this.nodes[node]!.parent];
     return parent && CHAINS.includes(parent.id) ? this.siblings(node).filter((each) => each > node) : [];
+  }
+
+  private can(node: number, edit: string): boolean {
+    const said = this.nodes[node];
+    return said !== undefined && said.start !== null && (!said.edits || said.edits.includes(edit));
+  }
+
+  /** Whether the nodes are those of the text, and not of one before the latest key. */
+  private get isCurrent(): boolean {
+    return this.words === this.editor.text;
   }
 
   private isCondition(node: number): boolean {

@@ -1,8 +1,9 @@
 // Missions: a list of those in the library, and one as English and tree side by side.
-import { may, request } from "../api";
+import { may, request, type RequestError } from "../api";
 import { fill, h } from "../dom";
 import { Player, type Film } from "../look_back/player";
 import { command } from "../tasks/queue";
+import { askSchedule } from "../tasks/schedule";
 import { t } from "../texts";
 import { TreeView } from "../tree/tree_view";
 import { address, type Context, type View } from "../view";
@@ -14,6 +15,7 @@ import { TreeEdits } from "./tree_edits";
 import { Reader, type Message, type Named, type SaidNode } from "./understood";
 
 const DRAFT_AFTER = 300; // milliseconds after a key
+const AGAIN = 1000; // milliseconds until a mission is asked for again
 
 /** See `View`. #/write lists, #/write/NAME opens a mission of the library, #/write/file/NAME a file. */
 export function openWrite(context: Context): View {
@@ -49,6 +51,7 @@ class Desk {
   readonly view: View;
   private title: HTMLElement;
   private state = h("span", { class: "state", role: "status" });
+  private company = h("p", { class: "company", role: "status", dir: "auto" });
   private problem = h("p", { class: "problem", role: "alert", lang: "en" });
   private origin = h("div", { class: "offered origin" });
   private offered = h("div", { class: "offered" });
@@ -66,6 +69,8 @@ class Desk {
   private understood = "";
   private writing: ReturnType<typeof setTimeout> | undefined;
   private mayWrite: boolean;
+  private closed = false;
+  private unwatch: () => void;
   private leaving = (event: BeforeUnloadEvent): void => {
     this.keepDraft();
     if (this.isChanged) event.preventDefault();
@@ -100,6 +105,7 @@ class Desk {
     this.text.append(this.editor.view.dom);
     this.outline.addEventListener("change", () => this.editor.go(Number(this.outline.value)));
     addEventListener("beforeunload", this.leaving);
+    this.unwatch = context.presence.watch(() => this.meet());
     this.view = { element: this.element(), close: () => this.close() };
     void this.load();
   }
@@ -112,6 +118,7 @@ class Desk {
       { class: "controls" },
       this.mayWrite && this.save,
       this.context.robot && h("button", { type: "button", title: "Ctrl+Enter", onclick: () => this.run() }, t("write.run")),
+      this.store instanceof LibraryStore && may(this.context.me, "operator") && h("button", { type: "button", onclick: () => this.schedule() }, t("write.schedule")),
       h("button", { type: "button", title: "Alt+Enter", onclick: () => void this.attempt() }, t("write.try")),
       this.mayWrite && h("button", { type: "button", title: "Shift+Alt+F", onclick: () => void this.format() }, t("write.format")),
       this.mayWrite && h("button", { type: "button", title: "F2", onclick: () => this.rename() }, t("write.rename")),
@@ -127,11 +134,14 @@ class Desk {
       this.tree.element,
     );
     const words = h("section", { class: "stage card" }, this.text, this.problem, this.messages);
-    return h("div", { class: "desk" }, head, this.origin, this.offered, h("div", { class: "panes" }, words, trunk));
+    return h("div", { class: "desk" }, head, this.company, this.origin, this.offered, h("div", { class: "panes" }, words, trunk));
   }
 
   private close(): void {
+    this.closed = true;
     this.keepDraft();
+    this.unwatch();
+    this.context.presence.write("", false);
     removeEventListener("beforeunload", this.leaving);
     this.reader.close();
     this.editor.close();
@@ -149,9 +159,11 @@ class Desk {
       this.kept = await this.store.load();
       if (/^\s*[<{]/.test(this.kept.text)) this.kept = await this.inEnglish(this.kept);
     } catch (error) {
-      return this.fail((error as Error).message);
+      return this.loadLater(error as RequestError);
     }
+    if (this.closed) return;
     fill(this.title, this.store.name);
+    this.fail("");
     this.editor.apply([smallest("", this.kept.text)]);
     this.editor.lock(!this.mayWrite);
     const draft = this.draft.read();
@@ -164,11 +176,19 @@ class Desk {
   private async inEnglish(kept: Kept): Promise<Kept> {
     const answer = await this.reader.service("english", kept.text, {});
     if (!answer.ok || answer.sort === "english") return kept;
+    const beside = this.store.english();
+    const copy = await beside.load();
     const tree = this.store.name;
-    this.store = this.store.english();
-    this.draft = new Draft(this.store.key);
-    const copy = await this.store.load();
-    return { ...copy, text: copy.revision ? copy.text : answer.text, tree, copy: this.store.name };
+    this.store = beside;
+    this.draft = new Draft(beside.key);
+    return { ...copy, text: copy.revision ? copy.text : answer.text, tree, copy: beside.name };
+  }
+
+  /** As soon as the robot is back. */
+  private loadLater(error: RequestError): void {
+    this.fail(this.draft.read() ? `${error.message} ${t("write.draft_waits")}` : error.message);
+    const passes = error.status === 0 || error.status === 404 || error.status >= 500; // 404: a server that has just begun knows no robot
+    if (passes) setTimeout(() => this.closed || void this.load(), AGAIN);
   }
 
   /** A draft of an earlier visit. */
@@ -195,7 +215,11 @@ class Desk {
       this.fail("");
     } catch (error) {
       this.keepDraft();
-      if (error instanceof Stale) {
+      if (error instanceof Stale && error.theirs.text === text) {
+        this.kept = error.theirs; // an earlier save arrived, but not its answer
+        this.draft.clear();
+        this.fail("");
+      } else if (error instanceof Stale) {
         merge(error.message, error.theirs, text, (merged, from) => {
           this.kept = { ...this.kept, ...from };
           this.editor.text = merged;
@@ -215,6 +239,13 @@ class Desk {
     const { tree, copy, revision, problem } = this.kept;
     fill(this.state, this.isChanged ? t("write.changed") : revision ? t("write.saved") : "");
     fill(this.origin, tree && copy && t("write.of_tree", { tree, copy }), problem && h("span", { class: "problem", lang: "en" }, problem));
+    this.context.presence.write(this.store.name, this.isChanged);
+  }
+
+  /** Who else has it open, before anybody saves. */
+  private meet(): void {
+    const company = this.context.presence.company;
+    if (company !== this.company.textContent) fill(this.company, company);
   }
 
   // -- the text
@@ -308,6 +339,12 @@ class Desk {
       () => (location.hash = address("robots", this.context.robot)),
       (error: Error) => this.fail(error.message),
     );
+  }
+
+  /** Lets the robot do it later, as it's kept. */
+  private schedule(): void {
+    if (this.isChanged || !this.kept.revision) return this.fail(t("write.save_first"));
+    askSchedule(this.context, this.store.name, (rule) => fill(this.state, t("submit.scheduled", { rule })));
   }
 
   private fail(problem: string): void {
