@@ -179,6 +179,8 @@ class Editor:
     def unwrap(self, wanted: Edit) -> _Done:
         node = self._node(wanted.node)
         parts = ast.parts(node)
+        if node is self._syntax.mission.body and isinstance(node, ast.Chain) and "\n" in node.span.text:
+            raise Unplaced("it is the whole mission, and in no form")
         if not self._syntax.is_condition(node):
             parts = [part for part in parts if part is not getattr(node, "condition", None)]
         if not parts:
@@ -271,7 +273,7 @@ class Editor:
         slot = syntax.slots[id(target)]
         behind = place == "after"
         if isinstance(slot.parent, ast.Chain) and slot.at is not None:
-            return syntax.steps((slot.parent,), new, slot.at + behind)
+            return syntax.steps((slot.parent,), new, slot.at + behind, before=not behind)
         if isinstance(target, ast.Chain) and target.operator == "sequence" and slot.at is None:
             return syntax.steps((target,), new, len(target.items) if behind else 0)
         operator = "all" if self._syntax.is_condition(target) else "sequence"

@@ -28,6 +28,7 @@ class Step(Record):
     """Siblings that others take the place of: `old` becomes `new`, both perhaps nothing.
 
     They stand in `parent`; if that holds several, from number `at` on. Several new ones make a chain of the `operator`.
+    With `before`, what is put in belongs to what follows it, else to what is before it.
     """
 
     parent: ast.Ast
@@ -36,6 +37,7 @@ class Step(Record):
     old: tuple[ast.Ast, ...]
     new: tuple[ast.Ast, ...]
     operator: str = "sequence"
+    before: bool = False
 
 
 class Unplaced(Exception):
@@ -88,17 +90,22 @@ class Syntax:
         return self.slots[id(node)].parent
 
     def steps(
-        self, old: Sequence[ast.Ast], new: Sequence[ast.Ast], at: int | None = None, operator: str = "sequence"
+        self,
+        old: Sequence[ast.Ast],
+        new: Sequence[ast.Ast],
+        at: int | None = None,
+        operator: str = "sequence",
+        before: bool = False,
     ) -> list[Step]:
         """What changes if some siblings become others, innermost first; the last step is one in the program.
 
         `new` may be empty. For an insertion into a chain `old` has the chain alone, and `at` is the place among its
-        items. Where no chain is, several new ones make one of the `operator`. Raises Unplaced.
+        items, `before` as for a Step. Where no chain is, several new ones make one of the `operator`. Raises Unplaced.
         """
         steps = []
         if at is not None:
             [chain] = old
-            step = Step(chain, "items", at, (), tuple(new), getattr(chain, "operator", operator))
+            step = Step(chain, "items", at, (), tuple(new), getattr(chain, "operator", operator), before)
         else:
             slot = self.slots[id(old[0])]
             operator = getattr(slot.parent, "operator", operator)

@@ -223,13 +223,20 @@ class Writer:
             for item, among in items:
                 lines += lines_of(item, printer, WIDTH - len(margin), among)
         before, after = self._source.text[:start], self._source.text[end:]
-        text = indented(lines, margin)
+        text = self._between(step) + indented(lines, margin)
         missing = self._comments_in(self._source.text[start:end]) - self._comments_in(text) - gone
         text = indented(list(missing.elements()), margin) + text
         if before and not before.endswith("\n"):
             yield Change(start, end, "\n" + text.removesuffix("\n"))
         else:
             yield Change(start, end, text if after or before.endswith("\n") else text.removesuffix("\n"))
+
+    def _between(self, step: Step) -> str:
+        """The lines of definitions and the like between old statements, for in front of what takes their place."""
+        owned = [self._lines.own(node, step.parent) for node in step.old]
+        gaps = [range(one.stop, other.start) for one, other in pairwise(owned) if one is not None and other is not None]
+        said = (gap for gap in gaps if any(line in self._lines.blocks for line in gap))
+        return "".join(self._source.text[start:end] for start, end in map(self._lines.offsets, said))
 
     def _in_their_places(self, step: Step, printer: Printer) -> Iterator[Change]:
         """As many statements as there were, each in the lines of one of these: what stands between them stays."""
@@ -269,12 +276,12 @@ class Writer:
             return *lines.offsets(range(line, line)), ""
         if not isinstance(around, ast.Chain) or step.at is None:
             return None
-        if step.at:
+        if step.at and not step.before:
             before = lines.own(around.items[step.at - 1], around)
             if before is None:
                 return None
             return *lines.offsets(range(before.stop, before.stop)), lines.margin(before.start)
-        behind = lines.own(around.items[0], around)
+        behind = lines.own(around.items[step.at], around)
         if behind is None:
             return None
         line = lines.with_comments(behind).start

@@ -8,6 +8,7 @@ from __future__ import annotations
 import random
 from collections.abc import Sequence
 
+import pytest
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
@@ -174,6 +175,8 @@ def outside(text: str, edit: Edit) -> list[str]:
         ]
         if node is body:
             touched.append((0, len(text)))
+    if edit.last is not None and touched:
+        touched = [(min(touched)[0], max(end for _, end in touched))]
     lines = text.split("\n")
     starts = [sum(len(line) + 1 for line in lines[:i]) for i in range(len(lines))]
     kept, block = [], []
@@ -229,6 +232,20 @@ def test_many_edits_one_after_the_other(data: st.DataObject, text: str) -> None:
             editor_text = Editor(Source(editor_text), letters()).edited(edit).text
             done += 1
     assume(done)
+
+
+def test_what_stands_between_statements_stays() -> None:
+    text = "u\n\ntea means v\n# first\ntea\nw  # last\n"
+    assert done(text, Edit("insert", 2, place="before", words="x")) == "u\n\ntea means v\nx\n# first\ntea\nw  # last\n"
+    assert done(text, Edit("insert", 1, place="after", words="x")) == "u\nx\n\ntea means v\n# first\ntea\nw  # last\n"
+    wrapped = "\ntea means v\n# first\ntry:\n  u\n  # first\n  tea\nw  # last\n"
+    assert done(text, Edit("wrap", 1, last=2, form="try")) == wrapped
+    with pytest.raises(Unplaced, match="no form"):
+        done(text, Edit("unwrap", 0))
+
+
+def done(text: str, edit: Edit) -> str:
+    return Editor(Source(text), letters()).edited(edit).text
 
 
 def test_edits_are_mostly_possible() -> None:
