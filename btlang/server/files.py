@@ -120,6 +120,8 @@ class TreeFiles(Files):
         self._tree, self._main, self._target = tree, main, tree_sort(tree)
         self._copy = f"{os.path.splitext(self.path)[0]}.{self._target}"
         self._names = {"tree": os.path.basename(tree), "copy": os.path.basename(self._copy)}
+        self._written = self._content_of_copy() if os.path.lexists(self.path) else None
+        """The copy as it was written from this mission."""
 
     def read(self, name: str) -> dict[str, Any]:
         """As for any file. Raises MissionError for a tree that can't be read or said, too."""
@@ -143,11 +145,17 @@ class TreeFiles(Files):
             return answer
         data, copy = {**answer.data, **self._names}, self._names["copy"]
         try:
+            if self._content_of_copy() not in (None, self._written):
+                raise refused(f"The file '{copy}'", "was written by another program. To have it anew, move it away")
             write_file(self._copy, self._words.mission(self._words.source(text)).to(self._target))
+            self._written = self._content_of_copy()
         except MissionError as error:
             problem = f"{copy} is not written anew: {error.diagnostics[0].message}"
             return Answer(True, f"{answer.text} {problem}", {**data, "problem": problem})
         return Answer(True, f"{answer.text} Its tree is in {copy}.", data)
+
+    def _content_of_copy(self) -> str | None:
+        return read_source(self._copy).text if os.path.isfile(self._copy) else None
 
     def _english(self) -> str:
         words, source = self._words, read_source(self._tree)

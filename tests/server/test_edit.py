@@ -336,9 +336,26 @@ def test_a_tree_is_opened_in_english_and_saved_as_a_copy(tmp_path: Path) -> None
     stale = files.save(files.name, changed, saved.data["revision"])
     assert (stale.ok, stale.code, copy.read_text()) == (False, "BT187", before)
 
+    copy.write_text(before + "<!-- by hand -->\n")
+    kept = files.save(files.name, changed, unfinished.data["revision"])
+    assert (kept.ok, "another program" in kept.data["problem"]) == (True, True)
+    assert copy.read_text() == before + "<!-- by hand -->\n"
+    copy.unlink()
+    assert "problem" not in files.save(files.name, changed, kept.data["revision"]).data
+    assert copy.read_text() == before
+
     assert "problem" not in files.read(files.name)
     os.utime(tree, (time.time() + 9, time.time() + 9))
     assert "tree.xml has changed since" in files.read(files.name)["problem"]
+
+
+def test_a_file_that_has_the_name_of_a_copy_stays(tmp_path: Path) -> None:
+    tree, copy = tmp_path / "tree.xml", tmp_path / "tree.edited.xml"
+    tree.write_text(TREE)
+    copy.write_text("mine")
+    files = TreeFiles(Words(file=english_beside(str(tree))), str(tree))
+    assert "another program" in files.save(files.name, files.read(files.name)["text"], "").data["problem"]
+    assert copy.read_text() == "mine"
 
 
 @pytest.mark.parametrize("name", ["tree.json", "tree.txt", "tree"])
