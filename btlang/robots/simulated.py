@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable, Mapping, Sequence
 from math import ceil
 from typing import Any
 
@@ -130,6 +130,12 @@ class SimulatedRobot:
     def pose(self) -> Pose:
         """Where it is."""
         return self._base.pose
+
+    @property
+    def way(self) -> Sequence[Point]:
+        """The points of the way that it follows, in metres from where it was planned; none where it follows none."""
+        goal = self._navigator.goal
+        return () if goal is None or goal.done else goal.path
 
     @property
     def velocity(self) -> tuple[float, float]:

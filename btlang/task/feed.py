@@ -31,7 +31,7 @@ RATES = 0.1, 100.0
 """The least and the most messages of one kind in a second."""
 _ALIVE = 5.0  # seconds after which a watcher of a robot on which nothing happens gets a word nevertheless
 _GATHERED, _GATHERED_AT_MOST = 0.2, 0.01  # of a period, and seconds: what comes so soon after other news goes with it
-_SCANS = 0.5  # seconds between two
+_SCANS = 0.5  # seconds between two, and between two looks at the way that it follows
 _MOST_EVENTS, _MOST_RUNS, _MOST_CHANGES = 1000, 16, 1000
 
 
@@ -65,6 +65,7 @@ class Feed:
         self._state: RobotState | None = None
         self._scan: list[float | None] = []
         self._scanned_from: list[float] | None = None
+        self._way: list[list[float]] = []
         self._next_scan = 0.0
         store.listeners.append(self.wake)
 
@@ -108,6 +109,7 @@ class Feed:
             if self._watchers and event.wall >= self._next_scan:
                 self._next_scan = event.wall + _SCANS
                 self._scan, self._scanned_from = _scan(event), None if event.state is None else event.state.place
+                self._way = _way(event)
         elif isinstance(event, StatusesChanged):
             watched.changed = event.wall
         for watcher in tuple(self._watchers):
@@ -151,6 +153,9 @@ class Feed:
         if self._scan != watcher.scan:
             watcher.scan = self._scan
             yield {"type": "scan", "ranges": self._scan, "pose": self._scanned_from}
+        if self._way != watcher.way:
+            watcher.way = self._way
+            yield {"type": "way", "points": self._way}
 
 
 class _Watcher:
@@ -164,6 +169,7 @@ class _Watcher:
         self.robot: dict[str, Any] = {}
         self.has_map = False
         self.scan: list[float | None] = []
+        self.way: list[list[float]] = []
         self.run = ""
         self.codes = b""
 
@@ -205,3 +211,8 @@ def _state(state: RobotState | None) -> dict[str, Any]:
 
 def _scan(event: PeriodPassed) -> list[float | None]:
     return rounded_scan(asked(lambda: [float(distance) for distance in event.robot.scan()]) or ())
+
+
+def _way(event: PeriodPassed) -> list[list[float]]:
+    """Of a robot that tells it."""
+    return [[round(x, 2), round(y, 2)] for x, y in asked(lambda: event.robot.way) or ()]

@@ -8,6 +8,7 @@ import socket
 import tempfile
 import threading
 from collections.abc import Iterator
+from math import hypot
 from pathlib import Path
 from typing import Any
 
@@ -77,6 +78,15 @@ def test_the_map_and_what_the_scanner_sees(tmp_path: Path) -> None:
         assert len(ranges) == 360
         assert all(distance is None or 0 < distance < 100 for distance in ranges)
         assert json.loads(json.dumps(watcher.messages, default=str, allow_nan=False))
+
+
+def test_the_way_that_it_follows(tmp_path: Path) -> None:
+    with layer_in(tmp_path) as layer:
+        watcher = Watcher(layer)
+        submit(layer, "go to the lab then wait 1 s")
+        way = watcher.wait(lambda message: message["type"] == "way")["points"]
+        assert hypot(way[-1][0] - 6.0, way[-1][1] - 6.2) < 0.1
+        watcher.wait(lambda message: message["type"] == "way" and not message["points"])
 
 
 def test_who_comes_back_misses_no_change(tmp_path: Path) -> None:

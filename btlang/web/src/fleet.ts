@@ -49,7 +49,10 @@ export class Robot {
   /** What it does between missions. */
   rules: Run | null = null;
   entries: Entry[] = [];
+  /** Where it has been. */
   path: Point[] = [];
+  /** Where it is going, as far as its navigation tells. */
+  way: Point[] = [];
   goal = "";
   says = "";
   /** The task under way, 0 for none. */
@@ -60,7 +63,7 @@ export class Robot {
   constructor(readonly name: string) {}
 }
 
-export type Kind = "up" | "away" | "run" | "statuses" | "robot" | "map" | "scan" | "event" | "change" | "offline";
+export type Kind = "up" | "away" | "run" | "statuses" | "robot" | "map" | "scan" | "way" | "event" | "change" | "offline";
 export type Watcher = (robot: Robot, kind: Kind, news: News | null) => void;
 
 /** All robots by their names. Watchers are called after each message has been taken in. */
@@ -98,6 +101,7 @@ export class Fleet {
     } else if (news.type === "robot") this.state(robot, news);
     else if (news.type === "map") robot.map = news as unknown as WorldMap;
     else if (news.type === "scan") robot.scan = news["pose"] ? { ranges: news["ranges"], pose: news["pose"] } : null;
+    else if (news.type === "way") robot.way = news["points"];
     else if (news.type === "change") {
       if (news["state"] === "underway") robot.task = news["task"];
       else if (robot.task === news["task"]) robot.task = 0;
@@ -142,7 +146,7 @@ function begin(robot: Robot, news: News): void {
 function note(robot: Robot, news: News): void {
   const event = news["event"];
   if (event.event === "navigate") robot.goal = event.name;
-  if (["arrive", "stop", "end"].includes(event.event)) robot.goal = "";
+  if (["arrive", "stop", "end"].includes(event.event)) [robot.goal, robot.way] = ["", []];
   if (event.event === "say") robot.says = event.text;
   log(robot, { task: news["task"], wall: event.wall, event });
 }

@@ -75,7 +75,7 @@ export class MapView {
       pen.fillStyle = paint;
       pen.fillText(text, px, py - above);
     };
-    const { map, scan, path } = robot;
+    const { map, scan, path, way } = robot;
     const pose = robot.state?.pose ?? null;
     for (const box of map?.boxes ?? []) {
       const [x, y] = at([box.x - box.width / 2, box.y + box.height / 2]);
@@ -106,7 +106,8 @@ export class MapView {
     line(path, colour("running"), 2);
     if (!pose) return;
     const here: Point = [pose[0], pose[1]];
-    if (goal) line([here, [goal.x, goal.y]], colour("running"), 1.5, [4, 5]);
+    if (way.length) line(way, colour("running"), 1.5, [4, 5]);
+    else if (goal) line([here, [goal.x, goal.y]], colour("running"), 1.5, [4, 5]);
     const size = Math.max(7, ROBOT * scale);
     disc(here, size + 2, colour("surface"));
     disc(here, size, colour("running"));
