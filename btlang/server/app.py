@@ -89,6 +89,7 @@ class Api:
             self._route("/api/recordings", self._recordings, "GET"),
             self._route("/api/recordings/{name}", self._recording, "GET"),
             self._route("/api/films/{name}", self._film, "GET"),
+            self._route("/api/comparisons/{name}", self._comparison, "GET"),
             self._route("/metrics", self._metrics, "GET"),
             Route("/openapi.json", lambda request: JsonResponse(document())),
             *page_routes(self.access),
@@ -245,15 +246,22 @@ class Api:
         return JsonResponse({"ok": True, "recordings": await asyncio.to_thread(listed, folder)})
 
     async def _recording(self, request: Request) -> Response:
-        return FileResponse(await self._recorded(request), media_type="application/octet-stream")
+        path = await self._recorded(request, request.path_params["name"])
+        return FileResponse(path, media_type="application/octet-stream")
 
     async def _film(self, request: Request) -> Response:
-        return Response(await self.trials.film(await self._recorded(request)), media_type="application/json")
+        path = await self._recorded(request, request.path_params["name"])
+        return Response(await self.trials.film(path), media_type="application/json")
 
-    async def _recorded(self, request: Request) -> str:
+    async def _comparison(self, request: Request) -> Response:
+        names = request.path_params["name"], request.query_params.get("with", "")
+        paths = [await self._recorded(request, name) for name in names]
+        return Response(await self.trials.comparison(*paths), media_type="application/json")
+
+    async def _recorded(self, request: Request, name: str) -> str:
         await self._who(request)
         folder = self.link(request.query_params.get("robot", "")).recordings
-        return await asyncio.to_thread(path_of, folder, request.path_params["name"])
+        return await asyncio.to_thread(path_of, folder, name)
 
     async def _metrics(self, request: Request) -> Response:
         await self._who(request)

@@ -28,7 +28,7 @@ from btlang.record import Record
 from btlang.recording.trial import tried
 from btlang.server.access import AccessError
 from btlang.server.bodies import text_in
-from btlang.server.recordings import film
+from btlang.server.recordings import comparison, film
 from btlang.server.utf16 import Units, in_units
 from btlang.text.source import Source
 
@@ -162,6 +162,11 @@ class Checker:
         """That of a recording, as JSON. Raises AccessError (422) if it takes too long."""
         async with self._turn:
             return await self._done(film, path)
+
+    async def comparison(self, one: str, other: str) -> bytes:
+        """That of two recordings, as JSON. Raises AccessError (422) if it takes too long."""
+        async with self._turn:
+            return await self._done(comparison, one, other)
 
     async def _done(self, do: Callable[..., bytes], *given: object) -> bytes:
         if self._process is None:

@@ -21,6 +21,13 @@ _ROBOT: dict[str, Any] = {
     "description": "Which robot, if several are up.",
     "schema": _TEXT,
 }
+_WITH: dict[str, Any] = {
+    "name": "with",
+    "in": "query",
+    "required": True,
+    "description": "The other recording.",
+    "schema": _TEXT,
+}
 _NAME: dict[str, Any] = {"name": "name", "in": "path", "required": True, "schema": _TEXT}
 
 
@@ -75,12 +82,13 @@ ROUTES: dict[tuple[str, str], tuple[str, dict[str, Any] | None]] = {
     ("GET", "/api/recordings"): ("The recordings of a robot on this computer.", None),
     ("GET", "/api/recordings/{name}"): ("One, as MCAP.", None),
     ("GET", "/api/films/{name}"): ("One as data that a page plays.", None),
+    ("GET", "/api/comparisons/{name}"): ("Two as films, and what differs between them.", None),
     ("GET", "/metrics"): ("Figures for Prometheus.", None),
     ("GET", "/live"): ("Whether the server is alive; without log-in.", None),
     ("GET", "/ready"): ("Whether it takes requests; without log-in.", None),
     ("GET", "/openapi.json"): ("This document; without log-in.", None),
 }
-_RECORDED = ("/api/recordings", "/api/films")
+_RECORDED = ("/api/recordings", "/api/films", "/api/comparisons")
 _OPEN = ("/api/login", "/live", "/ready", "/openapi.json")
 
 
@@ -97,6 +105,7 @@ def document() -> dict[str, Any]:
             described["requestBody"] = {"required": True, "content": {"application/json": {"schema": body}}}
         parameters = [_NAME] if "{name}" in path else []
         parameters += [_ROBOT] if path.removesuffix("/{name}") in (*LIBRARY, *_RECORDED) else []
+        parameters += [_WITH] if path.startswith("/api/comparisons") else []
         if parameters:
             described["parameters"] = parameters
         if path in _OPEN:

@@ -5,12 +5,15 @@ from __future__ import annotations
 import json
 import os
 import re
+from collections.abc import Callable
 from contextlib import suppress
+from functools import partial
 
 from btlang.diagnostics.errors import MissionError
 from btlang.recording.film import Film
 from btlang.recording.open import opened
 from btlang.recording.reader import read_about
+from btlang.recording.side_by_side import side_by_side
 from btlang.server.access import AccessError
 from btlang.server.utf16 import in_units
 
@@ -50,12 +53,31 @@ def path_of(folder: str, name: str) -> str:
 
 def film(path: str) -> bytes:
     """See btlang.recording.film.Film.data, as JSON; runs nothing."""
+    return _written(partial(_film, path))
+
+
+def comparison(one: str, other: str) -> bytes:
+    """See btlang.recording.side_by_side, as JSON; runs nothing."""
+    return _written(partial(_comparison, one, other))
+
+
+def _film(path: str) -> dict[str, Any]:
+    with opened(path, ()) as (recording, mission, nodes):
+        data = Film(mission, dict(recording.about)).take(recording.events(nodes)).data()
+    return in_units(data, data["text"])
+
+
+def _comparison(one: str, other: str) -> dict[str, Any]:
+    data = side_by_side(one, other)
+    return {**data, "films": [in_units(each, each["text"]) for each in data["films"]]}
+
+
+def _written(read: Callable[[], dict[str, Any]]) -> bytes:
     try:
-        with opened(path, ()) as (recording, mission, nodes):
-            data = Film(mission, dict(recording.about)).take(recording.events(nodes)).data()
+        data = {"ok": True, **read()}
     except MissionError as error:
-        return json.dumps({"ok": False, "text": str(error), "code": error.diagnostics[0].code}).encode()
-    return json.dumps({"ok": True, **in_units(data, data["text"])}, default=str).encode()
+        data = {"ok": False, "text": str(error), "code": error.diagnostics[0].code}
+    return json.dumps(data, default=str).encode()
 
 
 def _checked(folder: str) -> str:

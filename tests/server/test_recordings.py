@@ -3,14 +3,47 @@
 from __future__ import annotations
 
 import os
+import shutil
+import tempfile
+from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import pytest
 
 from btlang.cli import main
 from btlang.server.access import AccessError
 from btlang.server.recordings import listed, path_of
-from tests.server.doors import Door
+from btlang.task.layer import TaskLayer
+from btlang.task.task import State
+from tests.server.doors import Door, robot_in
+from tests.task.layers import submit, wait_for
+
+
+@pytest.fixture(scope="module")
+def robot() -> Iterator[TaskLayer]:
+    """One that records its tasks."""
+    folder = Path(tempfile.mkdtemp(prefix="bt"))
+    try:
+        with robot_in(folder, recordings=str(folder / "recordings")) as layer:
+            layer.folder = folder  # type: ignore[attr-defined]
+            yield layer
+    finally:
+        shutil.rmtree(folder, ignore_errors=True)
+
+
+@pytest.fixture(scope="module")
+def names(door: Door, robot: TaskLayer) -> list[str]:
+    """The recordings of a run and of one that failed, of one mission."""
+    text = "say hello\ncheck that the robot is not at the lab\ngo to the lab"
+    for _ in range(2):
+        wait_for(robot, submit(robot, text), State.COMPLETED, State.FAILED)
+    return list(reversed([each["name"] for each in recordings(door)]))
+
+
+def recordings(door: Door) -> list[dict[str, Any]]:
+    found: list[dict[str, Any]] = door.ask("GET", "/api/recordings", **door.log_in("vic")).data["recordings"]
+    return found
 
 
 def test_a_trial(door: Door) -> None:
@@ -41,8 +74,24 @@ def test_recordings_of_a_folder(tmp_path: Path, capsys: pytest.CaptureFixture[st
         listed("")
 
 
-def test_recordings_of_a_robot(door: Door) -> None:
-    for path in ("/api/recordings", "/api/recordings/x.mcap", "/api/films/x.mcap"):
-        assert door.ask("GET", path).status == 401
-        reply = door.ask("GET", path, **door.log_in("vic"))
-        assert reply.status in (200, 404, 409), path
+@pytest.mark.parametrize(
+    "path", ["/api/recordings", "/api/recordings/x.mcap", "/api/films/x.mcap", "/api/comparisons/x.mcap?with=y.mcap"]
+)
+def test_who_may_see_recordings(door: Door, path: str) -> None:
+    assert door.ask("GET", path).status == 401
+    assert door.ask("GET", path, **door.log_in("vic")).status in (200, 404)
+
+
+def test_two_runs_are_compared(door: Door, names: list[str]) -> None:
+    vic = door.log_in("vic")
+    one, other = names
+    data = door.ask("GET", f"/api/comparisons/{one}?with={other}", **vic).data
+    assert data["ok"]
+    assert (data["missions"], len(data["films"])) == ([], 2)
+    assert [film["failed"] for film in data["films"]].count(-1) == 1
+    nodes = data["films"][0]["nodes"]
+    assert [nodes[each["node"]]["label"] for each in data["first"]] == ["at lab"] * 2
+    assert data["first"][0]["node"] in data["ended"]
+    assert door.ask("GET", f"/api/comparisons/{one}?with={one}", **vic).data["first"] is None
+    for wrong in (f"{one}", f"{one}?with=../{other}", f"x.mcap?with={other}"):
+        assert door.ask("GET", f"/api/comparisons/{wrong}", **vic).status == 404
