@@ -33,6 +33,7 @@ await visit(base, async (page) => {
 
   // Why a mission failed, with its words.
   await page.click(".robots a");
+  await submit(page, "wave");
   await submit(page, "# It can't work.\nwave\nsay hello then fail");
   await until("say hello then fail", ".failure mark");
   await look("failure");
@@ -100,7 +101,14 @@ await visit(base, async (page) => {
   await page.click(".tabs a[href$='/write']");
   await page.waitForSelector(".page ul");
   await page.goBack();
-  await page.getByRole("link", { name: "Replay" }).click();
+  await page.getByRole("link", { name: "Compare …" }).first().click();
+  await until("Choose the run to compare it with.");
+  await look("compare_choose");
+  await page.getByRole("link", { name: "Compare with this" }).first().click();
+  await until("The missions aren't the same", ".summary");
+  await look("compare");
+  await page.click(".tabs a[href$='/runs']");
+  await page.getByRole("link", { name: "Replay" }).first().click();
   await page.waitForSelector(".film .outcome.bad");
   assert.equal(await page.textContent(".film-text mark"), "fail");
   await look("film");
