@@ -89,6 +89,7 @@ class Api:
             self._route("/api/recordings", self._recordings, "GET"),
             self._route("/api/recordings/{name}", self._recording, "GET"),
             self._route("/api/films/{name}", self._film, "GET"),
+            self._route("/api/trees/{name}", self._tree, "GET"),
             self._route("/api/comparisons/{name}", self._comparison, "GET"),
             self._route("/metrics", self._metrics, "GET"),
             Route("/openapi.json", lambda request: JsonResponse(document())),
@@ -252,6 +253,10 @@ class Api:
     async def _film(self, request: Request) -> Response:
         path = await self._recorded(request, request.path_params["name"])
         return Response(await self.trials.film(path), media_type="application/json")
+
+    async def _tree(self, request: Request) -> Response:
+        path = await self._recorded(request, request.path_params["name"])
+        return Response(await self.trials.tree(path), media_type="application/json")
 
     async def _comparison(self, request: Request) -> Response:
         names = request.path_params["name"], request.query_params.get("with", "")

@@ -28,7 +28,7 @@ from btlang.record import Record
 from btlang.recording.trial import tried
 from btlang.server.access import AccessError
 from btlang.server.bodies import text_in
-from btlang.server.recordings import comparison, film
+from btlang.server.recordings import comparison, film, tree
 from btlang.server.utf16 import Units, in_units
 from btlang.text.source import Source
 
@@ -65,6 +65,11 @@ def _format(source: Source, words: Words) -> dict[str, Any]:
     return {"text": format_mission(source, keywords=words.keywords, world=words.world, language=words.language)}
 
 
+def _xml(source: Source, words: Words) -> dict[str, Any]:
+    mission = words.mission(source)
+    return {"messages": messages(mission.warnings, source), "xml": str(mission.to("xml"))}
+
+
 DOES: Mapping[str, TextQuery] = {
     "check": TextQuery("What is wrong with a mission.", _check),
     "complete": TextQuery("What may follow at a place, by default the end.", complete, takes=("at",)),
@@ -75,6 +80,7 @@ DOES: Mapping[str, TextQuery] = {
     "hover": TextQuery("What was understood at a place, with help.", hover, needs=("at",)),
     "palette": TextQuery("All that can be put into a mission, by topic.", palette),
     "rename": TextQuery("What gives a definition and its uses another name.", rename, needs=("at",), takes=("name",)),
+    "xml": TextQuery("A mission as a tree of BehaviorTree.CPP.", _xml),
 }
 
 
@@ -162,6 +168,11 @@ class Checker:
         """That of a recording, as JSON. Raises AccessError (422) if it takes too long."""
         async with self._turn:
             return await self._done(film, path)
+
+    async def tree(self, path: str) -> bytes:
+        """That of a recording in XML, as JSON. Raises AccessError (422) if it takes too long."""
+        async with self._turn:
+            return await self._done(tree, path)
 
     async def comparison(self, one: str, other: str) -> bytes:
         """That of two recordings, as JSON. Raises AccessError (422) if it takes too long."""

@@ -82,13 +82,14 @@ ROUTES: dict[tuple[str, str], tuple[str, dict[str, Any] | None]] = {
     ("GET", "/api/recordings"): ("The recordings of a robot on this computer.", None),
     ("GET", "/api/recordings/{name}"): ("One, as MCAP.", None),
     ("GET", "/api/films/{name}"): ("One as data that a page plays.", None),
+    ("GET", "/api/trees/{name}"): ("The tree of one as XML of BehaviorTree.CPP.", None),
     ("GET", "/api/comparisons/{name}"): ("Two as films, and what differs between them.", None),
     ("GET", "/metrics"): ("Figures for Prometheus.", None),
     ("GET", "/live"): ("Whether the server is alive; without log-in.", None),
     ("GET", "/ready"): ("Whether it takes requests; without log-in.", None),
     ("GET", "/openapi.json"): ("This document; without log-in.", None),
 }
-_RECORDED = ("/api/recordings", "/api/films", "/api/comparisons")
+_RECORDED = ("/api/recordings", "/api/films", "/api/trees", "/api/comparisons")
 _OPEN = ("/api/login", "/live", "/ready", "/openapi.json")
 
 

@@ -61,6 +61,11 @@ def comparison(one: str, other: str) -> bytes:
     return _written(partial(_comparison, one, other))
 
 
+def tree(path: str) -> bytes:
+    """The tree of a recording as `xml` of BehaviorTree.CPP, as JSON; runs nothing."""
+    return _written(partial(_tree, path))
+
+
 def _film(path: str) -> dict[str, Any]:
     with opened(path, ()) as (recording, mission, nodes):
         data = Film(mission, dict(recording.about)).take(recording.events(nodes)).data()
@@ -70,6 +75,11 @@ def _film(path: str) -> dict[str, Any]:
 def _comparison(one: str, other: str) -> dict[str, Any]:
     data = side_by_side(one, other)
     return {**data, "films": [in_units(each, each["text"]) for each in data["films"]]}
+
+
+def _tree(path: str) -> dict[str, Any]:
+    with opened(path, ()) as (_, mission, _):
+        return {"xml": str(mission.to("xml"))}
 
 
 def _written(read: Callable[[], dict[str, Any]]) -> bytes:

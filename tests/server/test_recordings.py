@@ -11,6 +11,7 @@ from typing import Any
 
 import pytest
 
+from btlang.api import parse_tree
 from btlang.cli import main
 from btlang.server.access import AccessError
 from btlang.server.recordings import listed, path_of
@@ -18,6 +19,8 @@ from btlang.task.layer import TaskLayer
 from btlang.task.task import State
 from tests.server.doors import Door, robot_in
 from tests.task.layers import submit, wait_for
+
+TEXT = "say hello\ncheck that the robot is not at the lab\ngo to the lab"
 
 
 @pytest.fixture(scope="module")
@@ -35,9 +38,8 @@ def robot() -> Iterator[TaskLayer]:
 @pytest.fixture(scope="module")
 def names(door: Door, robot: TaskLayer) -> list[str]:
     """The recordings of a run and of one that failed, of one mission."""
-    text = "say hello\ncheck that the robot is not at the lab\ngo to the lab"
     for _ in range(2):
-        wait_for(robot, submit(robot, text), State.COMPLETED, State.FAILED)
+        wait_for(robot, submit(robot, TEXT), State.COMPLETED, State.FAILED)
     return list(reversed([each["name"] for each in recordings(door)]))
 
 
@@ -75,7 +77,14 @@ def test_recordings_of_a_folder(tmp_path: Path, capsys: pytest.CaptureFixture[st
 
 
 @pytest.mark.parametrize(
-    "path", ["/api/recordings", "/api/recordings/x.mcap", "/api/films/x.mcap", "/api/comparisons/x.mcap?with=y.mcap"]
+    "path",
+    [
+        "/api/recordings",
+        "/api/recordings/x.mcap",
+        "/api/films/x.mcap",
+        "/api/trees/x.mcap",
+        "/api/comparisons/x.mcap?with=y.mcap",
+    ],
 )
 def test_who_may_see_recordings(door: Door, path: str) -> None:
     assert door.ask("GET", path).status == 401
@@ -95,3 +104,8 @@ def test_two_runs_are_compared(door: Door, names: list[str]) -> None:
     assert door.ask("GET", f"/api/comparisons/{one}?with={one}", **vic).data["first"] is None
     for wrong in (f"{one}", f"{one}?with=../{other}", f"x.mcap?with={other}"):
         assert door.ask("GET", f"/api/comparisons/{wrong}", **vic).status == 404
+
+
+def test_the_tree_of_a_recording(door: Door, names: list[str]) -> None:
+    xml = door.ask("GET", f"/api/trees/{names[0]}", **door.log_in("vic")).data["xml"]
+    assert parse_tree(xml).tree == parse_tree(TEXT).tree

@@ -1,6 +1,6 @@
 // Every screen, with the mouse and with the keyboard, in two languages and both themes. Pictures go into a folder.
 import assert from "node:assert/strict";
-import { accessible, fits, logIn, submit, visit } from "./browser.mjs";
+import { accessible, downloaded, fits, logIn, replace, submit, visit } from "./browser.mjs";
 
 const [base, password, pictures] = process.argv.slice(2);
 const NARROW = { width: 360, height: 740 };
@@ -112,6 +112,15 @@ await visit(base, async (page) => {
   await page.waitForSelector(".film .outcome.bad");
   assert.equal(await page.textContent(".film-text mark"), "fail");
   await look("film");
+  for (const [kind, ending, begins] of [["MCAP", "mcap", "\x89MCAP0"], ["XML of BehaviorTree.CPP", "xml", "<?xml"], ["English", "txt", "# It can't"], ["SVG", "svg", "<svg"], ["PNG", "png", "\x89PNG"]]) {
+    const [name, content] = await downloaded(page, kind);
+    assert.match(name, new RegExp(`^It-can-t-work-\\d{4}-\\d\\d-\\d\\d-\\d{6}\\.${ending}$`));
+    assert.equal(content.toString("latin1", 0, begins.length), begins);
+    if (ending === "svg") {
+      assert.match(content.toString(), /data-status="FAILURE"/);
+      assert.doesNotMatch(content.toString(), /var\(|href|url\(/);
+    }
+  }
   await page.click(".tabs a[href$='/write']");
   await page.evaluate(() => (location.hash = "#/write/tour"));
   await page.waitForSelector(".cm-content[contenteditable=true]");
@@ -119,6 +128,12 @@ await visit(base, async (page) => {
   await page.keyboard.insertText("wave then ndo");
   await until("ndo", ".messages");
   await look("write");
+  await replace(page, 'say "<script>alert(1)</script>\u202e" then wave');
+  await page.waitForSelector(".messages .fine");
+  const [name, picture] = await downloaded(page, "SVG");
+  assert.match(name, /^tour-.*\.svg$/);
+  assert.match(picture.toString(), /&lt;script&gt;/);
+  assert.match((await downloaded(page, "XML of BehaviorTree.CPP"))[1].toString(), /<Wave\/>/);
 
   // Another language, and somebody who leaves.
   await page.click(".user");

@@ -1,6 +1,7 @@
 // What the robots did: the tasks that are over, newest first, the films of those that were recorded, and two side by side.
 import { request } from "../api";
 import { fill, h } from "../dom";
+import { downloads, pictures, plain, type Offer } from "../download";
 import { called, command, type Task } from "../tasks/queue";
 import { moment, t, type Key } from "../texts";
 import { address, type Context, type View } from "../view";
@@ -51,9 +52,23 @@ function openAnswer<T>(path: string, make: (answer: T) => { title: HTMLElement; 
 function openFilm(robot: string, name: string, at: number): View {
   return openAnswer(`/api/films/${encodeURIComponent(name)}?${query(robot)}`, (film: Film) => {
     const player = new Player(film, at, (seconds) => history.replaceState(null, "", address("runs", robot, name, seconds.toFixed(1))));
-    const download = h("a", { class: "button", href: `/api/recordings/${encodeURIComponent(name)}?${query(robot)}`, download: name }, t("runs.download"));
+    const of = `/${encodeURIComponent(name)}?${query(robot)}`;
+    const xml = async (): Promise<Blob> => {
+      const answer = await request("GET", `/api/trees${of}`);
+      if (!answer.ok) throw new Error(answer.text);
+      return plain(answer.xml);
+    };
+    const problem = h("p", { class: "problem", role: "alert", lang: "en" });
+    const offers = (): Offer[] => [
+      { key: "download.mcap", ending: "mcap", content: async () => `/api/recordings${of}` },
+      { key: "download.xml", ending: "xml", content: xml },
+      ...(film.text ? [{ key: "download.english", ending: "txt", content: async () => plain(film.text) } as const] : []),
+      ...pictures(player.scene.tree),
+    ];
+    const began = Number(film.about["wall"]) || 0;
+    const download = downloads(() => [titleOf(film.text), began], offers, (text) => fill(problem, text));
     const compare = h("a", { class: "button", href: address("runs", robot, name, WITH) }, t("compare.with"));
-    const title = h("div", { class: "title" }, h("h1", { dir: "auto" }, titleOf(film.text)), h("div", { class: "controls" }, compare, share(), download));
+    const title = h("div", { class: "title" }, h("h1", { dir: "auto" }, titleOf(film.text)), h("div", { class: "controls" }, compare, share(), download), problem);
     return { title, element: player.element, close: () => player.close() };
   });
 }

@@ -1,6 +1,7 @@
 // Missions: a list of those in the library, and one as English and tree side by side.
 import { may, request } from "../api";
 import { fill, h } from "../dom";
+import { downloads, pictures, plain, type Offer } from "../download";
 import { Player, type Film } from "../look_back/player";
 import { command } from "../tasks/queue";
 import { t } from "../texts";
@@ -62,6 +63,7 @@ class Desk {
   private kept: Kept = { text: "", revision: 0 };
   private nodes: SaidNode[] = [];
   private understood = "";
+  private sort = "english";
   private writing: ReturnType<typeof setTimeout> | undefined;
   private mayWrite: boolean;
   private leaving = (event: BeforeUnloadEvent): void => {
@@ -110,6 +112,7 @@ class Desk {
       this.mayWrite && h("button", { type: "button", title: "F2", onclick: () => this.rename() }, t("write.rename")),
       this.mayWrite && h("button", { type: "button", title: "Ctrl+Z", onclick: () => this.editor.undo() }, t("write.undo")),
       this.mayWrite && h("button", { type: "button", title: "Ctrl+Y", onclick: () => this.editor.redo() }, t("write.redo")),
+      downloads(() => [this.store.name.replace(/\.\w+$/, ""), Date.now() / 1000], () => this.offers(), (problem) => this.fail(problem)),
       this.outline,
     );
     const head = h("div", { class: "head" }, h("div", { class: "now" }, h("h1", { dir: "auto" }, this.store.name), this.state), tools);
@@ -204,8 +207,9 @@ class Desk {
     this.tell();
   }
 
-  private show({ text, messages, nodes, outline }: Understood): void {
+  private show({ text, messages, nodes, outline, sort }: Understood): void {
     if (text !== this.editor.text) return;
+    this.sort = sort;
     this.understood = text;
     this.editor.tell(messages);
     const items = messages.map((each) =>
@@ -263,6 +267,17 @@ class Desk {
         return "";
       });
     });
+  }
+
+  /** What can be downloaded: the text as it is, and the tree that is shown. */
+  private offers(): Offer[] {
+    const xml = async (): Promise<Blob> => {
+      const answer = await this.reader.service("xml", this.editor.text, {});
+      if (!answer.ok) throw new Error(answer.messages?.[0]?.message ?? answer.text);
+      return plain(answer.xml);
+    };
+    const said: Offer = { key: "download.english", ending: "txt", content: async () => plain(this.editor.text) };
+    return [...(this.sort === "english" ? [said] : []), { key: "download.xml", ending: "xml", content: xml }, ...pictures(this.tree)];
   }
 
   /** Runs the mission in the simulated world, on the server. */
