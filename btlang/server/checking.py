@@ -28,7 +28,7 @@ from btlang.record import Record
 from btlang.recording.trial import tried
 from btlang.server.access import AccessError
 from btlang.server.bodies import text_in
-from btlang.server.recordings import comparison, film, tree
+from btlang.server.films import comparison, film, tree
 from btlang.server.utf16 import Units, in_units
 from btlang.text.source import Source
 

@@ -79,7 +79,7 @@ ROUTES: dict[tuple[str, str], tuple[str, dict[str, Any] | None]] = {
     **_library("/api/worlds", "world"),
     **_library("/api/robot-files", "robot file"),
     **{("POST", f"/api/{name}"): (query.help, _written(query)) for name, query in ASKED.items()},
-    ("GET", "/api/recordings"): ("The recordings of a robot on this computer.", None),
+    ("GET", "/api/recordings"): ("The recordings of a robot.", None),
     ("GET", "/api/recordings/{name}"): ("One, as MCAP.", None),
     ("GET", "/api/films/{name}"): ("One as data that a page plays.", None),
     ("GET", "/api/trees/{name}"): ("The tree of one as XML of BehaviorTree.CPP.", None),
