@@ -35,7 +35,12 @@ def _object(*required: str, **properties: dict[str, Any]) -> dict[str, Any]:
     return {"type": "object", "properties": properties, "required": list(required)}
 
 
-LIBRARY = {"/api/missions": Kind.MISSION, "/api/worlds": Kind.WORLD, "/api/robot-files": Kind.ROBOT}
+LIBRARY = {
+    "/api/missions": Kind.MISSION,
+    "/api/worlds": Kind.WORLD,
+    "/api/robot-files": Kind.ROBOT,
+    "/api/tests": Kind.TEST,
+}
 """What the library has, by the paths of its routes."""
 _WORLD = {"type": "string", "description": "The name of a world of the library, instead of the world of the robot."}
 _PAGE = {"type": "string", "description": "Which page of a session asks; only its newest request of a kind waits."}
@@ -47,6 +52,8 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
         **dict.fromkeys(("node", "last", "to"), _NUMBER),
         **dict.fromkeys(("do", "place", "form", "port", "words"), _TEXT),
     ),
+    "tests": {"type": "string", "description": "Tests, as a file of tests has them."},
+    "called": {"type": "string", "description": "What the tests call the mission that they run."},
     "name": {"type": "string", "description": "The new name; without it, what would be renamed."},
 }
 
@@ -78,6 +85,7 @@ ROUTES: dict[tuple[str, str], tuple[str, dict[str, Any] | None]] = {
     **_library("/api/missions", "mission"),
     **_library("/api/worlds", "world"),
     **_library("/api/robot-files", "robot file"),
+    **_library("/api/tests", "test file"),
     **{("POST", f"/api/{name}"): (query.help, _written(query)) for name, query in ASKED.items()},
     ("GET", "/api/recordings"): ("The recordings of a robot.", None),
     ("GET", "/api/recordings/{name}"): ("One, as MCAP.", None),

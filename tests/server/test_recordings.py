@@ -60,6 +60,24 @@ def test_a_trial(door: Door) -> None:
     assert endless["stopped"]
 
 
+def test_tests_of_a_mission(door: Door) -> None:
+    tests = 'test "it waves":\n  run "tour"\n  finally it has said "🤖"'
+    asked = {"text": "# 🤖\nwave", "tests": tests, "called": "tour"}
+    assert door.ask("POST", "/api/test", asked).status == 401
+    vic = door.log_in("vic")
+    [failed] = door.ask("POST", "/api/test", asked, **vic).data["results"]
+    assert (failed["passed"], failed["at"], failed["film"]["text"]) == (False, 3, asked["text"])
+    assert door.ask("POST", "/api/test", {**asked, "tests": tests.replace("🤖", "")}, **vic).data["problems"] == []
+    for wrong in ({"tests": 5}, {"called": None}, {"tests": None}):
+        assert door.ask("POST", "/api/test", {**asked, **wrong}, **vic).status == 400
+    assert door.ask("POST", "/api/test", {**asked, "tests": "#" * 200_001}, **vic).status == 413
+    secret = door.ask("POST", "/api/test", {**asked, "tests": 'test "t":\n  run "pyproject.toml"'}, **vic).data
+    assert [each["code"] for each in secret["problems"]] == ["BT001"]
+    long = 'test "t":\n  run "tour" for at most 10 hours\n  finally the mission fails\n' * 3
+    late = door.ask("POST", "/api/test", {**asked, "text": "repeat: print hello", "tests": long}, **vic).data
+    assert [each["passed"] for each in late["results"]] == [False, None, None]
+
+
 def test_recordings_of_a_folder(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     folder = str(tmp_path)
     path = tmp_path / "2026-01-01-100000-ab12.mcap"
