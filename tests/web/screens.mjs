@@ -135,6 +135,34 @@ await visit(base, async (page) => {
   assert.match(picture.toString(), /&lt;script&gt;/);
   assert.match((await downloaded(page, "XML of BehaviorTree.CPP"))[1].toString(), /<Wave\/>/);
 
+  // Tests of the mission: one passes, one fails, and one isn't understood.
+  await replace(page, "wave\ncheck that the battery is low");
+  await page.waitForSelector(".messages .fine");
+  await page.getByRole("button", { name: "Tests", exact: true }).click();
+  await until('run "tour"', ".tests .cm-content");
+  const tests = async (text) => {
+    await page.click(".tests .cm-content");
+    await page.keyboard.press("Control+A");
+    await page.keyboard.insertText(text);
+    await page.keyboard.press("Control+Enter");
+  };
+  await tests('test "it waves":\n  run "tour"\n  within 5 s it has done "wave"\n\ntest "it works":\n  run "tour"\n  finally the mission succeeds\n');
+  await until("1 of 2 passed", ".results");
+  await page.getByRole("button", { name: "Show its words" }).click();
+  await until("battery is low", ".desk .said");
+  await look("tests");
+  await page.getByRole("button", { name: "Replay" }).click();
+  await page.waitForSelector(".dialog .film .outcome.bad");
+  await page.keyboard.press("Escape");
+  await page.getByRole("button", { name: "Save the tests" }).click();
+  await until("Saved", ".tests .state");
+  await page.reload();
+  await page.getByRole("button", { name: "Go on with it" }).click();
+  await page.getByRole("button", { name: "Tests", exact: true }).click();
+  await until("it waves", ".tests .cm-content");
+  await tests('test "<script>":\n  run "tour"\n  frobnicate');
+  await until("BT010", ".results");
+
   // Another language, and somebody who leaves.
   await page.click(".user");
   await page.keyboard.press("Enter");

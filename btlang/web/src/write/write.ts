@@ -1,6 +1,6 @@
 // Missions: a list of those in the library, and one as English and tree side by side.
 import { may, request } from "../api";
-import { fill, h } from "../dom";
+import { fill, h, set } from "../dom";
 import { downloads, pictures, plain, type Offer } from "../download";
 import { Player, type Film } from "../look_back/player";
 import { command } from "../tasks/queue";
@@ -11,6 +11,7 @@ import { ask, show } from "./ask";
 import { Editor, smallest } from "./editor";
 import { merge } from "./merge";
 import { Draft, FileStore, LibraryStore, Stale, type Kept, type Store } from "./store";
+import { Tests } from "./tests";
 import { TreeEdits } from "./tree_edits";
 import { Reader, type SaidNode, type Understood } from "./understood";
 
@@ -19,8 +20,8 @@ const DRAFT_AFTER = 300; // milliseconds after a key
 /** See `View`. #/write lists, #/write/NAME opens a mission of the library, #/write/file/NAME a file. */
 export function openWrite(context: Context): View {
   const [first, second] = context.path;
-  if (first === "file" && second) return new Desk(context, new FileStore(second)).view;
-  return first ? new Desk(context, new LibraryStore(context, first)).view : openList(context);
+  if (first === "file" && second) return new Desk(context, new FileStore(second), new FileStore(second.replace(/(\.txt)?$/, ".test.txt"))).view;
+  return first ? new Desk(context, new LibraryStore(context, first), new LibraryStore(context, first, "test")).view : openList(context);
 }
 
 function openList(context: Context): View {
@@ -59,6 +60,7 @@ class Desk {
   private reader: Reader;
   private editor: Editor;
   private edits: TreeEdits;
+  private tests: Tests;
   private draft: Draft;
   private kept: Kept = { text: "", revision: 0 };
   private nodes: SaidNode[] = [];
@@ -74,6 +76,7 @@ class Desk {
   constructor(
     private context: Context,
     private store: Store,
+    tests: Store,
   ) {
     this.mayWrite = may(context.me, "editor");
     this.draft = new Draft(store.key);
@@ -92,6 +95,8 @@ class Desk {
       ],
     });
     this.edits = new TreeEdits(this.tree, this.editor, this.reader, (text) => this.fail(text), () => this.mayWrite);
+    const mission = { name: store.name, text: () => this.editor.text, show: (start: number, end: number) => this.showWords(start, end) };
+    this.tests = new Tests(tests, mission, this.reader, this.mayWrite);
     this.text.append(this.editor.view.dom);
     this.outline.addEventListener("change", () => this.editor.go(Number(this.outline.value)));
     addEventListener("beforeunload", this.leaving);
@@ -102,12 +107,14 @@ class Desk {
   private element(): HTMLElement {
     const edit = h("button", { type: "button", "aria-haspopup": "menu" }, t("write.edit"));
     edit.addEventListener("click", () => this.edits.menu(edit));
+    const testing = h("button", { type: "button", "aria-expanded": "false", onclick: () => set(testing, { "aria-expanded": String(this.tests.toggle()) }) }, t("tests"));
     const tools = h(
       "div",
       { class: "controls" },
       this.mayWrite && this.save,
       this.context.robot && h("button", { type: "button", title: "Ctrl+Enter", onclick: () => this.run() }, t("write.run")),
       h("button", { type: "button", title: "Alt+Enter", onclick: () => void this.attempt() }, t("write.try")),
+      testing,
       this.mayWrite && h("button", { type: "button", title: "Shift+Alt+F", onclick: () => void this.format() }, t("write.format")),
       this.mayWrite && h("button", { type: "button", title: "F2", onclick: () => this.rename() }, t("write.rename")),
       this.mayWrite && h("button", { type: "button", title: "Ctrl+Z", onclick: () => this.editor.undo() }, t("write.undo")),
@@ -123,13 +130,14 @@ class Desk {
       this.tree.element,
     );
     const words = h("section", { class: "stage card" }, this.text, this.problem, this.messages);
-    return h("div", { class: "desk" }, head, this.offered, h("div", { class: "panes" }, words, trunk));
+    return h("div", { class: "desk" }, head, this.offered, h("div", { class: "panes" }, words, trunk), this.tests.element);
   }
 
   private close(): void {
     this.keepDraft();
     removeEventListener("beforeunload", this.leaving);
     this.reader.close();
+    this.tests.close();
     this.editor.close();
     this.tree.close();
   }
@@ -240,6 +248,13 @@ class Desk {
   private selected(node: number): void {
     const said = this.nodes[node];
     if (said && said.start !== null && said.end !== null && this.understood === this.editor.text) this.editor.show(said.start, said.end);
+  }
+
+  /** Those of a test that failed: of the text as it was then, at least. */
+  private showWords(start: number, end: number): void {
+    const { length } = this.editor.text;
+    this.editor.show(Math.min(start, length), Math.min(end, length));
+    this.moved(Math.min(start, length));
   }
 
   private entered(node: number): void {
