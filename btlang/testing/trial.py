@@ -6,7 +6,9 @@ import time
 from collections.abc import Iterator
 from threading import Event, Timer
 
+from btlang.api import Mission
 from btlang.diagnostics.errors import MissionError
+from btlang.editing.messages import offsets
 from btlang.recording.film import Film
 from btlang.recording.trial import check_words
 from btlang.run.controls import Controls
@@ -35,10 +37,17 @@ def results_of(source: Source, given: Given, patience: float = 6.0) -> dict[str,
     - `results`: of each test its `name` and `line`, whether it `passed` (None: there was no time left), and the
       `seconds` of the mission. Of one that failed also the `problem`; `at`, the line that did not hold (0: none);
       `start` and `end`, the characters of the given mission that it was at (None: none); of the first ones the `film`
-      (btlang.recording.film), without words if the mission is in the test.
+      (btlang.recording.film), without words if the mission is another one.
     """
+    own: list[Mission] = []
+
+    def noted(name: str, world: str | None) -> Mission | None:
+        mission = given(name, world)
+        own.extend([mission] if mission is not None else [])
+        return mission
+
     try:
-        tests = read_tests(source, given)
+        tests = read_tests(source, noted)
         for test in tests:
             _check(test)
     except MissionError as error:
@@ -46,7 +55,7 @@ def results_of(source: Source, given: Given, patience: float = 6.0) -> dict[str,
             {"line": _line(each.span, source), "code": each.code, "message": each.message} for each in error.diagnostics
         ]
         return {"problems": problems, "results": []}
-    return {"problems": [], "results": list(_results(tests, source, patience))}
+    return {"problems": [], "results": list(_results(tests, own, source, patience))}
 
 
 def _check(test: MissionTest) -> None:
@@ -63,7 +72,9 @@ def _trees(test: MissionTest) -> Iterator[Tree]:
         yield from (tree for tree in (step.condition, step.other, step.event) if tree is not None)
 
 
-def _results(tests: tuple[MissionTest, ...], source: Source, patience: float) -> Iterator[dict[str, Any]]:
+def _results(
+    tests: tuple[MissionTest, ...], own: list[Mission], source: Source, patience: float
+) -> Iterator[dict[str, Any]]:
     until, films = time.monotonic() + patience, 0
     for test in tests:
         film, left = Film(test.mission), until - time.monotonic()
@@ -73,13 +84,10 @@ def _results(tests: tuple[MissionTest, ...], source: Source, patience: float) ->
             told |= {"passed": result.passed, "seconds": result.seconds}
             if not result.passed:
                 films += 1
-                syntax = test.mission.syntax
-                is_said = syntax is not None and result.at is not None and result.at.source is syntax.span.source
-                place = result.at if is_said and not test.is_inline else None
+                mission = next((each for each in own if each is test.mission), None)
                 told |= {
                     "problem": result.problem, "at": _line(result.line, source),
-                    "start": place and place.start, "end": place and place.end,
-                    "film": _data(film, test) if films <= _MOST_FILMS else None,
+                    **_place(result.at, mission), "film": _data(film, mission) if films <= _MOST_FILMS else None,
                 }  # fmt: skip
         yield told
 
@@ -102,9 +110,17 @@ def _run(test: MissionTest, film: Film, patience: float) -> Result:
     return result.replace(problem=_OVER) if late.is_set() else result
 
 
-def _data(film: Film, test: MissionTest) -> dict[str, Any]:
+def _place(span: Span | None, mission: Mission | None) -> dict[str, int | None]:
+    """The characters of the given mission, if it's that."""
+    if mission is None or mission.syntax is None:
+        return {"start": None, "end": None}
+    return offsets(span, mission.syntax.span.source)
+
+
+def _data(film: Film, mission: Mission | None) -> dict[str, Any]:
+    """Without words unless it's that of the given mission."""
     data = film.data()
-    if test.is_inline:
+    if mission is None:
         data |= {"text": "", "nodes": [{**node, "start": None, "end": None} for node in data["nodes"]]}
     return data
 

@@ -316,4 +316,7 @@ def test_the_tests_beside_it_are_saved_and_run(edited: Any, folder: Path) -> Non
     failed = run("wave then fail")["results"][0]
     assert (failed["passed"], failed["at"]) == (False, 3)
     assert "wave then fail"[failed["start"] : failed["end"]] == "fail"
+    (folder / "nod.txt").write_text("nod\nfail\n")
+    other = run("wave")["results"][1]
+    assert (other["passed"], other["start"], other["film"]["text"]) == (False, None, "")
     assert run("wavee")["messages"][0]["code"] == "BT010"
