@@ -17,6 +17,8 @@ if TYPE_CHECKING:
 
     Step: TypeAlias = tuple[float, int, int, str]
     """When, the number of a node, its new status, and why it failed."""
+    Pair: TypeAlias = tuple[Step | None, Step | None]
+    """A step of each of two runs, None where a run has no more."""
 
 
 def steps(events: Iterable[Event]) -> Iterator[Step]:
@@ -31,18 +33,33 @@ def first_difference(
     one: Iterable[Event], other: Iterable[Event], node: Callable[[int], Node], label: Callable[[Node], str]
 ) -> str:
     """The first change of status in which two runs differ, in words; "" where there is none. Times don't count."""
+    pair = first_pair(one, other)
+    if pair is None:
+        return ""
+    before, now = (told(step, node, label) for step in pair)
+    return f"before: {before}\nnow:    {now}"
+
+
+def first_pair(one: Iterable[Event], other: Iterable[Event]) -> Pair | None:
+    """The first changes of status in which two runs differ, None where there are none. Times don't count."""
     for first, second in zip_longest(steps(one), steps(other)):
         if first is None or second is None or first[1:] != second[1:]:
-            told = [_told(step, node, label) for step in (first, second)]
-            return f"before: {told[0]}\nnow:    {told[1]}"
-    return ""
+            return first, second
+    return None
 
 
-def _told(step: Step | None, node: Callable[[int], Node], label: Callable[[Node], str]) -> str:
+def told(step: Step | None, node: Callable[[int], Node], label: Callable[[Node], str]) -> str:
+    """A step in words."""
     if step is None:
         return "nothing more"
     t, index, status, reason = step
     return f"at {t:.2f} s  {label(node(index))}: {NAMES[status]}{f' ({reason})' if reason else ''}"
+
+
+def ended_differently(one: Iterable[Event], other: Iterable[Event]) -> list[int]:
+    """The numbers of the nodes whose last status isn't the same; one that never began has none."""
+    last = [{index: status for _, index, status, _ in steps(events)} for events in (one, other)]
+    return sorted(index for index in last[0].keys() | last[1].keys() if last[0].get(index) != last[1].get(index))
 
 
 def run_differences(one: Iterable[str], other: Iterable[str]) -> Iterator[str]:

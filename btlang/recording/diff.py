@@ -2,18 +2,15 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator
+from collections.abc import Callable, Iterator
 from contextlib import ExitStack, suppress
-from functools import partial
 
 from btlang.api import Mission, parse_file
 from btlang.backends.tree_diff import differences
 from btlang.diagnostics.errors import MissionError
 from btlang.recording.compare import run_differences
 from btlang.recording.open import is_recording, opened
-from btlang.recording.reader import RecordedNodes
 from btlang.recording.story import Story
-from btlang.run.events import Event
 from btlang.text.output import show
 from btlang.tree.catalogue import SUBTREE
 from btlang.tree.node import Node, Tree
@@ -41,6 +38,11 @@ def _of_trees(options: argparse.Namespace) -> Iterator[str]:
         parse_file(path, keywords=options.keywords, world=options.world, language=options.language)
         for path in (options.old, options.new)
     )
+    return mission_differences(old, new)
+
+
+def mission_differences(old: Mission, new: Mission) -> Iterator[str]:
+    """A line for each difference of their trees."""
     return differences(old.tree, new.tree, words_of(old), words_of(new))
 
 
@@ -69,17 +71,5 @@ def words_of(mission: Mission) -> Callable[[Node], str]:
 def _of_runs(options: argparse.Namespace) -> Iterator[str]:
     with ExitStack() as stack:
         sides = [stack.enter_context(opened(path)) for path in (options.old, options.new)]
-        told = [_story(mission, nodes) for _, mission, nodes in sides]
-        events = [recording.events(nodes) for recording, _, nodes in sides]
-        lines = [iter(list(tell(each))) for tell, each in zip(told, events, strict=True)]
-        yield from run_differences(*lines)
-
-
-def _story(mission: Mission, nodes: RecordedNodes) -> Callable[[Iterable[Event]], Iterator[str]]:
-    return partial(_lines, mission, nodes)
-
-
-def _lines(mission: Mission, nodes: RecordedNodes, events: Iterable[Event]) -> Iterator[str]:
-    """The story without its head."""
-    _, *lines = Story(mission, nodes, {}).take(events).lines()
-    yield from lines
+        stories = [Story(mission, nodes, {}).take(recording.events(nodes)) for recording, mission, nodes in sides]
+        yield from run_differences(*(story.body() for story in stories))

@@ -56,6 +56,10 @@ class Story:
         yield one_line(
             f"{about.get('mission') or 'A mission'}, {when}, on the robot {about.get('robot', 'simulated')}:"
         )
+        yield from self.body()
+
+    def body(self) -> Iterator[str]:
+        """The story without its first line."""
         yield from (self._line(t, text) for t, _, text in self.notes)
         for began, node in self._began.values():
             yield self._line(began, f"{self._mission.label(node)}: not over when the recording ended")

@@ -11,16 +11,20 @@ from btlang.text.source import NOWHERE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from typing import Any
 
     from btlang.run.events import Sink
     from btlang.run.runner import Outcome
+    from btlang.tree.node import Node, Tree
+    from btlang.vocabulary.lexicon import Lexicon
 
 MOST_SECONDS = 3600.0
 """Of the mission's time."""
 _MOST_TICKS = 72_000
 _RATE = 20.0
-_OURS = "btlang.actions."  # modules whose functions do nothing but lead the robot that they are given
+OURS = "btlang.actions."
+"""Where the names of modules begin whose functions do nothing but lead the robot that they are given."""
 
 
 def simulated(
@@ -52,6 +56,16 @@ def simulated(
     return outcome, "it took too long to simulate"
 
 
+def check_words(tree: Tree, vocabulary: Lexicon, label: Callable[[Node], str], further: str = OURS) -> None:
+    """Raises MissionError (BT221) for a tree with words that are no words of btlang: what they do might move a real
+    robot. `further` is where the names of functions of other words that are allowed begin.
+    """
+    for node in tree.walk():
+        entry = vocabulary.entry(node.id)
+        if entry is not None and not str(entry.call).startswith((OURS, further)):
+            raise MissionError([diagnostic("BT221", node.span or NOWHERE, words=label(node), file=entry.file)])
+
+
 def tried(mission: Mission, seconds: float = 600.0, patience: float = 6.0, seed: int | None = None) -> dict[str, Any]:
     """The film of a run (see Film.data) of at most so many seconds of the mission and `patience` seconds of real time,
     and what `stopped` it: "" if it ended by itself.
@@ -59,11 +73,7 @@ def tried(mission: Mission, seconds: float = 600.0, patience: float = 6.0, seed:
     Raises MissionError for a mission that can't be run, and BT221 for one with words that are no words of btlang: what
     they do might move a real robot.
     """
-    for node in mission.tree.walk():
-        entry = mission.vocabulary.entry(node.id)
-        if entry is not None and not str(entry.call).startswith(_OURS):
-            words = mission.label(node)
-            raise MissionError([diagnostic("BT221", node.span or NOWHERE, words=words, file=entry.file)])
+    check_words(mission.tree, mission.vocabulary, mission.label)
     film = Film(mission)
     _, stopped = simulated(mission, film, seconds, patience, seed=seed)
     return {**film.data(), "stopped": stopped}

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import asyncio
 from collections.abc import AsyncIterator, Awaitable, Callable, Sequence
-from contextlib import asynccontextmanager, suppress
+from contextlib import AsyncExitStack, asynccontextmanager, suppress
 from functools import partial
 
 from starlette.applications import Starlette
@@ -16,6 +16,7 @@ from starlette.websockets import WebSocket
 
 from btlang.diagnostics.errors import MissionError
 from btlang.editing.words import Words
+from btlang.server import fetching as elsewhere
 from btlang.server.access import COOKIE, Access, AccessError, address_of
 from btlang.server.accounts import LONGEST, Accounts, Identity
 from btlang.server.bodies import JsonResponse, json_object, text_in
@@ -40,6 +41,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+_MOST_FETCHING = 2  # recordings of robots elsewhere that are shown at a time: each is copied
 _HEADERS = {
     b"content-security-policy": b"default-src 'none'; frame-ancestors 'none'; base-uri 'none'; form-action 'none'",
     b"x-frame-options": b"DENY",
@@ -69,6 +71,7 @@ class Api:
         self.access, self.checker, self.trials = Access(accounts, key, cookie), Checker(), Checker()
         self.sockets, self.clients = Sockets(self.access), Clients(self.robots, self.send)
         self.rosbridge = Rosbridge(self.access, ros) if ros else None
+        self._fetching = asyncio.Semaphore(_MOST_FETCHING)
         self.joins = Joins(Fleet(accounts.database), self.robots, self.access)
 
     def app(self) -> ASGIApp:
@@ -88,7 +91,9 @@ class Api:
             *(self._route(f"/api/{kind}", partial(self._text, kind), "POST") for kind in ASKED),
             self._route("/api/recordings", self._recordings, "GET"),
             self._route("/api/recordings/{name}", self._recording, "GET"),
-            self._route("/api/films/{name}", self._film, "GET"),
+            self._route("/api/films/{name}", partial(self._shown, self.trials.film, ()), "GET"),
+            self._route("/api/trees/{name}", partial(self._shown, self.trials.tree, ()), "GET"),
+            self._route("/api/comparisons/{name}", partial(self._shown, self.trials.comparison, ("with",)), "GET"),
             self._route("/metrics", self._metrics, "GET"),
             Route("/openapi.json", lambda request: JsonResponse(document())),
             *page_routes(self.access),
@@ -240,20 +245,48 @@ class Api:
         return Response(written, media_type="application/json")
 
     async def _recordings(self, request: Request) -> Response:
-        await self._who(request)
-        folder = self.link(request.query_params.get("robot", "")).recordings
-        return JsonResponse({"ok": True, "recordings": await asyncio.to_thread(listed, folder)})
+        link = await self._recorder(request)
+        found = await (elsewhere.listed(link.read) if link.is_elsewhere else asyncio.to_thread(listed, link.recordings))
+        return JsonResponse({"ok": True, "recordings": found})
 
     async def _recording(self, request: Request) -> Response:
-        return FileResponse(await self._recorded(request), media_type="application/octet-stream")
+        link, name = await self._recorder(request), request.path_params["name"]
+        if link.is_elsewhere:
+            return elsewhere.Pieces(await elsewhere.fetched(link.read, name))
+        path = await asyncio.to_thread(path_of, link.recordings, name)
+        return FileResponse(path, media_type="application/octet-stream")
 
-    async def _film(self, request: Request) -> Response:
-        return Response(await self.trials.film(await self._recorded(request)), media_type="application/json")
+    async def _shown(
+        self, show: Callable[..., Awaitable[bytes]], others: tuple[str, ...], request: Request
+    ) -> Response:
+        """What a page shows of a recording, and of the `others` that the query names."""
+        link = await self._recorder(request)
+        names = [request.path_params["name"], *(request.query_params.get(other, "") for other in others)]
+        async with AsyncExitStack() as stack:
+            if link.is_elsewhere:
+                await stack.enter_async_context(self._fetching)  # a copy may be large
+            paths = [await stack.enter_async_context(self._file(link, name, request)) for name in names]
+            return Response(await show(*paths), media_type="application/json")
 
-    async def _recorded(self, request: Request) -> str:
+    @asynccontextmanager
+    async def _file(self, link: RobotLink, name: str, request: Request) -> AsyncIterator[str]:
+        if not link.is_elsewhere:
+            yield await asyncio.to_thread(path_of, link.recordings, name)
+            return
+
+        async def is_wanted() -> bool:
+            return not await request.is_disconnected()
+
+        async with elsewhere.in_file(await elsewhere.fetched(link.read, name), is_wanted) as path:
+            yield path
+
+    async def _recorder(self, request: Request) -> RobotLink:
+        """The robot whose recordings are asked for."""
         await self._who(request)
-        folder = self.link(request.query_params.get("robot", "")).recordings
-        return await asyncio.to_thread(path_of, folder, request.path_params["name"])
+        link = self.link(request.query_params.get("robot", ""))
+        if link.is_elsewhere and not link.is_up:
+            raise AccessError(503, f"The robot '{link.name}' isn't up: its recordings are on its own computer.")
+        return link
 
     async def _metrics(self, request: Request) -> Response:
         await self._who(request)

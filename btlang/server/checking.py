@@ -15,7 +15,7 @@ from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from weakref import WeakValueDictionary
 
-from btlang.api import format_mission
+from btlang.api import Mission, format_mission, parse_tree
 from btlang.diagnostics.errors import MissionError
 from btlang.editing.completion import complete
 from btlang.editing.document import document, text_messages
@@ -31,21 +31,25 @@ from btlang.record import Record
 from btlang.recording.trial import tried
 from btlang.server.access import AccessError
 from btlang.server.bodies import text_in
-from btlang.server.recordings import film
+from btlang.server.films import comparison, film, tree
 from btlang.server.utf16 import Units, in_units
+from btlang.testing.trial import results_of
 from btlang.text.source import Source
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+TESTS = "tests"
+"""What tests are called in messages."""
 MOST_CHARACTERS = 200_000
 _PATIENCE = 10.0  # seconds for one text
 
 
 class TextQuery(Record):
     """What may be asked of a text: `help` is a line about it, `do` takes the source, the words, and the arguments that
-    it `needs` or only `takes`: `at`, a place in the text, `name`, a text, or `edit` (btlang.editing.edits.Edit).
+    it `needs` or only `takes`: `at`, a place in the text, `name`, `tests` and `called`, texts, or `edit`
+    (btlang.editing.edits.Edit).
     """
 
     help: str
@@ -74,6 +78,11 @@ def _format(source: Source, words: Words) -> dict[str, Any]:
     return {"text": format_mission(source, keywords=words.keywords, world=words.world, language=words.language)}
 
 
+def _xml(source: Source, words: Words) -> dict[str, Any]:
+    mission = words.mission(source)
+    return {"messages": messages(mission.warnings, source), "xml": str(mission.to("xml"))}
+
+
 DOES: Mapping[str, TextQuery] = {
     "check": TextQuery("What is wrong with a mission.", _check),
     "complete": TextQuery("What may follow at a place, by default the end.", complete, takes=("at",)),
@@ -86,6 +95,7 @@ DOES: Mapping[str, TextQuery] = {
     "messages": TextQuery("What is wrong with a text, as its document says it.", text_messages),
     "palette": TextQuery("All that can be put into a mission, by topic.", palette),
     "rename": TextQuery("What gives a definition and its uses another name.", rename, needs=("at",), takes=("name",)),
+    "xml": TextQuery("A mission as a tree of BehaviorTree.CPP.", _xml),
 }
 
 
@@ -94,7 +104,27 @@ def _try(source: Source, words: Words) -> dict[str, Any]:
     return {"messages": messages(mission.warnings, source), **tried(mission)}
 
 
-TRIES: Mapping[str, TextQuery] = {"try": TextQuery("A run of a mission in the simulated world, as a film.", _try)}
+def _test(source: Source, words: Words, tests: str, called: str) -> dict[str, Any]:
+    mission = words.mission(source)
+
+    def given(name: str, world: str | None) -> Mission | None:
+        if name not in (called, f"{called}.txt"):
+            return None
+        if world is None:
+            return mission
+        return parse_tree(source, keywords=words.keywords, world=world, language=words.language)
+
+    beside = os.path.join(os.path.dirname(words.file), TESTS)
+    text = Source(tests, beside) if words.file else Source(tests, TESTS, roots=())
+    return {"messages": messages(mission.warnings, source), **results_of(text, given)}
+
+
+TRIES: Mapping[str, TextQuery] = {
+    "test": TextQuery(
+        "Tests of a mission in the simulated world, with films of those that fail.", _test, ("tests", "called")
+    ),
+    "try": TextQuery("A run of a mission in the simulated world, as a film.", _try),
+}
 """What takes longer: it has a process of its own."""
 ASKED = {**DOES, **TRIES}
 
@@ -109,8 +139,11 @@ def arguments_of(kind: str, data: Mapping[str, Any], text: str) -> dict[str, Any
         if type(given["at"]) is not int or not 0 <= given["at"] <= units.length:
             raise AccessError(400, "'at' must be a place in the text, a whole number of UTF-16 units.")
         given["at"] = units.character(given["at"])
-    if "name" in given:
-        text_in(given, "name")
+    for field in ("name", "tests", "called"):
+        if field in given:
+            text_in(given, field)
+    if len(given.get("tests", "")) > MOST_CHARACTERS:
+        raise AccessError(413, f"Tests may have {MOST_CHARACTERS:,} characters.")
     if "edit" in given:
         given["edit"] = read_edit(given["edit"])
     return given
@@ -185,6 +218,16 @@ class Checker:
         """That of a recording, as JSON. Raises AccessError (422) if it takes too long."""
         async with self._turn:
             return await self._done(film, path)
+
+    async def tree(self, path: str) -> bytes:
+        """That of a recording in XML, as JSON. Raises AccessError (422) if it takes too long."""
+        async with self._turn:
+            return await self._done(tree, path)
+
+    async def comparison(self, one: str, other: str) -> bytes:
+        """That of two recordings, as JSON. Raises AccessError (422) if it takes too long."""
+        async with self._turn:
+            return await self._done(comparison, one, other)
 
     async def _done(self, do: Callable[..., bytes], *given: object) -> bytes:
         if self._process is None:

@@ -7,6 +7,7 @@ its standard input does, with the process of the robot, or when the server doesn
 from __future__ import annotations
 
 import asyncio
+import base64
 import json
 import os
 import secrets
@@ -21,9 +22,11 @@ from websockets.exceptions import ConnectionClosed, WebSocketException
 
 from btlang.diagnostics.reading import reason_of
 from btlang.record import Record
+from btlang.server.access import AccessError
 from btlang.server.certificate import pin, write_private
 from btlang.server.fleet import pin_in
 from btlang.server.reach import STREAM, LocalSockets
+from btlang.server.recordings import listed, piece
 from btlang.text.escaping import one_line
 from btlang.text.output import show
 
@@ -89,6 +92,7 @@ class Dialer:
         self._instance = secrets.token_hex(8)
         self._connection: ClientConnection | None = None
         self._answers: dict[str, dict[str, Any] | None] = {}
+        self._folder: str | None = None  # that of the recordings, where it is known
         self._tasks: set[asyncio.Task[None]] = set()
         self._watching: dict[int, asyncio.Task[None]] = {}
 
@@ -138,6 +142,8 @@ class Dialer:
         kind, id = message.get("type"), str(message.get("id", ""))
         if kind == "watch":
             self._watch(int(message["stream"]), message["request"])
+        elif kind in ("recordings", "recording"):
+            self._start(self._read(id, message))
         elif kind == "stop":
             self._start(self._stop(id))
         elif kind == "command":
@@ -167,6 +173,29 @@ class Dialer:
         while len(self._answers) > _KEPT:
             del self._answers[next(iter(self._answers))]
         await self._send(answer)
+
+    async def _read(self, id: str, message: dict[str, Any]) -> None:
+        """Which recordings the robot has, or a piece of one: only files that are in its folder by their names."""
+        answer: dict[str, Any] = {}
+        try:
+            if message["type"] == "recordings" or self._folder is None:
+                self._folder = await self._recordings()
+            if message["type"] == "recordings":
+                answer["recordings"] = await asyncio.to_thread(listed, self._folder) if self._folder else []
+            else:
+                size, data = await asyncio.to_thread(piece, self._folder, str(message["name"]), int(message["at"]))
+                answer |= {"size": size, "data": base64.b64encode(data).decode()}
+        except AccessError:
+            answer["missing"] = True
+        except (OSError, ValueError, KeyError, TypeError):
+            await self._send({"id": id})
+            return
+        await self._send({"id": id, "answer": answer})
+
+    async def _recordings(self) -> str:
+        """The folder of the recordings, "" if the robot makes none."""
+        async with asyncio.timeout(_PATIENCE), self._sockets.watching({"rate": 1.0}) as reader:
+            return str(json.loads(await reader.readline())["recordings"])
 
     async def _stop(self, id: str) -> None:
         try:

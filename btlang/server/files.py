@@ -25,6 +25,7 @@ from btlang.server.checking import MOST_CHARACTERS
 from btlang.task.answers import differences
 from btlang.task.checks import refused
 from btlang.task.messages import Answer
+from btlang.testing.names import ENDING, is_test_file
 from btlang.text.source import Source, Span
 from btlang.text.words import split
 
@@ -34,7 +35,8 @@ if TYPE_CHECKING:
 
 
 class Files:
-    """Of these the one that `words` belong to can be saved; the others, which it includes, are shown.
+    """Of these the one that `words` belong to can be saved, and the file of its tests beside it; the others, which it
+    includes, are shown.
 
     A revision is a hash of the content, "" for a file that isn't there. Methods raise MissionError for one that can't
     be read (BT001, BT002) or written (BT009), and AccessError (403, 404).
@@ -43,18 +45,21 @@ class Files:
     def __init__(self, words: Words) -> None:
         self.path, self.name = words.file, os.path.basename(words.file)
         self._words = words
+        stem = self.path.removesuffix(".txt")
+        self._tests = "" if is_test_file(self.path) else stem + ENDING
 
     def listed(self) -> list[dict[str, Any]]:
-        """All, the one that can be saved first."""
-        names = [self.name, *(name for name in self._included() if name != self.name)]
-        return [{"name": name, "saves": name == self.name} for name in names]
+        """All, the one that was opened first, and its tests last."""
+        saved = self._saved()
+        names = [self.name, *(name for name in self._included() if name not in saved), *list(saved)[1:]]
+        return [{"name": name, "saves": name in saved} for name in names]
 
     def read(self, name: str) -> dict[str, Any]:
         """The `text` of a file and its `revision`; of a tree also the name of the `tree`, that of its `copy`, and a
         `problem` if there's one.
         """
-        if name == self.name:
-            return _content(self._text())
+        if (path := self._saved().get(name)) is not None:
+            return _content(_text(path))
         included = self._included()
         if name not in included:
             raise AccessError(404, "That file isn't open here.")
@@ -64,33 +69,25 @@ class Files:
         """Writes a text that was made from a revision; where the file has another one by now, it is refused with the
         difference. Line ends stay those of the file.
         """
-        if name != self.name:
-            raise AccessError(403, "Only the file that was opened can be saved.")
-        before = self._text()
+        path = self._saved().get(name)
+        if path is None:
+            raise AccessError(403, "Only the file that was opened can be saved, and its tests.")
+        before = _text(path)
         text = text if before is None else _with_line_ends(text, before)
         if revision != _revision(before):
             problem = refused(f"The file '{name}'", "was changed by another program, or in another window")
             data = {**_content(before), "diff": differences(before or "", text)}
             return Answer(False, str(problem), data, problem.diagnostics[0].code)
-        write_file(self.path, (BOM_UTF8 if before is not None and _has_mark(self.path) else b"") + text.encode())
+        write_file(path, (BOM_UTF8 if before is not None and _has_mark(path) else b"") + text.encode())
         return Answer(True, f"Saved {name}.", {"revision": _revision(text)}, "")
 
-    def _text(self) -> str | None:
-        """That of the file, None if it isn't there. Its folder must be there, and it must be no other sort of file."""
-        source = Source("", self.path)
-        if not os.path.lexists(self.path):
-            folder = os.path.dirname(self.path) or os.curdir
-            if not os.path.isdir(folder):
-                raise MissionError([unwritable(self.path, f"there's no folder {folder}")])
-            return None
-        if os.path.exists(self.path) and not os.path.isfile(self.path):
-            reason = os.strerror(errno.EISDIR).lower() if os.path.isdir(self.path) else "it isn't a regular file"
-            raise _unreadable(source, reason)
-        return _of_fair_size(read_source(self.path).text, source)
+    def _saved(self) -> dict[str, str]:
+        """The paths of those that can be saved, by their names."""
+        return {os.path.basename(path): path for path in (self.path, self._tests) if path}
 
     def _included(self) -> dict[str, Source]:
         """By their names as seen from the folder of the file; those that can't be read are left out."""
-        waiting = [self._words.source(self._text() or "")]
+        waiting = [self._words.source(_text(self.path) or "")]
         found: dict[str, Source] = {}
         while waiting and len(found) < MOST_DEEP:
             source = waiting.pop()
@@ -141,7 +138,7 @@ class TreeFiles(Files):
     def save(self, name: str, text: str, revision: str) -> Answer:
         """As for any file; `problem` says why the copy wasn't written, for which the text has to compile."""
         answer = super().save(name, text, revision)
-        if not answer.ok:
+        if not answer.ok or name != self.name:
             return answer
         data, copy = {**answer.data, **self._names}, self._names["copy"]
         try:
@@ -176,6 +173,20 @@ def tree_sort(path: str) -> str:
 def english_beside(tree: str) -> str:
     """The file of the mission that is written for a tree."""
     return os.path.splitext(tree)[0] + ".edited.txt"
+
+
+def _text(path: str) -> str | None:
+    """That of the file, None if it isn't there. Its folder must be there, and it must be no other sort of file."""
+    source = Source("", path)
+    if not os.path.lexists(path):
+        folder = os.path.dirname(path) or os.curdir
+        if not os.path.isdir(folder):
+            raise MissionError([unwritable(path, f"there's no folder {folder}")])
+        return None
+    if os.path.exists(path) and not os.path.isfile(path):
+        reason = os.strerror(errno.EISDIR).lower() if os.path.isdir(path) else "it isn't a regular file"
+        raise _unreadable(source, reason)
+    return _of_fair_size(read_source(path).text, source)
 
 
 def _of_fair_size(text: str, source: Source) -> str:

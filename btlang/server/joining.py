@@ -3,7 +3,8 @@
 Commands and answers are messages of JSON with an `id`. What happens on the robot are bytes behind the number of a
 stream, which both ends know from the message that asked for it. A command that is under way when the connection breaks
 is sent again when it's back: the program that dials (`dialer`) does none twice, as long as it is the same `instance`.
-An emergency stop is never sent again, since it would come when nobody expects it.
+An emergency stop is never sent again, since it would come when nobody expects it. What is asked of recordings is sent
+to each new instance too.
 """
 
 from __future__ import annotations
@@ -52,6 +53,10 @@ class Dialed:
     async def stop(self) -> None:
         """See `Reach`."""
         await self._answer({"type": "stop"})
+
+    async def read(self, message: dict[str, Any]) -> Any:
+        """See `ReachElsewhere`. It may be asked twice: nothing is done by it."""
+        return await self._answer(message)
 
     @asynccontextmanager
     async def watching(self, request: dict[str, Any]) -> AsyncIterator[asyncio.StreamReader]:
@@ -121,7 +126,7 @@ class Dialed:
             waiting.set_exception(ConnectionError("its program there didn't answer"))
 
     async def _answer(self, message: dict[str, Any]) -> Any:
-        if self.socket is None:
+        if self.socket is None and message["type"] != "recording":  # the next piece waits for the link
             raise ConnectionError("it isn't connected")
         id, answer = secrets.token_hex(8), asyncio.get_running_loop().create_future()
         message = {"id": id, **message}

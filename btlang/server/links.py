@@ -18,7 +18,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-    from btlang.server.reach import Reach
+    from btlang.server.reach import Reach, ReachElsewhere
 
 _AGAIN = 0.5  # seconds between two looks whether a robot is there
 _SILENT = 15.0  # seconds without a word after which a robot counts as gone
@@ -32,7 +32,7 @@ RATE = 20.0
 class RobotLink:
     """One robot. In one event loop. `reach` is the way to it, over the sockets of this computer if it isn't given."""
 
-    def __init__(self, name: str, reach: Reach | None = None, seen: float | None = None) -> None:
+    def __init__(self, name: str, reach: ReachElsewhere | None = None, seen: float | None = None) -> None:
         self.name = name
         self.is_elsewhere = reach is not None
         self.seen = seen
@@ -41,6 +41,8 @@ class RobotLink:
         self.recordings = ""
         """The folder of its recordings, "" if they aren't on this computer."""
         self._reach: Reach = reach or LocalSockets(name)
+        self._elsewhere = reach
+        self._reading = asyncio.Lock()  # a piece at a time: the rest of what the link carries has to come through
         self._outlets: set[Outlet] = set()
         self._catching_up: dict[Outlet, asyncio.Task[None]] = {}  # those that don't know the latest change yet
         self._paging = asyncio.Lock()  # each is a watcher more for the robot
@@ -73,6 +75,17 @@ class RobotLink:
                 return Answer(answer["ok"], answer["text"], answer["data"], answer["code"])
         except _BROKEN as error:
             text = f"The robot '{self.name}' isn't up, or doesn't answer. If it was up, it may have done it."
+            raise ConnectionError(text) from error
+
+    async def read(self, message: dict[str, Any]) -> Any:
+        """What a robot elsewhere says of its recordings, also if the link breaks meanwhile. Raises ConnectionError."""
+        text = f"The robot '{self.name}' isn't up, or doesn't send its recordings."
+        if self._elsewhere is None:
+            raise ConnectionError(text)
+        try:
+            async with self._reading, asyncio.timeout(_PATIENCE):
+                return await self._elsewhere.read(message)
+        except _BROKEN as error:
             raise ConnectionError(text) from error
 
     async def stop(self) -> None:

@@ -21,6 +21,13 @@ _ROBOT: dict[str, Any] = {
     "description": "Which robot, if several are up.",
     "schema": _TEXT,
 }
+_WITH: dict[str, Any] = {
+    "name": "with",
+    "in": "query",
+    "required": True,
+    "description": "The other recording.",
+    "schema": _TEXT,
+}
 _NAME: dict[str, Any] = {"name": "name", "in": "path", "required": True, "schema": _TEXT}
 
 
@@ -28,7 +35,12 @@ def _object(*required: str, **properties: dict[str, Any]) -> dict[str, Any]:
     return {"type": "object", "properties": properties, "required": list(required)}
 
 
-LIBRARY = {"/api/missions": Kind.MISSION, "/api/worlds": Kind.WORLD, "/api/robot-files": Kind.ROBOT}
+LIBRARY = {
+    "/api/missions": Kind.MISSION,
+    "/api/worlds": Kind.WORLD,
+    "/api/robot-files": Kind.ROBOT,
+    "/api/tests": Kind.TEST,
+}
 """What the library has, by the paths of its routes."""
 _WORLD = {"type": "string", "description": "The name of a world of the library, instead of the world of the robot."}
 _PAGE = {"type": "string", "description": "Which page of a session asks; only its newest request of a kind waits."}
@@ -40,6 +52,8 @@ _ARGUMENTS: dict[str, dict[str, Any]] = {
         **dict.fromkeys(("node", "last", "to"), _NUMBER),
         **dict.fromkeys(("do", "place", "form", "port", "words"), _TEXT),
     ),
+    "tests": {"type": "string", "description": "Tests, as a file of tests has them."},
+    "called": {"type": "string", "description": "What the tests call the mission that they run."},
     "name": {"type": "string", "description": "The new name; without it, what would be renamed."},
 }
 
@@ -71,16 +85,19 @@ ROUTES: dict[tuple[str, str], tuple[str, dict[str, Any] | None]] = {
     **_library("/api/missions", "mission"),
     **_library("/api/worlds", "world"),
     **_library("/api/robot-files", "robot file"),
+    **_library("/api/tests", "test file"),
     **{("POST", f"/api/{name}"): (query.help, _written(query)) for name, query in ASKED.items()},
-    ("GET", "/api/recordings"): ("The recordings of a robot on this computer.", None),
+    ("GET", "/api/recordings"): ("The recordings of a robot.", None),
     ("GET", "/api/recordings/{name}"): ("One, as MCAP.", None),
     ("GET", "/api/films/{name}"): ("One as data that a page plays.", None),
+    ("GET", "/api/trees/{name}"): ("The tree of one as XML of BehaviorTree.CPP.", None),
+    ("GET", "/api/comparisons/{name}"): ("Two as films, and what differs between them.", None),
     ("GET", "/metrics"): ("Figures for Prometheus.", None),
     ("GET", "/live"): ("Whether the server is alive; without log-in.", None),
     ("GET", "/ready"): ("Whether it takes requests; without log-in.", None),
     ("GET", "/openapi.json"): ("This document; without log-in.", None),
 }
-_RECORDED = ("/api/recordings", "/api/films")
+_RECORDED = ("/api/recordings", "/api/films", "/api/trees", "/api/comparisons")
 _OPEN = ("/api/login", "/live", "/ready", "/openapi.json")
 
 
@@ -97,6 +114,7 @@ def document() -> dict[str, Any]:
             described["requestBody"] = {"required": True, "content": {"application/json": {"schema": body}}}
         parameters = [_NAME] if "{name}" in path else []
         parameters += [_ROBOT] if path.removesuffix("/{name}") in (*LIBRARY, *_RECORDED) else []
+        parameters += [_WITH] if path.startswith("/api/comparisons") else []
         if parameters:
             described["parameters"] = parameters
         if path in _OPEN:

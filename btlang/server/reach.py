@@ -26,6 +26,12 @@ if TYPE_CHECKING:
         def watching(self, request: dict[str, Any]) -> AbstractAsyncContextManager[asyncio.StreamReader]:
             """What happens (btlang.task.feed), a line of JSON each."""
 
+    class ReachElsewhere(Reach, Protocol):
+        """A way to a robot of another computer."""
+
+        async def read(self, message: dict[str, Any]) -> Any:
+            """What the program beside the robot says of its recordings: see `btlang.server.dialer`."""
+
 
 LONGEST = 32_000_000
 """Bytes of a line from a robot."""

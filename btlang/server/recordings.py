@@ -1,25 +1,24 @@
-"""The recordings of a robot on this computer: listed, sent, and as films for pages."""
+"""The files of recordings in the folder of a robot."""
 
 from __future__ import annotations
 
-import json
 import os
 import re
 from contextlib import suppress
 
-from btlang.diagnostics.errors import MissionError
-from btlang.recording.film import Film
-from btlang.recording.open import opened
 from btlang.recording.reader import read_about
 from btlang.server.access import AccessError
-from btlang.server.utf16 import in_units
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
-_NAME = re.compile(r"[\w-]+(\.\d+)?\.mcap", re.ASCII)
-_MOST = 200  # in a list, the newest
+NAME = re.compile(r"[\w-]+(\.\d+)?\.mcap", re.ASCII)
+"""The names that recordings may have."""
+MOST = 200
+"""In a list, the newest."""
+PIECE = 49_152
+"""Bytes that are read at once."""
 
 
 def listed(folder: str) -> list[dict[str, Any]]:
@@ -27,11 +26,11 @@ def listed(folder: str) -> list[dict[str, Any]]:
     found: list[tuple[float, str, int]] = []
     with suppress(OSError):
         for entry in os.scandir(_checked(folder)):
-            if _NAME.fullmatch(entry.name):
+            if NAME.fullmatch(entry.name):
                 status = entry.stat()
                 found.append((status.st_mtime, entry.name, status.st_size))
     recordings = []
-    for time, name, size in sorted(found, reverse=True)[:_MOST]:
+    for time, name, size in sorted(found, reverse=True)[:MOST]:
         about = read_about(os.path.join(folder, name))
         task = int(about["task"]) if about.get("task", "").isdigit() else 0
         recordings.append(
@@ -43,19 +42,21 @@ def listed(folder: str) -> list[dict[str, Any]]:
 def path_of(folder: str, name: str) -> str:
     """The file of one. Raises AccessError (404)."""
     path = os.path.join(_checked(folder), name)
-    if not _NAME.fullmatch(name) or not os.path.isfile(path):
+    if not NAME.fullmatch(name) or not os.path.isfile(path):
         raise AccessError(404, "There's no such recording.")
     return path
 
 
-def film(path: str) -> bytes:
-    """See btlang.recording.film.Film.data, as JSON; runs nothing."""
+def piece(folder: str, name: str, at: int) -> tuple[int, bytes]:
+    """The bytes of one, and at most PIECE of them from a place on. Raises AccessError (404)."""
+    path = path_of(folder, name)
     try:
-        with opened(path, ()) as (recording, mission, nodes):
-            data = Film(mission, dict(recording.about)).take(recording.events(nodes)).data()
-    except MissionError as error:
-        return json.dumps({"ok": False, "text": str(error), "code": error.diagnostics[0].code}).encode()
-    return json.dumps({"ok": True, **in_units(data, data["text"])}, default=str).encode()
+        with open(path, "rb") as file:
+            size = os.fstat(file.fileno()).st_size
+            file.seek(at)
+            return size, file.read(PIECE)
+    except (OSError, ValueError, OverflowError):
+        raise AccessError(404, "There's no such recording.") from None
 
 
 def _checked(folder: str) -> str:

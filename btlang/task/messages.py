@@ -155,9 +155,9 @@ class Schedules(Command):
 
 
 class Put(Command):
-    """Keeps a text in the library under a name, which is unique in its `kind`: "mission", "world" or "robot". Every
-    earlier revision stays. With the `revision` that the text was made from, 0 for a new one, it is refused if there is
-    another one by now: the answer has the `diff` to that.
+    """Keeps a text in the library under a name, which is unique in its `kind`: "mission", "world", "robot", or "test"
+    for the tests of the mission with this name. Every earlier revision stays. With the `revision` that the text was
+    made from, 0 for a new one, it is refused if there is another one by now: the answer has the `diff` to that.
     """
 
     tag = "put"

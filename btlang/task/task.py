@@ -171,11 +171,14 @@ class Schedule(Record):
 
 
 class Kind(StrEnum):
-    """What a text of the library is: a mission, a world file or a robot file. Each kind has names of its own."""
+    """What a text of the library is: a mission, a world file, a robot file, or the tests of a mission, which have its
+    name. Each kind has names of its own.
+    """
 
     MISSION = "mission"
     WORLD = "world"
     ROBOT = "robot"
+    TEST = "test"
 
 
 class Revision(Record):

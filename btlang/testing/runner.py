@@ -20,6 +20,7 @@ from btlang.testing.fakes import Fakes, faked
 from btlang.testing.observations import Observations
 from btlang.testing.script import Broken, Script
 from btlang.testing.test import MissionTest
+from btlang.text.source import Span
 from btlang.vocabulary.lexicon import Lexicon
 
 TYPE_CHECKING = False
@@ -33,7 +34,8 @@ class Result(Record):
     """How a test ended: `problem` is "" where it passed, else what did not hold; `place` is its file:line.
 
     `seconds` are those of the mission; with `is_cut` the test took too long. `seen` are the statuses that each node of
-    the mission had; see btlang.testing.coverage. `troubles` are what chaos made of the world.
+    the mission had; see btlang.testing.coverage. `troubles` are what chaos made of the world. `line` is what did not
+    hold, `at` what the mission was doing then, or what of it failed.
     """
 
     name: str
@@ -44,6 +46,8 @@ class Result(Record):
     is_cut: bool = False
     seen: tuple[int, ...] = ()
     troubles: tuple[str, ...] = ()
+    line: Span | None = None
+    at: Span | None = None
 
     @property
     def passed(self) -> bool:
@@ -65,10 +69,18 @@ class _TestSimulation(Simulation):
         return faked(entry.id, vocabulary, self._fakes, self.bus.clock)
 
 
-def run_test(test: MissionTest, seed: int = 0, mission: Mission | None = None, sinks: Iterable[Sink] = ()) -> Result:
-    """Runs the mission of a test, or another one in its place. Raises MissionError where it can't run at all."""
-    mission = test.mission if mission is None else mission
-    observed, controls, values, fakes = Observations(_commands(test)), Controls(), Blackboard(), Fakes(test.fakes)
+def run_test(
+    test: MissionTest,
+    seed: int = 0,
+    mission: Mission | None = None,
+    sinks: Iterable[Sink] = (),
+    controls: Controls | None = None,
+) -> Result:
+    """Runs the mission of a test, or another one in its place; `controls` may end it. Raises MissionError where it
+    can't run at all.
+    """
+    mission, controls = mission or test.mission, controls or Controls()
+    observed, values, fakes = Observations(_commands(test)), Blackboard(), Fakes(test.fakes)
     outcome: Outcome | None = None
     with Session(lambda world: _TestSimulation(world, fakes), world=mission.world) as session:
         run = session.prepare(
@@ -87,7 +99,9 @@ def run_test(test: MissionTest, seed: int = 0, mission: Mission | None = None, s
             script.end(seconds)
     result = partial(Result, test.name, test.place, seed, seconds, seen=statuses_seen(mission.tree, observed))
     if script.broken is not None:
-        return result(_told(script.broken, mission, outcome))
+        return result(
+            _told(script.broken, mission, outcome), line=script.broken.step.span, at=_at(script.broken, outcome)
+        )
     if is_cut:
         return result(f"cut after {brief_time(test.limit)}: the mission was not over", is_cut=True)
     return result()
@@ -137,6 +151,12 @@ def _told(broken: Broken, mission: Mission, outcome: Outcome | None) -> str:
         failed = outcome.failure
         lines.append(f"  the mission failed: {mission.label(failed.node)}: {failed.reason}")
     return "\n".join(lines)
+
+
+def _at(broken: Broken, outcome: Outcome | None) -> Span | None:
+    if outcome is not None and outcome.failure is not None:
+        return outcome.failure.span
+    return next((node.span for node in broken.doing if node.span is not None), None)
 
 
 def brief_time(seconds: float) -> str:

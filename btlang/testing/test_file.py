@@ -28,19 +28,28 @@ from btlang.text.words import Line, Words, split
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.load import load_vocabulary
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Callable
+    from typing import TypeAlias
+
+    Given: TypeAlias = Callable[[str, str | None], Mission | None]
+
 WORDS = os.path.join(os.path.dirname(__file__), "words.toml")
 """The keyword file with the words that only tests have."""
 
 
-def read_tests(source: Source) -> tuple[MissionTest, ...]:
-    """The tests of a file, with their missions. Raises MissionError with all that is wrong with them."""
+def read_tests(source: Source, given: Given = lambda name, world: None) -> tuple[MissionTest, ...]:
+    """The tests of a file, with their missions. `given` has missions that aren't read from files: by the name that
+    follows `run`, and the path of the world that the test names, if it does. Raises MissionError with what is wrong.
+    """
     vocabulary = load_vocabulary([WORDS])
     text = split(source, vocabulary.orthography)
     problems = [diagnostic("BT004", span) for span in text.open_quotes]
     found: list[MissionTest] = []
     for block in _blocks(text, problems):
         try:
-            found.append(_Reader(text, block, vocabulary).test())
+            found.append(_Reader(text, block, vocabulary, given).test())
         except MissionError as error:
             problems += error.diagnostics
     if not found and not problems:
@@ -90,8 +99,8 @@ def _told(code: str, span: Span, reason: str, example: str) -> Diagnostic:
 class _Reader:
     """Reads one test: first its mission, whose words its other lines use."""
 
-    def __init__(self, text: Words, block: _Block, vocabulary: Lexicon) -> None:
-        self._text, self._block, self._source = text, block, text.source
+    def __init__(self, text: Words, block: _Block, vocabulary: Lexicon, given: Given) -> None:
+        self._text, self._block, self._source, self._given = text, block, text.source, given
         self._problems: list[Diagnostic] = []
         self._statements = list(statements_of(text, block.lines, vocabulary, self._problems))
 
@@ -130,6 +139,9 @@ class _Reader:
     def _mission(self, run: Statement) -> Mission:
         world = next((self._path(one.file) for one in self._statements if one.kind == "world"), None)
         if run.file is not None:
+            mission = self._given(_named(run.file), world)
+            if mission is not None:
+                return mission
             return parse_tree(read_source(self._path(run.file), _root(self._source)), world=world)
         if run.block is None:
             raise MissionError([_told("BT181", run.span, "it runs no mission", 'run "patrol.txt"')])
@@ -138,12 +150,16 @@ class _Reader:
     def _path(self, named: Span | None) -> str:
         """Where a file lies that the test names. Raises MissionError where that is no folder of the user's."""
         assert named is not None
-        path, real = included_path(named.text.strip("\"'“”„’‘"), self._source)  # noqa: RUF001
-        if not any(is_below(real, root) for root in (*self._source.roots, "")):
+        path, real = included_path(_named(named), self._source)
+        if not self._source.roots or not any(is_below(real, root) for root in (*self._source.roots, "")):
             raise MissionError([diagnostic("BT001", named, file=path, reason=OUTSIDE)])
         if not os.path.isfile(real):
             raise MissionError([diagnostic("BT001", named, file=path, reason="there is no such file")])
         return path
+
+
+def _named(file: Span) -> str:
+    return file.text.strip("\"'“”„’‘")  # noqa: RUF001
 
 
 def _root(source: Source) -> str | None:

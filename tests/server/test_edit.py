@@ -95,7 +95,10 @@ def test_the_file_is_read_saved_and_shown_with_what_it_includes(edited: Any, fol
     me = edited.ask("GET", "/api/me", **edited.page).data
     assert (me["user"], me["role"]) == ("you", "administrator")
     listed = edited.ask("GET", "/api/files", **edited.page).data["data"]["files"]
-    assert listed == [{"name": "tour.txt", "saves": True}, {"name": "tea.txt", "saves": False}]
+    assert listed == [
+        {"name": "tour.txt", "saves": True}, {"name": "tea.txt", "saves": False},
+        {"name": "tour.test.txt", "saves": True},
+    ]  # fmt: skip
     assert opened(edited, "tea.txt")["text"] == "pour tea is say tea\n"
     now = opened(edited)
     assert now["text"] == MISSION
@@ -207,7 +210,7 @@ def test_no_other_file_is_reached(edited: Any, folder: Path) -> None:
         assert save(edited, "nod\n", "", name).status in (403, 404, 307), name
     assert save(edited, "nod\n", opened(edited, "tea.txt")["revision"], "tea.txt").status == 403
     (folder / "tour.txt").write_text(f'include "{folder}/../../../etc/passwd"\nwave\n')
-    assert len(edited.ask("GET", "/api/files", **edited.page).data["data"]["files"]) == 1
+    assert len(edited.ask("GET", "/api/files", **edited.page).data["data"]["files"]) == 2
 
 
 @pytest.mark.parametrize(
@@ -385,3 +388,28 @@ def test_without_the_page_it_says_how_to_get_it(
     assert "pip install" in capsys.readouterr().err
     with pytest.raises(SystemExit):
         main(["edit", "-"])
+
+
+def test_the_tests_beside_it_are_saved_and_run(edited: Any, folder: Path) -> None:
+    write(folder)
+    ending = "\n  finally the mission succeeds\n"
+    tests = f'test "it waves":\n  run "tour.txt"{ending}test "other":\n  run "nod.txt"{ending}'
+    (folder / "nod.txt").write_text("nod\n")
+    assert opened(edited, "tour.test.txt") == {"text": "", "revision": ""}
+    assert save(edited, tests, "", "tour.test.txt").data["ok"]
+    assert (folder / "tour.test.txt").read_text() == tests
+    assert save(edited, "nod", "", "tour.test.txt").status == 409
+    assert save(edited, "nod", "", "other.test.txt").status == 403
+
+    def run(text: str) -> Any:
+        asked = {"text": text, "tests": tests, "called": "tour.txt"}
+        return edited.ask("POST", "/api/test", asked, **edited.page).data
+
+    assert [each["passed"] for each in run("wave")["results"]] == [True, True]
+    failed = run("wave then fail")["results"][0]
+    assert (failed["passed"], failed["at"]) == (False, 3)
+    assert "wave then fail"[failed["start"] : failed["end"]] == "fail"
+    (folder / "nod.txt").write_text("nod\nfail\n")
+    other = run("wave")["results"][1]
+    assert (other["passed"], other["start"], other["film"]["text"]) == (False, None, "")
+    assert run("wavee")["messages"][0]["code"] == "BT010"

@@ -12,6 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from btlang.api import parse_tree
 from btlang.editing.words import Words
 from btlang.server import checking
 from btlang.server.access import AccessError
@@ -177,3 +178,10 @@ def test_any_text_has_an_answer_in_time(door: Door, kind: str) -> None:
         assert reply.status in (200, 422), (text[:10], reply.body)
     assert door.ask("POST", f"/api/{kind}", {"text": "x" * 200_001, **further}, **vic).status == 413
     assert door.ask("POST", f"/api/{kind}", {"text": TEXT, **further}, **vic).data["ok"]
+
+
+def test_a_mission_as_xml() -> None:
+    made = answer("xml", TEXT, Words())
+    assert made["ok"]
+    assert made["xml"] == parse_tree(TEXT).to("xml")
+    assert answer("xml", "wavee", Words())["messages"][0]["code"] == "BT010"

@@ -109,7 +109,8 @@ def test_worlds_and_robot_files(robot: TaskLayer, btc: Btc, tmp_path: Path) -> N
     assert btc("task", "library", "--kind", "world") == (0, "The library has no worlds.\n")
     assert "The world 'q' isn't in the library" in btc("task", "delete", "q", "--kind", "world")[1]
     assert (
-        "'kind' must be one of 'mission', 'world', 'robot', not 'pack'" in btc("task", "library", "--kind", "pack")[1]
+        "'kind' must be one of 'mission', 'world', 'robot', 'test', not 'pack'"
+        in btc("task", "library", "--kind", "pack")[1]
     )
     assert "--kind doesn't apply to it" in btc("task", "list", "--kind", "world")[1]
     garden.write_bytes(b"\xff\xfe")

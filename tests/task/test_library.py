@@ -29,7 +29,8 @@ from .layers import ask, layer_in, refusal
 HERE = Path(__file__).parent
 GARDEN = 'start = { x = 1, y = 1 }\nplaces = [{ name = "shed", x = 1, y = 2 }]\n'
 CART = 'name = "cart"\nradius = 0.25\n'
-TEXTS = {Kind.MISSION: "wave", Kind.WORLD: GARDEN, Kind.ROBOT: CART}
+TESTS = 'test "it waves":\n  run "first"\n  finally the mission succeeds\n'
+TEXTS = {Kind.MISSION: "wave", Kind.WORLD: GARDEN, Kind.ROBOT: CART, Kind.TEST: TESTS}
 
 
 @pytest.fixture(scope="module")

@@ -74,3 +74,10 @@ export async function replace(page, text) {
 export async function written(page) {
   return page.$$eval(".text .cm-line", (lines) => lines.map((line) => line.textContent).join("\n"));
 }
+
+/** A file of the menu of downloads: its name and content. */
+export async function downloaded(page, name) {
+  await page.click("button[aria-haspopup=menu]:has-text('Download')");
+  const [download] = await Promise.all([page.waitForEvent("download"), page.click(`[role=menuitem]:has-text('(${name})')`)]);
+  return [download.suggestedFilename(), readFileSync(await download.path())];
+}

@@ -1,6 +1,6 @@
 // Every screen, with the mouse and with the keyboard, in two languages and both themes. Pictures go into a folder.
 import assert from "node:assert/strict";
-import { accessible, fits, logIn, submit, visit } from "./browser.mjs";
+import { accessible, downloaded, fits, logIn, replace, submit, visit } from "./browser.mjs";
 
 const [base, password, pictures] = process.argv.slice(2);
 const NARROW = { width: 360, height: 740 };
@@ -33,6 +33,7 @@ await visit(base, async (page) => {
 
   // Why a mission failed, with its words.
   await page.click(".robots a");
+  await submit(page, "wave");
   await submit(page, "# It can't work.\nwave\nsay hello then fail");
   await until("say hello then fail", ".failure mark");
   await look("failure");
@@ -100,10 +101,26 @@ await visit(base, async (page) => {
   await page.click(".tabs a[href$='/write']");
   await page.waitForSelector(".page ul");
   await page.goBack();
+  await page.getByRole("link", { name: "Compare …" }).first().click();
+  await until("Choose the run to compare it with.");
+  await look("compare_choose");
+  await page.getByRole("link", { name: "Compare with this" }).first().click();
+  await until("The missions aren't the same", ".summary");
+  await look("compare");
+  await page.click(".tabs a[href$='/runs']");
   await page.locator("li", { hasText: "It can't work." }).getByRole("link", { name: "Replay" }).click();
   await page.waitForSelector(".film .outcome.bad");
   assert.equal(await page.textContent(".film-text mark"), "fail");
   await look("film");
+  for (const [kind, ending, begins] of [["MCAP", "mcap", "\x89MCAP0"], ["XML of BehaviorTree.CPP", "xml", "<?xml"], ["English", "txt", "# It can't"], ["SVG", "svg", "<svg"], ["PNG", "png", "\x89PNG"]]) {
+    const [name, content] = await downloaded(page, kind);
+    assert.match(name, new RegExp(`^It-can-t-work-\\d{4}-\\d\\d-\\d\\d-\\d{6}\\.${ending}$`));
+    assert.equal(content.toString("latin1", 0, begins.length), begins);
+    if (ending === "svg") {
+      assert.match(content.toString(), /data-status="FAILURE"/);
+      assert.doesNotMatch(content.toString(), /var\(|href|url\(/);
+    }
+  }
   await page.click(".tabs a[href$='/write']");
   await page.evaluate(() => (location.hash = "#/write/tour"));
   await page.waitForSelector(".cm-content[contenteditable=true]");
@@ -111,6 +128,40 @@ await visit(base, async (page) => {
   await page.keyboard.insertText("wave then ndo");
   await until("ndo", ".messages");
   await look("write");
+  await replace(page, 'say "<script>alert(1)</script>\u202e" then wave');
+  await page.waitForSelector(".messages .fine");
+  const [name, picture] = await downloaded(page, "SVG");
+  assert.match(name, /^tour-.*\.svg$/);
+  assert.match(picture.toString(), /&lt;script&gt;/);
+  assert.match((await downloaded(page, "XML of BehaviorTree.CPP"))[1].toString(), /<Wave\/>/);
+
+  // Tests of the mission: one passes, one fails, and one isn't understood.
+  await replace(page, "wave\ncheck that the battery is low");
+  await page.waitForSelector(".messages .fine");
+  await page.getByRole("button", { name: "Tests", exact: true }).click();
+  await until('run "tour"', ".tests .cm-content");
+  const tests = async (text) => {
+    await page.click(".tests .cm-content");
+    await page.keyboard.press("Control+A");
+    await page.keyboard.insertText(text);
+    await page.keyboard.press("Control+Enter");
+  };
+  await tests('test "it waves":\n  run "tour"\n  within 5 s it has done "wave"\n\ntest "it works":\n  run "tour"\n  finally the mission succeeds\n');
+  await until("1 of 2 passed", ".results");
+  await page.getByRole("button", { name: "Show its words" }).click();
+  await until("battery is low", ".desk .said");
+  await look("tests");
+  await page.getByRole("button", { name: "Replay" }).click();
+  await page.waitForSelector(".dialog .film .outcome.bad");
+  await page.keyboard.press("Escape");
+  await page.getByRole("button", { name: "Save the tests" }).click();
+  await until("Saved", ".tests .state");
+  await page.reload();
+  await page.getByRole("button", { name: "Go on with it" }).click();
+  await page.getByRole("button", { name: "Tests", exact: true }).click();
+  await until("it waves", ".tests .cm-content");
+  await tests('test "<script>":\n  run "tour"\n  frobnicate');
+  await until("BT010", ".results");
 
   // Another language, and somebody who leaves.
   await page.click(".user");

@@ -84,7 +84,7 @@ export class Shell {
   private async route(): Promise<void> {
     const [first = "robots", ...rest] = location.hash.slice(2).split("/").filter(Boolean).map(decoded);
     if (first === "robots") this.robot = rest.shift() ?? "";
-    else this.robot ||= sessionStorage.getItem(LATEST) ?? [...this.fleet.robots.keys()][0] ?? "";
+    else this.robot ||= sessionStorage.getItem(LATEST) || ([...this.fleet.robots.keys()][0] ?? "");
     sessionStorage.setItem(LATEST, this.robot);
     const tab: Tab | null = first === "write" || first === "runs" ? first : !this.robot ? null : rest[0] === "tasks" ? "tasks" : "watch";
     document.body.classList.toggle("file", first === "write" && rest[0] === "file"); // of `btc edit`, which has no robots

@@ -1,10 +1,13 @@
-// What the robots did: the tasks that are over, newest first, and the films of those that were recorded.
+// What the robots did: the tasks that are over, newest first, the films of those that were recorded, and two side by side.
 import { request } from "../api";
 import { fill, h } from "../dom";
+import { downloads, pictures, plain, type Offer } from "../download";
 import { called, command, type Task } from "../tasks/queue";
 import { moment, t, type Key } from "../texts";
 import { address, type Context, type View } from "../view";
-import { Player, type Film } from "./player";
+import { Comparison, titleOf, type Compared } from "./compare";
+import { Player } from "./player";
+import type { Film } from "./scene";
 
 interface Recording {
   name: string;
@@ -14,47 +17,99 @@ interface Recording {
 
 const OVER = ["completed", "failed", "canceled", "killed", "error", "skipped"];
 const BAD = ["failed", "killed", "error"];
+const WITH = "with";
 
-/** See `View`. #/runs lists, #/runs/ROBOT/NAME plays a recording, #/runs/ROBOT/NAME/12.5 from that moment on. */
+/** See `View`. #/runs lists; #/runs/ROBOT/NAME plays a recording, #/runs/ROBOT/NAME/12.5 from that moment on;
+ * #/runs/ROBOT/NAME/with lists those to compare it with, #/runs/ROBOT/NAME/with/OTHER/12.5 compares. */
 export function openLookBack(context: Context): View {
-  const [robot, name, moment] = context.path;
-  return robot && name ? openFilm(robot, name, Number(moment) || 0) : openList(context);
+  const [robot, name, third, other, moment] = context.path;
+  if (!robot || !name) return openList(context, "");
+  if (third !== WITH) return openFilm(robot, name, Number(third) || 0);
+  return other ? openComparison(robot, name, other, moment === undefined ? null : Number(moment) || 0) : openList({ ...context, robot }, name);
 }
 
-function openFilm(robot: string, name: string, at: number): View {
+const query = (robot: string): string => `robot=${encodeURIComponent(robot)}`;
+const share = (): HTMLElement => h("button", { type: "button", onclick: () => void navigator.clipboard.writeText(location.href) }, t("runs.share"));
+
+/** A screen of what the server answers, which `make` shows. */
+function openAnswer<T>(path: string, make: (answer: T) => { title: HTMLElement; element: HTMLElement; close: () => void }): View {
   const element = h("section", { class: "page film-page" }, h("p", { class: "empty" }, t("film.loading")));
-  const query = `?robot=${encodeURIComponent(robot)}`;
-  let player: Player | null = null;
+  let close = (): void => undefined;
   let closed = false;
-  void request("GET", `/api/films/${encodeURIComponent(name)}${query}`).then(
-    (film: Film & { ok: boolean; text: string }) => {
+  void request("GET", path).then(
+    (answer: T & { ok: boolean; text: string }) => {
       if (closed) return;
-      if (!film.ok) return fill(element, h("p", { class: "problem", lang: "en" }, film.text));
-      player = new Player(film, at, (seconds) => history.replaceState(null, "", address("runs", robot, name, seconds.toFixed(1))));
-      const download = h("a", { href: `/api/recordings/${encodeURIComponent(name)}${query}`, download: name }, t("runs.download"));
-      const share = h("button", { type: "button", onclick: () => void navigator.clipboard.writeText(location.href) }, t("runs.share"));
-      fill(element, h("div", { class: "title" }, h("h1", { dir: "auto" }, name), h("div", { class: "controls" }, share, download)), player.element);
+      if (!answer.ok) return fill(element, h("p", { class: "problem", lang: "en" }, answer.text));
+      const made = make(answer);
+      close = made.close;
+      fill(element, made.title, made.element);
     },
     (error: Error) => fill(element, h("p", { class: "problem", role: "alert", lang: "en" }, error.message)),
   );
-  return { element, close: () => { closed = true; player?.close(); } };
+  return { element, close: () => { closed = true; close(); } };
 }
 
-function openList(context: Context): View {
+function openFilm(robot: string, name: string, at: number): View {
+  return openAnswer(`/api/films/${encodeURIComponent(name)}?${query(robot)}`, (film: Film) => {
+    const player = new Player(film, at, (seconds) => history.replaceState(null, "", address("runs", robot, name, seconds.toFixed(1))));
+    const of = `/${encodeURIComponent(name)}?${query(robot)}`;
+    const xml = async (): Promise<Blob> => {
+      const answer = await request("GET", `/api/trees${of}`);
+      if (!answer.ok) throw new Error(answer.text);
+      return plain(answer.xml);
+    };
+    const problem = h("p", { class: "problem", role: "alert", lang: "en" });
+    const offers = (): Offer[] => [
+      { key: "download.mcap", ending: "mcap", content: async () => `/api/recordings${of}` },
+      { key: "download.xml", ending: "xml", content: xml },
+      ...(film.text ? [{ key: "download.english", ending: "txt", content: async () => plain(film.text) } as const] : []),
+      ...pictures(player.scene.tree),
+    ];
+    const began = Number(film.about["wall"]) || 0;
+    const download = downloads(() => [titleOf(film.text), began], offers, (text) => fill(problem, text));
+    const compare = h("a", { class: "button", href: address("runs", robot, name, WITH) }, t("compare.with"));
+    const title = h("div", { class: "title" }, h("h1", { dir: "auto" }, titleOf(film.text)), h("div", { class: "controls" }, compare, share(), download), problem);
+    return { title, element: player.element, close: () => player.close() };
+  });
+}
+
+function openComparison(robot: string, name: string, other: string, at: number | null): View {
+  return openAnswer(`/api/comparisons/${encodeURIComponent(name)}?${query(robot)}&with=${encodeURIComponent(other)}`, (compared: Compared) => {
+    const moved = (seconds: number): void => history.replaceState(null, "", address("runs", robot, name, WITH, other, seconds.toFixed(1)));
+    const comparison = new Comparison(compared, at, moved);
+    const another = h("a", { class: "button", href: address("runs", robot, name, WITH) }, t("compare.another"));
+    const title = h("div", { class: "title" }, h("h1", {}, t("compare.title")), h("div", { class: "controls" }, another, share()));
+    return { title, element: comparison.element, close: () => comparison.close() };
+  });
+}
+
+/** `chosen` is the recording that is compared with another one, "" for none. */
+function openList(context: Context, chosen: string): View {
   const list = h("ol", { class: "tasks" });
   const problem = h("p", { class: "problem", role: "alert" });
   const again = async (task: Task): Promise<void> => {
     fill(problem);
     await command(context, "again", { task: task.id }).catch((error: Error) => fill(problem, error.message));
   };
+  const acts = (task: Task, name: string | undefined): (HTMLElement | false)[] => {
+    const link = (key: Key, ...path: string[]): HTMLElement => h("a", { class: "button", href: address("runs", context.robot, ...path) }, t(key));
+    const [first, second] = [chosen, name ?? ""].sort() as [string, string]; // names begin with the time
+    if (chosen) return name === chosen ? [h("span", { class: "pill good" }, t("compare.chosen"))] : [name !== undefined && link("compare.with_this", first, WITH, second)];
+    const mayGiveWork = context.me.role !== "viewer";
+    return [
+      name !== undefined && link("runs.replay", name),
+      name !== undefined && link("compare.with", name, WITH),
+      mayGiveWork && h("button", { type: "button", onclick: () => void again(task) }, t("runs.again")),
+    ];
+  };
   const show = async (): Promise<void> => {
-    const query = `?robot=${encodeURIComponent(context.robot)}`;
-    const { recordings } = await request("GET", `/api/recordings${query}`).catch(() => ({ recordings: [] }));
+    const { recordings } = await request("GET", `/api/recordings?${query(context.robot)}`).catch(() => ({ recordings: [] }));
     const recorded = new Map((recordings as Recording[]).map((each) => [each.task, each.name]));
     const tasks = ((await command(context, "list", { states: OVER }).catch(() => ({}) as Record<string, any>))["tasks"] ?? []) as Task[];
+    const shown = tasks.filter((task) => !chosen || recorded.has(task.id));
     fill(
       list,
-      ...tasks.map((task) =>
+      ...shown.map((task) =>
         h(
           "li",
           { class: "card" },
@@ -62,20 +117,17 @@ function openList(context: Context): View {
           h("span", { class: "what", dir: "auto" }, called(task)),
           h("span", { class: `pill ${BAD.includes(task.state) ? "bad" : task.state === "completed" ? "good" : "quiet"}` }, t(`state.${task.state}` as Key)),
           h("span", { class: "why", lang: "en", dir: "auto" }, [task.ended && moment(task.ended), task.person, task.reason].filter(Boolean).join(" · ")),
-          h(
-            "span",
-            { class: "acts" },
-            recorded.has(task.id) && h("a", { class: "button", href: address("runs", context.robot, recorded.get(task.id)!) }, t("runs.replay")),
-            context.me.role !== "viewer" && h("button", { type: "button", onclick: () => void again(task) }, t("runs.again")),
-          ),
+          h("span", { class: "acts" }, ...acts(task, recorded.get(task.id))),
         ),
       ),
     );
-    if (!tasks.length) fill(list, h("li", { class: "empty" }, t("runs.none")));
+    if (!shown.length) fill(list, h("li", { class: "empty" }, t("runs.none")));
+    else if (chosen && shown.length === 1) list.append(h("li", { class: "empty" }, t("compare.none")));
   };
   void show();
   const unwatch = context.fleet.watch((robot, kind, news) => {
     if ((kind === "change" && OVER.includes(news!["state"])) || (kind === "up" && (!context.robot || robot.name === context.robot))) void show();
   });
-  return { element: h("section", { class: "page" }, h("h1", {}, t("tab.runs")), problem, list), close: unwatch };
+  const choosing = chosen && h("p", { class: "choosing" }, h("span", {}, t("compare.choose")), h("a", { href: address("runs", context.robot, chosen) }, t("cancel")));
+  return { element: h("section", { class: "page" }, h("h1", {}, t("tab.runs")), choosing || null, problem, list), close: unwatch };
 }

@@ -71,12 +71,13 @@ export class Drawing {
     }
     return s(
       "g",
-      { class: "node", id: name, transform: `translate(${item.x} ${item.y})`, role: "treeitem" },
+      { class: node.differs ? "node differs" : "node", id: name, transform: `translate(${item.x} ${item.y})`, role: "treeitem" },
       s("title", {}, whole(node)),
       s("rect", { width: item.width, height: item.height, rx: 7 }),
       s("path", { class: "status", transform: `translate(16 ${middle})` }),
       ...texts.flatMap(({ text, kind }, line) => [s("text", { class: kind, x: GLYPH, y: TOP + LINE * line + 12 }, text), " "]), // spaces part words for screen readers
       folded !== null && sign,
+      node.differs && s("g", { class: "unlike", "aria-hidden": "true", transform: `translate(${item.width - 4} 2)` }, s("circle", { r: 9 }), s("text", { y: 4 }, "≠")),
     );
   }
 
@@ -101,7 +102,7 @@ export function showStatus(element: SVGGElement, status: Status, node: TreeNode)
   element.querySelector(".status")?.setAttribute("d", SHAPES[status]);
   const shown = element.querySelector(".words")?.textContent ?? "";
   const name = shown.endsWith("…") ? `${shown} ${whole(node)}` : whole(node); // a name begins with what is seen of it
-  set(element, { "aria-label": `${name}, ${t(`status.${status}`)}` });
+  set(element, { "aria-label": `${name}, ${t(`status.${status}`)}${node.differs ? `, ${t("compare.differs")}` : ""}` });
 }
 
 /** With all that is cut in the drawing, and what is only shown on demand. */

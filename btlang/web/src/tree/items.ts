@@ -9,6 +9,8 @@ export interface TreeNode {
   ports: [name: string, text: string][];
   tree?: string;
   edits?: string[];
+  /** It's marked, since it ended otherwise in another run. */
+  differs?: boolean;
 }
 
 /** A place where a node is shown. Below a subtree that opens in place, one node may be shown at several. */

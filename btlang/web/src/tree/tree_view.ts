@@ -7,6 +7,7 @@ import { Drawing, label, showStatus } from "./drawing";
 import { Items, type Item, type TreeNode } from "./items";
 import { TreeKeys } from "./keys";
 import { gap, lines, place, type Direction } from "./layout";
+import type { Shown } from "./picture";
 import { toolbar } from "./toolbar";
 
 export type { TreeNode } from "./items";
@@ -20,6 +21,7 @@ export interface TreeOptions {
 }
 
 const AROUND = 200; // pixels around what is in view that are drawn, too
+const FAMILY = "system-ui, sans-serif";
 const ZOOMS = { least: 0.2, most: 2 };
 let trees = 0;
 
@@ -37,7 +39,7 @@ export class TreeView {
   private drawn = new Map<Item, SVGGElement>();
   private changed = new Set<number>();
   private name = `tree${++trees}`;
-  private drawing = new Drawing("system-ui, sans-serif");
+  private drawing = new Drawing(FAMILY);
   private edges = s("path", { class: "edges", role: "none" });
   private layer = s("g", { role: "none" });
   private dropMark = s("path", { class: "drop", role: "none" });
@@ -220,6 +222,12 @@ export class TreeView {
     const { clientWidth, clientHeight } = this.scroll;
     this.zoomBy(Math.min(1.2, clientWidth / this.size.width, clientHeight / this.size.height) / this.zoom);
     this.scroll.scrollTo(0, 0);
+  }
+
+  /** For pictures. */
+  get shown(): Shown {
+    const { items, nodes, statuses, size, direction, drawing } = this;
+    return { items, nodes, statuses, size, direction, drawing, family: FAMILY };
   }
 
   close(): void {

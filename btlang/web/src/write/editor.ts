@@ -13,7 +13,7 @@ import type { Change, Message, Reader } from "./understood";
 
 /** `changed` is called after each change of the text, `moved` when the caret goes elsewhere. */
 export interface EditorOptions {
-  reader: Reader;
+  reader: Pick<Reader, "service">;
   readOnly: boolean;
   changed: (text: string) => void;
   moved: (at: number) => void;
@@ -66,7 +66,7 @@ export class Editor {
         extensions: [
           mayStyle(),
           EditorState.phrases.of(phrases()),
-          EditorView.contentAttributes.of({ "aria-label": label, lang: "en", dir: "auto", spellcheck: "false", autocapitalize: "off" }),
+          EditorView.contentAttributes.of({ "aria-label": label, tabindex: "0", lang: "en", dir: "auto", spellcheck: "false", autocapitalize: "off" }),
           EditorView.perLineTextDirection.of(true),
           this.readOnly.of(EditorState.readOnly.of(options.readOnly)),
           keymap.of([

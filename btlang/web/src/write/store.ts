@@ -35,7 +35,7 @@ export interface Store {
   save(text: string, revision: Kept["revision"]): Promise<Kept>;
 }
 
-/** A mission of the library. */
+/** A mission of the library, or the tests of one. */
 export class LibraryStore implements Store {
   readonly key: string;
   private query: string;
@@ -43,15 +43,16 @@ export class LibraryStore implements Store {
   constructor(
     readonly context: Context,
     readonly name: string,
+    private kind: "mission" | "test" = "mission",
   ) {
-    this.key = `mission:${context.robot}:${name}`;
+    this.key = `${kind}:${context.robot}:${name}`;
     this.query = context.robot ? `?robot=${encodeURIComponent(context.robot)}` : "";
   }
 
   /** From the list, since asking for one that isn't there is an error. */
   async load(): Promise<Kept> {
-    const { data } = await request("GET", `/api/missions${this.query}`);
-    const found = (data.missions as { name: string; text: string; number: number }[]).find(({ name }) => name === this.name);
+    const { data } = await request("GET", `/api/${this.kind}s${this.query}`);
+    const found = (data[`${this.kind}s`] as { name: string; text: string; number: number }[]).find(({ name }) => name === this.name);
     return found ? { text: found.text, revision: found.number } : { text: "", revision: 0 };
   }
 
@@ -62,14 +63,14 @@ export class LibraryStore implements Store {
   async save(text: string, revision: Kept["revision"]): Promise<Kept> {
     try {
       const { data } = await request("PUT", this.path, { text, revision });
-      return { text, revision: data.mission.number };
+      return { text, revision: data[this.kind].number };
     } catch (error) {
       throw stale(error);
     }
   }
 
   private get path(): string {
-    return `/api/missions/${encodeURIComponent(this.name)}${this.query}`;
+    return `/api/${this.kind}s/${encodeURIComponent(this.name)}${this.query}`;
   }
 }
 

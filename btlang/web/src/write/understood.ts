@@ -39,7 +39,7 @@ export interface SaidNode extends TreeNode {
 
 /** Who is told of a text: first what is wrong with it, then its tree if it compiles. */
 export interface Listener {
-  checked: (text: string, messages: Message[], compiles: boolean) => void;
+  checked: (text: string, messages: Message[], compiles: boolean, sort: string) => void;
   understood: (text: string, nodes: SaidNode[], outline: Named[]) => void;
   failed: (problem: string) => void;
 }
@@ -93,9 +93,9 @@ export class Reader {
       this.text = null;
       const isNewest = (): boolean => this.text === null && !this.ended;
       try {
-        const { ok, messages } = await post("/api/messages", this.asked(text));
+        const { ok, messages, sort } = await post("/api/messages", this.asked(text));
         if (!isNewest()) continue;
-        this.listener.checked(text, messages, ok);
+        this.listener.checked(text, messages, ok, sort);
         this.listener.failed("");
         const answer = ok && (await post("/api/document", this.asked(text)));
         if (answer.nodes && isNewest()) this.listener.understood(text, whole(answer), answer.outline);

@@ -1,6 +1,7 @@
 // Missions: a list of those in the library, and one as English and tree side by side.
 import { may, request, type RequestError } from "../api";
-import { fill, h } from "../dom";
+import { fill, h, set } from "../dom";
+import { downloads, pictures, plain, type Offer } from "../download";
 import { Player, type Film } from "../look_back/player";
 import { command } from "../tasks/queue";
 import { askSchedule } from "../tasks/schedule";
@@ -11,6 +12,7 @@ import { ask, show } from "./ask";
 import { Editor, smallest } from "./editor";
 import { merge } from "./merge";
 import { Draft, FileStore, LibraryStore, Stale, type Kept, type Store } from "./store";
+import { Tests } from "./tests";
 import { TreeEdits } from "./tree_edits";
 import { Reader, type Message, type Named, type SaidNode } from "./understood";
 
@@ -20,8 +22,8 @@ const AGAIN = 1000; // milliseconds until a mission is asked for again
 /** See `View`. #/write lists, #/write/NAME opens a mission of the library, #/write/file/NAME a file. */
 export function openWrite(context: Context): View {
   const [first, second] = context.path;
-  if (first === "file" && second) return new Desk(context, new FileStore(second)).view;
-  return first ? new Desk(context, new LibraryStore(context, first)).view : openList(context);
+  if (first === "file" && second) return new Desk(context, new FileStore(second), new FileStore(second.replace(/(\.txt)?$/, ".test.txt"))).view;
+  return first ? new Desk(context, new LibraryStore(context, first), new LibraryStore(context, first, "test")).view : openList(context);
 }
 
 function openList(context: Context): View {
@@ -63,10 +65,12 @@ class Desk {
   private reader: Reader;
   private editor: Editor;
   private edits: TreeEdits;
+  private tests: Tests;
   private draft: Draft;
   private kept: Kept = { text: "", revision: 0 };
   private nodes: SaidNode[] = [];
   private understood = "";
+  private sort = "english";
   private writing: ReturnType<typeof setTimeout> | undefined;
   private mayWrite: boolean;
   private closed = false;
@@ -79,12 +83,13 @@ class Desk {
   constructor(
     private context: Context,
     private store: Store,
+    tests: Store,
   ) {
     this.mayWrite = may(context.me, "editor");
     this.title = h("h1", { dir: "auto" }, store.name);
     this.draft = new Draft(store.key);
     this.reader = new Reader(context.robot, {
-      checked: (text, messages, compiles) => this.check(text, messages, compiles),
+      checked: (text, messages, compiles, sort) => this.check(text, messages, compiles, sort),
       understood: (text, nodes, outline) => this.understand(text, nodes, outline),
       failed: (problem) => this.fail(problem),
     });
@@ -102,6 +107,8 @@ class Desk {
       ],
     });
     this.edits = new TreeEdits(this.tree, this.editor, this.reader, (text) => this.fail(text), () => this.mayWrite);
+    const mission = { name: store.name, text: () => this.editor.text, show: (start: number, end: number) => this.showWords(start, end) };
+    this.tests = new Tests(tests, mission, this.reader, this.mayWrite);
     this.text.append(this.editor.view.dom);
     this.outline.addEventListener("change", () => this.editor.go(Number(this.outline.value)));
     addEventListener("beforeunload", this.leaving);
@@ -113,6 +120,7 @@ class Desk {
   private element(): HTMLElement {
     const edit = h("button", { type: "button", "aria-haspopup": "menu" }, t("write.edit"));
     edit.addEventListener("click", () => this.edits.menu(edit));
+    const testing = h("button", { type: "button", "aria-expanded": "false", onclick: () => set(testing, { "aria-expanded": String(this.tests.toggle()) }) }, t("tests"));
     const tools = h(
       "div",
       { class: "controls" },
@@ -120,10 +128,12 @@ class Desk {
       this.context.robot && h("button", { type: "button", title: "Ctrl+Enter", onclick: () => this.run() }, t("write.run")),
       this.store instanceof LibraryStore && may(this.context.me, "operator") && h("button", { type: "button", onclick: () => this.schedule() }, t("write.schedule")),
       h("button", { type: "button", title: "Alt+Enter", onclick: () => void this.attempt() }, t("write.try")),
+      testing,
       this.mayWrite && h("button", { type: "button", title: "Shift+Alt+F", onclick: () => void this.format() }, t("write.format")),
       this.mayWrite && h("button", { type: "button", title: "F2", onclick: () => this.rename() }, t("write.rename")),
       this.mayWrite && h("button", { type: "button", title: "Ctrl+Z", onclick: () => this.editor.undo() }, t("write.undo")),
       this.mayWrite && h("button", { type: "button", title: "Ctrl+Y", onclick: () => this.editor.redo() }, t("write.redo")),
+      downloads(() => [this.store.name.replace(/\.\w+$/, ""), Date.now() / 1000], () => this.offers(), (problem) => this.fail(problem)),
       this.outline,
     );
     const head = h("div", { class: "head" }, h("div", { class: "now" }, this.title, this.state), tools);
@@ -134,7 +144,7 @@ class Desk {
       this.tree.element,
     );
     const words = h("section", { class: "stage card" }, this.text, this.problem, this.messages);
-    return h("div", { class: "desk" }, head, this.company, this.origin, this.offered, h("div", { class: "panes" }, words, trunk));
+    return h("div", { class: "desk" }, head, this.company, this.origin, this.offered, h("div", { class: "panes" }, words, trunk), this.tests.element);
   }
 
   private close(): void {
@@ -144,6 +154,7 @@ class Desk {
     this.context.presence.write("", false);
     removeEventListener("beforeunload", this.leaving);
     this.reader.close();
+    this.tests.close();
     this.editor.close();
     this.tree.close();
   }
@@ -257,8 +268,9 @@ class Desk {
     this.tell();
   }
 
-  private check(text: string, messages: Message[], compiles: boolean): void {
+  private check(text: string, messages: Message[], compiles: boolean, sort: string): void {
     if (text !== this.editor.text) return;
+    this.sort = sort;
     this.editor.tell(messages);
     const items = messages.map((each) =>
       h("li", { class: each.severity }, h("button", { type: "button", onclick: () => this.editor.go(each.start) }, h("b", {}, each.code), ` ${each.message}`)),
@@ -295,6 +307,13 @@ class Desk {
     if (said && said.start !== null && said.end !== null && this.understood === this.editor.text) this.editor.show(said.start, said.end);
   }
 
+  /** Those of a test that failed: of the text as it was then, at least. */
+  private showWords(start: number, end: number): void {
+    const { length } = this.editor.text;
+    this.editor.show(Math.min(start, length), Math.min(end, length));
+    this.moved(Math.min(start, length));
+  }
+
   private entered(node: number): void {
     this.selected(node);
     this.editor.view.focus();
@@ -320,6 +339,17 @@ class Desk {
         return "";
       });
     });
+  }
+
+  /** What can be downloaded: the text as it is, and the tree that is shown. */
+  private offers(): Offer[] {
+    const xml = async (): Promise<Blob> => {
+      const answer = await this.reader.service("xml", this.editor.text, {});
+      if (!answer.ok) throw new Error(answer.messages?.[0]?.message ?? answer.text);
+      return plain(answer.xml);
+    };
+    const said: Offer = { key: "download.english", ending: "txt", content: async () => plain(this.editor.text) };
+    return [...(this.sort === "english" ? [said] : []), { key: "download.xml", ending: "xml", content: xml }, ...pictures(this.tree)];
   }
 
   /** Runs the mission in the simulated world, on the server. */

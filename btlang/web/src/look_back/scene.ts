@@ -1,0 +1,121 @@
+// A run at one moment: its tree, its map, its story, and the words of a node.
+import { fill, h, oncePerFrame } from "../dom";
+import { Robot, STATUSES, type Point, type Status, type WorldMap } from "../fleet";
+import { t } from "../texts";
+import { TreeView, type TreeNode } from "../tree/tree_view";
+import { MapView } from "../watch/map";
+import { clock } from "./timeline";
+
+/** See Film.data in btlang/recording/film.py. */
+export interface Film {
+  about: Record<string, string>;
+  text: string;
+  names: Status[];
+  nodes: (TreeNode & { start: number | null; end: number | null })[];
+  statuses: number[][];
+  robot: [t: number, x: number | null, y: number | null, heading: number | null, battery: number | null, left: string | null, right: string | null][];
+  story: [t: number, node: number, words: string][];
+  map: WorldMap;
+  why: string;
+  failed: number;
+  seconds: number;
+  is_cut: boolean;
+  stopped?: string;
+}
+
+export class Scene {
+  readonly tree: TreeView;
+  readonly place: HTMLElement;
+  readonly log: HTMLElement;
+  readonly words = h("pre", { class: "film-text", tabindex: 0, dir: "auto", lang: "en", "aria-label": t("write.text") });
+  /** How it ended, and why. */
+  readonly outcome: HTMLElement;
+  private robot = new Robot("film");
+  private map = new MapView(() => this.robot);
+  private story = h("ol", { class: "log story", lang: "en", tabindex: 0 });
+  private now = 0;
+  private taken = 0; // statuses that the tree shows
+  private draw = oncePerFrame(() => this.show());
+
+  /** `jump` is told what somebody chose in the story: a time, in seconds, and a node (-1: none). */
+  constructor(
+    readonly film: Film,
+    jump: (seconds: number, node: number) => void,
+    selected: (node: number) => void = () => undefined,
+  ) {
+    this.robot.map = film.map;
+    this.tree = new TreeView({ label: t("watch.tree"), select: (node) => { this.showWords(node); selected(node); } });
+    const items = film.story.map(([seconds, node, words]) =>
+      h("li", {}, h("time", {}, clock(seconds)), h("button", { type: "button", class: "plain", onclick: () => jump(seconds, node) }, words)),
+    );
+    fill(this.story, ...items);
+    this.place = h("div", { class: "card place" }, this.map.canvas);
+    this.log = h("div", { class: "card events" }, h("h2", {}, t("log")), this.story);
+    const words = [film.stopped && `${t("film.stopped")} ${film.stopped}.`, film.why, film.is_cut && t("film.cut")].filter(Boolean).join("\n");
+    this.outcome = h("p", { class: film.failed >= 0 || film.stopped ? "outcome bad" : "outcome", lang: "en", tabindex: 0 }, words);
+    this.tree.setNodes(film.nodes);
+    this.showWords(-1);
+  }
+
+  close(): void {
+    this.tree.close();
+    this.map.close();
+  }
+
+  /** Shows a moment, in seconds. */
+  seek(seconds: number): void {
+    this.now = Math.min(Math.max(seconds, 0), this.film.seconds);
+    this.draw();
+  }
+
+  select(node: number): void {
+    if (node < 0) return;
+    this.tree.select(node);
+    this.showWords(node);
+  }
+
+  /** When a node failed last. */
+  timeOf(node: number): number {
+    const failure = this.film.names.indexOf("FAILURE");
+    const found = this.film.statuses.findLast((row) => row.some((each, at) => at % 2 === 1 && each === node && row[at + 1] === failure));
+    return found?.[0] ?? this.film.seconds;
+  }
+
+  private show(): void {
+    const { film, now } = this;
+    if (this.taken && film.statuses[this.taken - 1]![0]! > now) {
+      this.taken = 0;
+      this.tree.setStatuses(film.nodes.map((_, index) => [index, STATUSES[0]] as const));
+    }
+    const changes = new Map<number, Status>();
+    while (this.taken < film.statuses.length && film.statuses[this.taken]![0]! <= now + 1e-6) {
+      const row = film.statuses[this.taken++]!;
+      for (let at = 1; at < row.length; at += 2) changes.set(row[at]!, film.names[row[at + 1]!]!);
+    }
+    this.tree.setStatuses(changes);
+    this.showRobot();
+    const current = film.story.findLastIndex(([seconds]) => seconds <= now + 1e-6);
+    [...this.story.children].forEach((item, index) => item.classList.toggle("now", index === current));
+  }
+
+  private showRobot(): void {
+    const { film, robot, now } = this;
+    const count = film.robot.findLastIndex((row) => row[0] <= now) + 1;
+    const latest = film.robot[count - 1];
+    robot.path = film.robot.slice(0, count).flatMap(([, x, y]): Point[] => (x === null || y === null ? [] : [[x, y]]));
+    if (latest) {
+      const [, x, y, heading, battery, left, right] = latest;
+      robot.state = { stopped: "", paused: false, hindrance: "", pose: x === null || y === null ? null : [x, y, heading ?? 0], battery, left, right };
+    }
+    this.map.redraw();
+  }
+
+  private showWords(node: number): void {
+    const { text, nodes } = this.film;
+    const said = nodes[node];
+    if (!said || said.start === null || said.end === null) return fill(this.words, text);
+    const mark = h("mark", {}, text.slice(said.start, said.end));
+    fill(this.words, text.slice(0, said.start), mark, text.slice(said.end));
+    mark.scrollIntoView({ block: "nearest" });
+  }
+}
