@@ -5,7 +5,7 @@ from __future__ import annotations
 import threading
 import time
 from collections import deque
-from collections.abc import Callable, Generator, Iterator
+from collections.abc import Callable, Generator, Iterator, Sequence
 from contextlib import suppress
 
 from btlang.api import Mission
@@ -24,6 +24,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+    from btlang.robots.geometry import Point
     from btlang.robots.world import World
     from btlang.run.events import Sink
 
@@ -31,7 +32,7 @@ RATES = 0.1, 100.0
 """The least and the most messages of one kind in a second."""
 _ALIVE = 5.0  # seconds after which a watcher of a robot on which nothing happens gets a word nevertheless
 _GATHERED, _GATHERED_AT_MOST = 0.2, 0.01  # of a period, and seconds: what comes so soon after other news goes with it
-_SCANS = 0.5  # seconds between two, and between two looks at the way that it follows
+_SCANS = 0.5  # seconds between two
 _MOST_EVENTS, _MOST_RUNS, _MOST_CHANGES = 1000, 16, 1000
 
 
@@ -65,6 +66,7 @@ class Feed:
         self._state: RobotState | None = None
         self._scan: list[float | None] = []
         self._scanned_from: list[float] | None = None
+        self._planned: Sequence[Point] = ()
         self._way: list[list[float]] = []
         self._next_scan = 0.0
         store.listeners.append(self.wake)
@@ -106,16 +108,21 @@ class Feed:
         """In the thread of the run."""
         if isinstance(event, PeriodPassed):
             self._state = event.state
+            if self._watchers:
+                self._take_way(asked(lambda: event.robot.way) or ())
             if self._watchers and event.wall >= self._next_scan:
                 self._next_scan = event.wall + _SCANS
                 self._scan, self._scanned_from = _scan(event), None if event.state is None else event.state.place
-                self._way = _way(event)
         elif isinstance(event, StatusesChanged):
             watched.changed = event.wall
         for watcher in tuple(self._watchers):
             if isinstance(event, LOGGED):
                 watcher.events.append((watched, event))
             watcher.news.set()
+
+    def _take_way(self, planned: Sequence[Point]) -> None:
+        if planned is not self._planned:  # a robot that follows the same one has the same
+            self._planned, self._way = planned, [[round(x, 2), round(y, 2)] for x, y in planned]
 
     def _messages(self, watcher: _Watcher, period: float) -> Iterator[dict[str, Any]]:
         allowance = Allowance(period)
@@ -211,8 +218,3 @@ def _state(state: RobotState | None) -> dict[str, Any]:
 
 def _scan(event: PeriodPassed) -> list[float | None]:
     return rounded_scan(asked(lambda: [float(distance) for distance in event.robot.scan()]) or ())
-
-
-def _way(event: PeriodPassed) -> list[list[float]]:
-    """Of a robot that tells it."""
-    return [[round(x, 2), round(y, 2)] for x, y in asked(lambda: event.robot.way) or ()]

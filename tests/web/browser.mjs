@@ -64,15 +64,21 @@ export async function fits(page) {
 
 /** Writes another text into the mission that is open. */
 export async function replace(page, text) {
-  await page.waitForSelector('.text .cm-content[contenteditable="true"]:not([aria-readonly="true"])');
-  await page.click(".text .cm-content");
+  await page.waitForSelector('.panes .text .cm-content[contenteditable="true"]:not([aria-readonly="true"])');
+  await page.click(".panes .text .cm-content");
   await page.keyboard.press("Control+A");
   await page.keyboard.insertText(text);
 }
 
+/** Until the mission that is open has no mistakes, and its tree is that of the text. */
+export async function understood(page) {
+  await page.waitForSelector(".messages .fine");
+  await page.waitForFunction(() => document.querySelector(".desk .tree").ariaBusy === "false");
+}
+
 /** The text of the mission that is open. */
 export async function written(page) {
-  return page.$$eval(".text .cm-line", (lines) => lines.map((line) => line.textContent).join("\n"));
+  return page.$$eval(".panes .text .cm-line", (lines) => lines.map((line) => line.textContent).join("\n"));
 }
 
 /** A file of the menu of downloads: its name and content. */

@@ -62,7 +62,7 @@ await visit(base, async (page) => {
   await until("Saved", ".state");
   assert.equal(await page.$(".merge"), null);
   await page.reload();
-  await page.waitForFunction(() => document.querySelector(".text .cm-content")?.textContent.includes("cut in the middle"));
+  await page.waitForFunction(() => document.querySelector(".panes .text .cm-content")?.textContent.includes("cut in the middle"));
   assert.equal(await page.$(".offered .primary"), null);
 
   // The server goes while a mission runs: the mission goes on, and the page sees its end.

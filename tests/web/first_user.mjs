@@ -1,7 +1,7 @@
 // A first user writes a mission with two mistakes, mends it, runs and stops it, changes it by its tree, tries it, keeps and
 // schedules it, and finds out why yesterday's mission failed. With folders for pictures, each step is compared.
 import assert from "node:assert/strict";
-import { accessible, fits, logIn, replace, visit, written } from "./browser.mjs";
+import { accessible, fits, logIn, replace, understood, visit, written } from "./browser.mjs";
 import { gallery } from "./golden.mjs";
 
 const [base, password, golden, found] = process.argv.slice(2);
@@ -13,8 +13,8 @@ wait 60 s
 `;
 
 await visit(base, async (page) => {
-  const untilText = (part) => page.waitForFunction((wanted) => [...document.querySelectorAll(".text .cm-line")].map((line) => line.textContent).join("\n").includes(wanted), part);
-  const fine = () => page.waitForSelector(".messages .fine");
+  const untilText = (part) => page.waitForFunction((wanted) => [...document.querySelectorAll(".panes .text .cm-line")].map((line) => line.textContent).join("\n").includes(wanted), part);
+  const fine = () => understood(page);
   const choose = (words) => page.locator(".node", { hasText: words }).first().click({ button: "right" });
   const command = (words) => page.getByRole("menuitem", { name: words }).click();
   const button = (words) => page.getByRole("button", { name: words, exact: true });
@@ -83,7 +83,7 @@ await visit(base, async (page) => {
   assert.ok(wrapped.includes("# Tea for everybody") && wrapped.includes("cafe  # where the cups are"), `comments in ${wrapped}`);
   assert.ok(wrapped.includes('  say "Tea is ready"\n  wave'), wrapped);
   await button("Undo").click();
-  await page.waitForFunction(() => !document.querySelector(".text .cm-content").textContent.includes("retry"));
+  await page.waitForFunction(() => !document.querySelector(".panes .text .cm-content").textContent.includes("retry"));
   await button("Redo").click();
   await untilText("retry 2 times:");
   await fine();
@@ -98,7 +98,7 @@ await visit(base, async (page) => {
   await page.click("dialog .primary");
   await untilText("alert(1)");
   await button("Undo").click();
-  await page.waitForFunction(() => !document.querySelector(".text .cm-content").textContent.includes("alert"));
+  await page.waitForFunction(() => !document.querySelector(".panes .text .cm-content").textContent.includes("alert"));
 
   // try it, keep it, schedule it for tomorrow
   await fine();

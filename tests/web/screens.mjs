@@ -1,6 +1,6 @@
 // Every screen, with the mouse and with the keyboard, in two languages and both themes. Pictures go into a folder.
 import assert from "node:assert/strict";
-import { accessible, downloaded, fits, logIn, replace, submit, visit } from "./browser.mjs";
+import { accessible, downloaded, fits, logIn, replace, submit, understood, visit } from "./browser.mjs";
 
 const [base, password, pictures] = process.argv.slice(2);
 const NARROW = { width: 360, height: 740 };
@@ -129,7 +129,7 @@ await visit(base, async (page) => {
   await until("ndo", ".messages");
   await look("write");
   await replace(page, 'say "<script>alert(1)</script>\u202e" then wave');
-  await page.waitForSelector(".messages .fine");
+  await understood(page);
   const [name, picture] = await downloaded(page, "SVG");
   assert.match(name, /^tour-.*\.svg$/);
   assert.match(picture.toString(), /&lt;script&gt;/);
@@ -137,7 +137,7 @@ await visit(base, async (page) => {
 
   // Tests of the mission: one passes, one fails, and one isn't understood.
   await replace(page, "wave\ncheck that the battery is low");
-  await page.waitForSelector(".messages .fine");
+  await understood(page);
   await page.getByRole("button", { name: "Tests", exact: true }).click();
   await until('run "tour"', ".tests .cm-content");
   const tests = async (text) => {

@@ -53,7 +53,7 @@ await visit(base, async (one) => {
   });
   await company(one, "");
   await one.reload();
-  await one.waitForFunction(() => document.querySelector(".text .cm-content")?.textContent.includes("other"));
+  await one.waitForFunction(() => document.querySelector(".panes .text .cm-content")?.textContent.includes("other"));
 
   await one.context().setOffline(true);
   await replace(one, 'say "offline".');

@@ -21,6 +21,7 @@ type Place = "before" | "after" | "inside";
 
 export class TreeEdits {
   private nodes: SaidNode[] = [];
+  private said = "";
   private words = "";
   private held: { node: number; do: "copy" | "move"; words: string } | null = null;
 
@@ -39,9 +40,10 @@ export class TreeEdits {
     });
   }
 
-  /** The nodes of the text as it is now. */
-  set(nodes: SaidNode[]): void {
+  /** The nodes of a text. */
+  set(nodes: SaidNode[], text: string): void {
     this.nodes = nodes;
+    this.said = text;
     this.words = this.editor.text;
   }
 
@@ -112,6 +114,10 @@ export class TreeEdits {
   /** Does an edit on the server, and its change here; says what is wrong and returns it, "" for nothing. */
   private async edit(edit: Record<string, unknown>): Promise<string> {
     const text = this.editor.text;
+    if (text !== this.said) {
+      this.say(t("write.changed_meanwhile")); // the numbers are those of an older text
+      return t("write.changed_meanwhile");
+    }
     const answer = await this.reader.service("edit", text, { edit });
     if (!answer.ok) {
       const problem = answer.messages?.[0] ? [answer.messages[0].message, answer.messages[0].hint].filter(Boolean).join("\n") : (answer.text ?? "");

@@ -262,6 +262,7 @@ class Desk {
   // -- the text
 
   private changed(text: string): void {
+    this.tree.element.ariaBusy = "true";
     this.reader.read(text);
     clearTimeout(this.writing);
     this.writing = setTimeout(() => this.keepDraft(), DRAFT_AFTER);
@@ -284,8 +285,9 @@ class Desk {
     this.understood = text;
     fill(this.outline, h("option", { value: "0" }, t("write.outline")), ...outline.map(({ name, start }) => h("option", { value: start }, name)));
     this.tree.element.classList.remove("stale");
+    this.tree.element.ariaBusy = "false";
     this.nodes = nodes;
-    this.edits.set(nodes);
+    this.edits.set(nodes, text);
     this.tree.setNodes(nodes, true);
     this.moved(this.editor.view.state.selection.main.head);
   }
