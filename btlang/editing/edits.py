@@ -155,6 +155,8 @@ class Editor:
             raise Unplaced("it can't come into itself")
         text, program, focus = self.copy(wanted)
         copied = Syntax(program, self._vocabulary)
+        if any(id(node) not in copied.slots for node in nodes):  # it holds the copy now
+            raise Unplaced("it can't come into itself")
         paths = [path_of(node, copied) for node in nodes]
         text, _ = self._replaced(text, paths, ())
         return text, copied.changed(copied.steps(nodes, ())[-1]), focus
@@ -329,7 +331,8 @@ class Editor:
         """The node, or it and its siblings up to another."""
         first, last = self._node(wanted.node), self._node(wanted.node if wanted.last is None else wanted.last)
         if first is last:
-            return [first]
+            is_mission = first is self._syntax.mission.body and isinstance(first, ast.Chain) and "\n" in first.span.text
+            return list(ast.parts(first)) if is_mission else [first]  # definitions may stand between its lines
         slots = self._syntax.slots[id(first)], self._syntax.slots[id(last)]
         one, other = sorted(slot.at or 0 for slot in slots)
         if slots[0].parent is not slots[1].parent or not isinstance(slots[0].parent, ast.Chain):

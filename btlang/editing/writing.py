@@ -223,18 +223,20 @@ class Writer:
             for item, among in items:
                 lines += lines_of(item, printer, WIDTH - len(margin), among)
         before, after = self._source.text[:start], self._source.text[end:]
+        ends = bool(after) or before.endswith("\n") or self._source.text.endswith("\n")
         text = self._between(step) + indented(lines, margin)
         missing = self._comments_in(self._source.text[start:end]) - self._comments_in(text) - gone
         text = indented(list(missing.elements()), margin) + text
         if before and not before.endswith("\n"):
             yield Change(start, end, "\n" + text.removesuffix("\n"))
         else:
-            yield Change(start, end, text if after or before.endswith("\n") else text.removesuffix("\n"))
+            yield Change(start, end, text if ends else text.removesuffix("\n"))
 
     def _between(self, step: Step) -> str:
         """The lines of definitions and the like between old statements, for in front of what takes their place."""
-        owned = [self._lines.own(node, step.parent) for node in step.old]
-        gaps = [range(one.stop, other.start) for one, other in pairwise(owned) if one is not None and other is not None]
+        lines = self._lines
+        owned = [each for each in (lines.own(node, step.parent) for node in step.old) if each is not None]
+        gaps = [range(one.stop, lines.with_comments(other).start) for one, other in pairwise(owned)]
         said = (gap for gap in gaps if any(line in self._lines.blocks for line in gap))
         return "".join(self._source.text[start:end] for start, end in map(self._lines.offsets, said))
 

@@ -169,7 +169,7 @@ def outside(text: str, edit: Edit) -> list[str]:
     for number in (edit.node, edit.last, edit.to):
         node = sources[number] if number is not None else None
         touched += [
-            (item.span.start, item.span.end)
+            (_head(text, item.span.start), item.span.end)
             for item in items
             if node is not None and item is not None and any(node is each for each in ast.parents_first(item))
         ]
@@ -188,6 +188,14 @@ def outside(text: str, edit: Edit) -> list[str]:
         else:
             block.append(line)
     return [part for part in (*kept, "\n".join(block)) if part]
+
+
+def _head(text: str, start: int) -> int:
+    """Where the line of a statement begins, which has no blanks before it: what was read may begin below `try:`."""
+    start = text.rfind("\n", 0, start) + 1
+    while text[start : start + 1] in (" ", "#"):
+        start = text.rfind("\n", 0, start - 1) + 1
+    return start
 
 
 def check(text: str, edit: Edit) -> bool:
@@ -238,10 +246,17 @@ def test_what_stands_between_statements_stays() -> None:
     text = "u\n\ntea means v\n# first\ntea\nw  # last\n"
     assert done(text, Edit("insert", 2, place="before", words="x")) == "u\n\ntea means v\nx\n# first\ntea\nw  # last\n"
     assert done(text, Edit("insert", 1, place="after", words="x")) == "u\nx\n\ntea means v\n# first\ntea\nw  # last\n"
-    wrapped = "\ntea means v\n# first\ntry:\n  u\n  # first\n  tea\nw  # last\n"
+    wrapped = "\ntea means v\ntry:\n  u\n  # first\n  tea\nw  # last\n"
     assert done(text, Edit("wrap", 1, last=2, form="try")) == wrapped
+    assert done(text, Edit("wrap", 0, form="try")) == wrapped.replace("w  # last", "  w  # last")
     with pytest.raises(Unplaced, match="no form"):
         done(text, Edit("unwrap", 0))
+
+
+def test_nothing_comes_into_itself() -> None:
+    for node, to in ((1, 0), (0, 1), (1, 2)):
+        with pytest.raises(Unplaced, match="into itself"):
+            done("try:\n  u\n  v", Edit("move", node, to=to, place="inside" if to == 0 else "after"))
 
 
 def done(text: str, edit: Edit) -> str:
