@@ -193,7 +193,7 @@ def outside(text: str, edit: Edit) -> list[str]:
 def _head(text: str, start: int) -> int:
     """Where the line of a statement begins, which has no blanks before it: what was read may begin below `try:`."""
     start = text.rfind("\n", 0, start) + 1
-    while text[start : start + 1] in (" ", "#"):
+    while text[start : start + 1] in (" ", "#", "\n"):
         start = text.rfind("\n", 0, start - 1) + 1
     return start
 
