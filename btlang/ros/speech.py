@@ -15,7 +15,7 @@ from btlang.ros.subscription_cache import SubscriptionCache
 
 SPEECH, SPEAKING, PRINT = "speech", "speaking", "print"
 _BEGINS = 0.5  # seconds of real time that it gets to begin
-_YOUNG = 4.0  # seconds in which a listener may not have found this node yet: DDS announces it again after three
+_YOUNG = 2.0  # seconds in which a listener may not have found this node yet: what it misses then is sent again
 _LATEST = 5.0  # how many times as long as expected it may speak
 
 

@@ -48,7 +48,8 @@ def main() -> None:
                 f"{what}: {paces[key]['p50']} ms, 95 in 100 within {paces[key]['p95']} ms, worst {paces[key]['worst']}"
             )
         if options.hours:
-            memory = json.loads(node(SCRIPTS / "memory.mjs", address, PASSWORD, str(options.hours), folder=folder))
+            hours = str(options.hours)
+            memory = json.loads(node(SCRIPTS / "memory.mjs", address, PASSWORD, hours, folder=folder, seconds=900.0))
             first, last = memory[1], memory[-1]
             growth = last["megabytes"] / first["megabytes"] - 1
             print(f"memory: {first['megabytes']} MB after half an hour, {last['megabytes']} MB after {last['hours']} h")

