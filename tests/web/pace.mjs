@@ -38,6 +38,7 @@ await visit(base, async (page) => {
     setTimeout(() => done(lags), seconds * 1000);
   }), Number(seconds)));
   await page.click('button:text-is("Cancel")');
+  await page.waitForSelector('button:text-is("Cancel")', { state: "hidden" });
 
   await page.evaluate(() => (location.hash = "#/write/long"));
   await replace(page, readFileSync(long, "utf8"));
@@ -53,7 +54,7 @@ await visit(base, async (page) => {
   for (let key = 1; key <= Number(keys); key++) {
     await page.keyboard.press(key % 2 ? "#" : "Backspace");
     await page.waitForFunction((key) => lags.length === key, key);
-    await page.waitForTimeout(100);
+    await page.waitForTimeout(200); // as somebody types
   }
   figures.keys = spread(await page.evaluate(() => lags));
 });

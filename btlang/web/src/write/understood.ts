@@ -49,6 +49,10 @@ function whole(answer: any): SaidNode[] {
   return answer.nodes.map((node: any) => ({ ...node, ...answer.kinds[node.kind] }));
 }
 
+function pause(milliseconds: number): Promise<void> {
+  return new Promise((done) => setTimeout(done, milliseconds));
+}
+
 /** Asks about texts of one robot. */
 export class Reader {
   private page = crypto.randomUUID?.() ?? String(Math.random());
@@ -92,11 +96,14 @@ export class Reader {
       const text = this.text;
       this.text = null;
       const isNewest = (): boolean => this.text === null && !this.ended;
+      const began = performance.now();
       try {
         const { ok, messages, sort } = await post("/api/messages", this.asked(text));
         if (!isNewest()) continue;
         this.listener.checked(text, messages, ok, sort);
         this.listener.failed("");
+        await pause(performance.now() - began); // of a long text somebody who types sees messages, and the tree when he stops
+        if (!isNewest()) continue;
         const answer = ok && (await post("/api/document", this.asked(text)));
         if (answer.nodes && isNewest()) this.listener.understood(text, whole(answer), answer.outline);
       } catch (error) {
