@@ -234,7 +234,7 @@ def test_server_and_robot_are_killed_in_turn(door: Door) -> None:
                 waits += answered(clients, began)
             for client in (*submitters, saver):
                 client.close()
-            wait_until(lambda: not store.count_tasks({state for state in State if state not in FINAL}), 120.0)
+            wait_until(lambda: not store.count_tasks({state for state in State if state not in FINAL}), 600.0)
             wait_until(lambda: follower.changes[-1][0] >= store.latest_change())
         check(store, submitters, saver, follower)
     unanswered = sum(each.unanswered for each in submitters)
