@@ -75,8 +75,8 @@ def serve(
         ws_ping_interval=20, ws_ping_timeout=20, timeout_graceful_shutdown=3,
         ssl_context_factory=None if certificate is None else lambda config, usual: tls(certificate),
     )  # fmt: skip
-    # each write to a client that vanished while its questions are answered is a warning otherwise: a full log, or a pipe
-    # that nobody reads, which holds up the end of the server
+    # each write to a client that vanished while its questions are answered is a warning otherwise: a full log, or a
+    # pipe that nobody reads, which holds up the end of the server
     logging.getLogger("asyncio").setLevel(logging.ERROR)
     server = uvicorn.Server(config)
     asyncio.run(_serve(api, server, door, control, ready))
