@@ -6,6 +6,7 @@ from collections.abc import Iterable
 from itertools import pairwise
 from math import cos, dist, radians, sqrt
 
+from btlang.interrupts import interrupts_later
 from btlang.robots.base import Base
 from btlang.robots.body import Body, Limits
 from btlang.robots.faults import Faults
@@ -121,7 +122,8 @@ class Navigator:
         goal.version = self._obstacles.version
         target, reach = self._target(goal)
         if self._planner is None:
-            from btlang.robots.planning import Planner  # brings numpy, which takes longer to import than many missions
+            with interrupts_later():  # numpy, which takes longer to import than many missions
+                from btlang.robots.planning import Planner
 
             self._planner = Planner(self._world, self._obstacles, self._body.radius)
         path = self._planner.path((self._base.pose.x, self._base.pose.y), target, reach)
