@@ -42,9 +42,14 @@ class Words:
         """A text that somebody writes; of no file, it can't include any."""
         return Source(text, self.file, may_load=True) if self.file else Source(text, "mission", roots=())
 
-    def mission(self, source: Source, origins: Origins | None = None) -> Mission:
-        """A text compiled with them; `origins` as for `parse_tree`. Raises MissionError."""
-        return parse_tree(source, keywords=self.keywords, world=self.world, language=self.language, origins=origins)
+    def mission(
+        self, source: Source, origins: Origins | None = None, main: str = "", world: str | None = None
+    ) -> Mission:
+        """A text compiled with them, or with another world; the others as for `parse_tree`. Raises MissionError."""
+        return parse_tree(
+            source, keywords=self.keywords, world=self.world if world is None else world, language=self.language,
+            origins=origins, main=main,
+        )  # fmt: skip
 
     def vocabulary(self, source: Source) -> Lexicon:
         """Those that a text is read with; files that it names and that can't be used are left out.

@@ -22,6 +22,7 @@ from btlang.server.accounts import LONGEST, Accounts, Identity
 from btlang.server.bodies import JsonResponse, json_object, text_in
 from btlang.server.checking import ASKED, TRIES, Checker, arguments_of
 from btlang.server.clients import Clients
+from btlang.server.films import comparison, film, tree
 from btlang.server.fleet import Fleet
 from btlang.server.joining import Joins
 from btlang.server.links import RobotLink, Robots
@@ -91,9 +92,9 @@ class Api:
             *(self._route(f"/api/{kind}", partial(self._text, kind), "POST") for kind in ASKED),
             self._route("/api/recordings", self._recordings, "GET"),
             self._route("/api/recordings/{name}", self._recording, "GET"),
-            self._route("/api/films/{name}", partial(self._shown, self.trials.film, ()), "GET"),
-            self._route("/api/trees/{name}", partial(self._shown, self.trials.tree, ()), "GET"),
-            self._route("/api/comparisons/{name}", partial(self._shown, self.trials.comparison, ("with",)), "GET"),
+            self._route("/api/films/{name}", partial(self._shown, film, ()), "GET"),
+            self._route("/api/trees/{name}", partial(self._shown, tree, ()), "GET"),
+            self._route("/api/comparisons/{name}", partial(self._shown, comparison, ("with",)), "GET"),
             self._route("/metrics", self._metrics, "GET"),
             Route("/openapi.json", lambda request: JsonResponse(document())),
             *page_routes(self.access),
@@ -256,9 +257,7 @@ class Api:
         path = await asyncio.to_thread(path_of, link.recordings, name)
         return FileResponse(path, media_type="application/octet-stream")
 
-    async def _shown(
-        self, show: Callable[..., Awaitable[bytes]], others: tuple[str, ...], request: Request
-    ) -> Response:
+    async def _shown(self, show: Callable[..., bytes], others: tuple[str, ...], request: Request) -> Response:
         """What a page shows of a recording, and of the `others` that the query names."""
         link = await self._recorder(request)
         names = [request.path_params["name"], *(request.query_params.get(other, "") for other in others)]
@@ -266,7 +265,7 @@ class Api:
             if link.is_elsewhere:
                 await stack.enter_async_context(self._fetching)  # a copy may be large
             paths = [await stack.enter_async_context(self._file(link, name, request)) for name in names]
-            return Response(await show(*paths), media_type="application/json")
+            return Response(await self.trials.shown(show, *paths), media_type="application/json")
 
     @asynccontextmanager
     async def _file(self, link: RobotLink, name: str, request: Request) -> AsyncIterator[str]:

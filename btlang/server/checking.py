@@ -15,7 +15,7 @@ from concurrent.futures import ProcessPoolExecutor
 from concurrent.futures.process import BrokenProcessPool
 from weakref import WeakValueDictionary
 
-from btlang.api import Mission, format_mission, parse_tree
+from btlang.api import Mission, format_mission
 from btlang.diagnostics.errors import MissionError
 from btlang.editing.completion import complete
 from btlang.editing.document import document, text_messages
@@ -31,7 +31,6 @@ from btlang.record import Record
 from btlang.recording.trial import tried
 from btlang.server.access import AccessError
 from btlang.server.bodies import text_in
-from btlang.server.films import comparison, film, tree
 from btlang.server.utf16 import Units, in_units
 from btlang.testing.trial import results_of
 from btlang.text.source import Source
@@ -58,50 +57,43 @@ class TextQuery(Record):
     takes: tuple[str, ...] = ()
 
 
-def _check(source: Source, words: Words) -> dict[str, Any]:
-    mission = words.mission(source)
-    return {"messages": messages(mission.warnings, source), "outline": str(mission)}
+def _of_mission(tell: Callable[[Mission], dict[str, Any]]) -> Callable[..., dict[str, Any]]:
+    """What is told of a mission, with what is wrong with it."""
+
+    def do(source: Source, words: Words) -> dict[str, Any]:
+        mission = words.mission(source)
+        return {"messages": messages(mission.warnings, source), **tell(mission)}
+
+    return do
 
 
 def _english(source: Source, words: Words) -> dict[str, Any]:
-    mission = words.mission(source)
-    found = messages(mission.warnings, source)
-    return {"messages": found, "sort": frontend_of(source), "text": mission.to("english")}
-
-
-def _explain(source: Source, words: Words) -> dict[str, Any]:
-    mission = words.mission(source)
-    return {"messages": messages(mission.warnings, source), "explanation": mission.explain()}
+    told = _of_mission(lambda mission: {"text": mission.to("english")})
+    return {"sort": frontend_of(source), **told(source, words)}
 
 
 def _format(source: Source, words: Words) -> dict[str, Any]:
     return {"text": format_mission(source, keywords=words.keywords, world=words.world, language=words.language)}
 
 
-def _xml(source: Source, words: Words) -> dict[str, Any]:
-    mission = words.mission(source)
-    return {"messages": messages(mission.warnings, source), "xml": str(mission.to("xml"))}
-
-
 DOES: Mapping[str, TextQuery] = {
-    "check": TextQuery("What is wrong with a mission.", _check),
+    "check": TextQuery("What is wrong with a mission.", _of_mission(lambda mission: {"outline": str(mission)})),
     "complete": TextQuery("What may follow at a place, by default the end.", complete, takes=("at",)),
     "document": TextQuery("All that an editor shows of a text: messages, tree and outline.", document),
     "edit": TextQuery("A change of a mission by its tree.", edit, needs=("edit",)),
     "english": TextQuery("A mission, which may be a tree in XML or JSON, in English.", _english),
-    "explain": TextQuery("How a mission is understood.", _explain),
+    "explain": TextQuery(
+        "How a mission is understood.", _of_mission(lambda mission: {"explanation": mission.explain()})
+    ),
     "format": TextQuery("A mission in the usual layout.", _format),
     "hover": TextQuery("What was understood at a place, with help.", hover, needs=("at",)),
     "messages": TextQuery("What is wrong with a text, as its document says it.", text_messages),
     "palette": TextQuery("All that can be put into a mission, by topic.", palette),
     "rename": TextQuery("What gives a definition and its uses another name.", rename, needs=("at",), takes=("name",)),
-    "xml": TextQuery("A mission as a tree of BehaviorTree.CPP.", _xml),
+    "xml": TextQuery(
+        "A mission as a tree of BehaviorTree.CPP.", _of_mission(lambda mission: {"xml": str(mission.to("xml"))})
+    ),
 }
-
-
-def _try(source: Source, words: Words) -> dict[str, Any]:
-    mission = words.mission(source)
-    return {"messages": messages(mission.warnings, source), **tried(mission)}
 
 
 def _test(source: Source, words: Words, tests: str, called: str) -> dict[str, Any]:
@@ -110,9 +102,7 @@ def _test(source: Source, words: Words, tests: str, called: str) -> dict[str, An
     def given(name: str, world: str | None) -> Mission | None:
         if name not in (called, f"{called}.txt"):
             return None
-        if world is None:
-            return mission
-        return parse_tree(source, keywords=words.keywords, world=world, language=words.language)
+        return mission if world is None else words.mission(source, world=world)
 
     beside = os.path.join(os.path.dirname(words.file), TESTS)
     text = Source(tests, beside) if words.file else Source(tests, TESTS, roots=())
@@ -123,7 +113,7 @@ TRIES: Mapping[str, TextQuery] = {
     "test": TextQuery(
         "Tests of a mission in the simulated world, with films of those that fail.", _test, ("tests", "called")
     ),
-    "try": TextQuery("A run of a mission in the simulated world, as a film.", _try),
+    "try": TextQuery("A run of a mission in the simulated world, as a film.", _of_mission(tried)),
 }
 """What takes longer: it has a process of its own."""
 ASKED = {**DOES, **TRIES}
@@ -214,20 +204,10 @@ class Checker:
             if self._newest.get(place) is asked:
                 del self._newest[place]
 
-    async def film(self, path: str) -> bytes:
-        """That of a recording, as JSON. Raises AccessError (422) if it takes too long."""
+    async def shown(self, show: Callable[..., bytes], *paths: str) -> bytes:
+        """What btlang.server.films makes of recordings. Raises AccessError (422) if it takes too long."""
         async with self._turn:
-            return await self._done(film, path)
-
-    async def tree(self, path: str) -> bytes:
-        """That of a recording in XML, as JSON. Raises AccessError (422) if it takes too long."""
-        async with self._turn:
-            return await self._done(tree, path)
-
-    async def comparison(self, one: str, other: str) -> bytes:
-        """That of two recordings, as JSON. Raises AccessError (422) if it takes too long."""
-        async with self._turn:
-            return await self._done(comparison, one, other)
+            return await self._done(show, *paths)
 
     async def _done(self, do: Callable[..., bytes], *given: object) -> bytes:
         if self._process is None:

@@ -11,7 +11,6 @@ from codecs import BOM_UTF8
 from contextlib import suppress
 from hashlib import sha256
 
-from btlang.api import parse_tree
 from btlang.backends.files import write_file
 from btlang.backends.targets import target_of
 from btlang.diagnostics.diagnostic import diagnostic
@@ -155,11 +154,8 @@ class TreeFiles(Files):
         return read_source(self._copy).text if os.path.isfile(self._copy) else None
 
     def _english(self) -> str:
-        words, source = self._words, read_source(self._tree)
-        mission = parse_tree(
-            source, keywords=words.keywords, world=words.world, language=words.language, main=self._main
-        )
-        return _of_fair_size(str(mission.to("english")), source)
+        source = read_source(self._tree)
+        return _of_fair_size(str(self._words.mission(source, main=self._main).to("english")), source)
 
 
 def tree_sort(path: str) -> str:

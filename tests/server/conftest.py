@@ -11,7 +11,9 @@ from pathlib import Path
 import pytest
 
 from btlang.task.layer import TaskLayer
+from tests.server.cable import Cable
 from tests.server.doors import Door, robot_in
+from tests.server.elsewhere import Elsewhere, invited
 from tests.task.layers import wait_until
 
 ROLES = {"vic": "viewer", "olga": "operator", "ed": "editor", "ann": "administrator"}
@@ -36,3 +38,17 @@ def door(robot: TaskLayer) -> Iterator[Door]:
             door.user("add", name, "--role", role)
         wait_until(lambda: door.ask("GET", "/api/robots", **door.log_in()).data["robots"][:1])
         yield door
+
+
+@pytest.fixture(scope="module")
+def cable(door: Door) -> Iterator[Cable]:
+    with closing(Cable(door.port)) as cable:
+        yield cable
+
+
+@pytest.fixture(scope="module")
+def joined(door: Door, cable: Cable) -> Iterator[Elsewhere]:
+    code = invited(door, "kim")
+    with closing(Elsewhere(cable.port, code)) as robot:
+        yield robot
+    shutil.rmtree(robot.folder)

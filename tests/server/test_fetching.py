@@ -6,9 +6,7 @@ import asyncio
 import http.client
 import json
 import os
-import shutil
 import time
-from collections.abc import Iterator
 from contextlib import closing
 from pathlib import Path
 from typing import Any
@@ -20,24 +18,16 @@ from btlang.server.reach import STREAM
 from btlang.server.recordings import PIECE
 from tests.server.cable import Cable
 from tests.server.doors import Door, Reply, received
-from tests.server.test_joining import Elsewhere, asked_to_watch, btc, command, in_background, invited, is_up
+from tests.server.elsewhere import Elsewhere, asked_to_watch, btc, command, in_background, invited, is_up
 from tests.task.layers import LONG, wait_until
 
 LARGE = 30_000_000
 
 
 @pytest.fixture(scope="module")
-def cable(door: Door) -> Iterator[Cable]:
-    with closing(Cable(door.port)) as cable:
-        yield cable
-
-
-@pytest.fixture(scope="module")
-def kim(door: Door, cable: Cable) -> Iterator[Elsewhere]:
-    with closing(Elsewhere(cable.port, invited(door, "kim"))) as robot:
-        wait_until(lambda: is_up(door, "kim"))
-        yield robot
-    shutil.rmtree(robot.folder)
+def kim(door: Door, joined: Elsewhere) -> Elsewhere:
+    wait_until(lambda: is_up(door, "kim"))
+    return joined
 
 
 @pytest.fixture(scope="module")

@@ -4,20 +4,12 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
 import signal
-import subprocess
-import sys
-import tempfile
-import threading
 import time
-from collections.abc import Callable, Iterator
 from contextlib import closing
 from pathlib import Path
-from typing import Any
 
 import pytest
-from websockets.sync.client import ClientConnection
 
 from btlang.diagnostics.errors import MissionError
 from btlang.server.accounts import Accounts
@@ -25,71 +17,9 @@ from btlang.server.fleet import VALID, Fleet, pin_in
 from btlang.server.reach import STREAM
 from btlang.server.sockets import FORBIDDEN
 from tests.server.cable import Cable
-from tests.server.doors import Door, Reply, child_of, close_code, received
+from tests.server.doors import Door, close_code, received
+from tests.server.elsewhere import Elsewhere, asked_to_watch, btc, command, in_background, invited, is_up, listed
 from tests.task.layers import LONG, wait_until
-
-
-class Elsewhere:
-    """`btc robot up --join` on a computer of its own, as far as folders can be one."""
-
-    def __init__(self, port: int, code: str, folder: Path | None = None) -> None:
-        self.folder = folder or Path(tempfile.mkdtemp(prefix="bt"))
-        self.environment = {
-            **os.environ,
-            "XDG_DATA_HOME": str(self.folder / "data"),
-            "XDG_RUNTIME_DIR": str(self.folder),
-        }
-        words = ["robot", "up", "--join", f"wss://127.0.0.1:{port}", *(["--code", code] if code else [])]
-        self.process = subprocess.Popen(
-            [sys.executable, "-m", "btlang", *words], env=self.environment, text=True,
-            stdout=subprocess.PIPE, stderr=subprocess.STDOUT,
-        )  # fmt: skip
-        self.lines: list[str] = []
-        self._thread = threading.Thread(target=self._read)
-        self._thread.start()
-
-    def told(self, words: str) -> None:
-        wait_until(lambda: any(words in line for line in self.lines))
-
-    def dialer(self) -> int:
-        """The process that dials."""
-        return child_of(self.process.pid)
-
-    def close(self) -> None:
-        self.process.terminate()
-        self.process.wait(LONG)
-        self._thread.join(LONG)
-
-    def _read(self) -> None:
-        assert self.process.stdout is not None
-        with self.process.stdout as lines:
-            self.lines.extend(lines)
-
-
-def btc(door: Door, *words: str) -> str:
-    done = subprocess.run(
-        [sys.executable, "-m", "btlang", *words], env=door.environment, capture_output=True, text=True, timeout=LONG
-    )
-    assert done.returncode == 0, done.stderr
-    return done.stdout
-
-
-def invited(door: Door, name: str) -> str:
-    return btc(door, "robot", "invite", name).split()[-1]
-
-
-@pytest.fixture(scope="module")
-def cable(door: Door) -> Iterator[Cable]:
-    with closing(Cable(door.port)) as cable:
-        yield cable
-
-
-@pytest.fixture(scope="module")
-def joined(door: Door, cable: Cable) -> Iterator[Elsewhere]:
-    code = invited(door, "kim")
-    with closing(Elsewhere(cable.port, code)) as robot:
-        yield robot
-    shutil.rmtree(robot.folder)
 
 
 @pytest.fixture
@@ -98,25 +28,6 @@ def kim(door: Door, joined: Elsewhere) -> Elsewhere:
     wait_until(lambda: is_up(door, "kim"))
     assert command(door, "kim", command="release").data["ok"]
     return joined
-
-
-def listed(door: Door) -> dict[str, dict[str, Any]]:
-    return {each["name"]: each for each in door.ask("GET", "/api/robots", **door.log_in("vic")).data["robots"]}
-
-
-def is_up(door: Door, name: str) -> bool:
-    return bool(listed(door).get(name, {}).get("up"))
-
-
-def command(door: Door, name: str, **fields: Any) -> Reply:
-    return door.ask("POST", "/api/commands", {"robot": name, **fields}, **door.log_in("olga"))
-
-
-def in_background(work: Callable[[], Any]) -> tuple[threading.Thread, list[Any]]:
-    results: list[Any] = []
-    thread = threading.Thread(target=lambda: results.append(work()))
-    thread.start()
-    return thread, results
 
 
 def tasks(door: Door) -> list[str]:
@@ -216,13 +127,6 @@ def test_who_says_nothing_sensible_does_not_join(door: Door) -> None:
             socket.send(text)
             assert json.loads(socket.recv(LONG))["type"] == "refused"
     assert door.user("trail").count("join: refused") < 20  # a flood of them doesn't fill the disk
-
-
-def asked_to_watch(socket: ClientConnection) -> int:
-    """The number of the stream."""
-    while not (asked := json.loads(socket.recv(LONG))).get("request"):
-        pass
-    return int(asked["stream"])
 
 
 def test_a_robot_may_say_anything(door: Door) -> None:

@@ -1,12 +1,12 @@
 // The tests of a mission: written beside it, run on the server, with what did not hold in the words of both.
 import { fill, h } from "../dom";
-import { Player, type Film } from "../look_back/player";
+import type { Film } from "../look_back/player";
 import { t } from "../texts";
-import { show } from "./ask";
 import { Editor, smallest } from "./editor";
-import { merge } from "./merge";
-import { Draft, Stale, type Kept, type Store } from "./store";
-import type { Message, Reader } from "./understood";
+import { Keeping } from "./keeping";
+import { play } from "./play";
+import type { Store } from "./store";
+import { problemOf, type Message, type Reader } from "./understood";
 
 /** See btlang/testing/trial.py; null for a test that there was no time left for. */
 interface Result {
@@ -27,8 +27,6 @@ interface Problem {
   message: string;
 }
 
-const DRAFT_AFTER = 300; // milliseconds after a key
-
 /** What the tests need of the mission that they belong to: its name, its text, and to show characters of that text. */
 export interface Tested {
   name: string;
@@ -42,30 +40,28 @@ export class Tests {
   private problem = h("p", { class: "problem", role: "alert", lang: "en" });
   private results = h("ol", { class: "results", "aria-live": "polite" });
   private editor: Editor;
-  private draft: Draft;
-  private kept: Kept = { text: "", revision: 0 };
-  private writing: ReturnType<typeof setTimeout> | undefined;
+  private keeping: Keeping;
   private loaded = false;
   private example: string; // what somebody begins with who has no tests
 
   constructor(
-    private store: Store,
+    store: Store,
     private mission: Tested,
     private reader: Reader,
     private mayWrite: boolean,
   ) {
-    this.draft = new Draft(store.key);
     this.example = `test "it works":\n  run "${mission.name.replace(/"/g, "")}"\n  finally the mission succeeds\n`;
     this.editor = new Editor("", t("tests.text"), {
       reader: { service: async () => ({}) }, // what missions are asked about, tests aren't
       readOnly: true,
-      changed: () => this.changed(),
+      changed: () => this.keeping.changed(),
       moved: () => undefined,
       keys: [
         { key: "Mod-s", run: () => void this.keep() },
         { key: "Mod-Enter", run: () => void this.run() },
       ],
     });
+    this.keeping = new Keeping(store, this.editor, { told: () => this.tell(), failed: (problem) => this.fail(problem) });
     const tools = h(
       "div",
       { class: "doing" },
@@ -86,24 +82,21 @@ export class Tests {
   }
 
   close(): void {
-    this.keepDraft();
+    this.keeping.keepDraft();
     this.editor.close();
-  }
-
-  private get isChanged(): boolean {
-    const { text } = this.editor;
-    return this.loaded && text !== (this.kept.text || this.example);
   }
 
   private async load(): Promise<void> {
     try {
-      this.kept = await this.store.load();
+      await this.keeping.load();
     } catch (error) {
       return this.fail((error as Error).message);
     }
-    const draft = this.draft.read();
-    this.editor.apply([smallest("", draft?.text ?? (this.kept.text || this.example))]);
-    if (draft) this.kept = { ...this.kept, revision: draft.revision };
+    const { draft, kept } = this.keeping;
+    kept.text ||= this.example;
+    const before = draft.read();
+    this.editor.apply([smallest("", before?.text ?? kept.text)]);
+    if (before) kept.revision = before.revision;
     this.editor.lock(!this.mayWrite);
     this.loaded = true;
     fill(this.results, h("li", { class: "empty" }, t("tests.none")));
@@ -112,38 +105,12 @@ export class Tests {
 
   private async keep(): Promise<void> {
     if (!this.mayWrite || !this.loaded) return;
-    const text = this.editor.text;
     fill(this.state, t("write.saving"));
-    try {
-      this.kept = await this.store.save(text, this.kept.revision);
-      if (this.editor.text === text) this.draft.clear();
-      this.fail("");
-    } catch (error) {
-      this.keepDraft();
-      if (error instanceof Stale) {
-        merge(error.message, error.theirs, text, (merged, from) => {
-          this.kept = from;
-          this.editor.text = merged;
-          this.tell();
-        });
-      } else this.fail(`${t("write.not_saved")} ${(error as Error).message}`);
-    }
-    this.tell();
-  }
-
-  private changed(): void {
-    clearTimeout(this.writing);
-    this.writing = setTimeout(() => this.keepDraft(), DRAFT_AFTER);
-    this.tell();
-  }
-
-  private keepDraft(): void {
-    clearTimeout(this.writing);
-    if (this.isChanged) this.draft.write({ text: this.editor.text, revision: this.kept.revision });
+    await this.keeping.save();
   }
 
   private tell(): void {
-    if (this.loaded) fill(this.state, t(this.isChanged ? "write.changed" : "write.saved"));
+    if (this.loaded) fill(this.state, this.keeping.state);
   }
 
   private fail(problem: string): void {
@@ -159,7 +126,7 @@ export class Tests {
     this.tell();
     if (!answer.ok) {
       fill(this.results);
-      return this.fail([t("tests.mission"), answer.messages?.[0]?.message ?? answer.text].join(" "));
+      return this.fail([t("tests.mission"), problemOf(answer)].join(" "));
     }
     if (this.editor.text !== tests) return this.fail(t("write.changed_meanwhile"));
     const problems = answer.problems as Problem[];
@@ -190,15 +157,9 @@ export class Tests {
           "div",
           { class: "controls" },
           start != null && end != null && h("button", { type: "button", onclick: () => this.mission.show(start, end) }, t("tests.words")),
-          film && h("button", { type: "button", onclick: () => this.play(name, film) }, t("runs.replay")),
+          film && h("button", { type: "button", onclick: () => play(name, film) }, t("runs.replay")),
         ),
     );
-  }
-
-  private play(name: string, film: Film): void {
-    const player = new Player(film);
-    const dialog = show(name, player.element, h("div", { class: "controls" }, h("button", { type: "button", onclick: () => dialog.close() }, t("close"))));
-    dialog.addEventListener("close", () => player.close());
   }
 
   private go(line: number): void {

@@ -37,6 +37,11 @@ export interface SaidNode extends TreeNode {
   values?: [port: string, kind: string, words: string][];
 }
 
+/** What an answer says went wrong. */
+export function problemOf(answer: any): string {
+  return answer.messages?.[0]?.message ?? answer.text ?? "";
+}
+
 /** Who is told of a text: first what is wrong with it, then its tree if it compiles. */
 export interface Listener {
   checked: (text: string, messages: Message[], compiles: boolean, sort: string) => void;

@@ -2,21 +2,21 @@
 import { may, request, type RequestError } from "../api";
 import { fill, h, set } from "../dom";
 import { downloads, pictures, plain, type Offer } from "../download";
-import { Player, type Film } from "../look_back/player";
 import { command } from "../tasks/queue";
 import { askSchedule } from "../tasks/schedule";
 import { t } from "../texts";
 import { TreeView } from "../tree/tree_view";
 import { address, type Context, type View } from "../view";
-import { ask, show } from "./ask";
+import { ask } from "./ask";
 import { Editor, smallest } from "./editor";
+import { Keeping } from "./keeping";
 import { merge } from "./merge";
-import { Draft, FileStore, LibraryStore, Stale, type Kept, type Store } from "./store";
+import { play } from "./play";
+import { FileStore, LibraryStore, type Kept, type Store } from "./store";
 import { Tests } from "./tests";
 import { TreeEdits } from "./tree_edits";
-import { Reader, type Message, type Named, type SaidNode } from "./understood";
+import { problemOf, Reader, type Message, type Named, type SaidNode } from "./understood";
 
-const DRAFT_AFTER = 300; // milliseconds after a key
 const AGAIN = 1000; // milliseconds until a mission is asked for again
 
 /** See `View`. #/write lists, #/write/NAME opens a mission of the library, #/write/file/NAME a file. */
@@ -66,18 +66,16 @@ class Desk {
   private editor: Editor;
   private edits: TreeEdits;
   private tests: Tests;
-  private draft: Draft;
-  private kept: Kept = { text: "", revision: 0 };
+  private keeping: Keeping;
   private nodes: SaidNode[] = [];
   private understood = "";
   private sort = "english";
-  private writing: ReturnType<typeof setTimeout> | undefined;
   private mayWrite: boolean;
   private closed = false;
   private unwatch: () => void;
   private leaving = (event: BeforeUnloadEvent): void => {
-    this.keepDraft();
-    if (this.isChanged) event.preventDefault();
+    this.keeping.keepDraft();
+    if (this.keeping.isChanged) event.preventDefault();
   };
 
   constructor(
@@ -87,7 +85,6 @@ class Desk {
   ) {
     this.mayWrite = may(context.me, "editor");
     this.title = h("h1", { dir: "auto" }, store.name);
-    this.draft = new Draft(store.key);
     this.reader = new Reader(context.robot, {
       checked: (text, messages, compiles, sort) => this.check(text, messages, compiles, sort),
       understood: (text, nodes, outline) => this.understand(text, nodes, outline),
@@ -106,6 +103,7 @@ class Desk {
         { key: "Alt-Enter", run: () => void this.attempt() },
       ],
     });
+    this.keeping = new Keeping(store, this.editor, { told: () => this.tell(), failed: (problem) => this.fail(problem) });
     this.edits = new TreeEdits(this.tree, this.editor, this.reader, (text) => this.fail(text), () => this.mayWrite);
     const mission = { name: store.name, text: () => this.editor.text, show: (start: number, end: number) => this.showWords(start, end) };
     this.tests = new Tests(tests, mission, this.reader, this.mayWrite);
@@ -133,7 +131,7 @@ class Desk {
       this.mayWrite && h("button", { type: "button", title: "F2", onclick: () => this.rename() }, t("write.rename")),
       this.mayWrite && h("button", { type: "button", title: "Ctrl+Z", onclick: () => this.editor.undo() }, t("write.undo")),
       this.mayWrite && h("button", { type: "button", title: "Ctrl+Y", onclick: () => this.editor.redo() }, t("write.redo")),
-      downloads(() => [this.store.name.replace(/\.\w+$/, ""), Date.now() / 1000], () => this.offers(), (problem) => this.fail(problem)),
+      downloads(() => [this.keeping.name.replace(/\.\w+$/, ""), Date.now() / 1000], () => this.offers(), (problem) => this.fail(problem)),
       this.outline,
     );
     const head = h("div", { class: "head" }, h("div", { class: "now" }, this.title, this.state), tools);
@@ -149,7 +147,7 @@ class Desk {
 
   private close(): void {
     this.closed = true;
-    this.keepDraft();
+    this.keeping.keepDraft();
     this.unwatch();
     this.context.presence.write("", false);
     removeEventListener("beforeunload", this.leaving);
@@ -159,98 +157,69 @@ class Desk {
     this.tree.close();
   }
 
-  private get isChanged(): boolean {
-    return this.editor.text !== this.kept.text;
-  }
-
   // -- keeping
 
   private async load(): Promise<void> {
     try {
-      this.kept = await this.store.load();
-      if (/^\s*[<{]/.test(this.kept.text)) this.kept = await this.inEnglish(this.kept);
+      const { text } = await this.keeping.load();
+      if (/^\s*[<{]/.test(text)) await this.inEnglish(text);
     } catch (error) {
       return this.loadLater(error as RequestError);
     }
     if (this.closed) return;
-    fill(this.title, this.store.name);
+    const { draft, kept, name } = this.keeping;
+    fill(this.title, name);
     this.fail("");
-    this.editor.apply([smallest("", this.kept.text)]);
+    this.editor.apply([smallest("", kept.text)]);
     this.editor.lock(!this.mayWrite);
-    const draft = this.draft.read();
-    if (draft && draft.text !== this.kept.text) this.offer(draft);
+    const before = draft.read();
+    if (before && before.text !== kept.text) this.offer(before);
     this.reader.read(this.editor.text);
     this.tell();
   }
 
   /** A tree in XML or JSON as a mission beside it, which is there already or begins with its English. */
-  private async inEnglish(kept: Kept): Promise<Kept> {
-    const answer = await this.reader.service("english", kept.text, {});
-    if (!answer.ok || answer.sort === "english") return kept;
-    const beside = this.store.english();
-    const copy = await beside.load();
-    const tree = this.store.name;
-    this.store = beside;
-    this.draft = new Draft(beside.key);
-    return { ...copy, text: copy.revision ? copy.text : answer.text, tree, copy: beside.name };
+  private async inEnglish(text: string): Promise<void> {
+    const answer = await this.reader.service("english", text, {});
+    if (!answer.ok || answer.sort === "english") return;
+    const tree = this.keeping.name;
+    const copy = await this.keeping.loadEnglish();
+    this.keeping.kept = { ...copy, text: copy.revision ? copy.text : answer.text, tree, copy: this.keeping.name };
   }
 
   /** As soon as the robot is back. */
   private loadLater(error: RequestError): void {
-    this.fail(this.draft.read() ? `${error.message} ${t("write.draft_waits")}` : error.message);
+    this.fail(this.keeping.draft.read() ? `${error.message} ${t("write.draft_waits")}` : error.message);
     const passes = error.status === 0 || error.status === 404 || error.status >= 500; // 404: a server that has just begun knows no robot
     if (passes) setTimeout(() => this.closed || void this.load(), AGAIN);
   }
 
   /** A draft of an earlier visit. */
   private offer(draft: Kept): void {
+    const { kept } = this.keeping;
     const take = (): void => {
       fill(this.offered);
-      if (draft.revision === this.kept.revision) this.editor.text = draft.text;
-      else merge(t("write.draft_old"), this.kept, draft.text, (text) => (this.editor.text = text));
+      if (draft.revision === kept.revision) this.editor.text = draft.text;
+      else merge(t("write.draft_old"), kept, draft.text, (text) => (this.editor.text = text));
     };
     const drop = (): void => {
       fill(this.offered);
-      this.draft.clear();
+      this.keeping.draft.clear();
     };
     fill(this.offered, h("span", {}, t("write.draft")), h("button", { type: "button", class: "primary", onclick: take }, t("write.take_draft")), h("button", { type: "button", onclick: drop }, t("write.drop_draft")));
   }
 
   private async keep(): Promise<void> {
     if (!this.mayWrite) return;
-    const text = this.editor.text;
     fill(this.state, t("write.saving"));
-    try {
-      this.kept = { ...this.kept, problem: "", ...(await this.store.save(text, this.kept.revision)) };
-      if (this.editor.text === text) this.draft.clear();
-      this.fail("");
-    } catch (error) {
-      this.keepDraft();
-      if (error instanceof Stale && error.theirs.text === text) {
-        this.kept = error.theirs; // an earlier save arrived, but not its answer
-        this.draft.clear();
-        this.fail("");
-      } else if (error instanceof Stale) {
-        merge(error.message, error.theirs, text, (merged, from) => {
-          this.kept = { ...this.kept, ...from };
-          this.editor.text = merged;
-          this.tell();
-        });
-      } else this.fail(`${t("write.not_saved")} ${(error as Error).message}`);
-    }
-    this.tell();
-  }
-
-  private keepDraft(): void {
-    clearTimeout(this.writing);
-    if (!this.editor.view.state.readOnly && this.isChanged) this.draft.write({ text: this.editor.text, revision: this.kept.revision });
+    await this.keeping.save();
   }
 
   private tell(): void {
-    const { tree, copy, revision, problem } = this.kept;
-    fill(this.state, this.isChanged ? t("write.changed") : revision ? t("write.saved") : "");
+    const { tree, copy, problem } = this.keeping.kept;
+    fill(this.state, this.keeping.state);
     fill(this.origin, tree && copy && t("write.of_tree", { tree, copy }), problem && h("span", { class: "problem", lang: "en" }, problem));
-    this.context.presence.write(this.store.name, this.isChanged);
+    this.context.presence.write(this.keeping.name, this.keeping.isChanged);
   }
 
   /** Who else has it open, before anybody saves. */
@@ -264,9 +233,7 @@ class Desk {
   private changed(text: string): void {
     this.tree.element.ariaBusy = "true";
     this.reader.read(text);
-    clearTimeout(this.writing);
-    this.writing = setTimeout(() => this.keepDraft(), DRAFT_AFTER);
-    this.tell();
+    this.keeping.changed();
   }
 
   private check(text: string, messages: Message[], compiles: boolean, sort: string): void {
@@ -325,7 +292,7 @@ class Desk {
     const text = this.editor.text;
     const answer = await this.reader.service("format", text, {});
     if (answer.ok && this.editor.text === text) this.editor.text = answer.text;
-    else this.fail(answer.messages?.[0]?.message ?? answer.text ?? "");
+    else this.fail(problemOf(answer));
   }
 
   private rename(): void {
@@ -335,7 +302,7 @@ class Desk {
       if (!found.ok || !found.words) return this.fail(found.messages?.[0]?.message ?? t("write.no_name"));
       ask(t("write.rename"), [{ name: "name", label: t("write.new_name"), value: found.words, required: true }], async ({ name }) => {
         const answer = await this.reader.service("rename", text, { at, name });
-        if (!answer.ok) return answer.messages?.[0]?.message ?? answer.text;
+        if (!answer.ok) return problemOf(answer);
         if (this.editor.text !== text) return t("write.changed_meanwhile");
         this.editor.apply(answer.changes);
         return "";
@@ -347,7 +314,7 @@ class Desk {
   private offers(): Offer[] {
     const xml = async (): Promise<Blob> => {
       const answer = await this.reader.service("xml", this.editor.text, {});
-      if (!answer.ok) throw new Error(answer.messages?.[0]?.message ?? answer.text);
+      if (!answer.ok) throw new Error(problemOf(answer));
       return plain(answer.xml);
     };
     const said: Offer = { key: "download.english", ending: "txt", content: async () => plain(this.editor.text) };
@@ -359,10 +326,8 @@ class Desk {
     fill(this.state, t("write.trying"));
     const film = await this.reader.service("try", this.editor.text, {});
     this.tell();
-    if (!film.ok) return this.fail(film.messages?.[0]?.message ?? film.text ?? "");
-    const player = new Player(film as Film);
-    const dialog = show(t("write.try"), player.element, h("div", { class: "controls" }, h("button", { type: "button", onclick: () => dialog.close() }, t("close"))));
-    dialog.addEventListener("close", () => player.close());
+    if (!film.ok) return this.fail(problemOf(film));
+    play(t("write.try"), film);
   }
 
   /** Gives the mission to the robot. */
@@ -375,8 +340,8 @@ class Desk {
 
   /** Lets the robot do it later, as it's kept. */
   private schedule(): void {
-    if (this.isChanged || !this.kept.revision) return this.fail(t("write.save_first"));
-    askSchedule(this.context, this.store.name, (rule) => fill(this.state, t("submit.scheduled", { rule })));
+    if (this.keeping.isChanged || !this.keeping.kept.revision) return this.fail(t("write.save_first"));
+    askSchedule(this.context, this.keeping.name, (rule) => fill(this.state, t("submit.scheduled", { rule })));
   }
 
   private fail(problem: string): void {
