@@ -81,6 +81,14 @@ export async function written(page) {
   return page.$$eval(".panes .text .cm-line", (lines) => lines.map((line) => line.textContent).join("\n"));
 }
 
+/** Until the text of the mission that is open is as wanted, or only a part of it. */
+export async function untilWritten(page, wanted, { isPart = false } = {}) {
+  await page.waitForFunction(([wanted, isPart]) => {
+    const text = [...document.querySelectorAll(".panes .text .cm-line")].map((line) => line.textContent).join("\n");
+    return isPart ? text.includes(wanted) : text === wanted;
+  }, [wanted, isPart]);
+}
+
 /** A file of the menu of downloads: its name and content. */
 export async function downloaded(page, name) {
   await page.click("button[aria-haspopup=menu]:has-text('Download')");

@@ -1,13 +1,13 @@
 // Nodes of a tree are dragged by mouse and by finger; Escape, other kinds of nodes and a finger that scrolls change nothing.
 import assert from "node:assert/strict";
-import { logIn, replace, understood, visit, written } from "./browser.mjs";
+import { logIn, replace, understood, untilWritten, visit, written } from "./browser.mjs";
 
 const [base, password] = process.argv.slice(2);
 const TEXT = "wave  # to all\nrepeat 2 times:\n  nod\n  look around\nif the battery is low:\n  dock";
 
 await visit(base, async (page, context) => {
   page.on("dialog", (dialog) => void dialog.accept()); // leaving with a draft asks first
-  const untilText = (wanted) => page.waitForFunction((wanted) => [...document.querySelectorAll(".panes .text .cm-line")].map((line) => line.textContent).join("\n") === wanted, wanted);
+  const untilText = (wanted) => untilWritten(page, wanted);
   const still = async (wanted) => {
     await page.waitForTimeout(300);
     assert.equal(await written(page), wanted);

@@ -1,7 +1,7 @@
 // A first user writes a mission with two mistakes, mends it, runs and stops it, changes it by its tree, tries it, keeps and
 // schedules it, and finds out why yesterday's mission failed. With folders for pictures, each step is compared.
 import assert from "node:assert/strict";
-import { accessible, fits, logIn, replace, understood, visit, written } from "./browser.mjs";
+import { accessible, fits, logIn, replace, understood, untilWritten, visit, written } from "./browser.mjs";
 import { gallery } from "./golden.mjs";
 
 const [base, password, golden, found] = process.argv.slice(2);
@@ -13,7 +13,7 @@ wait 60 s
 `;
 
 await visit(base, async (page) => {
-  const untilText = (part) => page.waitForFunction((wanted) => [...document.querySelectorAll(".panes .text .cm-line")].map((line) => line.textContent).join("\n").includes(wanted), part);
+  const untilText = (part) => untilWritten(page, part, { isPart: true });
   const fine = () => understood(page);
   const choose = (words) => page.locator(".node", { hasText: words }).first().click({ button: "right" });
   const command = (words) => page.getByRole("menuitem", { name: words }).click();
