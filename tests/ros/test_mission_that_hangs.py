@@ -60,5 +60,5 @@ def test_a_command_that_hangs(tmp_path: Path, domain: int, run_mission: Any, mon
         command.released.set()
         wait_until(node.halt, "the end of the mission")
         assert node.trigger_deactivate() == TransitionCallbackReturn.SUCCESS
-        assert lines[-1].endswith(": the node was deactivated")
+        wait_until(lambda: any(line.endswith(": the node was deactivated") for line in lines), "the line of the task")
         node.release()

@@ -137,7 +137,7 @@ export class Editor {
         severity: each.severity,
         message: [each.message, each.hint].filter(Boolean).join("\n"),
         source: each.code,
-        actions: this.actions(each),
+        actions: this.actions(each, from),
       };
     });
     this.view.dispatch(setDiagnostics(this.view.state, found));
@@ -166,11 +166,17 @@ export class Editor {
     return true;
   }
 
-  private actions(message: Message): Action[] {
+  /** `told` is where the message began. The text before it may have changed since then, and what it is about, too. */
+  private actions(message: Message, told: number): Action[] {
+    const { doc } = this.view.state;
     const changes = [...(message.readings.length ? message.readings : message.fix ? [message.fix] : [])];
     return changes.map((change) => ({
       name: t("write.fix", { words: change.text.length > 60 ? `${change.text.slice(0, 60)}…` : change.text }),
-      apply: () => this.apply([change]),
+      apply: (view, from) => {
+        const [start, end] = [change.start + from - told, change.end + from - told];
+        const same = view.state.sliceDoc(Math.max(start, 0), end) === doc.sliceString(change.start, change.end);
+        if (same) this.apply([{ start, end, text: change.text }]);
+      },
     }));
   }
 
