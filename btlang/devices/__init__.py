@@ -1,0 +1,1 @@
+"""The hardware layer: kinds of devices, and a driver for each make."""

@@ -1,0 +1,66 @@
+"""What a driver is: one port with the devices on it, behind one small protocol."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from typing import Any, Protocol
+
+from btlang.devices.kinds import Command, Reading
+from btlang.engine.leaves.leaf import ActionFailed, Unknown
+from btlang.record import Record
+
+
+class DeviceError(ActionFailed):
+    """Why a device or a port can't be used, in plain English."""
+
+
+class DeviceSilent(DeviceError, Unknown):
+    """A device tells nothing, or nothing that can be true: what it measures is not known."""
+
+
+class Device(Record):
+    """A device of a robot file. `options` are those of its driver, such as its id on the port.
+
+    `scale` and `offset` make what its driver tells true: value * scale + offset; for a command the other way round.
+    """
+
+    name: str
+    kind: str
+    driver: str
+    port: str = ""
+    options: Mapping[str, Any] = {}
+    scale: float = 1.0
+    offset: float = 0.0
+
+
+class Driver(Protocol):
+    """The devices of one port. It is used by one thread, that of its loop, and made with the port, the devices on it,
+    and its own options of the robot file; that opens nothing yet."""
+
+    rate: float
+    """Cycles a second that it asks for."""
+
+    def open(self) -> None:
+        """Finds the devices. Raises DeviceError where that can't be done now; it is tried again later."""
+
+    def exchange(self, commands: Mapping[str, Command]) -> Mapping[str, Reading | DeviceError]:
+        """One cycle: tells all devices their commands, by name, and returns what they tell since the last one.
+
+        A device that told nothing new is left out; one that tells what can't be used has an error in place of its
+        reading. It waits for the port only, at most the period of its rate. Raises DeviceError when the port is lost:
+        then it is closed and opened again.
+        """
+
+    def close(self) -> None:
+        """Brings to rest what moves, as far as the port can still be reached, and lets go of it. May be called twice,
+        and of a driver that isn't open."""
+
+
+class MakesDriver(Protocol):
+    """A class of drivers. `kinds` are those that it can drive; `needs_port`, whether a device has to name a port."""
+
+    kinds: Sequence[str]
+    needs_port: bool
+
+    def __call__(self, port: str, devices: Sequence[Device]) -> Driver:
+        """A driver, not opened yet. Raises DeviceError for options that it can't use, naming the device."""

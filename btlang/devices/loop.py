@@ -1,0 +1,163 @@
+"""Reads and writes the devices of a port in a thread apart from the tick, at the rate of their driver.
+
+It is a watchdog too: a command that is not told again for a moment is replaced by that which brings the device to rest,
+and a reading is only given while it is new. Readings and commands are in true units; the driver's are scaled here.
+"""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections.abc import Callable, Mapping
+
+from btlang.devices.driver import Device, DeviceError, DeviceSilent, Driver
+from btlang.devices.kinds import KINDS, Command, Reading
+
+SILENCE = 0.2
+"""Seconds after which a command no longer counts, and after which a device that moves is silent."""
+_RETRY = 0.25  # seconds until a lost port is opened again
+_JOIN = 2.0
+
+
+class DeviceLoop:
+    """The loop of one driver, from `start` to `close`. All else is for any thread.
+
+    `changed` is called, in the thread of the loop, with a device and why it is silent (None: it is back).
+    """
+
+    def __init__(
+        self,
+        driver: Driver,
+        devices: tuple[Device, ...],
+        changed: Callable[[str, str | None], object] = lambda name, reason: None,
+        silence: float = SILENCE,
+    ) -> None:
+        self._driver, self._changed, self._silence = driver, changed, silence
+        self.devices: Mapping[str, Device] = {device.name: device for device in devices}
+        self._commands: dict[str, tuple[Command, float]] = {}
+        self._readings: dict[str, tuple[Reading, float]] = {}
+        self._wrong: dict[str, str | None] = dict.fromkeys(self.devices, "it has not answered yet")
+        self._stopped = threading.Event()
+        self._thread = threading.Thread(target=self._work, name="btlang devices", daemon=True)
+        self.rate = 0.0
+        """Cycles a second that it reaches, over about a second; 0 while the port is not open."""
+
+    def start(self) -> None:
+        """Begins to open the port, and goes on trying until it can."""
+        self._thread.start()
+
+    def close(self) -> None:
+        """Brings the devices to rest and lets go of the port. May be called twice."""
+        self._stopped.set()
+        if self._thread.ident is not None:
+            self._thread.join(_JOIN)
+
+    def read(self, name: str) -> Reading:
+        """The latest reading. Raises DeviceSilent where there is none that is new."""
+        wrong = self._wrong[name]
+        found = self._readings.get(name)
+        if wrong is None and found is not None and time.monotonic() - found[1] <= self._silence:
+            return found[0]
+        raise DeviceSilent(f"the {name} is silent: {wrong or 'it tells nothing new'}")
+
+    def write(self, name: str, command: Command) -> None:
+        """Tells a device a command, which counts for `silence` seconds; whoever drives tells it again."""
+        self._commands[name] = command, time.monotonic()
+
+    def rest(self) -> None:
+        """Forgets all commands: what moves comes to rest in the next cycle. Takes no lock."""
+        self._commands.clear()
+
+    def silent(self, name: str) -> str | None:
+        """Why a device is silent, None where it tells what it should."""
+        return self._wrong[name]
+
+    def _work(self) -> None:
+        try:
+            while not self._stopped.is_set():
+                try:
+                    self._driver.open()
+                    self._cycle()
+                except DeviceError as problem:
+                    self._lost(str(problem))
+                except Exception as problem:  # of a driver by somebody else: its devices are silent, others go on
+                    self._lost(f"{type(problem).__name__}: {problem}")
+                self._driver.close()
+                self._stopped.wait(_RETRY)
+        finally:
+            self._driver.close()
+
+    def _cycle(self) -> None:
+        period = 1.0 / self._driver.rate
+        due = time.monotonic()
+        counted, since = 0, due
+        while not self._stopped.is_set():
+            told = self._driver.exchange(self._due_commands(due))
+            now = time.monotonic()
+            for name, reading in told.items():
+                self._tell(name, reading, now)
+            for name in self.devices:
+                found = self._readings.get(name)
+                if found is not None and self._wrong[name] is None and now - found[1] > self._silence:
+                    self._set_wrong(name, "it tells nothing new")
+            counted += 1
+            if now - since >= 1.0:
+                self.rate, counted, since = counted / (now - since), 0, now
+            due = max(due + period, now - period)  # what was missed is left out
+            if due > now:
+                self._stopped.wait(due - now)
+
+    def _due_commands(self, now: float) -> dict[str, Command]:
+        found: dict[str, Command] = {}
+        for name, device in self.devices.items():
+            kind = KINDS[device.kind]
+            if kind.command is None:
+                continue
+            command, told = self._commands.get(name, (None, 0.0))
+            late = kind.moves and now - told > self._silence
+            if command is not None and not late:
+                found[name] = _inverse(command, device)
+            elif kind.moves:
+                found[name] = kind.command()
+        return found
+
+    def _tell(self, name: str, reading: Reading | DeviceError, now: float) -> None:
+        if isinstance(reading, DeviceError):
+            self._readings.pop(name, None)
+            self._set_wrong(name, str(reading))
+        else:
+            self._readings[name] = _calibrated(reading, self.devices[name]), now
+            self._set_wrong(name, None)
+
+    def _set_wrong(self, name: str, reason: str | None) -> None:
+        if self._wrong[name] != reason:
+            self._wrong[name] = reason
+            self._changed(name, reason)
+
+    def _lost(self, reason: str) -> None:
+        self.rate = 0.0
+        for name in self.devices:
+            self._readings.pop(name, None)
+            self._set_wrong(name, reason)
+
+
+def _calibrated(reading: Reading, device: Device) -> Reading:
+    if (device.scale, device.offset) == (1.0, 0.0):
+        return reading
+    kind, scale, offset = KINDS[device.kind], device.scale, device.offset
+    changed = {name: getattr(reading, name) * scale for name in kind.scaled}
+    changed |= {name: getattr(reading, name) * scale + offset for name in kind.shifted}
+    made: Reading = reading.replace(**changed)
+    return made
+
+
+def _inverse(command: Command, device: Device) -> Command:
+    if (device.scale, device.offset) == (1.0, 0.0):
+        return command
+    kind, changed = KINDS[device.kind], {}
+    for name in (*kind.scaled, *kind.shifted):
+        value = getattr(command, name, None)
+        if value is not None:
+            changed[name] = (value - (device.offset if name in kind.shifted else 0.0)) / device.scale
+    made: Command = command.replace(**changed)
+    return made
