@@ -109,7 +109,9 @@ class Navigator:
     def _check(self, goal: NavigationGoal) -> None:
         """Ends a goal that cannot go on; plans anew when something has moved."""
         name = goal.name
-        if self._base.bumps > goal.bumps:
+        if self._base.silent is not None:
+            goal.end(self._base.silent)
+        elif self._base.bumps > goal.bumps:
             goal.end(f"bumped into {self._base.bumped_into} on the way to {said(name)}")
         elif self._base.stuck:
             goal.end(f"stuck on the way to {said(name)}: the wheels turn but the robot doesn't move")

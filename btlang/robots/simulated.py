@@ -35,7 +35,7 @@ _HANDS: tuple[Hand, Hand] = ("left", "right")
 class SimulatedRobot:
     """Implements `btlang.robots.robot.Robot`. The same commands and the same seed give the same run.
 
-    `make_parts` makes its parts, which by default act in the world, of this and what stands there.
+    `make_parts` makes its parts, which by default act in the world, of this and what stands there: its `obstacles`.
     """
 
     moves_by_itself = False
@@ -46,6 +46,7 @@ class SimulatedRobot:
         on_event: OnEvent | None = None,
         body: Body | None = None,
         make_parts: Callable[[World, Obstacles, Body], Parts] | None = None,
+        obstacles: Obstacles | None = None,
     ) -> None:
         self.body = body = body or standard_body()
         self.radius = body.radius
@@ -57,7 +58,7 @@ class SimulatedRobot:
         """Called at the end of each step with its seconds."""
         self.time = 0.0
         self.stops = 0
-        self._obstacles = Obstacles(world)
+        self._obstacles = obstacles or Obstacles(world)
         self._surroundings = Surroundings(world, self._obstacles)
         parts = (make_parts or simulated_parts)(world, self._obstacles, body)
         self._base, self.power, self._scan = parts.base, parts.power, parts.scan
@@ -90,6 +91,7 @@ class SimulatedRobot:
         self._base.step(dt)
         self._joints.step(dt)
         self._voice.step(dt)
+        self._hands.step(dt)
         self._drop()
         self._use_power(dt, self._base.travelled - travelled)
         self._tell_contacts()
@@ -133,12 +135,14 @@ class SimulatedRobot:
     @property
     def standstill(self) -> Standstill:
         """Nothing else moves it."""
-        return Standstill(self.moving)
+        return Standstill(None if self._base.silent is not None else self.moving)
 
     # Base
     @property
     def pose(self) -> Pose:
-        """Where it is."""
+        """Where it is. Raises SensorSilent where that isn't known."""
+        if self._base.silent is not None:
+            raise SensorSilent(self._base.silent)
         return self._base.pose
 
     @property
@@ -149,7 +153,9 @@ class SimulatedRobot:
 
     @property
     def velocity(self) -> tuple[float, float]:
-        """Metres and degrees a second."""
+        """Metres and degrees a second. Raises SensorSilent."""
+        if self._base.silent is not None:
+            raise SensorSilent(self._base.silent)
         return self._base.velocity
 
     @property
@@ -244,10 +250,7 @@ class SimulatedRobot:
         return [name for distance, name in sorted(distances) if distance <= within]
 
     def name_places(self, places: Iterable[Place]) -> None:
-        """The places of a mission beside those of the world, in place of those of the mission before.
-
-        One of the same name is replaced. The floor that is planned on does not grow.
-        """
+        """The places of a mission beside those of the world, in place of those of the mission before."""
         self.world = self._surroundings.name_places(places)
         self._navigator.name_places(self.world.places)
 
@@ -379,7 +382,7 @@ class SimulatedRobot:
     def _drop(self) -> None:
         for hand in _HANDS:
             if hand in self._hands.held and self._hands.held_for(hand, self.time) >= self.faults.holds_for(hand):
-                name = self._hands.release(hand, self.pose)
+                name = self._hands.drop(hand, self._base.pose)
                 self._emit("drop", hand=hand, name=name)
 
     def _tell_contacts(self) -> None:
