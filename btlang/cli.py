@@ -367,6 +367,7 @@ _ELSEWHERE = {
     "test": "btlang.testing.command",
     "mcp": "btlang.mcp_server",
     "task": "btlang.task.command",
+    "components": "btlang.task.component_command",
     "serve": "btlang.server.command",
     "user": "btlang.server.user_command",
     "edit": "btlang.server.edit_command",

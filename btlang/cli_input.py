@@ -26,11 +26,10 @@ def typed_source(options: argparse.Namespace) -> Source:
 def add_robot_words(options: argparse.Namespace) -> None:
     """The words of a robot's components count as those of --keywords do, in every verb that takes both."""
     robot = getattr(options, "robot", "")
-    if not robot or not hasattr(options, "keywords") or robot in ROBOTS or robot.startswith("library:"):
-        return
-    from btlang.components.words import robot_words
+    if options.verb != "robot" and hasattr(options, "keywords") and robot not in ("", *ROBOTS):
+        from btlang.components.words import robot_words
 
-    options.keywords = [*robot_words(robot), *options.keywords]
+        options.keywords = [*robot_words(robot), *options.keywords]
 
 
 def mission_of(options: argparse.Namespace, source: Source | None = None) -> Mission:

@@ -324,14 +324,12 @@ def _help_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("subject", nargs="?", metavar="VERB", help="whose options to list")
 
 
+_RECORDING = "btlang.recording.options"
 _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "repl": ("type a mission line by line, as with `btc` alone", _repl_options),
     "run": ("run a mission on the simulated robot, or a ROS 2 robot", _run_options),
     "replay": ("show a recorded run as it was", _replay_options),
-    "why": (
-        "tell what happened in a recorded run, and why it failed",
-        _elsewhere("btlang.recording.options", "add_recording_file"),
-    ),
+    "why": ("tell what happened in a recorded run, and why it failed", _elsewhere(_RECORDING, "add_recording_file")),
     "test": ("run tests of missions, written in English", _elsewhere("btlang.testing.options", "add_test_options")),
     "diff": ("tell what differs between two missions, trees or recorded runs", _diff_options),
     "check": ("report the mistakes in a mission", _check_options),
@@ -341,6 +339,10 @@ _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "grammar": ("write a grammar of missions, for language models", _grammar_options),
     "robot": ("keep a robot up for many tasks of many people", _elsewhere("btlang.task.options", "add_robot_options")),
     "task": ("give work to a robot that is up", _elsewhere("btlang.task.options", "add_task_options")),
+    "components": (
+        "list the components and devices of a robot that is up",
+        _elsewhere("btlang.task.options", "add_component_options"),
+    ),
     "serve": ("let others reach the robots that are up", _elsewhere("btlang.server.options", "add_serve_options")),
     "user": ("say who may come in through btc serve", _elsewhere("btlang.server.options", "add_user_options")),
     "edit": ("write a mission in the browser", _elsewhere("btlang.server.options", "add_edit_options", True)),

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import json
 import os
 import sys
 from importlib import import_module
@@ -10,6 +11,7 @@ from importlib.util import find_spec
 
 from btlang.components.component import Component, ComponentError
 from btlang.engine.leaves.leaf import described
+from btlang.text.output import pass_on, show
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -67,3 +69,18 @@ def describe(place: str, folder: str) -> dict[str, Any]:
     found = load_class(place, folder)
     parameters = [parameter.described() for parameter in found.parameters().values()]
     return {"version": str(found.version), "needs": list(found.needs), "rate": found.rate, "parameters": parameters}
+
+
+def main(place: str, folder: str, parameters: str) -> int:
+    """Prints what a class says of itself, for `btc robot check`: in a process of its own, as the class is loaded."""
+    try:
+        load_class(place, folder)().set_parameters(json.loads(parameters))
+        pass_on(json.dumps(describe(place, folder)) + "\n")
+    except ComponentError as problem:
+        show(str(problem), sys.stderr)
+        return 1
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(*sys.argv[1:]))

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Mapping
 from math import pi
 
@@ -150,7 +151,7 @@ class Body(Record):
     """All that is known of a robot. What it lacks is None, or is not in the tuples.
 
     `over` is what it runs on where nothing else is said: a name of btlang.robots.registry.ROBOTS. Joints that a posture
-    does not name stay where they are; its steps follow each other. `folder` is that of its file.
+    does not name stay where they are; its steps follow each other. `file` is where this comes from.
     """
 
     name: str
@@ -168,7 +169,12 @@ class Body(Record):
     screen: bool = False
     devices: tuple[Device, ...] = ()
     components: tuple[ComponentPart, ...] = ()
-    folder: str = ""
+    file: str = ""
+
+    @property
+    def folder(self) -> str:
+        """Where its file is, beside which are the classes of its components; "" where it has none."""
+        return os.path.dirname(self.file)
 
     @property
     def driving(self) -> Limits:

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Collection, Mapping
+from collections.abc import Callable, Collection, Mapping
 from functools import cache
 
 from btlang.robots.body import (
@@ -25,14 +25,21 @@ from btlang.robots.body import (
 from btlang.robots.data_file import DataFileError, as_mission_error, load_data
 from btlang.robots.platforms import ROBOTS
 from btlang.text.source import Source
-from btlang.text.toml_table import Problem, Table
+from btlang.text.toml_table import Problem, Problems, Table
 from btlang.vocabulary.capabilities import CAPABILITIES
 from btlang.vocabulary.shipped import BODIES, STANDARD_BODY
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import TypeVar
+
+    T = TypeVar("T")
 
 _HANDS = ("left", "right")
 _SENSORS = ("scanner", "bumper")
 _RUNS = ("process", "here")
 _LEAST = 0.001
+_FOREIGN = 'components, and drivers but for "simulated", may only be in a robot file on this computer: they run code'
 
 
 class BodyError(DataFileError):
@@ -42,10 +49,13 @@ class BodyError(DataFileError):
 
 
 def load_body(file: str | Source, overs: Collection[str] = tuple(ROBOTS)) -> Body:
-    """The robot in a file or a text, which may run on one of `overs`. Raises BodyError."""
-    path = file.name if isinstance(file, Source) else file
-    folder = os.path.dirname(os.path.abspath(path)) if os.path.isfile(path) else ""
-    return load_data(file, "a robot", lambda top: _body(top, overs, folder), BodyError)
+    """The robot in a file or a text, which may run on one of `overs`. Raises BodyError.
+
+    A text that isn't that of a file which the user named has no components and no devices but simulated ones.
+    """
+    named = file if isinstance(file, str) else file.name if file.may_load else ""
+    real = os.path.abspath(named) if os.path.isfile(named) else ""
+    return load_data(file, "a robot", lambda top: _body(top, overs, real), BodyError)
 
 
 def read_body(file: str | Source, overs: Collection[str] = tuple(ROBOTS)) -> Body:
@@ -67,46 +77,84 @@ def shipped_bodies() -> list[str]:
     return sorted(name.removesuffix(".toml") for name in os.listdir(BODIES) if name.endswith(".toml"))
 
 
-def _body(top: Table, overs: Collection[str], folder: str) -> Body:
+def _body(top: Table, overs: Collection[str], file: str) -> Body:
     name, over = top.text("name"), top.choice("over", tuple(ROBOTS), "simulated")
     if over not in overs:
         listed = " or ".join(f'"{each}"' for each in overs)
         raise top.problem("over", f'"over" may only be {listed} here; to allow "{over}", bring the robot up on it')
-    radius = top.number("radius", low=0.01, high=10.0)
-    base = _base(top.table("base")) if top.has("base") else None
-    navigation = None
-    if top.has("navigation"):
-        table = top.table("navigation")
-        navigation = table.finish(Navigation(table.number("objects", low=radius), table.number("people", low=radius)))
-    joints = tuple(map(_joint, top.tables("joints")))
-    _check_unique("joints", [joint.name for joint in joints])
-    postures = _postures(top.table("postures"), joints) if top.has("postures") else {}
-    hands = tuple(map(_hand, top.tables("hands")))
-    _check_unique("hands", [hand.name for hand in hands])
-    sensors = tuple(map(_sensor, top.tables("sensors")))
-    _check_unique("sensors", [sensor.kind for sensor in sensors], "kind")
-    battery, dock, voice = None, None, None
-    if top.has("battery"):
-        table = top.table("battery")
-        battery = table.finish(Battery(*(table.number(key, low=0.0) for key in ("idle", "driving", "charging"))))
-    if top.has("dock"):
-        table = top.table("dock")
-        within = table.number("within", low=_LEAST)
-        beyond = table.number("beyond", low=within)
-        dock = table.finish(Dock(within, beyond, table.number("backs_off", low=beyond)))
-    if top.has("voice"):
-        table = top.table("voice")
-        voice = table.finish(Voice(table.number("text", low=0.0), table.number("character", low=0.0)))
-    screen = top.flag("screen")
-    devices = tuple(map(_device, top.tables("device")))
-    components = tuple(map(_component, top.tables("component")))
-    _check_unique("device", [device.name for device in devices])
-    _check_unique("component", [component.name for component in components])
+    problems = Problems()
+    radius = problems.part(lambda: top.number("radius", low=0.01, high=10.0), 1.0)
+    base = problems.part(lambda: _base(top.table("base")) if top.has("base") else None, None)
+    navigation = problems.part(lambda: _navigation(top, radius), None)
+    joints = _listed(top, "joints", _joint, problems)
+    postures = problems.part(lambda: _postures(top, joints), dict[str, tuple[Step, ...]]())
+    hands = _listed(top, "hands", _hand, problems)
+    sensors = _listed(top, "sensors", _sensor, problems, key="kind")
+    battery = problems.part(lambda: _battery(top), None)
+    dock = problems.part(lambda: _dock(top), None)
+    voice = problems.part(lambda: _voice(top), None)
+    screen = problems.part(lambda: top.flag("screen"), False)
+    devices = _listed(top, "device", _device, problems)
+    components = _listed(top, "component", _component, problems)
     made = Body(
         name, radius, over, base, navigation, joints, postures, hands, sensors, battery, dock, voice, screen,
-        devices, components, folder,
+        devices, components, file,
     )  # fmt: skip
-    return top.finish(made)
+    problems.part(lambda: top.finish(made), made)
+    if not file:
+        problems.found += [Problem(_FOREIGN, "component", index) for index in range(len(components))]
+        real = (index for index, device in enumerate(devices) if device.driver != "simulated")
+        problems.found += [Problem(_FOREIGN, "device", index, "driver") for index in real]
+    problems.end()
+    return made
+
+
+def _listed(
+    top: Table, section: str, make: Callable[[Table], T], problems: Problems, key: str = "name"
+) -> tuple[T, ...]:
+    """What is made of the tables of a list, but of those that are wrong; each has another name."""
+    found: list[T] = []
+    tables: list[Table] = problems.part(lambda: top.tables(section), [])
+    for index, table in enumerate(tables):
+        try:
+            each = make(table)
+        except Problem as problem:
+            problems.found.append(problem)
+            continue
+        if getattr(each, key) in [getattr(other, key) for other in found]:
+            problems.found.append(Problem(f'"{getattr(each, key)}" is given twice in {section}', section, index, key))
+        found.append(each)
+    return tuple(found)
+
+
+def _navigation(top: Table, radius: float) -> Navigation | None:
+    if not top.has("navigation"):
+        return None
+    table = top.table("navigation")
+    return table.finish(Navigation(table.number("objects", low=radius), table.number("people", low=radius)))
+
+
+def _battery(top: Table) -> Battery | None:
+    if not top.has("battery"):
+        return None
+    table = top.table("battery")
+    return table.finish(Battery(*(table.number(key, low=0.0) for key in ("idle", "driving", "charging"))))
+
+
+def _dock(top: Table) -> Dock | None:
+    if not top.has("dock"):
+        return None
+    table = top.table("dock")
+    within = table.number("within", low=_LEAST)
+    beyond = table.number("beyond", low=within)
+    return table.finish(Dock(within, beyond, table.number("backs_off", low=beyond)))
+
+
+def _voice(top: Table) -> Voice | None:
+    if not top.has("voice"):
+        return None
+    table = top.table("voice")
+    return table.finish(Voice(table.number("text", low=0.0), table.number("character", low=0.0)))
 
 
 def _base(table: Table) -> Base:
@@ -131,8 +179,11 @@ def _joint(table: Table) -> Joint:
     return table.finish(Joint(name, part, low, high, speed, rest, table.flag("slides")))
 
 
-def _postures(table: Table, joints: tuple[Joint, ...]) -> dict[str, tuple[Step, ...]]:
-    postures = {}
+def _postures(top: Table, joints: tuple[Joint, ...]) -> dict[str, tuple[Step, ...]]:
+    postures: dict[str, tuple[Step, ...]] = {}
+    if not top.has("postures"):
+        return postures
+    table = top.table("postures")
     known = {joint.name: joint for joint in joints}
     for name in table.keys():  # noqa: SIM118
         steps = table.tables(name) if table.is_list(name) else [table.table(name)]
@@ -187,11 +238,3 @@ def _component(table: Table) -> ComponentPart:
         table.number("silence", 0.8, low=0.3, high=3600.0),
     )
     return table.finish(made)
-
-
-def _check_unique(section: str, names: list[str], key: str = "name") -> None:
-    seen: set[str] = set()
-    for index, name in enumerate(names):
-        if name in seen:
-            raise Problem(f'"{name}" is given twice in {section}', section, index, key)
-        seen.add(name)

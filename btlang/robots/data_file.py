@@ -15,6 +15,7 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import TypeVar
 
+    from btlang.diagnostics.diagnostic import Diagnostic
     from btlang.diagnostics.errors import MissionError
 
     T = TypeVar("T")
@@ -33,6 +34,8 @@ class DataFileError(Exception):
         self.path = path
         self.line = line
         self.source = source
+        self.more: tuple[DataFileError, ...] = ()
+        """What else is wrong with it."""
 
 
 def load_data(file: str | Source, what: str, make: Callable[[Table], T], error: type[DataFileError]) -> T:
@@ -49,23 +52,34 @@ def load_data(file: str | Source, what: str, make: Callable[[Table], T], error: 
     except tomllib.TOMLDecodeError as problem:
         raise error(f"this isn't TOML: {problem}", path, line_of(problem), source) from None
     except Problem as problem:
-        from btlang.text.toml_positions import nearest, positions
+        first, *more = (placed(each, source, path, error) for each in (problem, *problem.more))
+        first.more = tuple(more)
+        raise first from None
 
-        at = nearest(positions(source.text), problem.path)
-        line = None if at is None else source.position(at)[0]
-        raise error(problem.message, path, line, source) from None
+
+def placed(problem: Problem, source: Source, path: str, error: type[DataFileError]) -> DataFileError:
+    """A problem as an error at its line."""
+    from btlang.text.toml_positions import nearest, positions
+
+    at = nearest(positions(source.text), problem.path)
+    return error(problem.message, path, None if at is None else source.position(at)[0], source)
 
 
 def as_mission_error(error: DataFileError) -> MissionError:
-    """The error's code at its line."""
-    from btlang.diagnostics.diagnostic import diagnostic
+    """The code of all errors of a file at their lines."""
     from btlang.diagnostics.errors import MissionError
+
+    return MissionError([_diagnostic(each) for each in (error, *error.more)])
+
+
+def _diagnostic(error: DataFileError) -> Diagnostic:
+    from btlang.diagnostics.diagnostic import diagnostic
     from btlang.text.source import Span
 
     source = error.source or Source("", error.path)
     start = source.offset(error.line or 1)
     end = start + len(source.line(error.line).rstrip()) if error.line and source.text else start
-    return MissionError([diagnostic(error.code, Span(source, start, end), reason=error.message)])
+    return diagnostic(error.code, Span(source, start, end), reason=error.message)
 
 
 def _read(path: str) -> str:

@@ -6,7 +6,8 @@ from argparse import ArgumentParser, Namespace
 from contextlib import closing
 
 from btlang.arguments import namespace, robot_on
-from btlang.robots.platforms import ALL, ROBOTS
+from btlang.robots.options import add_simulate
+from btlang.robots.platforms import ROBOTS
 from btlang.robots.registry import connector, runs_on
 from btlang.ros.available import require_interfaces, require_ros
 from btlang.ros.serving.names import FOLDER
@@ -76,14 +77,6 @@ def add_body_options(parser: ArgumentParser, platforms: Sequence[str] = tuple(RO
         "--over", choices=platforms, help="what the robot in a file runs on (default: as the file says)"
     )
     add_simulate(parser)
-
-
-def add_simulate(parser: ArgumentParser) -> None:
-    """The option --simulate."""
-    parser.add_argument(
-        "--simulate", action="append", nargs="?", const=ALL, default=[], metavar="DEVICE",
-        help="simulate the devices of the robot file, or only the one of this name or kind",
-    )  # fmt: skip
 
 
 def add_namespace(parser: ArgumentParser, what: str) -> None:

@@ -24,7 +24,7 @@ class Role(StrEnum):
 
 _VIEWER = (
     messages.List, messages.Show, messages.Schedules, messages.Library, messages.Status, messages.Report,
-    messages.EmergencyStop,
+    messages.EmergencyStop, messages.Components,
 )  # fmt: skip
 _OPERATOR = (
     messages.Submit, messages.Cancel, messages.Kill, messages.Interrupt, messages.Resume, messages.Skip,
@@ -32,7 +32,7 @@ _OPERATOR = (
     messages.Release, messages.Say, messages.Trail,
 )  # fmt: skip
 _EDITOR = (messages.Put, messages.Delete)
-_ADMINISTRATOR = (messages.Down,)
+_ADMINISTRATOR = (messages.Down, messages.ChangeComponent)
 
 NEEDED: dict[type[Command], Role] = {
     **dict.fromkeys(_VIEWER, Role.VIEWER),

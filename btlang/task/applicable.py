@@ -8,14 +8,15 @@ from collections.abc import Mapping, Sequence
 from btlang.task.messages import wrong
 
 _UP = (
-    "robot", "world", "keywords", "rules", "store", "durable", "keep", "record", "no_recordings", "allow_keywords",
-    "include_root", "speed", "serve", "host", "port", "join", "code",
+    "robot", "over", "simulate", "world", "keywords", "rules", "store", "durable", "keep", "record", "no_recordings",
+    "allow_keywords", "include_root", "speed", "serve", "host", "port", "join", "code",
 )  # fmt: skip
 _ADD = ("code", "priority", "label", "restart", "set", "keywords", "json")
 _ROBOT: Mapping[str, Sequence[str]] = {
     "up": _UP, "down": ("json",), "status": ("json",), "report": ("since", "json"), "stop": ("reason", "json"),
     "release": ("json",), "pause": ("json",), "resume": ("json",), "step": ("json",), "say": ("json",),
-    "unit": _UP, "backup": ("store",), "restore": ("store",), "invite": (), "revoke": (), "invited": ("json",),
+    "unit": _UP, "check": (), "show": (),
+    "backup": ("store",), "restore": ("store",), "invite": (), "revoke": (), "invited": ("json",),
 }  # fmt: skip
 _TASK: Mapping[str, Sequence[str]] = {
     "add": (*_ADD, "at", "by"), "list": ("all", "live", "limit", "label", "json"), "show": ("json",),
@@ -28,6 +29,8 @@ _TASK: Mapping[str, Sequence[str]] = {
 """By the acts, the options that mean something there; `--name` always does."""
 ROBOT_ACTS, TASK_ACTS = tuple(_ROBOT), tuple(_TASK)
 """What `btc robot` and `btc task` do."""
+COMPONENT_ACTS = ("list", "restart", "load", "unload")
+"""What `btc components` does."""
 FLEET_ACTS = ("invite", "revoke", "invited")
 """Those of `btc robot` that are about a server's robots elsewhere."""
 _NO_WORDS = ("up", "down", "status", "report", "release", "pause", "resume", "step", "unit", "invited")

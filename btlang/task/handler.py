@@ -25,6 +25,7 @@ from btlang.task.checks import (
     report_times,
     task_times,
 )
+from btlang.task.component_handler import ComponentHandler
 from btlang.task.emergency import EmergencyStop
 from btlang.task.executor import Executor
 from btlang.task.library_handler import LibraryHandler, unknown
@@ -71,6 +72,7 @@ class Handler:
         self._session, self._admit, self._now, self._down, self._needs = session, admit, now, down, needs
         schedules = ScheduleHandler(store, executor.wake, self._mission, now)
         library = LibraryHandler(store, admit, now, getattr(session.robot, "body", None), overs)
+        components = ComponentHandler(session)
         self._does: dict[type[Command], Callable[[Any, str], Answer]] = {
             messages.Submit: self._submit, messages.List: self._list, messages.Show: self._show,
             messages.Cancel: partial(self._end, State.CANCELED), messages.Kill: partial(self._end, State.KILLED),
@@ -81,6 +83,7 @@ class Handler:
             messages.Pause: self._pause, messages.Step: self._step, messages.EmergencyStop: self._stop,
             messages.Release: self._release, messages.Say: self._say, messages.Down: self._end_all,
             messages.Status: self._status, messages.Report: self._report, messages.Trail: self._trail,
+            messages.Components: components.list, messages.ChangeComponent: components.change,
         }  # fmt: skip
 
     def handle(self, command: Command, person: str) -> Answer:

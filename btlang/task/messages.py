@@ -234,6 +234,23 @@ class Status(Command):
     changes = False
 
 
+class Components(Command):
+    """The components and devices of the robot, with their states."""
+
+    tag = "components"
+    changes = False
+
+
+class ChangeComponent(Command):
+    """Starts a component anew ("restart"), takes it from the robot file as that is by now ("load"), or out of the robot
+    ("unload"): at once, or as soon as no running mission uses it.
+    """
+
+    tag = "change_component"
+    name: str
+    act: str
+
+
 class Report(Command):
     """What the robot did from `since` to `until`: seconds since 1970, or English for the past such as "2 hours ago"; by
     default in the last seven days.
@@ -258,7 +275,7 @@ COMMANDS: dict[str, type[Command]] = {
     for kind in (
         Submit, List, Show, Cancel, Kill, Interrupt, Resume, Skip, Reorder, Again, AddSchedule, RemoveSchedule,
         Schedules, Put, Delete, Library, Pause, Step, EmergencyStop, Release, Say, Down, Status, Report,
-        Trail,
+        Trail, Components, ChangeComponent,
     )
 }  # fmt: skip
 """By their names."""

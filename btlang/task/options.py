@@ -7,7 +7,9 @@ import re
 
 from btlang.arguments import at_least, between, duration, port, speed
 from btlang.diagnostics.errors import MissionError
-from btlang.task.applicable import ROBOT_ACTS, TASK_ACTS, note_given
+from btlang.robots.options import add_simulate
+from btlang.robots.platforms import ROBOTS
+from btlang.task.applicable import COMPONENT_ACTS, ROBOT_ACTS, TASK_ACTS, note_given
 
 
 def add_robot_options(parser: argparse.ArgumentParser) -> None:
@@ -16,6 +18,8 @@ def add_robot_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--robot", default="simulated", metavar="ROBOT", help="robot file, or library:NAME (default: simulated)"
     )
+    parser.add_argument("--over", choices=ROBOTS, help="what it runs on (default: as its file says)")
+    add_simulate(parser)
     parser.add_argument("--world", metavar="FILE", help="world file, or library:NAME")
     parser.add_argument("--keywords", action="append", default=[], metavar="FILE", help="keyword file")
     add_layer_options(parser)
@@ -67,6 +71,16 @@ def add_address_options(parser: argparse.ArgumentParser) -> None:
         "--host", default="127.0.0.1", metavar="ADDRESS", help="where it listens (default: this computer alone)"
     )
     parser.add_argument("--port", type=port, default=8443, metavar="PORT", help="on which port (default: %(default)s)")
+
+
+def add_component_options(parser: argparse.ArgumentParser) -> None:
+    """Those of `btc components`."""
+    _add_name(parser)
+    _add_json(parser)
+    parser.add_argument(
+        "act", nargs="?", default="list", choices=COMPONENT_ACTS, metavar="ACT", help=", ".join(COMPONENT_ACTS)
+    )
+    parser.add_argument("item", nargs="?", default="", metavar="NAME", help="a component")
 
 
 def add_task_options(parser: argparse.ArgumentParser) -> None:

@@ -12,6 +12,8 @@ from contextlib import suppress
 from functools import partial
 from urllib.parse import parse_qs, urlsplit
 
+from btlang.components.file_command import serve_file
+from btlang.components.words import robot_words
 from btlang.diagnostics.errors import MissionError
 from btlang.robots.registry import connector
 from btlang.run.emergency import emergency_signal
@@ -70,6 +72,8 @@ def serve(options: argparse.Namespace) -> int:
     check_robot_words(options)
     if act == "up":
         return _up(options)
+    if act in ("check", "show"):
+        return serve_file(act, options.item[0])
     if act == "unit":
         pass_on(_unit(options))
         return 0
@@ -116,8 +120,9 @@ def _up(options: argparse.Namespace) -> int:
     try:  # the name is ours before the store and the robot are touched
         kept = layer_options(options, name)
         robot, world = _from_library(options, kept)
+        words = [] if options.robot.startswith(_LIBRARY) else robot_words(options.robot)
         reader = MissionReader(
-            options.keywords,
+            [*words, *options.keywords],
             world,
             include_root=options.include_root,
             allowed_keywords=options.allow_keywords,
@@ -151,28 +156,31 @@ def _up(options: argparse.Namespace) -> int:
 def _from_library(options: argparse.Namespace, kept: Mapping[str, Any]) -> tuple[str | Connect, str | Source | None]:
     """The robot and the world that options name, the newest revisions where these are in the robot's own library."""
     robot, world = options.robot, options.world
-    names = [each for each in (robot, world) if each is not None and each.startswith(_LIBRARY)]
-    if not names:
-        return robot, world
+    over, named = options.over or ("devices" if options.simulate else None), {}
+    if options.simulate:
+        named["simulate"] = options.simulate
+    if not any(each is not None and each.startswith(_LIBRARY) for each in (robot, world)):
+        return connector(robot, over, **named), world
     os.makedirs(kept["folder"], mode=0o700, exist_ok=True)
     with open_store(kept["store"]) as store:
-        if robot in names:
-            robot = connector(kept_text(store, robot.removeprefix(_LIBRARY), Kind.ROBOT))
-        if world in names:
+        found = kept_text(store, robot.removeprefix(_LIBRARY), Kind.ROBOT) if robot.startswith(_LIBRARY) else robot
+        if world is not None and world.startswith(_LIBRARY):
             world = kept_text(store, world.removeprefix(_LIBRARY), Kind.WORLD)
-    return robot, world
+    return connector(found, over, **named), world
 
 
 def _unit(options: argparse.Namespace) -> str:
     """A unit of systemd that brings the robot up with these options."""
     words = [sys.executable, "-m", "btlang", "robot", "up"]
-    for option in ("name", "robot", "world", "rules", "store", "record", "include_root", "join", "code"):
+    for option in ("name", "robot", "over", "world", "rules", "store", "record", "include_root", "join", "code"):
         value = getattr(options, option)
         if value and value != "simulated":
             words += [f"--{option.replace('_', '-')}", os.path.abspath(value) if os.path.exists(value) else value]
     for option, names in (("--keywords", options.keywords), ("--allow-keywords", options.allow_keywords)):
         for each in names:
             words += [option, os.path.abspath(each) if os.path.exists(each) else each]
+    for each in options.simulate:
+        words += ["--simulate", each]
     words += [] if options.speed == "real" else ["--speed", str(options.speed)]
     words += [] if options.keep is None else ["--keep", f"{options.keep:g}"]
     words += ["--serve", "--host", options.host, "--port", str(options.port)] if options.serve else []

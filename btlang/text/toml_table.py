@@ -4,6 +4,7 @@ from __future__ import annotations
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from collections.abc import Callable
     from typing import Any, TypeVar
 
     from btlang.text.toml_positions import Path
@@ -20,12 +21,35 @@ def is_coordinate(value: object) -> bool:
 
 
 class Problem(Exception):
-    """What is wrong at a path of the file."""
+    """What is wrong at a path of the file. `more` are others of the same file."""
 
     def __init__(self, message: str, *path: str | int) -> None:
         super().__init__(message)
         self.message = message
         self.path = path
+        self.more: tuple[Problem, ...] = ()
+
+
+class Problems:
+    """Gathers what is wrong with a file, so that all of it can be told at once."""
+
+    def __init__(self) -> None:
+        self.found: list[Problem] = []
+
+    def part(self, make: Callable[[], T], usual: T) -> T:
+        """What `make` gives; the usual value where it raises a Problem, which is kept."""
+        try:
+            return make()
+        except Problem as problem:
+            self.found.append(problem)
+            return usual
+
+    def end(self) -> None:
+        """Raises the first Problem with all others, if there is one."""
+        if self.found:
+            first, *more = self.found
+            first.more = tuple(more)
+            raise first
 
 
 class Table:

@@ -20,7 +20,7 @@ if TYPE_CHECKING:
 
     Handle = Callable[[Command | dict[str, Any]], Answer]
 
-_PLAIN = (messages.Pause, messages.Step, messages.Release, messages.Status)
+_PLAIN = (messages.Pause, messages.Step, messages.Release, messages.Status, messages.Components)
 _OF_A_TASK = (
     messages.Cancel, messages.Kill, messages.Interrupt, messages.Resume, messages.Skip, messages.Again, messages.Show,
 )  # fmt: skip

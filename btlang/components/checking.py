@@ -1,0 +1,182 @@
+"""What is wrong with the components and devices of a robot file: all of it at once, without starting any."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+from collections.abc import Iterator, Mapping, Sequence
+
+from btlang.components.component import ComponentError
+from btlang.components.location import located, words_file
+from btlang.components.order import circle
+from btlang.devices.driver import DeviceError
+from btlang.devices.drivers import SIMULATED, driver_class
+from btlang.devices.kinds import KINDS
+from btlang.devices.simulated import SimulatedDevice
+from btlang.diagnostics.diagnostic import Diagnostic
+from btlang.diagnostics.errors import MissionError
+from btlang.robots.body import Body, ComponentPart, Device
+from btlang.robots.body_file import BodyError, load_body
+from btlang.robots.data_file import as_mission_error, placed
+from btlang.text.source import Source
+from btlang.text.toml_table import Problem
+from btlang.vocabulary.capabilities import CAPABILITIES
+from btlang.vocabulary.load import load_vocabulary
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+_DESCRIBE = 30.0  # seconds that a class gets to be loaded and to say what it is
+
+
+def check_robot(source: Source) -> tuple[Body | None, list[Diagnostic]]:
+    """The body of a robot file, None where it can't be read, and what is wrong with the file (BT071)."""
+    try:
+        body = load_body(source)
+    except BodyError as error:
+        return None, list(as_mission_error(error).diagnostics)
+    found: list[Diagnostic] = []
+    for problem in (*_devices(body), *_components(body)):
+        found += as_mission_error(placed(problem, source, source.name, BodyError)).diagnostics
+    for path in _words(body):
+        try:
+            load_vocabulary([path])
+        except MissionError as error:
+            found += error.diagnostics
+    return body, found
+
+
+def describe_apart(part: ComponentPart, folder: str) -> Mapping[str, Any]:
+    """What its class says of itself, in a process of its own. Raises ComponentError."""
+    command = [
+        sys.executable,
+        "-B",
+        "-m",
+        "btlang.components.location",
+        part.place,
+        folder,
+        json.dumps(dict(part.parameters)),
+    ]
+    try:
+        done = subprocess.run(command, capture_output=True, timeout=_DESCRIBE, check=False, stdin=subprocess.DEVNULL)
+    except subprocess.TimeoutExpired:
+        raise ComponentError(f"{part.place} isn't loaded after {_DESCRIBE:g} s") from None
+    if done.returncode:
+        lines = done.stderr.decode("utf-8", "replace").strip().splitlines()
+        raise ComponentError(lines[-1] if lines else f"{part.place} ended with exit code {done.returncode}")
+    known: Mapping[str, Any] = json.loads(done.stdout.splitlines()[-1])
+    return known
+
+
+def _devices(body: Body) -> Iterator[Problem]:
+    ports: dict[str, tuple[int, Device]] = {}
+    groups: dict[tuple[str, str], list[tuple[int, Device]]] = {}
+    for index, device in enumerate(body.devices):
+        if device.kind not in KINDS:
+            yield Problem(
+                f'there is no kind "{device.kind}"; the kinds are {", ".join(KINDS)}', "device", index, "kind"
+            )
+            continue
+        if device.kind == "joint" and device.driver != SIMULATED and body.joint(device.name) is None:
+            yield Problem(f'the robot has no joint "{device.name}"', "device", index, "name")
+        first = ports.setdefault(device.port, (index, device))[1] if device.port else device
+        if first.driver != device.driver:
+            yield Problem(f'the port "{device.port}" is that of the {first.name}, too', "device", index, "port")
+        groups.setdefault((device.driver, device.port), []).append((index, device))
+    for (driver, port), members in groups.items():
+        yield from _of_driver(body, driver, port, members)
+    if body.over == "devices":
+        yield from _lacking(body)
+
+
+def _of_driver(body: Body, driver: str, port: str, members: Sequence[tuple[int, Device]]) -> Iterator[Problem]:
+    index = members[0][0]
+    if driver == SIMULATED:
+        for index, device in members:
+            try:
+                SimulatedDevice(device, None)
+            except DeviceError as problem:
+                yield Problem(str(problem), "device", index, "options")
+        return
+    try:
+        kind = driver_class(driver, body.folder)
+    except DeviceError as problem:
+        yield Problem(str(problem), "device", index, "driver")
+        return
+    wrong = False
+    for index, device in members:
+        if device.kind not in kind.kinds:
+            wrong = True
+            listed = ", ".join(kind.kinds)
+            yield Problem(
+                f'"{driver}" has no devices of the kind "{device.kind}", only {listed}', "device", index, "kind"
+            )
+        if kind.needs_port and not port:
+            wrong = True
+            yield Problem(f'"{driver}" needs a port', "device", index, "port")
+    if wrong:
+        return
+    try:
+        kind(port, [device for _, device in members])
+    except DeviceError as problem:
+        named = [at for at, device in members if device.name in str(problem)]
+        yield Problem(str(problem), "device", *(named or [index])[:1], "options")
+
+
+def _lacking(body: Body) -> Iterator[Problem]:
+    """What the body has but no device for, though it runs over devices."""
+    kinds, names = {device.kind for device in body.devices}, {device.name for device in body.devices}
+    parts = {
+        "base": ("drive", body.base),
+        "sensors": ("lidar", body.sensor("scanner")),
+        "battery": ("battery", body.battery),
+    }
+    for section, (kind, part) in parts.items():
+        if part and kind not in kinds:
+            yield Problem(f'the {section} needs a device of the kind "{kind}"', section)
+    for index, joint in enumerate(body.joints):
+        if joint.name not in names:
+            yield Problem(f'the joint "{joint.name}" needs a device of its name', "joints", index)
+    for index, hand in enumerate(body.hands):
+        if f"{hand.name} hand" not in names:
+            yield Problem(f'the hand needs a device "{hand.name} hand"', "hands", index)
+
+
+def _components(body: Body) -> Iterator[Problem]:
+    names = {part.name for part in body.components}
+    needs: dict[str, set[str]] = {}
+    for index, part in enumerate(body.components):
+        if part.name in {device.name for device in body.devices}:
+            yield Problem(f'"{part.name}" is the name of a device, too', "component", index, "name")
+        own = set(part.needs)
+        try:
+            own |= set(describe_apart(part, body.folder)["needs"])
+        except ComponentError as problem:
+            yield Problem(str(problem), "component", index, "parameters" if "parameter" in str(problem) else "class")
+        known = names | {device.name for device in body.devices} | set(CAPABILITIES)
+        for need in sorted(own - known):
+            yield Problem(
+                f'"{part.name}" needs "{need}", which is no component, device or part', "component", index, "needs"
+            )
+        for need in sorted(own & set(CAPABILITIES) - names):
+            if not body.has(need):
+                yield Problem(f'"{part.name}" needs "{need}", which the robot lacks', "component", index, "needs")
+        needs[part.name] = own & names
+    around = circle(needs)
+    if around:
+        index = next(at for at, part in enumerate(body.components) if part.name == around[0])
+        yield Problem(f"components need each other in a circle: {' → '.join(around)}", "component", index, "needs")
+
+
+def _words(body: Body) -> list[str]:
+    found = []
+    for part in body.components:
+        try:
+            path = words_file(located(part.place), body.folder)
+        except ComponentError:
+            continue
+        if path is not None and path not in found:
+            found.append(path)
+    return found

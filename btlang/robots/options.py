@@ -1,0 +1,15 @@
+"""Options of the command line that are about robots."""
+
+from __future__ import annotations
+
+from argparse import ArgumentParser
+
+from btlang.robots.platforms import ALL
+
+
+def add_simulate(parser: ArgumentParser) -> None:
+    """The option --simulate."""
+    parser.add_argument(
+        "--simulate", action="append", nargs="?", const=ALL, default=[], metavar="DEVICE",
+        help="simulate the devices of the robot file, or only the one of this name or kind",
+    )  # fmt: skip
