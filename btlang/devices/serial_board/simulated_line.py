@@ -88,6 +88,11 @@ class SimulatedLine:
         if ends is not None:
             _close(ends)
 
+    @property
+    def plugged(self) -> bool:
+        """Whether the cable is connected."""
+        return self._ends is not None
+
     def reset(self) -> None:
         """The board is started again."""
         with self._lock:
