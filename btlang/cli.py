@@ -12,7 +12,7 @@ from importlib import import_module
 
 import btlang
 from btlang.api import Mission, format_mission, world_vocabulary
-from btlang.cli_input import hinting, mission_of, parsed_mission, source_of, typed_source
+from btlang.cli_input import add_robot_words, hinting, mission_of, parsed_mission, source_of, typed_source
 from btlang.cli_options import parsed, show_help, verb_parsers
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source, reason_of
@@ -43,6 +43,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         options = parsed(arguments)
         options.report = Report(options.format, on_output=options.verb == "check")
         try:
+            add_robot_words(options)
             code = _VERBS[options.verb](options)
         except MissionError as error:
             options.report.add(error.diagnostics)

@@ -12,6 +12,7 @@ from btlang.cli_options import quoted, reads_as_mission
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source
+from btlang.robots.platforms import ROBOTS
 from btlang.testing.names import is_test_file
 from btlang.text.source import Source, Span
 
@@ -20,6 +21,16 @@ def typed_source(options: argparse.Namespace) -> Source:
     """The text of the option -c, whose folder is the current one."""
     roots = None if options.include_root is None else ("", options.include_root)
     return Source(options.text, "<command line>", roots=roots, may_load=True)
+
+
+def add_robot_words(options: argparse.Namespace) -> None:
+    """The words of a robot's components count as those of --keywords do, in every verb that takes both."""
+    robot = getattr(options, "robot", "")
+    if not robot or not hasattr(options, "keywords") or robot in ROBOTS or robot.startswith("library:"):
+        return
+    from btlang.components.words import robot_words
+
+    options.keywords = [*robot_words(robot), *options.keywords]
 
 
 def mission_of(options: argparse.Namespace, source: Source | None = None) -> Mission:

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from typing import Any, Protocol
+from typing import Protocol
 
 from btlang.devices.kinds import Command, Reading
 from btlang.engine.leaves.leaf import ActionFailed, Unknown
-from btlang.record import Record
+from btlang.robots.body import Device
+
+__all__ = ["Device", "DeviceError", "DeviceSilent", "Driver", "MakesDriver"]
 
 
 class DeviceError(ActionFailed):
@@ -16,21 +18,6 @@ class DeviceError(ActionFailed):
 
 class DeviceSilent(DeviceError, Unknown):
     """A device tells nothing, or nothing that can be true: what it measures is not known."""
-
-
-class Device(Record):
-    """A device of a robot file. `options` are those of its driver, such as its id on the port.
-
-    `scale` and `offset` make what its driver tells true: value * scale + offset; for a command the other way round.
-    """
-
-    name: str
-    kind: str
-    driver: str
-    port: str = ""
-    options: Mapping[str, Any] = {}
-    scale: float = 1.0
-    offset: float = 0.0
 
 
 class Driver(Protocol):

@@ -85,7 +85,8 @@ class Engine:
         self.stopwatch = stopwatch
         self.on_wake: Callable[[], object] | None = None
         """What the service `wake` calls, in the thread of whoever asks for it: "tick again now"."""
-        own = {"wake": self._wake, "wake_at": clock.leaf_wake_at, "progress": unheard}
+        self._beside: set[object] = set()
+        own = {"wake": self._wake, "wake_at": clock.leaf_wake_at, "progress": unheard, "beside": self._beside}
         self._state = EngineState(bind, clock, {**own, **services}, enums, stopwatch, proxies)
         if on_unknown is not None:
             self._state.on_unknown = lambda fault: on_unknown(self._failure(fault))
@@ -187,9 +188,9 @@ class Engine:
 
     @property
     def works_beside(self) -> bool:
-        """Whether a leaf works in a thread or on the event loop."""
+        """Whether a leaf works in a thread, on the event loop, or elsewhere."""
         background = self._state.background
-        return background is not None and background.is_working
+        return bool(self._beside) or (background is not None and background.is_working)
 
     @property
     def nodes(self) -> list[tuple[str, Node]]:

@@ -36,7 +36,9 @@ def faults(tree: Tree, bind: Callable[[str], LeafBinding | None], services: Mapp
     Trees that are not used are not looked at. `bind` and `services` are as for an Engine, which would refuse the tree
     where there is a fault; it refuses one of too many nodes, too.
     """
-    state = EngineState(bind, Clock(), {"wake": None, "wake_at": None, **services}, {}, None)
+    state = EngineState(
+        bind, Clock(), {"wake": None, "wake_at": None, "progress": None, "beside": None, **services}, {}, None
+    )
     found: list[EngineError] = []
     uses: dict[str, list[Node]] = {}
     used = dict(used_subtrees(tree))

@@ -14,7 +14,9 @@ _FREE_AGAIN = 0.03
 
 
 class Base:
-    """Metres, degrees and seconds. `bumped_into` names what a contact was with, `bumps` counts contacts."""
+    """Metres, degrees and seconds. `bumped_into` names what a contact was with, `bumps` counts contacts, and `wheels`
+    are how far the left and the right wheel have rolled.
+    """
 
     def __init__(self, pose: Pose, obstacles: Obstacles, body: Body) -> None:
         self.pose = pose
@@ -26,6 +28,7 @@ class Base:
         self.bumps = 0
         self.bumped_into = ""
         self.travelled = 0.0
+        self.wheels = (0.0, 0.0)
         self.grips = (1.0, 1.0)
         self._obstacles = obstacles
         self._wanted = (0.0, 0.0)
@@ -108,6 +111,8 @@ class Base:
         self.pose = new
         self.velocity = v, w
         self.travelled += abs(v) * h
+        side = radians(angular) * self._wheel_gap / 2
+        self.wheels = self.wheels[0] + (linear - side) * h, self.wheels[1] + (linear + side) * h
         if self._contact is not None and self._contact.distance_to((new.x, new.y)) > _FREE_AGAIN:
             self._contact = None
         wanted = abs(self._wanted[0]) + self._radius * radians(abs(self._wanted[1]))

@@ -8,6 +8,10 @@ from math import pi
 from btlang.record import Record
 from btlang.vocabulary.capabilities import POSTURE
 
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
 BEARING = "bearing"
 """In a posture the angle towards what the robot points or looks at."""
 
@@ -109,11 +113,44 @@ class Voice(Record):
     character: float
 
 
+class Device(Record):
+    """A device of a robot: `kind` and `driver` are names of btlang.devices, `options` are those of its driver.
+
+    `scale` and `offset` make what its driver tells true: value * scale + offset; for a command the other way round.
+    """
+
+    name: str
+    kind: str
+    driver: str
+    port: str = ""
+    options: Mapping[str, Any] = {}
+    scale: float = 1.0
+    offset: float = 0.0
+
+
+class ComponentPart(Record):
+    """A component of a robot: `place` is its class, `module:Class` or the name of an installed one.
+
+    `runs` is "process" or "here", in the robot's own process. `needs` are those beside the ones that its class names.
+    `restarts` says how often in a minute it is started again after it has failed. It is given up where a transition
+    takes longer than `limit` seconds, or it is silent for longer than `silence` seconds.
+    """
+
+    name: str
+    place: str
+    runs: str = "process"
+    needs: tuple[str, ...] = ()
+    parameters: Mapping[str, Any] = {}
+    restarts: int = 5
+    limit: float = 10.0
+    silence: float = 0.8
+
+
 class Body(Record):
     """All that is known of a robot. What it lacks is None, or is not in the tuples.
 
     `over` is what it runs on where nothing else is said: a name of btlang.robots.registry.ROBOTS. Joints that a posture
-    does not name stay where they are; its steps follow each other.
+    does not name stay where they are; its steps follow each other. `folder` is that of its file.
     """
 
     name: str
@@ -129,6 +166,9 @@ class Body(Record):
     dock: Dock | None = None
     voice: Voice | None = None
     screen: bool = False
+    devices: tuple[Device, ...] = ()
+    components: tuple[ComponentPart, ...] = ()
+    folder: str = ""
 
     @property
     def driving(self) -> Limits:

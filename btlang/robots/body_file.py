@@ -11,6 +11,8 @@ from btlang.robots.body import (
     Base,
     Battery,
     Body,
+    ComponentPart,
+    Device,
     Dock,
     HandPart,
     Joint,
@@ -29,6 +31,7 @@ from btlang.vocabulary.shipped import BODIES, STANDARD_BODY
 
 _HANDS = ("left", "right")
 _SENSORS = ("scanner", "bumper")
+_RUNS = ("process", "here")
 _LEAST = 0.001
 
 
@@ -40,7 +43,9 @@ class BodyError(DataFileError):
 
 def load_body(file: str | Source, overs: Collection[str] = tuple(ROBOTS)) -> Body:
     """The robot in a file or a text, which may run on one of `overs`. Raises BodyError."""
-    return load_data(file, "a robot", lambda top: _body(top, overs), BodyError)
+    path = file.name if isinstance(file, Source) else file
+    folder = os.path.dirname(os.path.abspath(path)) if os.path.isfile(path) else ""
+    return load_data(file, "a robot", lambda top: _body(top, overs, folder), BodyError)
 
 
 def read_body(file: str | Source, overs: Collection[str] = tuple(ROBOTS)) -> Body:
@@ -62,7 +67,7 @@ def shipped_bodies() -> list[str]:
     return sorted(name.removesuffix(".toml") for name in os.listdir(BODIES) if name.endswith(".toml"))
 
 
-def _body(top: Table, overs: Collection[str]) -> Body:
+def _body(top: Table, overs: Collection[str], folder: str) -> Body:
     name, over = top.text("name"), top.choice("over", tuple(ROBOTS), "simulated")
     if over not in overs:
         listed = " or ".join(f'"{each}"' for each in overs)
@@ -93,8 +98,13 @@ def _body(top: Table, overs: Collection[str]) -> Body:
         table = top.table("voice")
         voice = table.finish(Voice(table.number("text", low=0.0), table.number("character", low=0.0)))
     screen = top.flag("screen")
+    devices = tuple(map(_device, top.tables("device")))
+    components = tuple(map(_component, top.tables("component")))
+    _check_unique("device", [device.name for device in devices])
+    _check_unique("component", [component.name for component in components])
     made = Body(
-        name, radius, over, base, navigation, joints, postures, hands, sensors, battery, dock, voice, screen
+        name, radius, over, base, navigation, joints, postures, hands, sensors, battery, dock, voice, screen,
+        devices, components, folder,
     )  # fmt: skip
     return top.finish(made)
 
@@ -154,6 +164,29 @@ def _hand(table: Table) -> HandPart:
 def _sensor(table: Table) -> Sensor:
     kind, frame = table.choice("kind", _SENSORS), table.text("frame")
     return table.finish(Sensor(kind, frame, table.number("range", low=_LEAST) if kind == "scanner" else 0.0))
+
+
+def _device(table: Table) -> Device:
+    name, kind, driver = table.text("name"), table.text("kind"), table.text("driver")
+    port = table.text("port") if table.has("port") else ""
+    scale, offset = table.number("scale", 1.0), table.number("offset", 0.0)
+    if scale == 0.0:
+        raise table.problem("scale", '"scale" must not be 0')
+    return table.finish(Device(name, kind, driver, port, table.values("options"), scale, offset))
+
+
+def _component(table: Table) -> ComponentPart:
+    made = ComponentPart(
+        table.text("name"),
+        table.text("class"),
+        table.choice("runs", _RUNS, _RUNS[0]),
+        table.texts("needs"),
+        table.values("parameters"),
+        int(table.number("restarts", 5, low=0, high=1000)),
+        table.number("limit", 10.0, low=0.1, high=3600.0),
+        table.number("silence", 0.8, low=0.3, high=3600.0),
+    )
+    return table.finish(made)
 
 
 def _check_unique(section: str, names: list[str], key: str = "name") -> None:

@@ -55,6 +55,8 @@ class Machine(Protocol):
     """
 
     on_event: OnEvent | None
+    on_step: Callable[[float], object] | None
+    """Called at the end of each step with its seconds."""
 
     @property
     def body(self) -> Body:

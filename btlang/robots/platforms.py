@@ -18,8 +18,21 @@ ROBOTS = {
 """Functions of a world and a body, by what the robot runs on; imported when it is asked for."""
 
 
+COMPONENTS = "btlang.components.connection:component_connection"
+"""What adds the components and devices of a body to a connection."""
+
+
 def connection_function(name: str) -> Callable[..., Connection]:
     """What connects to a robot, by a name in ROBOTS."""
-    module, _, function = ROBOTS[name].partition(":")
+    return _imported(ROBOTS[name])
+
+
+def component_function() -> Callable[..., Connection]:
+    """That of COMPONENTS."""
+    return _imported(COMPONENTS)
+
+
+def _imported(place: str) -> Callable[..., Connection]:
+    module, _, function = place.partition(":")
     made: Callable[..., Connection] = getattr(import_module(module), function)
     return made

@@ -4,10 +4,11 @@ from __future__ import annotations
 
 import os
 from collections.abc import Callable, Mapping
+from functools import partial
 
 from btlang.record import Record
 from btlang.robots.body_file import read_body, shipped_bodies, standard_body
-from btlang.robots.platforms import ROBOTS, connection_function
+from btlang.robots.platforms import ROBOTS, component_function, connection_function
 from btlang.text.source import Source
 from btlang.vocabulary.shipped import BODIES
 
@@ -59,7 +60,10 @@ class Connector(Record):
 
     def __call__(self, world: World) -> Connection:
         """Raises MissionError where the robot cannot be reached."""
-        return connection_function(self.over)(world, body=self.body, **self.options)
+        connect = partial(connection_function(self.over), world, body=self.body, **self.options)
+        if not (self.body.components or self.body.devices):
+            return connect()
+        return component_function()(connect, self.body)
 
 
 def connector(robot: str | Source, over: str | None = None, **options: Any) -> Connector:

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from math import ceil
 from typing import Any
 
@@ -45,6 +45,8 @@ class SimulatedRobot:
         self.normal_turn = body.turning.speed
         self.world = self._given_world = world
         self.on_event = on_event
+        self.on_step: Callable[[float], object] | None = None
+        """Called at the end of each step with its seconds."""
         self.time = 0.0
         self.stops = 0
         self._obstacles = Obstacles(world)
@@ -71,6 +73,8 @@ class SimulatedRobot:
             if stopped or self._latch.refuses:
                 self._rest()  # again: what was under way in this thread may have overwritten what `stop` did in another
             self._move_on(dt / pieces)
+        if self.on_step is not None:
+            self.on_step(dt)
 
     def _move_on(self, dt: float) -> None:
         self.time += dt
@@ -146,6 +150,11 @@ class SimulatedRobot:
     def travelled(self) -> float:
         """Metres that it has driven."""
         return self._base.travelled
+
+    @property
+    def wheels(self) -> tuple[float, float]:
+        """Metres that the left and the right wheel have rolled."""
+        return self._base.wheels
 
     def drive(self, linear: float, angular: float) -> None:
         """Sets the wanted metres and degrees a second; ends a journey under way."""

@@ -67,6 +67,7 @@ class RosRobot:
         self.normal_speed, self.max_speed = body.driving.speed, body.driving.top_speed
         self.normal_turn = body.turning.speed
         self.on_event = on_event
+        self.on_step: Callable[[float], object] | None = None
         self.stops = 0
         self.time = 0.0
         self.subscriptions = subscriptions = SubscriptionCache(node, now)
@@ -120,6 +121,8 @@ class RosRobot:
         self._senses.step()
         if arrived is not None and arrived.failure is None:
             self._emit("arrive", name=arrived.name)
+        if self.on_step is not None:
+            self.on_step(dt)
 
     @property
     def time_of_day(self) -> float:

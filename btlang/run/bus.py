@@ -52,6 +52,7 @@ class Bus:
         self.errors: list[Exception] = []
         self.slow: list[SlowSink] = []
         """Known after `close`."""
+        self.closed = False
         self.before: Callable[[], object] | None = None
         self._number = 0
         self._numbering = threading.Lock()
@@ -94,6 +95,7 @@ class Bus:
 
     def close(self) -> None:
         """Waits until the sinks have had what they are to get."""
+        self.closed = True
         for queue in self._queues:
             queue.close()
         self.slow = [slow for queue in self._queues if (slow := queue.slow()) is not None]

@@ -96,6 +96,27 @@ class Table:
             raise self.problem(key, f'"{key}" must be one of {listed}')
         return str(value)
 
+    def texts(self, key: str) -> tuple[str, ...]:
+        """A list of texts that are not blank, empty where it is missing. Raises Problem."""
+        for index, item in enumerate(self.items(key)):
+            if not isinstance(item, str) or not item.strip():
+                raise Problem(f'"{key}" must be a list of texts; write {key} = ["voice"]', *self._path, key, index)
+        return tuple(self.items(key))
+
+    def values(self, key: str) -> dict[str, Any]:
+        """A table of numbers, texts, flags and lists of them by names that others know, empty where it is missing.
+
+        Raises Problem.
+        """
+        value = self._values[key] if self.has(key) else {}
+        if not isinstance(value, dict):
+            raise self.problem(key, f'"{key}" must be a table; write {key} = {{ id = 1 }}')
+        for name, item in value.items():
+            items = item if isinstance(item, list) else [item]
+            if any(not isinstance(each, int | float | str) or each != each for each in items):
+                raise Problem(f'"{name}" must be a number, a text, true or false', *self._path, key, name)
+        return dict(value)
+
     def table(self, key: str) -> Table:
         """The table under the key. Raises Problem."""
         value = self._required(key, "a table")

@@ -13,10 +13,11 @@ A leaf is one of
   outlives the run.
 
 Parameters are filled by name: ports first, then services (`robot`, `clock`, `blackboard`, `wake`, `wake_at`,
-`progress`); a class gets the services in its constructor and the ports in `start`. `wake()` asks for a tick at once,
-from any thread. `wake_at(time)`, called during a tick, asks for the next tick at that time of the clock if that is
-sooner than usual. A thread also gets `halted`, a threading.Event. `progress(share, state)` reports from any thread how
-much is done, from 0 to 1, and in words what the leaf is doing; in most runs nobody listens.
+`progress`, `beside`); a class gets the services in its constructor and the ports in `start`. `wake()` asks for a tick
+at once, from any thread. `wake_at(time)`, called during a tick, asks for the next tick at that time of the clock if
+that is sooner than usual. A thread also gets `halted`, a threading.Event. `progress(share, state)` reports from any
+thread how much is done, from 0 to 1, and in words what the leaf is doing; in most runs nobody listens. `beside` is a
+set of whatever works in real time elsewhere, as in another process: a run at full speed waits for it.
 
 Background leaves run concurrently with ticks. Safe for them are `wake`, `progress`, `halted`, reading `clock.now`, and
 reading and setting single blackboard entries. Other services may be proxies (see Engine): they run calls on the thread

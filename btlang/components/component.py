@@ -1,0 +1,152 @@
+"""What a component is: a class with hooks for its life, parameters, and methods that words name."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+from btlang.engine.leaves.leaf import ActionFailed
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any, ClassVar
+
+    from btlang.devices.kinds import Command, Reading
+
+
+class ComponentError(ActionFailed):
+    """Why a component can't be loaded or used, in plain English."""
+
+
+class Parameter:
+    """A value that the robot file may set: a number, a text or a flag, of the type of its default.
+
+    Numbers are from `low` to `high`; a whole default takes whole numbers only. `unit` and `help` are for people.
+    """
+
+    def __init__(
+        self,
+        default: float | str | bool,
+        *,
+        low: float | None = None,
+        high: float | None = None,
+        choices: Sequence[str] = (),
+        unit: str = "",
+        help: str = "",
+    ) -> None:
+        self.default, self.low, self.high = default, low, high
+        self.choices, self.unit, self.help = tuple(choices), unit, help
+        self.name = ""
+
+    def __set_name__(self, owner: type, name: str) -> None:
+        self.name = name
+
+    def __get__(self, component: Component | None, owner: type) -> Any:
+        return self if component is None else component.__dict__.get(self.name, self.default)
+
+    def checked(self, value: object) -> float | str | bool:
+        """The value, as the component gets it. Raises ComponentError."""
+        if isinstance(self.default, bool) or isinstance(value, bool):
+            if not (isinstance(self.default, bool) and isinstance(value, bool)):
+                raise self._wrong("true or false" if isinstance(self.default, bool) else "no flag", value)
+            return value
+        if isinstance(self.default, str):
+            if not isinstance(value, str):
+                raise self._wrong("a text", value)
+            if self.choices and value not in self.choices:
+                raise self._wrong(f"one of {', '.join(self.choices)}", value)
+            return value
+        if not isinstance(value, int | float) or value != value:
+            raise self._wrong("a number", value)
+        whole = isinstance(self.default, int)
+        if whole and value != int(value):
+            raise self._wrong("a whole number", value)
+        low, high = self.low, self.high
+        if (low is not None and value < low) or (high is not None and value > high):
+            low_text, high_text = f"from {low:g}" if low is not None else "", f"to {high:g}" if high is not None else ""
+            raise self._wrong(f"{low_text} {high_text}".strip() + (f" {self.unit}" if self.unit else ""), value)
+        return int(value) if whole else float(value)
+
+    def described(self) -> dict[str, Any]:
+        """All of it as JSON."""
+        names = ("name", "default", "low", "high", "unit", "help")
+        return {name: getattr(self, name) for name in names} | {"choices": list(self.choices)}
+
+    def _wrong(self, wanted: str, value: object) -> ComponentError:
+        return ComponentError(f"{self.name} must be {wanted}, not {value!r}")
+
+
+class Component:
+    """A part of a robot. Subclasses override the hooks that they need; the constructor takes nothing.
+
+    The hooks and `step` are called one at a time, in one thread. A hook that raises leaves the component in error, and
+    one that doesn't end within its time limit is given up. The methods that words name run beside them, in threads of
+    their own or in the thread of the mission: a function, or a generator function in which each `yield` lets time pass.
+    """
+
+    needs: ClassVar[Sequence[str]] = ()
+    """Names of other components, of devices of the robot file, and capabilities such as "base". Those come up first."""
+    version: ClassVar[str] = ""
+    """For people, who compare two versions with it."""
+    rate: ClassVar[float] = 0.0
+    """How often `step` is called, in calls a second; 0: never."""
+
+    name = ""
+    """The one in the robot file."""
+    body: Any = None
+    """What the robot file says of the body: see btlang.robots.body.Body."""
+    _devices: Mapping[str, Any] = {}
+    _tell: Callable[[str, Mapping[str, Any]], object] = staticmethod(lambda kind, data: None)
+
+    def configure(self) -> None:
+        """Gets ready, at rest: parameters and devices are there."""
+
+    def activate(self) -> None:
+        """Begins to work."""
+
+    def deactivate(self) -> None:
+        """Ceases to work; what it moves comes to rest."""
+
+    def clean_up(self) -> None:
+        """Gives back what `configure` took."""
+
+    def shut_down(self) -> None:
+        """Ends for good, from any state."""
+
+    def error(self, problem: Exception) -> None:
+        """After a hook or a step has raised; what it moves comes to rest."""
+
+    def step(self, seconds: float) -> None:
+        """While it is active; so many seconds have passed."""
+
+    def read(self, device: str) -> Reading:
+        """The latest reading of a device that it needs. Raises DeviceSilent where there is none that is new."""
+        reading: Reading = self._device(device).read(device)
+        return reading
+
+    def write(self, device: str, command: Command) -> None:
+        """Tells a device that it needs a command; one that moves comes to rest unless it is told again in 0.2 s."""
+        self._device(device).write(device, command)
+
+    def tell(self, kind: str, **data: Any) -> None:
+        """Reports an event, which logs and recordings of the mission have."""
+        self._tell(kind, data)
+
+    @classmethod
+    def parameters(cls) -> dict[str, Parameter]:
+        """Those of the class, by name."""
+        found = {name: value for each in reversed(cls.__mro__) for name, value in vars(each).items()}
+        return {name: value for name, value in found.items() if isinstance(value, Parameter)}
+
+    def set_parameters(self, values: Mapping[str, object]) -> None:
+        """Sets them as a robot file does. Raises ComponentError for what is unknown or out of its limits."""
+        known = self.parameters()
+        for name, value in values.items():
+            if name not in known:
+                listed = ", ".join(known) or "none"
+                raise ComponentError(f'unknown parameter "{name}"; the parameters are {listed}')
+            self.__dict__[name] = known[name].checked(value)
+
+    def _device(self, name: str) -> Any:
+        if name not in self._devices:
+            raise ComponentError(f'{self.name} has no device "{name}"; name it among its needs')
+        return self._devices[name]

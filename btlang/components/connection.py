@@ -1,0 +1,154 @@
+"""A robot with components: their words are done by them, and their life goes on from run to run."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable, Mapping
+from inspect import Parameter, Signature
+
+from btlang.backends.engine import leaf_binding
+from btlang.components.component import ComponentError
+from btlang.components.inside_host import InsideHost
+from btlang.components.location import located
+from btlang.components.manager import Keeper, Manager
+from btlang.components.process_host import ProcessHost
+from btlang.devices.device_set import DeviceSet
+from btlang.vocabulary.entry import COMPARISONS, MEASURED
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+    from btlang.components.host import Host
+    from btlang.engine.leaves.leaf import LeafBinding
+    from btlang.robots.body import Body, ComponentPart
+    from btlang.run.bus import Bus
+    from btlang.run.connection import Connection
+    from btlang.run.controls import Controls
+    from btlang.run.pace import Pace
+    from btlang.tree.node import Tree
+    from btlang.vocabulary.entry import Entry
+    from btlang.vocabulary.lexicon import Lexicon
+
+_UP = 30.0  # seconds that all components get to come up before the first mission; who is later is waited for no more
+
+
+class ComponentConnection:
+    """See btlang.run.connection.Connection: another one, with the components and devices of a body."""
+
+    def __init__(self, inner: Connection, body: Body) -> None:
+        self._inner, self._body = inner, body
+        self._used: set[str] = set()
+        self._changes: deque[tuple[str, Mapping[str, Any]]] = deque(maxlen=1000)
+        self.robot = inner.robot
+        self.devices = DeviceSet(body, inner.robot, self._tell)
+        self.manager = Manager(body.components, self._host, self._tell, self._in_use)
+        self.robot.on_step = self._step
+        self.devices.start()
+        self.manager.start()
+        self.manager.wait(_UP)
+
+    @property
+    def bus(self) -> Bus:
+        """See Connection."""
+        return self._inner.bus
+
+    def bind(self, entry: Entry, vocabulary: Lexicon) -> LeafBinding | None:
+        """See Connection. A word whose `call` is a method of a component is done by it, as it is by then."""
+        place, _, method = entry.call.rpartition(".") if isinstance(entry.call, str) else ("", "", "")
+        keeper = next((each for each in self.manager.keepers if located(each.part.place) == place), None)
+        if keeper is None:
+            return self._inner.bind(entry, vocabulary)
+        self._used.add(keeper.part.name)
+        call = _asking(keeper, method, entry) if entry.sort == "condition" else _leaf_class(keeper, method, entry)
+        return leaf_binding(entry, vocabulary, call, entry.slots).replace(thread=False)  # type: ignore[no-any-return]
+
+    def check(self, tree: Tree, vocabulary: Lexicon) -> None:
+        """See Connection."""
+        self._inner.check(tree, vocabulary)
+
+    def begin(self, bus: Bus) -> None:
+        """See Connection."""
+        self._used.clear()
+        self._inner.begin(bus)
+        self._flush()
+
+    def pace(self, speed: float, controls: Controls) -> Pace:
+        """See Connection."""
+        return self._inner.pace(speed, controls)
+
+    def close(self) -> None:
+        """See Connection."""
+        try:
+            self.manager.close()
+            self.devices.close()
+        finally:
+            self._inner.close()
+
+    def _host(self, part: ComponentPart, changed: Callable[[], object]) -> Host:
+        if part.runs == "here":
+            return InsideHost(part, self._body, self.devices.readers, changed, self._tell)
+        return ProcessHost(part, self._body.folder, self.devices.readers, changed, self._tell)
+
+    def _in_use(self, name: str) -> bool:
+        return name in self._used and not self.bus.closed
+
+    def _tell(self, kind: str, data: Mapping[str, Any]) -> None:
+        """From any thread; who watches the mission hears of it from the thread that ticks."""
+        self._changes.append((kind, data))
+
+    def _step(self, seconds: float) -> None:
+        self.devices.step()
+        for keeper in self.manager.keepers:
+            if isinstance(keeper.host, InsideHost):
+                keeper.host.step(seconds)
+        self._flush()
+
+    def _flush(self) -> None:
+        while self._changes:
+            self.bus.emit_robot(*self._changes.popleft())
+
+
+def _asking(keeper: Keeper, method: str, entry: Entry) -> Callable[..., Any]:
+    def ask(robot: Any, **ports: Any) -> Any:
+        return keeper.working().ask(method, ports, robot)
+
+    names = ["robot", *(slot.name for slot in entry.slots if slot.name not in (*COMPARISONS, MEASURED))]
+    ask.__signature__ = Signature([Parameter(name, Parameter.KEYWORD_ONLY) for name in names])  # type: ignore[attr-defined]
+    return ask
+
+
+def _leaf_class(keeper: Keeper, method: str, entry: Entry) -> type:
+    """A class leaf that asks at each start where the component lives by then: it may have been started again."""
+
+    class ComponentLeaf:
+        def __init__(self, robot: Any, wake: Callable[[], object], beside: set[object]) -> None:
+            self._robot, self._wake, self._beside = robot, wake, beside
+            self._leaf: Any = None
+
+        def start(self, **ports: Any) -> object:
+            host = keeper.working()
+            self._leaf = host.leaf(method, entry.outputs, self._robot, self._wake, self._beside)
+            return self._leaf.start(**ports)
+
+        def tick(self) -> object:
+            return self._leaf.tick()
+
+        def halt(self) -> None:
+            self._leaf.halt()
+
+    return ComponentLeaf
+
+
+def component_connection(connect: Callable[[], Connection], body: Body) -> Connection:
+    """What `connect` gives, with the components of the body. Raises MissionError (BT071) for what isn't a component."""
+    from btlang.diagnostics.diagnostic import diagnostic
+    from btlang.diagnostics.errors import MissionError
+    from btlang.text.source import NOWHERE
+
+    try:
+        for part in body.components:
+            located(part.place)
+    except ComponentError as problem:
+        raise MissionError([diagnostic("BT071", NOWHERE, reason=str(problem))]) from None
+    return ComponentConnection(connect(), body)

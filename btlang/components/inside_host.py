@@ -1,0 +1,157 @@
+"""A component in the robot's own process: for what is trusted, and for what the tick has to wait for."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Generator, Mapping
+from inspect import isgenerator, signature
+
+from btlang.components.component import Component, ComponentError
+from btlang.components.life_cycle import ACTIVE, TRANSITIONS, UNCONFIGURED
+from btlang.components.location import describe, load_class
+from btlang.engine.leaves.leaf import ActionFailed, described
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+    from btlang.robots.body import Body, ComponentPart
+
+
+class InsideHost:
+    """See btlang.components.host.Host. A hook that doesn't end in time goes on in its thread, and is left alone."""
+
+    process = None
+
+    def __init__(
+        self,
+        part: ComponentPart,
+        body: Body,
+        devices: Mapping[str, Any],
+        changed: Callable[[], object],
+        tell: Callable[[str, Mapping[str, Any]], object],
+    ) -> None:
+        self._part, self._body, self._devices = part, body, devices
+        self._changed, self._tell = changed, tell
+        self._component = Component()
+        self._passed = 0.0
+        self.state = UNCONFIGURED
+        self.problem = ""
+
+    def load(self) -> Mapping[str, Any]:
+        """See Host."""
+        part, folder = self._part, self._body.folder
+        component = self._component = load_class(part.place, folder)()
+        component.name, component.body = part.name, self._body
+        component._devices, component._tell = self._devices, self._tell
+        component.set_parameters(part.parameters)
+        return describe(part.place, folder)
+
+    def transition(self, name: str) -> None:
+        """See Host."""
+        transition, problems = TRANSITIONS[name], list[BaseException]()
+        if self.state not in transition.begins:
+            raise ComponentError(f"it can't {name}: it is {self.state}")
+
+        def work() -> None:
+            try:
+                getattr(self._component, transition.hook)()
+            except BaseException as problem:
+                problems.append(problem)
+
+        thread = threading.Thread(target=work, name=f"btlang {name}", daemon=True)
+        thread.start()
+        thread.join(self._part.limit)
+        if thread.is_alive():
+            self.problem = f"did not {name} within {self._part.limit:g} s"
+            raise ComponentError(f"the {self._part.name} {self.problem}")
+        if problems:
+            self.state = transition.fails
+            self._fail(problems[0])
+            raise ComponentError(_text(problems[0])) from problems[0]
+        self.state = transition.ends
+
+    def look(self) -> str | None:
+        """See Host."""
+        return self.problem or None
+
+    def step(self, seconds: float) -> None:
+        """Lets so many seconds pass for it, in the thread that ticks."""
+        component = self._component
+        if self.state != ACTIVE or not component.rate:
+            return
+        self._passed += seconds
+        if self._passed + 1e-9 < 1 / component.rate:
+            return
+        passed, self._passed = self._passed, 0.0
+        try:
+            component.step(passed)
+        except Exception as problem:
+            self.state, self.problem = UNCONFIGURED, f"failed in its step: {_text(problem)}"
+            self._fail(problem)
+            self._changed()
+
+    def leaf(
+        self, method: str, outputs: tuple[str, ...], robot: Any, wake: Callable[[], object], beside: set[object]
+    ) -> InsideLeaf:
+        """See Host."""
+        return InsideLeaf(self._method(method), robot)
+
+    def ask(self, method: str, ports: Mapping[str, Any], robot: Any) -> Any:
+        """See Host."""
+        return _call(self._method(method), ports, robot)
+
+    def _method(self, name: str) -> Callable[..., Any]:
+        found = getattr(self._component, name, None)
+        if not callable(found):
+            raise ActionFailed(f"the {self._part.name} has no method {name}")
+        return found  # type: ignore[no-any-return]
+
+    def close(self) -> None:
+        """See Host."""
+        self.state = UNCONFIGURED
+
+    def _fail(self, problem: BaseException) -> None:
+        try:
+            self._component.error(problem if isinstance(problem, Exception) else ComponentError(described(problem)))
+        except Exception as another:
+            self.problem = f"failed in its error hook: {described(another)}"
+
+
+def _text(problem: BaseException) -> str:
+    return str(problem) if isinstance(problem, ActionFailed) else described(problem)
+
+
+def _call(method: Callable[..., Any], ports: Mapping[str, Any], robot: Any) -> Any:
+    takes = signature(method).parameters
+    return method(**ports, robot=robot) if "robot" in takes else method(**ports)
+
+
+class InsideLeaf:
+    """A method of a component as a leaf, in the thread that ticks."""
+
+    def __init__(self, method: Callable[..., Any], robot: Any) -> None:
+        self._method, self._robot = method, robot
+        self._generator: Generator[object, Any, object] | None = None
+
+    def start(self, **ports: Any) -> object:
+        """Calls the method; of a generator function it is the first `next`."""
+        result = _call(self._method, ports, self._robot)
+        if not isgenerator(result):
+            return True if result is None else result
+        self._generator = result
+        return self.tick()
+
+    def tick(self) -> object:
+        """Goes on."""
+        assert self._generator is not None
+        try:
+            next(self._generator)
+        except StopIteration as end:
+            return True if end.value is None else end.value
+        return None
+
+    def halt(self) -> None:
+        """Closes it."""
+        if self._generator is not None:
+            self._generator.close()

@@ -1,0 +1,69 @@
+"""Finds the class of a component: by an entry point of the group `btlang.components`, or as `module:Class`."""
+
+from __future__ import annotations
+
+import os
+import sys
+from importlib import import_module
+from importlib.machinery import PathFinder
+from importlib.util import find_spec
+
+from btlang.components.component import Component, ComponentError
+from btlang.engine.leaves.leaf import described
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+ENTRY_POINTS = "btlang.components"
+
+
+def located(place: str) -> str:
+    """The `module:Class` of a name among the entry points; what is one already stays. Raises ComponentError."""
+    if ":" in place:
+        return place
+    from importlib.metadata import entry_points
+
+    for entry_point in entry_points(group=ENTRY_POINTS, name=place):
+        return entry_point.value.replace(" ", "")
+    raise ComponentError(f'no package has a component "{place}"; or write its place, such as "coffee:Machine"')
+
+
+def words_file(place: str, folder: str) -> str | None:
+    """The keyword file of a component, `coffee.toml` beside `coffee.py`; None without one. Imports no component."""
+    module = located(place).partition(":")[0]
+    if folder and "." not in module:
+        path = os.path.join(folder, f"{module}.toml")
+        if os.path.exists(os.path.join(folder, f"{module}.py")):
+            return path if os.path.exists(path) else None
+    try:
+        spec = find_spec(module)
+    except (ImportError, ValueError):
+        return None
+    if spec is None or spec.origin is None:
+        return None
+    path = f"{os.path.splitext(spec.origin)[0]}.toml"
+    return path if os.path.exists(path) else None
+
+
+def load_class(place: str, folder: str) -> type[Component]:
+    """The class, from the folder of its robot file or from what is installed. Raises ComponentError."""
+    module, _, name = located(place).partition(":")
+    if folder and folder not in sys.path and PathFinder.find_spec(module, [folder]) is not None:
+        sys.path.insert(0, folder)
+    try:
+        found: Any = import_module(module)
+        for part in name.split("."):
+            found = getattr(found, part)
+    except Exception as problem:  # whatever somebody's module raises
+        raise ComponentError(f"{place} can't be loaded: {described(problem)}") from problem
+    if not (isinstance(found, type) and issubclass(found, Component)):
+        raise ComponentError(f"{place} isn't a class that is derived from btlang.Component")
+    return found
+
+
+def describe(place: str, folder: str) -> dict[str, Any]:
+    """What a class says of itself, as JSON: version, needs, rate, parameters. Raises ComponentError."""
+    found = load_class(place, folder)
+    parameters = [parameter.described() for parameter in found.parameters().values()]
+    return {"version": str(found.version), "needs": list(found.needs), "rate": found.rate, "parameters": parameters}

@@ -1,0 +1,321 @@
+"""Leads components through their life: up in the order of their needs, down in reverse, up again after a failure."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Iterable, Mapping, Sequence
+
+from btlang.components.component import ComponentError
+from btlang.components.life_cycle import ACTIVE, FINALIZED, INACTIVE, UNCONFIGURED
+from btlang.engine.leaves.leaf import ActionFailed
+from btlang.record import Record
+from btlang.robots.body import ComponentPart
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+    from btlang.components.host import Host
+
+_LOOK = 0.1  # seconds between two looks at each component
+_MINUTE = 60.0
+_PAUSE, _LONGEST = 0.1, 10.0  # seconds before it is started again: the first, doubled each time, and the longest
+
+
+class ComponentStatus(Record):
+    """What is known of a component. `why` is why it isn't active; `process` the number of its own process."""
+
+    name: str
+    place: str
+    version: str
+    state: str
+    why: str = ""
+    starts: int = 0
+    process: int | None = None
+    needs: tuple[str, ...] = ()
+    parameters: Mapping[str, Any] = {}
+
+
+class Manager:
+    """The components of one robot, by name. Each is led by a thread of its own; all methods are for any thread.
+
+    `make` makes the host of a part. `tell` gets an event of each change: "component" with name, state, why, version.
+    `in_use` says whether a running mission uses the component of a name: then it is not replaced.
+    """
+
+    def __init__(
+        self,
+        parts: Iterable[ComponentPart],
+        make: Callable[[ComponentPart, Callable[[], object]], Host],
+        tell: Callable[[str, Mapping[str, Any]], object] = lambda kind, data: None,
+        in_use: Callable[[str], bool] = lambda name: False,
+    ) -> None:
+        self._make, self._tell, self._in_use = make, tell, in_use
+        self.changed = threading.Condition()
+        """Notified whenever the state of one of them changes."""
+        self._closing = False
+        self._keepers: dict[str, Keeper] = {}
+        for part in parts:
+            self._keepers[part.name] = Keeper(self, part)
+
+    def start(self) -> None:
+        """Begins to bring all of them up."""
+        for keeper in tuple(self._keepers.values()):
+            keeper.start()
+
+    def wait(self, seconds: float) -> bool:
+        """Waits until none is on its way up; whether all are active then."""
+        with self.changed:
+            self.changed.wait_for(lambda: all(keeper.settled for keeper in self._keepers.values()), seconds)
+            return all(keeper.state == ACTIVE for keeper in self._keepers.values())
+
+    def close(self) -> None:
+        """Brings all of them down, those first that others don't need, and waits for it. May be called twice."""
+        with self.changed:
+            self._closing = True
+            self.changed.notify_all()
+        for keeper in tuple(self._keepers.values()):
+            keeper.join()
+
+    @property
+    def closing(self) -> bool:
+        """Whether all of them go down."""
+        return self._closing
+
+    def keeper(self, name: str) -> Keeper:
+        """The keeper of a component. Raises ComponentError for an unknown name."""
+        if name not in self._keepers:
+            listed = ", ".join(self._keepers) or "none"
+            raise ComponentError(f'there is no component "{name}"; the components are {listed}')
+        return self._keepers[name]
+
+    @property
+    def keepers(self) -> Sequence[Keeper]:
+        """Those of all components."""
+        return tuple(self._keepers.values())
+
+    def statuses(self) -> list[ComponentStatus]:
+        """Of all components, in the order of the robot file."""
+        return [keeper.status() for keeper in tuple(self._keepers.values())]
+
+    def load(self, part: ComponentPart) -> None:
+        """One more, or another one in place of that of its name: as soon as no running mission uses that."""
+        with self.changed:
+            found = self._keepers.get(part.name)
+            if found is None or found.gone:
+                found = self._keepers[part.name] = Keeper(self, part)
+                found.start()
+            else:
+                found.replace(part)
+            self.changed.notify_all()
+
+    def unload(self, name: str) -> None:
+        """Brings one down for good, as soon as no running mission uses it. Raises ComponentError."""
+        with self.changed:
+            self.keeper(name).replace(None)
+            self.changed.notify_all()
+
+    def restart(self, name: str) -> None:
+        """Starts one anew, also one that was given up. Raises ComponentError."""
+        with self.changed:
+            keeper = self.keeper(name)
+            keeper.replace(keeper.part)
+            self.changed.notify_all()
+
+    def tell(self, keeper: Keeper) -> None:
+        """A state has changed; called with the lock."""
+        self.changed.notify_all()
+        status = keeper.status()
+        self._tell("component", {name: getattr(status, name) for name in ("name", "state", "why", "version")})
+
+    def make(self, part: ComponentPart) -> Host:
+        """A host, not started."""
+        return self._make(part, self._wake)
+
+    def needs_met(self, names: Iterable[str]) -> str | None:
+        """The first of the components among these names that isn't active, or won't be for long; None: all are."""
+        known = ((name, self._keepers[name]) for name in names if name in self._keepers)
+        return next((name for name, keeper in known if keeper.state != ACTIVE or keeper.leaving), None)
+
+    def is_needed(self, name: str) -> bool:
+        """Whether one that needs it is still active."""
+        keepers = tuple(self._keepers.values())
+        return any(keeper.state == ACTIVE and name in keeper.needs for keeper in keepers)
+
+    def is_free(self, name: str) -> bool:
+        """Whether no running mission uses it, or one that needs it."""
+        users = (keeper.part.name for keeper in tuple(self._keepers.values()) if name in keeper.needs)
+        return self._closing or not (self._in_use(name) or any(not self.is_free(user) for user in users))
+
+    def forget(self, keeper: Keeper) -> None:
+        """It was unloaded."""
+        if self._keepers.get(keeper.part.name) is keeper:
+            del self._keepers[keeper.part.name]
+
+    def _wake(self) -> None:
+        with self.changed:
+            self.changed.notify_all()
+
+
+class Keeper:
+    """Leads one component through its life, in a thread that also starts its process."""
+
+    def __init__(self, manager: Manager, part: ComponentPart) -> None:
+        self._manager, self.part = manager, part
+        self._next: ComponentPart | None = part  # what it is to be; None: unloaded
+        self._asked = False
+        self.host: Host | None = None
+        self.state, self.why, self.version = UNCONFIGURED, "", ""
+        self.needs: tuple[str, ...] = part.needs
+        self._starts = 0
+        self._failures: deque[float] = deque()
+        self._due = 0.0
+        self._given_up = self.gone = self.leaving = False
+        self._thread = threading.Thread(target=self._keep, name=f"btlang component {part.name}", daemon=True)
+
+    def start(self) -> None:
+        """Begins to bring it up."""
+        self._thread.start()
+
+    def join(self) -> None:
+        """Waits until it is down."""
+        if self._thread.ident is not None:
+            self._thread.join()
+
+    def replace(self, part: ComponentPart | None) -> None:
+        """It is to be another one, or none; called with the lock of the manager."""
+        self._next, self._asked, self._given_up, self._due = part, True, False, 0.0
+        self._failures.clear()
+
+    @property
+    def settled(self) -> bool:
+        """Whether it is active, or will not be without help."""
+        return self.state == ACTIVE or self._given_up or self.gone or bool(self._failures)
+
+    def status(self) -> ComponentStatus:
+        """What is known of it."""
+        part, process = self.part, getattr(self.host, "process", None)
+        return ComponentStatus(
+            part.name, part.place, self.version, self.state, self.why, self._starts, process, self.needs,
+            part.parameters,
+        )  # fmt: skip
+
+    def working(self) -> Host:
+        """Where it lives now. Raises ActionFailed where it isn't active."""
+        host = self.host
+        if host is None or self.state != ACTIVE or host.state != ACTIVE:
+            raise ActionFailed(f"the {self.part.name} {self.why or f'is {self.state}'}")
+        return host
+
+    def _keep(self) -> None:
+        changed = self._manager.changed
+        try:
+            while not self._over():
+                with changed:
+                    if not self._may_begin():
+                        changed.wait(_LOOK)
+                        continue
+                    if self._next is not None:
+                        self.part, self._asked = self._next, False
+                self._live()
+        finally:
+            with changed:
+                self.gone = True
+                self._set(FINALIZED, self.why)
+                if not self._manager.closing:
+                    self._manager.forget(self)
+
+    def _over(self) -> bool:
+        return self._manager.closing or self._next is None
+
+    def _may_begin(self) -> bool:
+        if self._given_up or time.monotonic() < self._due:
+            return False
+        missing = self._manager.needs_met(self.part.needs)
+        if missing is not None and self.why != f"waits for the {missing}":
+            self._set(self.state, f"waits for the {missing}")
+        return missing is None
+
+    def _live(self) -> None:
+        """From its start to its end or failure."""
+        host = self.host = self._manager.make(self.part)
+        self.leaving, self._starts = False, self._starts + 1
+        try:
+            known = host.load()
+            self.version, self.needs = known["version"], tuple({*self.part.needs, *known["needs"]})
+            host.transition("configure")
+            self._change(INACTIVE, "")
+            while not self._leaves():
+                if self._wait_for_needs():
+                    host.transition("activate")
+                    self._change(ACTIVE, "")
+                    self._watch(host)
+            self._bring_down(host)
+            self._change(UNCONFIGURED, "was brought down")
+        except ComponentError as problem:
+            self._fail(str(problem))
+        finally:
+            host.close()
+
+    def _leaves(self) -> bool:
+        """Whether it is to end, or to be another one, and may."""
+        self.leaving = (self._over() or self._asked) and self._manager.is_free(self.part.name)
+        return self.leaving
+
+    def _wait_for_needs(self) -> bool:
+        with self._manager.changed:
+            missing = self._manager.needs_met(self.needs)
+            if missing is None:
+                return True
+            if self.why != f"waits for the {missing}":
+                self._set(self.state, f"waits for the {missing}")
+            self._manager.changed.wait(_LOOK)
+        self._look()
+        return False
+
+    def _watch(self, host: Host) -> None:
+        """While it is active; where what it needs is gone, it is deactivated."""
+        manager = self._manager
+        while True:
+            self._look()
+            with manager.changed:
+                missing = manager.needs_met(self.needs)
+                if missing is not None or (self._leaves() and not manager.is_needed(self.part.name)):
+                    break
+                manager.changed.wait(_LOOK)
+        self._change(INACTIVE, f"waits for the {missing}" if missing is not None else "")
+        host.transition("deactivate")
+
+    def _look(self) -> None:
+        reason = self.host.look() if self.host is not None else None
+        if reason is not None:
+            raise ComponentError(reason)
+
+    def _bring_down(self, host: Host) -> None:
+        host.transition("clean up")
+        host.transition("shut down")
+
+    def _fail(self, reason: str) -> None:
+        """After growing pauses it is started again, until that was tried too often in a minute."""
+        now = time.monotonic()
+        with self._manager.changed:
+            while self._failures and now - self._failures[0] > _MINUTE:
+                self._failures.popleft()
+            pause = _PAUSE * 2 ** len(self._failures) if self._failures else 0.0
+            self._failures.append(now)
+            self._due = now + min(pause, _LONGEST)
+            if len(self._failures) > self.part.restarts:
+                self._given_up = True
+                reason = f"{reason}; it was given up after {len(self._failures)} attempts in a minute"
+            self._set(UNCONFIGURED, reason)
+
+    def _change(self, state: str, why: str) -> None:
+        with self._manager.changed:
+            self._set(state, why)
+
+    def _set(self, state: str, why: str) -> None:
+        if (state, why) != (self.state, self.why):
+            self.state, self.why = state, why
+            self._manager.tell(self)

@@ -1,0 +1,382 @@
+"""A component in a process of its own: a crash, a leak or an endless loop of it stays there."""
+
+from __future__ import annotations
+
+import os
+import signal
+import socket
+import subprocess
+import sys
+import threading
+import time
+from collections import deque
+from collections.abc import Callable, Mapping
+from contextlib import suppress
+from multiprocessing.connection import Connection
+
+from btlang.components.component import ComponentError
+from btlang.components.life_cycle import ACTIVE, UNCONFIGURED
+from btlang.components.plain import packed, unpacked
+from btlang.engine.leaves.leaf import ActionFailed, Unknown, described
+from btlang.robots.proxy import RobotProxy
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+    from btlang.robots.body import ComponentPart
+
+_BEAT = 0.1  # seconds between two looks at it
+_ANSWER = 0.05  # seconds that a tick waits for a condition
+_ERRORS = 2  # where it writes what it prints: standard output is for what people asked for
+_END = 0.5  # seconds that a process gets to end by itself
+
+
+class Request:
+    """Something that the component is to do. `outcome` is there once `done` is set."""
+
+    def __init__(self, number: int, message: dict[str, Any], wake: Callable[[], object]) -> None:
+        self.number, self.message, self.sent, self._wake = number, message, time.monotonic(), wake
+        self.done = threading.Event()
+        self.outcome: dict[str, Any] = {}
+        self.asked: deque[dict[str, Any]] = deque()
+        self.answers: dict[int, dict[str, Any] | None] = {}
+
+    def end(self, outcome: dict[str, Any]) -> None:
+        """It is done, or nobody will do it."""
+        if not self.done.is_set():
+            self.outcome = outcome
+            self.done.set()
+            self._wake()
+
+    def ask(self, message: dict[str, Any]) -> None:
+        """A question to the robot, for the thread that ticks."""
+        self.answers[message["ask"]] = None
+        self.asked.append(message)
+        self._wake()
+
+    @property
+    def value(self) -> Any:
+        """What it has led to. Raises ActionFailed."""
+        if "problem" in self.outcome:
+            raise (Unknown if self.outcome.get("unknown") else ActionFailed)(self.outcome["problem"])
+        return self.outcome.get("value")
+
+
+class ProcessHost:
+    """See btlang.components.host.Host. `changed` is called, from any thread, when there is something to look at."""
+
+    def __init__(
+        self,
+        part: ComponentPart,
+        folder: str,
+        devices: Mapping[str, Any],
+        changed: Callable[[], object],
+        tell: Callable[[str, Mapping[str, Any]], object],
+    ) -> None:
+        self._part, self._folder, self._devices = part, folder, devices
+        self._changed, self._tell = changed, tell
+        self._process: subprocess.Popen[bytes] | None = None
+        self._connection: Connection | None = None
+        self._sending = threading.Lock()
+        self._requests: dict[int, Request] = {}
+        self._numbers = 0
+        self._lost: str | None = None
+        self._heard = self._beaten = 0.0
+        self._reader: threading.Thread | None = None
+        self.state = UNCONFIGURED
+        self.problem = ""
+
+    @property
+    def process(self) -> int | None:
+        """The number of its process, while there is one."""
+        return self._process.pid if self._process is not None and self._process.poll() is None else None
+
+    def load(self) -> Mapping[str, Any]:
+        """See Host."""
+        ours, its = socket.socketpair()
+        with its:
+            # -B: a version that is written in the second after another one isn't told apart by a compiled file
+            words = [sys.executable, "-B", "-m", "btlang.components.worker", str(its.fileno()), str(os.getpid())]
+            self._process = subprocess.Popen(
+                words, pass_fds=[its.fileno()], start_new_session=True, stdin=subprocess.DEVNULL, stdout=_ERRORS
+            )
+        self._connection, self._heard = Connection(ours.detach()), time.monotonic()
+        self._reader = threading.Thread(target=self._read, name="btlang component", daemon=True)
+        self._reader.start()
+        part = self._part
+        value = self._wait(
+            self._request(
+                "load", place=part.place, folder=self._folder, name=part.name, devices=list(self._devices),
+                parameters=dict(part.parameters), body=None,
+            ),
+            "load",
+        )  # fmt: skip
+        return dict(value)
+
+    def transition(self, name: str) -> None:
+        """See Host."""
+        self._wait(self._request(name), name)
+
+    def look(self) -> str | None:
+        """See Host; to be called every 0.1 s. After a silence it asks, and waits as long again, before it gives up."""
+        if self._lost is None and self._connection is not None:
+            now = time.monotonic()
+            if now - self._heard > self._part.silence:
+                self._lose(f"hasn't answered for {now - self._heard:.1f} s")
+            elif now - self._beaten >= _BEAT:
+                self._beaten = now
+                done = [number for number, request in tuple(self._requests.items()) if request.done.is_set()]
+                self._send({"beat": done})
+        return self._lost or (self.problem or None)
+
+    def leaf(
+        self, method: str, outputs: tuple[str, ...], robot: Any, wake: Callable[[], object], beside: set[object]
+    ) -> RemoteLeaf:
+        """See Host."""
+        return RemoteLeaf(self, method, outputs, robot, wake, beside)
+
+    def ask(self, method: str, ports: Mapping[str, Any], robot: Any) -> Any:
+        """See Host. What it asks of the robot meanwhile is answered at once."""
+        news = threading.Event()
+        leaf = RemoteLeaf(self, method, (), robot, news.set, set())
+        leaf.start(**ports)
+        until = time.monotonic() + _ANSWER
+        while (answer := leaf.tick()) is None:
+            if not news.wait(until - time.monotonic()):
+                leaf.halt()
+                raise Unknown(f"the {self._part.name} hasn't answered")
+            news.clear()
+        return answer
+
+    def begin(self, method: str, arguments: dict[str, Any], wake: Callable[[], object]) -> Request:
+        """Calls a method. Raises ActionFailed where it can't be called now."""
+        if self._lost is not None or self.state != ACTIVE:
+            raise ActionFailed(f"the {self._part.name} {self._lost or f'is {self.state}'}")
+        return self._request("call", wake, method=method, arguments=arguments)
+
+    def halt(self, request: Request) -> None:
+        """It need not be done any more."""
+        self._send({"halt": request.number})
+        request.end({"problem": "it was halted"})
+
+    def answer(self, request: Request, asked: dict[str, Any], answer: dict[str, Any]) -> None:
+        """Answers a question of a call."""
+        message = {"answer": asked["ask"], "call": request.number, **answer}
+        try:
+            packed(message)
+        except TypeError as problem:
+            message = {"answer": asked["ask"], "call": request.number, "problem": str(problem)}
+        request.answers[asked["ask"]] = message
+        self._send(message)
+
+    def close(self) -> None:
+        """See Host. Its process ends with the socket; where it doesn't, it is killed with all that it has started."""
+        patience = 0.0 if self._lost is not None else _END
+        self._lose("is being shut down")
+        connection, self._connection = self._connection, None
+        process = self._process
+        if connection is not None:
+            with suppress(OSError), socket.socket(fileno=os.dup(connection.fileno())) as again:
+                again.shutdown(socket.SHUT_RDWR)  # wakes the reader
+            if self._reader is not None:
+                self._reader.join()
+            connection.close()
+        if process is None:
+            return
+        try:
+            process.wait(patience)
+        except subprocess.TimeoutExpired:
+            with suppress(ProcessLookupError):
+                os.killpg(process.pid, signal.SIGKILL)
+            process.wait()
+
+    def _request(self, do: str, wake: Callable[[], object] = lambda: None, **data: Any) -> Request:
+        self._numbers += 1
+        message = {"id": self._numbers, "do": do, **data}
+        request = self._requests[self._numbers] = Request(self._numbers, message, wake)
+        if self._lost is not None:
+            request.end({"problem": f"the {self._part.name} {self._lost}"})
+        else:
+            self._send(message)
+        return request
+
+    def _wait(self, request: Request, what: str) -> Any:
+        until = time.monotonic() + self._part.limit
+        while not request.done.wait(_BEAT):
+            self.look()
+            if time.monotonic() > until:
+                self._lose(f"did not {what} within {self._part.limit:g} s")
+        if self._lost is not None:
+            raise ComponentError(self._lost)
+        try:
+            return request.value
+        except ActionFailed as problem:
+            raise ComponentError(f"can't {what}: {problem}") from None
+
+    def _send(self, message: dict[str, Any]) -> None:
+        try:
+            data = packed(message)
+        except TypeError as problem:
+            raise ActionFailed(str(problem)) from None
+        connection = self._connection
+        if connection is not None:
+            with self._sending, suppress(OSError, ValueError):  # what it has not got is noticed as silence
+                connection.send_bytes(data)
+
+    def _read(self) -> None:
+        connection = self._connection
+        while connection is not None:
+            try:
+                self._take(unpacked(connection.recv_bytes()))
+            except (EOFError, OSError):
+                break
+            except (ValueError, KeyError, TypeError) as problem:
+                self._lose(f"says what can't be understood: {described(problem)}")
+                break
+        self._lose(self._ending())
+
+    def _take(self, message: dict[str, Any]) -> None:
+        self._heard = time.monotonic()
+        if "ended" in message:
+            self.state, self.problem = message["state"], message["problem"]
+            for number, outcome in message["ended"].items():
+                request = self._requests.get(int(number))
+                if request is not None:
+                    request.end(outcome)
+            self._tidy({*message["known"], *map(int, message["ended"])})
+            if self.problem:
+                self._changed()
+        elif "ask" in message:
+            self._asked(message)
+        elif "write" in message:
+            device = self._devices.get(message["write"])
+            if device is not None and self.state == ACTIVE:
+                device.write(message["write"], message["command"])
+        elif "tell" in message:
+            self._tell(str(message["tell"]), dict(message["data"]))
+
+    def _asked(self, message: dict[str, Any]) -> None:
+        number = message["call"]
+        if not number:
+            self._send({"answer": message["ask"], "call": 0, **self._reading(message["device"])})
+            return
+        request = self._requests.get(number)
+        if request is None or request.done.is_set():
+            return
+        if message["ask"] not in request.answers:
+            request.ask(message)
+        elif (answer := request.answers[message["ask"]]) is not None:
+            self._send(answer)
+
+    def _reading(self, name: str) -> dict[str, Any]:
+        try:
+            return {"value": self._devices[name].read(name)}
+        except ActionFailed as problem:
+            return {"problem": str(problem), "unknown": True}
+
+    def _tidy(self, known: set[int]) -> None:
+        """Forgets what is over on both sides; what the component knows nothing of is sent again."""
+        now = time.monotonic()
+        for number, request in tuple(self._requests.items()):
+            if number in known:
+                continue
+            if request.done.is_set():
+                self._requests.pop(number, None)
+            elif now - request.sent > _BEAT:
+                request.sent = now
+                self._send({**request.message, "again": True})
+
+    def _lose(self, reason: str) -> None:
+        """Nothing can be asked of it any more; all that waits for it fails with this reason."""
+        if self._lost is None:
+            self._lost = reason
+            for request in tuple(self._requests.values()):
+                request.end({"problem": f"the {self._part.name} {reason}"})
+            self._changed()
+
+    def _ending(self) -> str:
+        process = self._process
+        try:
+            code = process.wait(_END) if process is not None else None
+        except subprocess.TimeoutExpired:
+            return "has let go of the robot"
+        if code is None:
+            return "has ended"
+        return f"was killed by signal {-code}" if code < 0 else f"ended with exit code {code}"
+
+
+class RemoteLeaf:
+    """A method of a component as a leaf. What the method asks of the robot is done in the thread that ticks."""
+
+    def __init__(
+        self,
+        host: ProcessHost,
+        method: str,
+        outputs: tuple[str, ...],
+        robot: Any,
+        wake: Callable[[], object],
+        beside: set[object],
+    ) -> None:
+        self._host, self._method, self._outputs, self._wake, self._beside = host, method, outputs, wake, beside
+        self._proxy = RobotProxy(robot, lambda call: call())
+        self._request: Request | None = None
+        self._stores: dict[str, Callable[[Any], object]] = {}
+        self._operations: list[Any] = []
+
+    def start(self, **ports: Any) -> object:
+        """Calls the method."""
+        self._stores = {name: ports.pop(name) for name in self._outputs if name in ports}
+        self._operations = []
+        arguments = {**ports, "outputs": list(self._stores)} if self._stores else ports
+        self._request = self._host.begin(self._method, arguments, self._wake)
+        self._beside.add(self)
+        return None
+
+    def tick(self) -> object:
+        """Does what it asks for, and looks whether it has ended."""
+        request = self._request
+        assert request is not None
+        while request.asked:
+            asked = request.asked.popleft()
+            self._host.answer(request, asked, self._do(asked))
+        if not request.done.is_set():
+            return None
+        self._request = None
+        self._beside.discard(self)
+        try:
+            value = request.value
+        except ActionFailed:
+            self._proxy.let_go()
+            raise
+        for name, stored in request.outcome.get("stored", {}).items():
+            self._stores[name](stored)
+        return True if value is None else value
+
+    def halt(self) -> None:
+        """Ends the method, and what it has set about."""
+        request, self._request = self._request, None
+        self._beside.discard(self)
+        if request is not None:
+            self._host.halt(request)
+            self._proxy.let_go()
+
+    def _do(self, asked: dict[str, Any]) -> dict[str, Any]:
+        """A use of the robot, or of an operation that it has begun."""
+        try:
+            subject = self._operations[asked["operation"]] if "operation" in asked else self._proxy
+            name = asked["robot"]
+            if name.startswith("_"):
+                raise ActionFailed(f"a robot has no {name}")
+            value = getattr(subject, name)
+            if "args" in asked:
+                value = value(*asked["args"], **asked.get("named", {}))
+        except KeyboardInterrupt:
+            raise
+        except BaseException as problem:
+            text = str(problem) if isinstance(problem, ActionFailed) else described(problem)
+            return {"problem": text, "unknown": isinstance(problem, Unknown)}
+        if hasattr(value, "cancel"):
+            self._operations.append(value)
+            return {"value": {"operation": len(self._operations) - 1}}
+        return {"value": value}

@@ -1,0 +1,27 @@
+"""The words that a robot's components bring."""
+
+from __future__ import annotations
+
+from btlang.components.component import ComponentError
+from btlang.components.location import words_file
+from btlang.diagnostics.diagnostic import diagnostic
+from btlang.diagnostics.errors import MissionError
+from btlang.robots.registry import body_of
+from btlang.text.source import NOWHERE
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.text.source import Source
+
+
+def robot_words(robot: str | Source) -> list[str]:
+    """The keyword files of the components of a robot, as --robot names it. Imports none of them.
+
+    Raises as btlang.robots.registry.body_of, and MissionError (BT071) for a component that isn't installed.
+    """
+    body = body_of(robot)
+    try:
+        files = [words_file(part.place, body.folder) for part in body.components]
+    except ComponentError as problem:
+        raise MissionError([diagnostic("BT071", NOWHERE, reason=str(problem))]) from None
+    return [file for file in dict.fromkeys(files) if file is not None]

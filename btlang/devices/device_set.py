@@ -1,0 +1,80 @@
+"""All devices of a robot by name, whatever is behind them."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping, Sequence
+
+from btlang.devices.drivers import SIMULATED, driver_class
+from btlang.devices.loop import DeviceLoop
+from btlang.devices.simulated import SimulatedDevice
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any, Protocol
+
+    from btlang.devices.kinds import Command, Reading
+    from btlang.robots.body import Body, Device
+
+    class Reads(Protocol):
+        """What reads and writes devices."""
+
+        def read(self, name: str) -> Reading: ...
+        def write(self, name: str, command: Command) -> None: ...
+        def silent(self, name: str) -> str | None: ...
+
+
+class DeviceSet:
+    """The devices of a body: those of one driver and port share a loop. `robot` is where simulated ones act.
+
+    `tell` gets an event when a device falls silent or is back: "device" with name, kind and why.
+    """
+
+    def __init__(self, body: Body, robot: Any, tell: Callable[[str, Mapping[str, Any]], object]) -> None:
+        self._tell = tell
+        self.devices: Mapping[str, Device] = {device.name: device for device in body.devices}
+        self._reads: dict[str, Reads] = {}
+        self.loops: list[DeviceLoop] = []
+        self._simulated: list[SimulatedDevice] = []
+        ports: dict[tuple[str, str], list[Device]] = {}
+        for device in body.devices:
+            if device.driver == SIMULATED:
+                simulated = self._reads[device.name] = SimulatedDevice(device, robot)
+                self._simulated.append(simulated)
+            else:
+                ports.setdefault((device.driver, device.port), []).append(device)
+        for (driver, port), devices in ports.items():
+            loop = DeviceLoop(driver_class(driver, body.folder)(port, devices), tuple(devices), self._changed)
+            self.loops.append(loop)
+            self._reads.update(dict.fromkeys(loop.devices, loop))
+
+    def start(self) -> None:
+        """Begins to read and write."""
+        for loop in self.loops:
+            loop.start()
+
+    def close(self) -> None:
+        """Brings what moves to rest, and lets go of the ports. May be called twice."""
+        for loop in self.loops:
+            loop.close()
+
+    def step(self) -> None:
+        """The world of the simulated ones has moved on; in the thread of the robot."""
+        for device in self._simulated:
+            device.step()
+
+    def rest(self) -> None:
+        """What moves comes to rest within 0.2 s; from any thread, without a lock."""
+        for loop in self.loops:
+            loop.rest()
+
+    @property
+    def readers(self) -> Mapping[str, Reads]:
+        """What reads and writes each device, by its name."""
+        return self._reads
+
+    def states(self) -> Sequence[tuple[Device, str | None]]:
+        """All devices, with why each is silent."""
+        return [(device, self._reads[name].silent(name)) for name, device in self.devices.items()]
+
+    def _changed(self, name: str, reason: str | None) -> None:
+        self._tell("device", {"name": name, "kind": self.devices[name].kind, "why": reason or ""})

@@ -1,0 +1,232 @@
+"""Simulated devices of all kinds: they act in the world of the simulated robot, with noise, delay and faults."""
+
+from __future__ import annotations
+
+from collections import deque
+from collections.abc import Callable
+from math import inf, radians
+from random import Random
+
+from btlang.devices.driver import Device, DeviceError, DeviceSilent
+from btlang.devices.kinds import (
+    KINDS,
+    Charge,
+    Command,
+    Distance,
+    Grip,
+    GripTarget,
+    Image,
+    JointState,
+    JointTarget,
+    Motion,
+    Play,
+    Playing,
+    Pressed,
+    Reading,
+    Scan,
+    Sound,
+    Wheels,
+    WheelSpeeds,
+)
+from btlang.devices.loop import SILENCE
+from btlang.robots.robot import RobotError
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+_WIDTH, _HEIGHT = 160, 120
+_RATE = 16_000
+
+
+class SimulatedDevice:
+    """One device. `read` and `write` are for any thread, `step` for that of the robot. Seconds are those of its world.
+
+    Options of all kinds: `noise` (standard deviation), `delay` in seconds, `silent` and `frozen` as [from, until].
+    Of a range sensor: `angle` (degrees left of ahead), `cone` (degrees), `range` (metres). Of a camera: `angle`, `view`
+    (degrees). Of a joint or hand: `part`, the name in the body, by default that of the device. Of a button: `bumper`.
+    """
+
+    def __init__(self, device: Device, robot: Any) -> None:
+        self._device, self._robot = device, robot
+        self._kind = KINDS[device.kind]
+        known = {"noise", "delay", "silent", "frozen", *_OPTIONS.get(device.kind, ())}
+        for name in device.options:
+            if name not in known:
+                raise DeviceError(f'unknown option "{name}" of the {device.name}; it has {", ".join(sorted(known))}')
+        self._random = Random(device.name)
+        self._past: deque[tuple[float, Reading]] = deque()
+        self._command: Command | None = None
+        self._told = -inf
+        self._begun = 0.0
+        self.is_pressed = False
+        """Of a button: whether somebody presses it."""
+
+    @property
+    def shown(self) -> Command | None:
+        """The latest command: what a light or a display shows."""
+        return self._command
+
+    def read(self, name: str) -> Reading:
+        """The latest reading. Raises DeviceSilent."""
+        now = self._robot.time
+        if self._within("silent", now):
+            raise DeviceSilent(f"the {name} is silent")
+        if self._within("frozen", now) and self._past:
+            return self._past[-1][1]
+        reading = self._with_noise(_READ[self._device.kind](self)) if self._kind.reading is not None else Reading()
+        delay = float(self._option("delay", 0.0))
+        self._past.append((now, reading))
+        while len(self._past) > 1 and self._past[1][0] <= now - delay:
+            self._past.popleft()
+        return self._past[0][1]
+
+    def write(self, name: str, command: Command) -> None:
+        """Tells it a command."""
+        if self._kind.command is None or not isinstance(command, self._kind.command):
+            raise DeviceError(f"the {name} doesn't take a {type(command).__name__}")
+        self._command, self._told = command, self._robot.time
+        act = _WRITE.get(self._device.kind)
+        if act is not None:
+            act(self, command)
+
+    def step(self) -> None:
+        """What moves and is not told so again comes to rest."""
+        if self._kind.moves and self._command is not None and self._robot.time - self._told > SILENCE:
+            self._command = None
+            assert self._kind.command is not None
+            _WRITE[self._device.kind](self, self._kind.command())
+
+    def silent(self, name: str) -> str | None:
+        """Why it is silent."""
+        return "it is switched off in the robot file" if self._within("silent", self._robot.time) else None
+
+    def _option(self, name: str, usual: Any) -> Any:
+        return self._device.options.get(name, usual)
+
+    @property
+    def _part(self) -> str:
+        return str(self._option("part", self._device.name))
+
+    def _within(self, fault: str, now: float) -> bool:
+        begin, end = self._option(fault, (inf, inf))
+        return bool(begin <= now < end)
+
+    def _with_noise(self, reading: Reading) -> Reading:
+        noise = float(self._option("noise", 0.0))
+        if not noise:
+            return reading
+        if isinstance(reading, Scan):
+            return Scan([each + self._random.gauss(0, noise) for each in reading.ranges], reading.start, reading.step)
+        names = {*self._kind.scaled, *self._kind.shifted}
+        changed = {name: getattr(reading, name) + self._random.gauss(0, noise) for name in names}
+        noisy: Reading = reading.replace(**changed)
+        return noisy
+
+    def _distance(self) -> Distance:
+        angle, cone = float(self._option("angle", 0.0)), float(self._option("cone", 15.0))
+        ranges = self._robot.scan()
+        beams = range(round(angle - cone / 2), round(angle + cone / 2) + 1)
+        nearest = min(float(ranges[beam % 360]) for beam in beams)
+        return Distance(nearest if nearest <= float(self._option("range", 4.0)) else inf)
+
+    def _wheels(self) -> Wheels:
+        linear, angular = self._robot.velocity
+        side = radians(angular) * self._gap / 2
+        left, right = self._robot.wheels
+        return Wheels(left, right, linear - side, linear + side)
+
+    @property
+    def _gap(self) -> float:
+        base = self._robot.body.base
+        return float(base.wheel_gap) if base is not None else 1.0
+
+    def _roll(self, command: Command) -> None:
+        assert isinstance(command, WheelSpeeds)
+        turn = (command.right - command.left) / self._gap
+        self._robot.drive((command.left + command.right) / 2, turn / radians(1))
+
+    def _motion(self) -> Motion:
+        return Motion(self._robot.velocity[1], up=9.81, heading=self._robot.pose.heading)
+
+    def _charge(self) -> Charge:
+        return Charge(self._robot.battery, charging=self._robot.charging)
+
+    def _joint(self) -> JointState:
+        return JointState(self._robot.joint(self._part), temperature=30.0)
+
+    def _bend(self, command: Command) -> None:
+        assert isinstance(command, JointTarget)
+        if command.position is None:
+            self._robot.freeze_joints(self._part)
+        else:
+            self._robot.move_joints({self._part: command.position})
+
+    def _grip(self) -> Grip:
+        held = self._robot.holding(self._part.split()[0]) is not None
+        closed = self._command.closed if isinstance(self._command, GripTarget) else None
+        return Grip(float(held) if closed is None else closed, held)
+
+    def _close_hand(self, command: Command) -> None:
+        assert isinstance(command, GripTarget)
+        hand = self._part.split()[0]
+        try:
+            if command.closed is not None and command.closed >= 0.5 and self._robot.holding(hand) is None:
+                self._robot.grasp(hand)
+            elif command.closed is not None and command.closed < 0.5 and self._robot.holding(hand) is not None:
+                self._robot.release(hand)
+        except RobotError:  # it closes on nothing
+            pass
+
+    def _image(self) -> Image:
+        """What the scanner sees, as walls that are darker and lower the farther they are."""
+        import numpy as np  # most missions need none
+
+        view, angle = float(self._option("view", 60.0)), float(self._option("angle", 0.0))
+        ranges = np.asarray(self._robot.scan())
+        columns = np.arange(_WIDTH)
+        bearings = angle + view / 2 - columns * view / _WIDTH
+        distances = ranges[np.round(bearings).astype(int) % 360] * np.cos(np.radians(bearings - angle))
+        halves = np.clip(_HEIGHT / 2 / np.maximum(distances, 0.3), 0, _HEIGHT / 2)
+        rows = np.abs(np.arange(_HEIGHT)[:, None] - _HEIGHT / 2)
+        shade = np.clip(255 / (1 + distances / 3), 30, 255)
+        grey = np.where(rows <= halves[None, :], shade[None, :], np.where(np.arange(_HEIGHT)[:, None] < 60, 235, 90))
+        pixels = np.repeat(grey.astype(np.uint8)[:, :, None], 3, axis=2)
+        return Image(_WIDTH, _HEIGHT, pixels.tobytes())
+
+    def _sound(self) -> Sound:
+        now = self._robot.time
+        count, self._begun = int((now - self._begun) * _RATE), now
+        return Sound(bytes(2 * min(count, _RATE)), _RATE)
+
+    def _playing(self) -> Playing:
+        command = self._command
+        length = len(command.samples) / 2 / command.rate if isinstance(command, Play) else 0.0
+        return Playing(max(0.0, length - (self._robot.time - self._told)))
+
+    def _pressed(self) -> Pressed:
+        return Pressed(self._robot.bumped if self._option("bumper", False) else self.is_pressed)
+
+
+_OPTIONS = {
+    "range": ("angle", "cone", "range"), "camera": ("angle", "view"), "joint": ("part",), "hand": ("part",),
+    "button": ("bumper",),
+}  # fmt: skip
+_READ: dict[str, Callable[[SimulatedDevice], Reading]] = {
+    "range": SimulatedDevice._distance,
+    "lidar": lambda device: Scan(device._robot.scan()),
+    "drive": SimulatedDevice._wheels,
+    "imu": SimulatedDevice._motion,
+    "battery": SimulatedDevice._charge,
+    "joint": SimulatedDevice._joint,
+    "hand": SimulatedDevice._grip,
+    "camera": SimulatedDevice._image,
+    "microphone": SimulatedDevice._sound,
+    "speaker": SimulatedDevice._playing,
+    "button": SimulatedDevice._pressed,
+}
+_WRITE: dict[str, Callable[[SimulatedDevice, Command], None]] = {
+    "drive": SimulatedDevice._roll,
+    "joint": SimulatedDevice._bend,
+    "hand": SimulatedDevice._close_hand,
+}

@@ -1,0 +1,57 @@
+"""A coffee machine, as somebody else might write one, with hooks that go wrong on demand."""
+
+import os
+import time
+
+from btlang.components.component import Component, Parameter
+
+
+class Machine(Component):
+    version = "1.0"
+    heat = Parameter(90.0, low=60, high=95, unit="°C")
+    wrong = Parameter("")  # what goes wrong
+
+    def configure(self):
+        self.cups = 0
+        self._go_wrong("configure")
+
+    def activate(self):
+        self._go_wrong("activate")
+
+    def brew(self, drink, robot):
+        self._go_wrong("brew")
+        robot.print(f"brewing {drink} at {self.heat:g}")
+        yield
+        self.cups += 1
+
+    def bring(self, place, robot):
+        going = robot.navigate_to(place)
+        while not going.done:
+            yield
+        return going.failure is None
+
+    def roll(self, robot):
+        robot.drive(0.3, 0.0)
+        while True:
+            yield
+
+    def has_brewed(self):
+        return self.cups > 0
+
+    def count(self):
+        return self.cups
+
+    def _go_wrong(self, where):
+        what, _, when = self.wrong.partition(" in ")
+        if when != where:
+            return
+        if what == "raise":
+            raise RuntimeError("no water")
+        if what == "hang":
+            time.sleep(1000)
+        if what == "exit":
+            os._exit(7)
+
+
+class Broken:
+    """No component."""

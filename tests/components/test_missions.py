@@ -1,0 +1,147 @@
+"""Missions whose words are done by components, in a process of their own and in the robot's."""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import btlang
+from btlang.components.words import robot_words
+from btlang.run.events import Event, RobotEvent
+from tests.components.robots import machine, robot_file
+
+WHERE = pytest.mark.parametrize("runs", ["process", "here"])
+
+
+def run(robot: str, text: str, **options: Any) -> tuple[btlang.Outcome, list[Event]]:
+    events: list[Event] = []
+    mission = btlang.parse_tree(text, keywords=robot_words(robot))
+    with btlang.Session(robot) as session:
+        outcome = session.run(mission, sinks=[events.append], **{"speed": "max", **options}).outcome
+    assert outcome is not None
+    return outcome, events
+
+
+def printed(events: list[Event]) -> list[str]:
+    return [event.text for event in events if event.tag == "print"]  # type: ignore[attr-defined]
+
+
+@WHERE
+def test_words_conditions_and_quantities(tmp_path: Path, runs: str) -> None:
+    robot = robot_file(tmp_path, machine(runs=f'"{runs}"', parameters="{ heat = 70 }"))
+    text = (
+        "if something was brewed, print early otherwise brew tea\n"
+        "brew\n"
+        "if the number of cups is above 1, print many\n"
+        "bring it to the lobby"
+    )
+    outcome, events = run(robot, text)
+    assert outcome.succeeded, outcome.why()
+    assert printed(events) == ["brewing tea at 70", "brewing coffee at 70", "many"]
+    assert outcome.seconds < 60
+
+
+@WHERE
+def test_what_it_raises_is_the_reason(tmp_path: Path, runs: str) -> None:
+    robot = robot_file(tmp_path, machine(runs=f'"{runs}"', parameters='{ wrong = "raise in brew" }'))
+    outcome, _ = run(robot, "brew tea")
+    assert not outcome.succeeded
+    assert "no water" in outcome.why()
+
+
+@pytest.mark.parametrize("wrong", ["raise", "exit"])
+def test_one_that_does_not_start_fails_its_words(tmp_path: Path, wrong: str) -> None:
+    robot = robot_file(tmp_path, machine(parameters=f'{{ wrong = "{wrong} in configure" }}', restarts=1))
+    outcome, events = run(robot, "try brew tea otherwise print sorry")
+    assert (outcome.succeeded, printed(events)) == (True, ["sorry"])
+    outcome, _ = run(robot, "brew tea")
+    assert "no water" in outcome.why() or "exit code 7" in outcome.why()
+
+
+def test_a_death_fails_the_command_at_once_and_it_is_back_for_the_next(tmp_path: Path) -> None:
+    robot = robot_file(tmp_path, machine())
+    text = "try roll away otherwise print lost\nwait 3 seconds\nbrew tea"
+    events: list[Event] = []
+    mission = btlang.parse_tree(text, keywords=robot_words(robot))
+    with btlang.Session(robot) as session:
+        manager = session.connection.manager  # type: ignore[attr-defined]
+        run = session.start(mission, sinks=[events.append])
+        while session.robot.velocity[0] < 0.25:
+            time.sleep(0.01)
+        process = manager.statuses()[0].process
+        os.kill(process, signal.SIGKILL)
+        run.wait(30)
+        assert run.outcome is not None
+        assert run.outcome.succeeded, run.why()
+        assert manager.statuses()[0].process not in (process, None)
+    assert printed(events) == ["lost", "brewing tea at 90"]
+    told = [dict(event.data) for event in events if isinstance(event, RobotEvent) and event.kind == "component"]
+    assert "was killed by signal 9" in [each["why"] for each in told]
+    assert told[-1]["state"] == "active"
+    for pid in (process, manager.statuses()[0].process):
+        assert pid is None or not os.path.exists(f"/proc/{pid}")
+
+
+def test_what_it_drives_stands_when_it_dies(tmp_path: Path) -> None:
+    robot = robot_file(tmp_path, machine())
+    mission = btlang.parse_tree("roll away", keywords=robot_words(robot))
+    with btlang.Session(robot) as session:
+        run = session.start(mission)
+        while session.robot.velocity[0] < 0.25:
+            time.sleep(0.01)
+        os.kill(session.connection.manager.statuses()[0].process, signal.SIGKILL)  # type: ignore[attr-defined]
+        outcome = run.wait(30)
+        assert outcome is not None
+        assert not outcome.succeeded
+        assert "was killed by signal 9" in outcome.why()
+        assert outcome.standstill.still
+        assert session.robot.velocity == (0.0, 0.0)
+
+
+def test_a_halt_ends_the_method_and_what_it_drives(tmp_path: Path) -> None:
+    robot = robot_file(tmp_path, machine())
+    outcome, _ = run(robot, "roll away for 1 second then brew tea", speed="real")
+    assert outcome.succeeded, outcome.why()
+    assert outcome.seconds < 5
+
+
+def test_a_newer_version_waits_for_the_mission(tmp_path: Path) -> None:
+    robot = robot_file(tmp_path, machine())
+    mission = btlang.parse_tree("brew tea then wait 2 seconds then brew tea", keywords=robot_words(robot))
+    with btlang.Session(robot) as session:
+        manager = session.connection.manager  # type: ignore[attr-defined]
+        run = session.start(mission)
+        time.sleep(0.5)
+        path = tmp_path / "coffee.py"
+        path.write_text(path.read_text(encoding="utf-8").replace('"1.0"', '"2.0"'), encoding="utf-8")
+        old = manager.statuses()[0]
+        manager.load(manager.keeper("machine").part)
+        time.sleep(0.5)
+        assert manager.statuses()[0] == old
+        outcome = run.wait(30)
+        assert outcome is not None
+        assert outcome.succeeded, outcome.why()
+        with manager.changed:
+            assert manager.changed.wait_for(lambda: manager.statuses()[0].version == "2.0", 20)
+            assert manager.changed.wait_for(lambda: manager.statuses()[0].state == "active", 20)
+        assert session.run(mission, speed="max").outcome.succeeded  # type: ignore[union-attr]
+
+
+@pytest.mark.parametrize(
+    ("table", "reason"),
+    [
+        (machine(parameters="{ heat = 99 }"), "heat must be from 60 to 95 °C, not 99"),
+        (machine(parameters="{ cold = 1 }"), 'unknown parameter "cold"; the parameters are heat, wrong'),
+        (machine(**{"class": '"coffee:Broken"'}), "isn't a class that is derived from btlang.Component"),
+        (machine(**{"class": '"coffee:None"'}), "can't be loaded"),
+    ],
+)
+def test_what_cannot_be_loaded_says_why(tmp_path: Path, table: str, reason: str) -> None:
+    robot = robot_file(tmp_path, f"{table}\nrestarts = 0")
+    with btlang.Session(robot) as session:
+        assert reason in session.connection.manager.statuses()[0].why  # type: ignore[attr-defined]
