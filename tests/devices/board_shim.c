@@ -9,7 +9,7 @@ static btlang_board board;
 static uint8_t out[8192];
 static size_t out_count;
 static uint32_t sampled[COUNT], turned;
-static double left, right, position;
+static double left, right, position, joint_speed;
 static uint16_t range_mm;
 static char name[BTLANG_NAME + 2];
 
@@ -22,6 +22,8 @@ static void write_bytes(const uint8_t *bytes, size_t count) {
 
 static void apply(btlang_channel *channel) { (void)channel; }
 
+static double rounded(double value) { return value < 0 ? value - 0.5 : value + 0.5; }
+
 static void sample(btlang_channel *channel) {
     const btlang_command *command = &channel->command;
     switch (channel->kind) {
@@ -29,7 +31,7 @@ static void sample(btlang_channel *channel) {
         btlang_set_range(channel, range_mm);
         break;
     case BTLANG_DRIVE:
-        btlang_set_drive(channel, (int32_t)(left * 10), (int32_t)(right * 10), command->drive.left, command->drive.right);
+        btlang_set_drive(channel, (int32_t)rounded(left * 10), (int32_t)rounded(right * 10), command->drive.left, command->drive.right);
         break;
     case BTLANG_IMU:
         btlang_set_imu(channel, 0, 0, 0, 981, 0);
@@ -41,7 +43,7 @@ static void sample(btlang_channel *channel) {
         btlang_set_button(channel, false);
         break;
     case BTLANG_JOINT:
-        btlang_set_joint(channel, (int32_t)(position * 100), 0, 10, 30, command->joint.loose);
+        btlang_set_joint(channel, (int32_t)rounded(position * 100), (int16_t)rounded(joint_speed * 10), 10, 30, command->joint.loose);
         break;
     default:
         break;
@@ -91,8 +93,14 @@ void shim_turn(uint32_t now_ms, uint32_t board_ms, uint32_t frozen) {
     turned = now_ms;
     left += channels[BTLANG_DRIVE - 1].command.drive.left * seconds;
     right += channels[BTLANG_DRIVE - 1].command.drive.right * seconds;
-    if (joint->joint.goes)
-        position = joint->joint.position * 0.01;
+    joint_speed = 0;
+    if (joint->joint.goes) {
+        double most = (joint->joint.speed == BTLANG_ANY_SPEED ? 90 : joint->joint.speed * 0.1) * seconds;
+        double way = joint->joint.position * 0.01 - position;
+        way = way > most ? most : way < -most ? -most : way;
+        position += way;
+        joint_speed = seconds > 0 ? way / seconds : 0;
+    }
     for (uint8_t at = 0; at < COUNT; at++) {
         if (now_ms - sampled[at] < channels[at].interval_ms)
             continue;

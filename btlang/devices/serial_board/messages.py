@@ -113,11 +113,16 @@ def tell_message(told: Told) -> bytes:
     return _TELL.pack(TELL, told.session, told.sequence) + commands
 
 
-def read_tell(message: bytes) -> Told | None:
-    """None where it can't be read to its end."""
+def read_tell_head(message: bytes) -> tuple[int, int] | None:
+    """Session and sequence."""
     if len(message) < _TELL.size:
         return None
     _, session, sequence = _TELL.unpack_from(message)
+    return session, sequence
+
+
+def read_tell_commands(message: bytes) -> tuple[tuple[int, str, bytes], ...] | None:
+    """None where they can't be read to their end."""
     commands, at = [], _TELL.size
     while at < len(message):
         kind = KINDS_BY_NUMBER.get(message[at + 1], "") if at + 1 < len(message) else ""
@@ -128,7 +133,7 @@ def read_tell(message: bytes) -> Told | None:
             return None
         commands.append((message[at], kind, message[at + _COMMAND.size : end]))
         at = end
-    return Told(session, sequence, tuple(commands))
+    return tuple(commands)
 
 
 def answer_message(answer: Answer) -> bytes:

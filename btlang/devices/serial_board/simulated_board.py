@@ -32,11 +32,11 @@ from btlang.devices.serial_board.messages import (
     Channel,
     Hello,
     Sample,
-    Told,
     answer_message,
     hello_message,
     read_ask_hello,
-    read_tell,
+    read_tell_commands,
+    read_tell_head,
 )
 from btlang.devices.serial_board.simulated_line import SimulatedLine
 from btlang.devices.serial_board.values import COMMANDS, READINGS
@@ -131,10 +131,11 @@ class SimulatedBoard:
                 self._session = session
                 self._rest_all()
             yield hello_message(Hello(self._version, self.name, self._session, before, self.channels))
-        elif message[0] == TELL and (told := read_tell(message)):
-            if told.session == 0 or told.session != self._session:
-                yield answer_message(Answer(self._session, told.sequence, self._milliseconds(now), ()))
-            elif self._obey(told, now):
+        elif message[0] == TELL and (head := read_tell_head(message)):
+            session, sequence = head
+            if session == 0 or session != self._session:
+                yield answer_message(Answer(self._session, sequence, self._milliseconds(now), ()))
+            elif self._obey(read_tell_commands(message), now):
                 samples = tuple(
                     Sample(
                         self.claims.get(channel.number, channel.number),
@@ -145,13 +146,13 @@ class SimulatedBoard:
                     for channel in self.channels
                     if channel.number in self._samples
                 )
-                yield answer_message(Answer(self._session, told.sequence, self._milliseconds(now), samples))
+                yield answer_message(Answer(self._session, sequence, self._milliseconds(now), samples))
 
-    def _obey(self, told: Told, now: float) -> bool:
+    def _obey(self, commands: tuple[tuple[int, str, bytes], ...] | None, now: float) -> bool:
         kinds = {channel.number: channel.kind for channel in self.channels}
-        if any(kinds.get(number) != kind for number, kind, _ in told.commands):
+        if commands is None or any(kinds.get(number) != kind for number, kind, _ in commands):
             return False
-        for number, kind, data in told.commands:
+        for number, kind, data in commands:
             self.commands[number] = COMMANDS[kind].unpack(data)
             if KINDS[kind].moves:
                 self._told[number] = now

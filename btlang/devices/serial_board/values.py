@@ -83,12 +83,12 @@ def _integer(value: float | None, unit: float, limits: tuple[int, int], nothing:
     return max(low, min(high, round(value / unit)))
 
 
-def _known(value: int, unit: float, nothing: int) -> float | None:
-    return None if value == nothing else value * unit
+def _known(value: int, share: int, nothing: int) -> float | None:
+    return None if value == nothing else value / share
 
 
 def _distance(values: tuple[int, ...], tallies: Sequence[Tally]) -> Distance:
-    return Distance(math.inf if values[0] == _U16[1] else values[0] * 0.001)
+    return Distance(math.inf if values[0] == _U16[1] else values[0] / 1000)
 
 
 def _distance_integers(told: Distance) -> tuple[int, ...]:
@@ -96,8 +96,8 @@ def _distance_integers(told: Distance) -> tuple[int, ...]:
 
 
 def _wheels(values: tuple[int, ...], tallies: Sequence[Tally]) -> Wheels:
-    left, right = (tally.count(value) * 0.0001 for tally, value in zip(tallies, values, strict=False))
-    return Wheels(left, right, values[2] * 0.001, values[3] * 0.001)
+    left, right = (tally.count(value) / 10_000 for tally, value in zip(tallies, values, strict=False))
+    return Wheels(left, right, values[2] / 1000, values[3] / 1000)
 
 
 def _wheels_integers(told: Wheels) -> tuple[int, ...]:
@@ -107,9 +107,9 @@ def _wheels_integers(told: Wheels) -> tuple[int, ...]:
 
 def _motion(values: tuple[int, ...], tallies: Sequence[Tally]) -> Motion:
     turning, *pushes, heading = values
-    ahead, left, up = (_known(push, 0.01, _I16[0]) for push in pushes)
-    known = None if heading == _I32[0] else tallies[0].count(heading) * 0.01
-    return Motion(turning * 0.01, ahead, left, up, known)
+    ahead, left, up = (_known(push, 100, _I16[0]) for push in pushes)
+    known = None if heading == _I32[0] else tallies[0].count(heading) / 100
+    return Motion(turning / 100, ahead, left, up, known)
 
 
 def _motion_integers(told: Motion) -> tuple[int, ...]:
@@ -122,10 +122,10 @@ def _charge(values: tuple[int, ...], tallies: Sequence[Tally]) -> Charge:
     if percent > 10_000 or charging > _UNKNOWN:
         raise DeviceError(f"it says {percent / 100} percent, charging {charging}, which can't be true")
     return Charge(
-        percent * 0.01,
-        _known(volts, 0.001, _U16[1]),
-        _known(amperes, 0.01, _I16[0]),
-        _known(temperature, 0.1, _I16[0]),
+        percent / 100,
+        _known(volts, 1000, _U16[1]),
+        _known(amperes, 100, _I16[0]),
+        _known(temperature, 10, _I16[0]),
         None if charging == _UNKNOWN else charging == 1,
     )
 
@@ -150,8 +150,8 @@ def _joint(values: tuple[int, ...], tallies: Sequence[Tally]) -> JointState:
     position, speed, load, temperature, loose = values
     if loose > _LOOSE:
         raise DeviceError(f"its torque is {loose}; it is 0 (on) or 1 (off)")
-    warmth = _known(temperature, 1.0, _I8[0])
-    return JointState(position * 0.01, speed * 0.1, _known(load, 1.0, _I8[0]), warmth, loose == _LOOSE)
+    warmth = _known(temperature, 1, _I8[0])
+    return JointState(position / 100, speed / 10, _known(load, 1, _I8[0]), warmth, loose == _LOOSE)
 
 
 def _joint_integers(told: JointState) -> tuple[int, ...]:
@@ -179,7 +179,7 @@ def _pack_speeds(told: WheelSpeeds) -> bytes:
 
 def _unpack_speeds(data: bytes) -> WheelSpeeds:
     left, right = _SPEEDS.unpack(data)
-    return WheelSpeeds(left * 0.001, right * 0.001)
+    return WheelSpeeds(left / 1000, right / 1000)
 
 
 def _pack_target(told: JointTarget) -> bytes:
@@ -189,7 +189,7 @@ def _pack_target(told: JointTarget) -> bytes:
 
 def _unpack_target(data: bytes) -> JointTarget:
     flags, position, speed = _TARGET.unpack(data)
-    return JointTarget(position * 0.01 if flags & _GOES else None, _known(speed, 0.1, _U16[1]), bool(flags & _LOOSE))
+    return JointTarget(position / 100 if flags & _GOES else None, _known(speed, 10, _U16[1]), bool(flags & _LOOSE))
 
 
 def _pack_colour(told: Colour) -> bytes:
