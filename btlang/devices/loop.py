@@ -63,7 +63,15 @@ class DeviceLoop:
         raise DeviceSilent(f"the {name} is silent: {wrong or _NOTHING_NEW}")
 
     def write(self, name: str, command: Command) -> None:
-        """Tells a device a command, which counts for `silence` seconds; whoever drives tells it again."""
+        """Tells a device a command, which counts for `silence` seconds; whoever drives tells it again.
+
+        Raises DeviceError for one that it doesn't take, or that has what isn't a number in it.
+        """
+        wanted = KINDS[self.devices[name].kind].command
+        if wanted is None or not isinstance(command, wanted):
+            raise DeviceError(f"the {name} doesn't take a {type(command).__name__}")
+        if wrong := _not_numbers(command):
+            raise DeviceError(f"the {name} can't be told a {wrong[0]} that is not a number")
         self._commands[name] = command, time.monotonic()
 
     def rest(self) -> None:
@@ -153,8 +161,12 @@ def _untrue(reading: Reading, device: Device) -> str:
     wanted = KINDS[device.kind].reading or Reading
     if not isinstance(reading, wanted):
         return f"its driver gives {type(reading).__name__}, not {wanted.__name__}"
-    wrong = [name for name in reading.fields if isinstance(value := getattr(reading, name), float) and isnan(value)]
+    wrong = _not_numbers(reading)
     return f"its {wrong[0]} is not a number" if wrong else ""
+
+
+def _not_numbers(record: Reading | Command) -> list[str]:
+    return [name for name in record.fields if isinstance(value := getattr(record, name), float) and isnan(value)]
 
 
 def _calibrated(reading: Reading, device: Device) -> Reading:

@@ -8,6 +8,7 @@ import subprocess
 import time
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
+from math import isinf
 from pathlib import Path
 from typing import Any
 
@@ -76,7 +77,7 @@ class FirmwareBoard:
 
     def set_range(self, metres: float) -> None:
         """See TestBoard."""
-        self._c.shim_set_range(round(metres * 1000))
+        self._c.shim_set_range(0xFFFF if isinf(metres) else round(metres * 1000))
 
     def text(self) -> str:
         """What its display shows."""

@@ -117,6 +117,16 @@ def test_rest_forgets_all_commands() -> None:
         until(lambda: speeds(driver) == WheelSpeeds())
 
 
+def test_commands_that_a_device_does_not_take() -> None:
+    loop = DeviceLoop(TestDriver(), (BASE, FRONT, LAMP))
+    with pytest.raises(DeviceError, match="the front doesn't take a WheelSpeeds"):
+        loop.write("front", WheelSpeeds())
+    with pytest.raises(DeviceError, match="the base doesn't take a Colour"):
+        loop.write("base", Colour())
+    with pytest.raises(DeviceError, match="the base can't be told a right that is not a number"):
+        loop.write("base", WheelSpeeds(0.0, math.nan))
+
+
 def test_readings_that_cease_and_come_back() -> None:
     driver = TestDriver()
     with looped(driver, 0.5) as (loop, changes):

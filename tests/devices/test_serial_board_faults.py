@@ -133,7 +133,7 @@ def test_frozen_sensor(line: SimulatedLine) -> None:
     with driven(line) as user:
         line.board.frozen = {1}
         user.until(lambda: user.loop.silent("range"))
-        assert user.loop.silent("range") == "channel 1 of the board 'base' measures nothing new"
+        assert user.loop.silent("range") == "its channel 1 of the board 'base' measures nothing new"
         user.until(lambda: user.loop.silent("drive") is None)
         line.board.frozen = set()
         user.until_served()
@@ -176,7 +176,7 @@ def test_answer_with_another_number(simulated: SimulatedLine) -> None:
         user.until(lambda: "two channels answer with its number" in str(user.loop.silent("range")))
         user.until(lambda: user.loop.silent("drive") is None)
         board.claims = {1: 9}
-        user.until(lambda: "it answers as channel 9 of the kind range" in str(user.loop.silent("range")))
+        user.until(lambda: "its channel 1 answers as channel 9 of the kind range" in str(user.loop.silent("range")))
         board.claims = {}
         user.until_served()
 
@@ -186,8 +186,8 @@ def test_channel_of_another_kind_or_none(simulated: SimulatedLine) -> None:
     with running(simulated.path, "range", "drive", "battery") as loop:
         user = User(loop, set())
         user.until(lambda: loop.silent("drive") is None)
-        assert loop.silent("range") == "channel 1 of the board 'base' is of the kind imu, not range"
-        assert loop.silent("battery") == "channel 4 of the board 'base' doesn't exist"
+        assert loop.silent("range") == "its channel 1 of the board 'base' is of the kind imu, not range"
+        assert loop.silent("battery") == "its channel 4 of the board 'base' doesn't exist"
 
 
 def test_two_boards_of_one_name(

@@ -9,8 +9,17 @@ from collections.abc import Mapping, Sequence
 
 from btlang.devices.driver import Device, DeviceError, DeviceSilent
 from btlang.devices.kinds import KINDS, Command, Reading
+from btlang.devices.serial_board.frames import FRAMING, MOST_MESSAGE
 from btlang.devices.serial_board.line import Line, begin_session, find_board
-from btlang.devices.serial_board.messages import Answer, Channel, Told, cycle_bytes, read_answer, tell_message
+from btlang.devices.serial_board.messages import (
+    Answer,
+    Channel,
+    Told,
+    answer_size,
+    read_answer,
+    tell_message,
+    tell_size,
+)
 from btlang.devices.serial_board.options import BoardOptions, ChannelOptions, read_options
 from btlang.devices.serial_board.values import COMMANDS, KIND_NUMBERS, READINGS, Tally
 from btlang.record import Record
@@ -71,8 +80,12 @@ class SerialBoard:
                 tally.restart()
         self._session, self._name = hello.session, hello.name
         self._begin(hello.channels, time.monotonic())
-        moving = [device.kind for device in self._devices.values() if KINDS[device.kind].moves]
-        size = cycle_bytes(hello.channels, tuple(moving))
+        moving = tell_size([device.kind for device in self._devices.values() if KINDS[device.kind].moves])
+        if moving > MOST_MESSAGE:
+            raise DeviceError(
+                f"the board '{hello.name}' has too many motors: a message has {MOST_MESSAGE} bytes at most"
+            )
+        size = moving + answer_size(hello.channels) + 2 * FRAMING
         carried = wanted.baud / _BITS * _SHARE / size
         if carried < _SLOWEST:
             raise DeviceError(
@@ -87,21 +100,20 @@ class SerialBoard:
         line = self._line
         if line is None:
             raise DeviceError("the port is not open")
-        told: dict[str, Reading | DeviceError] = dict(self._unusable)
-        self._send(line, commands, told)
+        refused = self._send(line, commands)
+        told: dict[str, Reading | DeviceError] = {}
         until = time.monotonic() + self._patience
         while True:
-            messages = line.receive(until)
+            for message in line.receive(until):
+                told |= self._take(message)
+            if self._sequence not in self._sent:  # it is answered; answers to those before may come first
+                return told | refused
             now = time.monotonic()
-            taken = [self._take(message, told, now) for message in messages]
-            if any(taken):
-                self._answered = now
-                return told
             if now - self._answered > _LOST:
                 raise DeviceError(f"the board '{self._name}' at {line.path} doesn't answer")
             if now >= until:
                 self._patience = min(_PATIENCE, 2 * self._patience)
-                return told
+                return told | refused
 
     def close(self) -> None:
         """See Driver."""
@@ -115,7 +127,7 @@ class SerialBoard:
         self._sent: dict[int, _Sent] = {}
         self._kept: dict[str, bytes] = {}
         self._known: dict[str, _Known] = {}
-        self._began = self._answered = now
+        self._answered = now
         self._milliseconds: int | None = None
         self._patience = _PATIENCE
         self._measuring = tuple(channel for channel in channels if channel.kind in READINGS)
@@ -125,13 +137,15 @@ class SerialBoard:
             number = self._options[name].channel
             if kinds.get(number) != device.kind:
                 found = f"is of the kind {kinds[number]}, not {device.kind}" if number in kinds else "doesn't exist"
-                self._unusable[name] = DeviceSilent(f"channel {number} of the board '{self._name}' {found}")
-        self._users = {
-            self._options[name].channel: name for name in self._devices if name not in self._unusable
-        }  # fmt: skip
+                self._unusable[name] = DeviceSilent(f"its channel {number} of the board '{self._name}' {found}")
+        users = [name for name in self._devices if name not in self._unusable]
+        users.sort(key=lambda name: not KINDS[self._devices[name].kind].moves)  # these always have room in a message
+        self._users = {self._options[name].channel: name for name in users}
 
-    def _send(self, line: Line, commands: Mapping[str, Command], told: dict[str, Reading | DeviceError]) -> None:
-        packed, kept = [], {}
+    def _send(self, line: Line, commands: Mapping[str, Command]) -> dict[str, DeviceError]:
+        """Returns the devices that can't be used now."""
+        kinds: list[str] = []
+        packed, kept, refused = [], {}, dict(self._unusable)
         for number, name in self._users.items():
             kind = self._devices[name].kind
             if name not in commands:
@@ -139,62 +153,63 @@ class SerialBoard:
             try:
                 data = COMMANDS[kind].pack(commands[name])
             except DeviceError as problem:
-                told[name] = problem
-                data = COMMANDS[kind].pack(KINDS[kind].command())  # type: ignore[misc]  # it has one
+                refused[name] = problem
+                data = COMMANDS[kind].pack(type(commands[name])())
             if not KINDS[kind].moves:
-                if self._kept.get(name) == data:
+                if self._kept.get(name) == data or tell_size([*kinds, kind]) > MOST_MESSAGE:
                     continue
                 kept[name] = data
+            kinds.append(kind)
             packed.append((number, kind, data))
         self._sequence = (self._sequence + 1) % 2**16
         now = time.monotonic()
         self._sent = {number: sent for number, sent in self._sent.items() if now - sent.time <= _OLD}
         self._sent[self._sequence] = _Sent(now, kept)
         line.send(tell_message(Told(self._session, self._sequence, tuple(packed))))
+        return refused
 
-    def _take(self, message: bytes, told: dict[str, Reading | DeviceError], now: float) -> bool:
-        """Whether it is an answer that can be used; what is used is put into `told`."""
-        answer = read_answer(message)
+    def _take(self, message: bytes) -> dict[str, Reading | DeviceError]:
+        """What devices tell in an answer; nothing where it isn't one that can be used."""
+        answer, now = read_answer(message), time.monotonic()
         if answer is None:
-            return False
+            return {}
         if answer.session != self._session:
             what = "was started again" if answer.session == 0 else "serves another computer"
             raise DeviceError(f"the board '{self._name}' {what}")
         sent = self._sent.pop(answer.sequence, None)
         if sent is None or now - sent.time > _OLD or len(answer.samples) != len(self._measuring):
-            return False
+            return {}
         last, self._milliseconds = self._milliseconds, answer.milliseconds
         if last is not None and (answer.milliseconds - last) % 2**32 >= 2**31:
             raise DeviceError(f"the time of the board '{self._name}' goes back")
         self._patience = min(_PATIENCE, max(1 / self.rate, 3 * (now - sent.time)))
         self._kept |= sent.kept
-        self._read(answer, told, now)
-        return True
+        self._answered = now
+        return self._read(answer, now)
 
-    def _read(self, answer: Answer, told: dict[str, Reading | DeviceError], now: float) -> None:
+    def _read(self, answer: Answer, now: float) -> dict[str, Reading | DeviceError]:
+        kinds = {name: KINDS[self._devices[name].kind] for name in self._users.values()}
+        told: dict[str, Reading | DeviceError] = {
+            name: Reading() for name, kind in kinds.items() if kind.reading is None
+        }
         claims = Counter(sample.number for sample in answer.samples)
         for channel, sample in zip(self._measuring, answer.samples, strict=True):
             name = self._users.get(channel.number)
-            if name is None or name in told:
+            if name is None:
                 continue
-            if (sample.number, sample.kind) != (channel.number, channel.kind) or claims[channel.number] > 1:
-                twice = "two channels answer with its number" if claims[channel.number] > 1 else (
-                    f"it answers as channel {sample.number} of the kind {sample.kind}"
-                )  # fmt: skip
-                told[name] = DeviceSilent(f"channel {channel.number} can't be trusted: {twice}")
-                continue
-            known = self._counted(name, sample.count, sample.integers, now)
-            reason = self._frozen(name, channel, known, now)
-            if reason:
-                told[name] = DeviceSilent(reason)
-            elif known.moved:
-                try:
+            try:
+                if claims[channel.number] > 1:
+                    raise DeviceSilent(f"two channels answer with its number {channel.number}")
+                if (sample.number, sample.kind) != (channel.number, channel.kind):
+                    said = f"channel {sample.number} of the kind {sample.kind}"
+                    raise DeviceSilent(f"its channel {channel.number} answers as {said}")
+                known = self._counted(name, sample.count, sample.integers, now)
+                self._check_age(name, channel, known, now)
+                if known.moved:
                     told[name] = READINGS[channel.kind].reading(sample.integers, self._tallies[name])
-                except DeviceError as problem:
-                    told[name] = problem
-        for name in self._users.values():
-            if KINDS[self._devices[name].kind].reading is None:
-                told.setdefault(name, Reading())
+            except DeviceError as problem:
+                told[name] = problem
+        return told
 
     def _counted(self, name: str, count: int, integers: tuple[int, ...], now: float) -> _Known:
         last = self._known.get(name)
@@ -208,11 +223,10 @@ class SerialBoard:
         self._known[name] = known
         return known
 
-    def _frozen(self, name: str, channel: Channel, known: _Known, now: float) -> str:
-        """Why what a device tells is too old, "" where it isn't."""
+    def _check_age(self, name: str, channel: Channel, known: _Known, now: float) -> None:
+        place = f"its channel {channel.number} of the board '{self._name}'"
         if now - known.counted > max(_FROZEN, _FROZEN_SAMPLES * channel.interval):
-            return f"channel {channel.number} of the board '{self._name}' measures nothing new"
+            raise DeviceSilent(f"{place} measures nothing new")
         most = self._options[name].frozen
         if most is not None and now - known.changed > most:
-            return f"channel {channel.number} of the board '{self._name}' has had exactly the same value for {most:g} s"
-        return ""
+            raise DeviceSilent(f"{place} has had exactly the same value for {most:g} s")

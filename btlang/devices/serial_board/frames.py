@@ -7,6 +7,10 @@ from binascii import crc_hqx
 MOST = 250
 """Bytes of a message with its CRC at most, so that no block of COBS is full, and all end at a zero."""
 
+MOST_MESSAGE = MOST - 2
+FRAMING = 4
+"""Bytes of a frame beside its message: the CRC, one of COBS, the zero."""
+
 
 def crc16(data: bytes) -> int:
     """CRC-16/CCITT-FALSE: polynomial 0x1021, begins with 0xFFFF, nothing reflected."""
@@ -17,7 +21,7 @@ def encode_frame(message: bytes) -> bytes:
     """The frame of a message. Raises ValueError where it is too long."""
     checked = message + crc16(message).to_bytes(2, "little")
     if len(checked) > MOST:
-        raise ValueError(f"a message of {len(message)} bytes; at most {MOST - 2} fit in a frame")
+        raise ValueError(f"a message of {len(message)} bytes; at most {MOST_MESSAGE} fit in a frame")
     return b"".join(bytes([len(block) + 1]) + block for block in checked.split(b"\0")) + b"\0"
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from struct import Struct
 
 from btlang.devices.serial_board.values import COMMANDS, KIND_NUMBERS, READINGS
@@ -164,9 +165,12 @@ def read_answer(message: bytes) -> Answer | None:
     return Answer(session, sequence, milliseconds, tuple(samples))
 
 
-def cycle_bytes(channels: tuple[Channel, ...], moving: tuple[str, ...]) -> int:
-    """Bytes on the line in one cycle: commands for the channels of these kinds that move, and the answer of all."""
-    told = _TELL.size + sum(_COMMAND.size + COMMANDS[kind].layout.size for kind in moving)
-    answered = [_READING.size + READINGS[channel.kind].layout.size for channel in channels if channel.kind in READINGS]
-    framing = 4  # of each frame: the CRC, a byte of COBS, the zero
-    return told + _ANSWER.size + sum(answered) + 2 * framing
+def tell_size(kinds: Sequence[str]) -> int:
+    """Bytes of a message with commands for channels of these kinds."""
+    return _TELL.size + sum(_COMMAND.size + COMMANDS[kind].layout.size for kind in kinds)
+
+
+def answer_size(channels: Sequence[Channel]) -> int:
+    """Bytes of an answer of these channels."""
+    sizes = [_READING.size + READINGS[channel.kind].layout.size for channel in channels if channel.kind in READINGS]
+    return _ANSWER.size + sum(sizes)

@@ -96,7 +96,8 @@ class SimulatedBoard:
     @property
     def speeds(self) -> tuple[float, float]:
         """Metres a second of the wheels of its first drive."""
-        told = next(command for command in self.commands.values() if isinstance(command, WheelSpeeds))
+        drives = (command for command in self.commands.values() if isinstance(command, WheelSpeeds))
+        told = next(drives, WheelSpeeds())
         return told.left, told.right
 
     def receive(self, data: bytes, now: float) -> bytes:
