@@ -51,7 +51,7 @@ static void sample(btlang_channel *channel) {
 }
 
 bool shim_reset(const char *called) {
-    static const uint16_t intervals[COUNT] = {50, 20, 20, 1000, 20, 20, 0, 0};
+    static const uint16_t intervals[COUNT] = {50, 20, 20, 500, 20, 20, 0, 0};
     strncpy(name, called, sizeof name - 1);
     memset(channels, 0, sizeof channels);
     memset(sampled, 0, sizeof sampled);

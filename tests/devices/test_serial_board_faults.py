@@ -49,14 +49,14 @@ def test_cable_pulled_and_replugged_under_another_name(line: SimulatedLine, port
             user.until_served()
 
 
-def test_the_way_that_was_rolled_while_the_cable_was_out_is_known(line: SimulatedLine) -> None:
+def test_the_way_that_was_rolled_while_the_cable_was_out_is_known(simulated: SimulatedLine) -> None:
     """The board wasn't started again, so its counters are still those of before."""
-    with driven(line) as user:
+    with driven(simulated) as user:
         user.drive(0.2)
         rolled = read_wheels(user.loop)
-        line.deaf = True
+        simulated.deaf = True
         user.until(lambda: user.loop.silent("drive"))
-        line.deaf = False
+        simulated.deaf = False
         user.until_served()
         assert read_wheels(user.loop).left >= rolled.left
 
@@ -81,10 +81,10 @@ def test_reset_while_driving(line: SimulatedLine) -> None:
             user.drive(0.2)
 
 
-def test_slow_bus(line: SimulatedLine) -> None:
+def test_slow_bus(simulated: SimulatedLine) -> None:
     """The line says 115,200 baud, and carries half of it."""
-    with driven(line, "range", "drive", "imu", "joint", rate=200) as user:
-        line.baud = 57_600
+    with driven(simulated, "range", "drive", "imu", "joint", rate=200) as user:
+        simulated.baud = 57_600
         user.drive(amount(1, 5))
         user.until(lambda: 10 < user.loop.rate < 80)
         user.until(user.look)
@@ -147,14 +147,14 @@ def test_sensor_frozen_from_the_start(line: SimulatedLine) -> None:
         user.until(lambda: loop.silent("button") is None and "nothing new" in str(loop.silent("range")))
 
 
-def test_value_that_never_changes(line: SimulatedLine) -> None:
-    with running(line.path, "range", frozen=0.4) as loop:
+def test_value_that_never_changes(simulated: SimulatedLine) -> None:
+    with running(simulated.path, "range", frozen=0.4) as loop:
         user = User(loop, {1.0, 1.5})
         user.drives = False
         user.until(lambda: loop.silent("range") is None)
         user.until(lambda: loop.silent("range"))
         assert "has had exactly the same value for 0.4 s" in str(loop.silent("range"))
-        line.board.set_range(1.5)
+        simulated.board.set_range(1.5)
         user.until(lambda: loop.silent("range") is None)
 
 
@@ -228,21 +228,21 @@ def test_no_board_of_that_name(
     )
 
 
-def test_garbage_for_ever(line: SimulatedLine, monkeypatch: pytest.MonkeyPatch) -> None:
-    with driven(line) as user:
-        line.deaf, line.noise = True, bytes(range(1, 40)) + b"\0"
+def test_garbage_for_ever(simulated: SimulatedLine, monkeypatch: pytest.MonkeyPatch) -> None:
+    with driven(simulated) as user:
+        simulated.deaf, simulated.noise = True, bytes(range(1, 40)) + b"\0"
         lost = time.monotonic()
-        at_rest_after(line, user, lost)
+        at_rest_after(simulated, user, lost)
         user.until(lambda: user.loop.silent("drive") and user.loop.silent("range"))
-        line.deaf, line.noise = False, b""
+        simulated.deaf, simulated.noise = False, b""
         user.until_served()
-    line.deaf, line.noise = True, b"what?" * 3 + b"\0"
-    assert "are no frames (is the baud rate right?)" in not_opened(line, monkeypatch)
+    simulated.deaf, simulated.noise = True, b"what?" * 3 + b"\0"
+    assert "are no frames (is the baud rate right?)" in not_opened(simulated, monkeypatch)
 
 
-def test_garbage_between_frames(line: SimulatedLine) -> None:
-    with driven(line) as user:
-        line.noise = b"debug: x = 3\r\n\0"
+def test_garbage_between_frames(simulated: SimulatedLine) -> None:
+    with driven(simulated) as user:
+        simulated.noise = b"debug: x = 3\r\n\0"
         user.drive(0.3)
         user.until_served()
 

@@ -47,7 +47,7 @@ CHANNELS = (
     Channel(1, "range", 0.05),
     Channel(2, "drive", 0.02),
     Channel(3, "imu", 0.02),
-    Channel(4, "battery", 1.0),
+    Channel(4, "battery", 0.5),
     Channel(5, "button", 0.02),
     Channel(6, "joint", 0.02),
     Channel(7, "light", 0.0),
