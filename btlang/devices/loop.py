@@ -102,10 +102,12 @@ class DeviceLoop:
     def _cycle(self) -> None:
         period = 1.0 / self._driver.rate
         due = time.monotonic()
-        counted, since = 0, due
+        counted, since, took = 0, due, 0.0
         while not self._stopped.is_set():
-            told = self._driver.exchange(self._due_commands(time.monotonic() + period))
+            began = time.monotonic()
+            told = self._driver.exchange(self._due_commands(began + period + took))
             now = time.monotonic()
+            took = now - began
             for name, reading in told.items():
                 self._tell(name, reading, now)
             for name in self.devices:
@@ -120,14 +122,15 @@ class DeviceLoop:
                 self._stopped.wait(due - now)
 
     def _due_commands(self, until: float) -> dict[str, Command]:
-        """Those that count until then, when the devices are told the next ones."""
+        """Those that count until then, when the devices are told the next ones. What moves rests while it's silent."""
         found: dict[str, Command] = {}
         for name, device in self.devices.items():
             kind = KINDS[device.kind]
             if kind.command is None:
                 continue
             command, told = self._commands.get(name, (None, 0.0))
-            late = kind.moves and until - told > self._silence
+            heard = self._readings.get(name, (None, 0.0))[1]
+            late = kind.moves and until - min(told, heard) > self._silence
             if command is not None and not late:
                 found[name] = _inverse(command, device)
             elif kind.moves:

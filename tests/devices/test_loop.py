@@ -104,8 +104,27 @@ def test_a_command_ends_before_its_time_is_over() -> None:
     loop = DeviceLoop(TestDriver(), (BASE,), silence=1.0)
     loop.write("base", WheelSpeeds(0.5, 0.5))
     written = loop._commands["base"][1]
+    loop._tell("base", DRIVES, written + 5.0)
     assert loop._due_commands(written + 0.99) == {"base": WheelSpeeds(0.5, 0.5)}
     assert loop._due_commands(written + 1.01) == {"base": WheelSpeeds()}
+
+
+def test_what_moves_and_is_silent_is_brought_to_rest() -> None:
+    driver = TestDriver()
+    with looped(driver, 0.3) as (loop, _):
+
+        def drives() -> bool:
+            loop.write("base", WheelSpeeds(0.5, 0.5))
+            return bool(driver.commands) and speeds(driver) == WheelSpeeds(0.5, 0.5)
+
+        until(drives)
+        wheels = driver.told.pop("base")
+        until(lambda: not drives())
+        assert loop.silent("front") is None
+        driver.told["base"] = wheels
+        until(drives)
+        driver.told["base"] = DeviceSilent("its encoder is broken")
+        until(lambda: not drives())
 
 
 def test_rest_forgets_all_commands() -> None:

@@ -262,7 +262,9 @@ def test_half_frames(line: SimulatedLine) -> None:
     with driven(line) as user:
         line.cut = 0.5
         user.drive(0.3)
-        line.cut = 1.0
+        user.until_served()
+        line.cut, lost = 1.0, time.monotonic()
+        at_rest_after(line, user, lost)  # nobody drives blind
         user.until(lambda: user.loop.silent("drive") and user.loop.silent("range"))
         line.cut = 0.0
         user.until_served()

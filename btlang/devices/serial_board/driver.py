@@ -9,6 +9,7 @@ from collections.abc import Mapping, Sequence
 
 from btlang.devices.driver import Device, DeviceError, DeviceSilent
 from btlang.devices.kinds import KINDS, Command, Reading
+from btlang.devices.loop import SILENCE
 from btlang.devices.serial_board.frames import FRAMING, MOST_MESSAGE
 from btlang.devices.serial_board.line import Line, begin_session, find_board
 from btlang.devices.serial_board.messages import (
@@ -143,18 +144,21 @@ class SerialBoard:
         self._users = {self._options[name].channel: name for name in users}
 
     def _send(self, line: Line, commands: Mapping[str, Command]) -> dict[str, DeviceError]:
-        """Returns the devices that can't be used now."""
+        """Returns the devices that can't be used now. What moves rests unless an answer is sure to have come lately."""
+        now = time.monotonic()
+        blind = now + self._patience - self._answered > SILENCE
         kinds: list[str] = []
         packed, kept, refused = [], {}, dict(self._unusable)
         for number, name in self._users.items():
             kind = self._devices[name].kind
             if name not in commands:
                 continue
+            rest = type(commands[name])()
             try:
-                data = COMMANDS[kind].pack(commands[name])
+                data = COMMANDS[kind].pack(rest if blind and KINDS[kind].moves else commands[name])
             except DeviceError as problem:
                 refused[name] = problem
-                data = COMMANDS[kind].pack(type(commands[name])())
+                data = COMMANDS[kind].pack(rest)
             if not KINDS[kind].moves:
                 if self._kept.get(name) == data or tell_size([*kinds, kind]) > MOST_MESSAGE:
                     continue
@@ -162,7 +166,6 @@ class SerialBoard:
             kinds.append(kind)
             packed.append((number, kind, data))
         self._sequence = (self._sequence + 1) % 2**16
-        now = time.monotonic()
         self._sent = {number: sent for number, sent in self._sent.items() if now - sent.time <= _OLD}
         self._sent[self._sequence] = _Sent(now, kept)
         line.send(tell_message(Told(self._session, self._sequence, tuple(packed))))
