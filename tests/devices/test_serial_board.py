@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import math
+import signal
+import subprocess
 import sys
 import time
 from collections.abc import Callable, Mapping
@@ -221,3 +223,18 @@ def test_options_that_contradict() -> None:
     with pytest.raises(DeviceError, match="the back and the front have the same channel 1"):
         SerialBoard("x", made(channel=1))
     assert SerialBoard("x", made(channel=2))._board.baud == 9600
+
+
+def test_the_command_that_simulates_a_board() -> None:
+    program = [sys.executable, "-m", "btlang.devices.serial_board.simulated_board", "shown"]
+    with subprocess.Popen(program, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True) as process:
+        try:
+            assert process.stdout is not None
+            path = process.stdout.readline().strip()
+            driver = SerialBoard(path, devices(path, board="shown"))
+            driver.open()
+            driver.close()
+            process.send_signal(signal.SIGINT)
+            assert process.wait(PATIENCE) == 0
+        finally:
+            process.kill()

@@ -248,7 +248,7 @@ def test_garbage_between_frames(simulated: SimulatedLine) -> None:
 
 
 def test_flood(line: SimulatedLine) -> None:
-    """It costs no more than a moment of each second, and says so."""
+    """The port is closed for a moment, so it costs little, and the reason is shown."""
     with driven(line) as user:
         line.noise = b"\x11" * 3000
         user.until(lambda: "is flooded" in str(user.loop.silent("drive")))
