@@ -8,11 +8,14 @@ from inspect import Parameter, Signature
 
 from btlang.backends.engine import leaf_binding
 from btlang.components.component import ComponentError
+from btlang.components.device_robot import DeviceSimulation
 from btlang.components.inside_host import InsideHost
 from btlang.components.location import located
 from btlang.components.manager import Keeper, Manager
 from btlang.components.process_host import ProcessHost
 from btlang.devices.device_set import DeviceSet
+from btlang.devices.simulated import twin
+from btlang.robots.simulation import Simulation
 from btlang.vocabulary.entry import COMPARISONS, MEASURED
 
 TYPE_CHECKING = False
@@ -41,10 +44,15 @@ class ComponentConnection:
         self._used: set[str] = set()
         self._changes: deque[tuple[str, Mapping[str, Any]]] = deque(maxlen=1000)
         self.robot = inner.robot
-        self.devices = DeviceSet(body, inner.robot, self._tell)
+        if isinstance(inner, DeviceSimulation):
+            self.devices = inner.devices
+        else:
+            simulated = isinstance(inner, Simulation)
+            mine = body.replace(devices=tuple(map(twin, body.devices))) if simulated else body
+            self.devices = DeviceSet(mine, inner.robot, self._tell)
+            self.devices.start()
         self.manager = Manager(body.components, self._host, self._tell, self._in_use)
         self.robot.on_step = self._step
-        self.devices.start()
         self.manager.start()
         self.manager.wait(_UP)
 

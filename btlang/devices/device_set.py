@@ -3,24 +3,34 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
+from typing import Protocol
 
+from btlang.devices.driver import DeviceSilent
 from btlang.devices.drivers import SIMULATED, driver_class
+from btlang.devices.kinds import KINDS, Command, Reading
 from btlang.devices.loop import DeviceLoop
 from btlang.devices.simulated import SimulatedDevice
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any, Protocol
+    from typing import Any
 
-    from btlang.devices.kinds import Command, Reading
     from btlang.robots.body import Body, Device
 
-    class Reads(Protocol):
-        """What reads and writes devices."""
 
-        def read(self, name: str) -> Reading: ...
-        def write(self, name: str, command: Command) -> None: ...
-        def silent(self, name: str) -> str | None: ...
+class Reads(Protocol):
+    """What reads and writes devices by their names; see DeviceLoop."""
+
+    def read(self, name: str) -> Reading: ...
+    def write(self, name: str, command: Command) -> None: ...
+    def silent(self, name: str) -> str | None: ...
+
+
+def reader(devices: Mapping[str, Reads], name: str, part: str) -> Reads:
+    """That of a device. Raises DeviceSilent where a part has none."""
+    if name not in devices:
+        raise DeviceSilent(f"the {part} has no device")
+    return devices[name]
 
 
 class DeviceSet:
@@ -39,7 +49,8 @@ class DeviceSet:
         for device in body.devices:
             if device.driver == SIMULATED:
                 simulated = self._reads[device.name] = SimulatedDevice(device, robot)
-                self._simulated.append(simulated)
+                if KINDS[device.kind].moves:
+                    self._simulated.append(simulated)
             else:
                 ports.setdefault((device.driver, device.port), []).append(device)
         for (driver, port), devices in ports.items():
@@ -58,7 +69,7 @@ class DeviceSet:
             loop.close()
 
     def step(self) -> None:
-        """The world of the simulated ones has moved on; in the thread of the robot."""
+        """The world of the simulated ones has moved on, in the thread of the robot: what isn't told again stops."""
         for device in self._simulated:
             device.step()
 
@@ -71,6 +82,10 @@ class DeviceSet:
     def readers(self) -> Mapping[str, Reads]:
         """What reads and writes each device, by its name."""
         return self._reads
+
+    def first(self, kind: str) -> str:
+        """The name of the first device of a kind; "" where there is none."""
+        return next((name for name, device in self.devices.items() if device.kind == kind), "")
 
     def states(self) -> Sequence[tuple[Device, str | None]]:
         """All devices, with why each is silent."""

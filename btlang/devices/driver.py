@@ -6,17 +6,17 @@ from collections.abc import Mapping, Sequence
 from typing import Protocol
 
 from btlang.devices.kinds import Command, Reading
-from btlang.engine.leaves.leaf import ActionFailed, Unknown
 from btlang.robots.body import Device
+from btlang.robots.robot import RobotError, SensorSilent
 
 __all__ = ["Device", "DeviceError", "DeviceSilent", "Driver", "MakesDriver"]
 
 
-class DeviceError(ActionFailed):
+class DeviceError(RobotError):
     """Why a device or a port can't be used, in plain English."""
 
 
-class DeviceSilent(DeviceError, Unknown):
+class DeviceSilent(DeviceError, SensorSilent):
     """A device tells nothing, or nothing that can be true: what it measures is not known."""
 
 

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections import deque
 from collections.abc import Callable
+from contextlib import suppress
 from math import inf, radians
 from random import Random
 
 from btlang.devices.driver import Device, DeviceError, DeviceSilent
+from btlang.devices.drivers import SIMULATED
 from btlang.devices.kinds import (
     KINDS,
     Charge,
@@ -29,6 +31,7 @@ from btlang.devices.kinds import (
     WheelSpeeds,
 )
 from btlang.devices.loop import SILENCE
+from btlang.robots.body import Body
 from btlang.robots.robot import RobotError
 
 TYPE_CHECKING = False
@@ -54,6 +57,7 @@ class SimulatedDevice:
         for name in device.options:
             if name not in known:
                 raise DeviceError(f'unknown option "{name}" of the {device.name}; it has {", ".join(sorted(known))}')
+        self._is_perfect = not {"noise", "delay", "silent", "frozen"} & set(device.options)
         self._random = Random(device.name)
         self._past: deque[tuple[float, Reading]] = deque()
         self._command: Command | None = None
@@ -69,17 +73,22 @@ class SimulatedDevice:
 
     def read(self, name: str) -> Reading:
         """The latest reading. Raises DeviceSilent."""
+        if self._is_perfect:
+            return self._read()
         now = self._robot.time
         if self._within("silent", now):
             raise DeviceSilent(f"the {name} is silent")
         if self._within("frozen", now) and self._past:
             return self._past[-1][1]
-        reading = self._with_noise(_READ[self._device.kind](self)) if self._kind.reading is not None else Reading()
+        reading = self._with_noise(self._read())
         delay = float(self._option("delay", 0.0))
         self._past.append((now, reading))
         while len(self._past) > 1 and self._past[1][0] <= now - delay:
             self._past.popleft()
         return self._past[0][1]
+
+    def _read(self) -> Reading:
+        return _READ[self._device.kind](self) if self._kind.reading is not None else Reading()
 
     def write(self, name: str, command: Command) -> None:
         """Tells it a command."""
@@ -127,7 +136,7 @@ class SimulatedDevice:
         angle, cone = float(self._option("angle", 0.0)), float(self._option("cone", 15.0))
         ranges = self._robot.scan()
         beams = range(round(angle - cone / 2), round(angle + cone / 2) + 1)
-        nearest = min(float(ranges[beam % 360]) for beam in beams)
+        nearest = min(float(ranges[beam % 360]) for beam in beams) - self._robot.radius  # it sits on the rim
         return Distance(nearest if nearest <= float(self._option("range", 4.0)) else inf)
 
     def _wheels(self) -> Wheels:
@@ -150,6 +159,9 @@ class SimulatedDevice:
         return Motion(self._robot.velocity[1], up=9.81, heading=self._robot.pose.heading)
 
     def _charge(self) -> Charge:
+        if not self._robot.docked:
+            with suppress(RobotError):  # its contacts touch those of the dock where it stands there
+                self._robot.dock()
         return Charge(self._robot.battery, charging=self._robot.charging)
 
     def _joint(self) -> JointState:
@@ -230,3 +242,33 @@ _WRITE: dict[str, Callable[[SimulatedDevice, Command], None]] = {
     "joint": SimulatedDevice._bend,
     "hand": SimulatedDevice._close_hand,
 }
+
+
+def twins(body: Body) -> tuple[Device, ...]:
+    """A simulated device for each of the body's own, and for each of its parts that has none."""
+    made = {device.name: twin(device) for device in body.devices}
+    kinds = {device.kind for device in body.devices}
+    parts = [
+        ("drive", body.base),
+        ("lidar", body.sensor("scanner")),
+        ("battery", body.battery),
+        ("display", body.screen),
+    ]
+    for kind, part in parts:
+        if part and kind not in kinds:
+            made.setdefault(kind, Device(kind, kind, SIMULATED))
+    if body.sensor("bumper") is not None and not any(each.kind == "button" for each in body.devices):
+        made["bumper"] = Device("bumper", "button", SIMULATED, options={"bumper": True})
+    for joint in body.joints:
+        made.setdefault(joint.name, Device(joint.name, "joint", SIMULATED))
+    for hand in body.hands:
+        made.setdefault(f"{hand.name} hand", Device(f"{hand.name} hand", "hand", SIMULATED))
+    return tuple(made.values())
+
+
+def twin(device: Device) -> Device:
+    """A simulated one in its place, to which the options of its driver say nothing."""
+    if device.driver == SIMULATED:
+        return device
+    options = {"bumper": True} if device.kind == "button" and "bumper" in device.name else {}
+    return Device(device.name, device.kind, SIMULATED, options=options)

@@ -18,6 +18,9 @@ class Base:
     are how far the left and the right wheel have rolled.
     """
 
+    silent = None
+    """It is always known where it is."""
+
     def __init__(self, pose: Pose, obstacles: Obstacles, body: Body) -> None:
         self.pose = pose
         self.body = body

@@ -27,6 +27,14 @@ class Hands:
         """The name of what the hand now holds. Raises RobotError."""
         if hand in self.held:
             raise RobotError(f"the {hand} hand already holds {said(self.held[hand])}")
+        found = self.within_reach(hand, name, pose)
+        self._obstacles.pick_up(found)
+        self.held[hand] = found
+        self._since[hand] = now
+        return found
+
+    def within_reach(self, hand: Hand, name: str | None, pose: Pose) -> str:
+        """The named or the nearest object that a hand could grasp. Raises RobotError where there is none."""
         part = self._part(hand)
         x, y = pose.ahead(part.ahead, part.left)
         things = [self._obstacles.things[key] for key in self._objects if not self._obstacles.is_carried(key)]
@@ -39,9 +47,6 @@ class Hands:
         if distance > part.reach:
             what = said(name) + " is not" if name else "nothing is"
             raise RobotError(f"{what} within reach of the {hand} hand")
-        self._obstacles.pick_up(found)
-        self.held[hand] = found
-        self._since[hand] = now
         return found
 
     def release(self, hand: Hand, pose: Pose) -> str | None:
@@ -51,9 +56,16 @@ class Hands:
             self._obstacles.put_down(name, *self._spot(name, pose, self._part(hand)))
         return name
 
+    def drop(self, hand: Hand, pose: Pose) -> str | None:
+        """As `release`, by itself."""
+        return self.release(hand, pose)
+
     def held_for(self, hand: Hand, now: float) -> float:
         """Seconds since the grasp; 0 for an empty hand."""
         return now - self._since[hand] if hand in self.held else 0.0
+
+    def step(self, dt: float) -> None:
+        """Does nothing: all that it does takes no time."""
 
     def _part(self, hand: Hand) -> HandPart:
         part = self._body.hand(hand)

@@ -7,11 +7,11 @@ from itertools import pairwise
 from math import cos, dist, radians, sqrt
 
 from btlang.interrupts import interrupts_later
-from btlang.robots.base import Base
 from btlang.robots.body import Body, Limits
 from btlang.robots.faults import Faults
 from btlang.robots.geometry import Point, Pose, wrap
 from btlang.robots.obstacles import Obstacles
+from btlang.robots.parts import BasePart
 from btlang.robots.robot import RobotError
 from btlang.robots.world import Place, Thing, World, said
 
@@ -32,7 +32,7 @@ class NavigationGoal:
     `name` is that of what it goes to, or shows the spot; with a `pose` it ends there, facing as the pose does.
     """
 
-    def __init__(self, name: str, base: Base, pose: Pose | None = None) -> None:
+    def __init__(self, name: str, base: BasePart, pose: Pose | None = None) -> None:
         self.name = name
         self.pose = pose
         self.done = False
@@ -65,7 +65,7 @@ class NavigationGoal:
 class Navigator:
     """Drives the base along the goal under way."""
 
-    def __init__(self, world: World, base: Base, obstacles: Obstacles, faults: Faults) -> None:
+    def __init__(self, world: World, base: BasePart, obstacles: Obstacles, faults: Faults) -> None:
         self._places: dict[str, Place] = {place.name: place for place in world.places}
         self._people = set(world.names.people)
         self._base = base
@@ -109,7 +109,9 @@ class Navigator:
     def _check(self, goal: NavigationGoal) -> None:
         """Ends a goal that cannot go on; plans anew when something has moved."""
         name = goal.name
-        if self._base.bumps > goal.bumps:
+        if self._base.silent is not None:
+            goal.end(self._base.silent)
+        elif self._base.bumps > goal.bumps:
             goal.end(f"bumped into {self._base.bumped_into} on the way to {said(name)}")
         elif self._base.stuck:
             goal.end(f"stuck on the way to {said(name)}: the wheels turn but the robot doesn't move")

@@ -12,12 +12,15 @@ if TYPE_CHECKING:
 
 ROBOTS = {
     "simulated": "btlang.robots.simulation:Simulation",
+    "devices": "btlang.components.device_robot:connect_devices",
     "ros": "btlang.ros.command:connect_ros",
     "actions": "btlang.ros.command:connect_actions",
 }
 """Functions of a world and a body, by what the robot runs on; imported when it is asked for."""
 
 
+ALL = "all"
+"""For --simulate: all devices of a robot."""
 COMPONENTS = "btlang.components.connection:component_connection"
 """What adds the components and devices of a body to a connection."""
 

@@ -6,27 +6,26 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 from math import ceil
 from typing import Any
 
-from btlang.robots.base import Base
 from btlang.robots.body import Body
 from btlang.robots.body_file import standard_body
 from btlang.robots.choices import Choices
 from btlang.robots.faults import Faults, describe
 from btlang.robots.geometry import Point, Pose
-from btlang.robots.hands import Hands
-from btlang.robots.joints import Joints
 from btlang.robots.latch import Latch
 from btlang.robots.navigation import NavigationGoal, Navigator
 from btlang.robots.obstacles import Obstacles
-from btlang.robots.power import Power
-from btlang.robots.robot import CompletedOperation, Hand, OnEvent, RobotError, SensorSilent
-from btlang.robots.world import Place, World, said
+from btlang.robots.parts import Parts
+from btlang.robots.robot import CompletedOperation, Hand, OnEvent, Operation, RobotError, SensorSilent
+from btlang.robots.simulated_parts import simulated_parts
+from btlang.robots.surroundings import Surroundings
+from btlang.robots.world import Place, World
 from btlang.run.standstill import Standstill
 from btlang.text.time_of_day import DAY
 from btlang.vocabulary.capabilities import part_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from btlang.robots.scan import Array, Scanner
+    from btlang.robots.scan import Array
 
 _CONTROL_PERIOD = 0.05
 _SAME_SPOT = 0.01  # metres
@@ -34,30 +33,38 @@ _HANDS: tuple[Hand, Hand] = ("left", "right")
 
 
 class SimulatedRobot:
-    """Implements `btlang.robots.robot.Robot`. The same commands and the same seed give the same run."""
+    """Implements `btlang.robots.robot.Robot`. The same commands and the same seed give the same run.
+
+    `make_parts` makes its parts, which by default act in the world, of this and what stands there: its `obstacles`.
+    """
 
     moves_by_itself = False
 
-    def __init__(self, world: World, on_event: OnEvent | None = None, body: Body | None = None) -> None:
+    def __init__(
+        self,
+        world: World,
+        on_event: OnEvent | None = None,
+        body: Body | None = None,
+        make_parts: Callable[[World, Obstacles, Body], Parts] | None = None,
+        obstacles: Obstacles | None = None,
+    ) -> None:
         self.body = body = body or standard_body()
         self.radius = body.radius
         self.normal_speed, self.max_speed = body.driving.speed, body.driving.top_speed
         self.normal_turn = body.turning.speed
-        self.world = self._given_world = world
+        self.world = world
         self.on_event = on_event
         self.on_step: Callable[[float], object] | None = None
         """Called at the end of each step with its seconds."""
         self.time = 0.0
         self.stops = 0
-        self._obstacles = Obstacles(world)
-        self._base = Base(world.start, self._obstacles, body)
+        self._obstacles = obstacles or Obstacles(world)
+        self._surroundings = Surroundings(world, self._obstacles)
+        parts = (make_parts or simulated_parts)(world, self._obstacles, body)
+        self._base, self.power, self._scan = parts.base, parts.power, parts.scan
+        self._joints, self._hands, self._voice = parts.joints, parts.hands, parts.voice
         self.faults = Faults(world.faults)
         self._navigator = Navigator(world, self._base, self._obstacles, self.faults)
-        self.power = Power(world.battery, world.dock, body)
-        self._scanner: Scanner | None = None
-        self._joints = Joints(body)
-        self._hands = Hands(self._obstacles, world.names.objects, body)
-        self._speech_left = 0.0
         self._choices = Choices()
         self._latch = Latch()
         self._bumps_told = 0
@@ -83,7 +90,8 @@ class SimulatedRobot:
         travelled = self._base.travelled
         self._base.step(dt)
         self._joints.step(dt)
-        self._speech_left = max(0.0, self._speech_left - dt)
+        self._voice.step(dt)
+        self._hands.step(dt)
         self._drop()
         self._use_power(dt, self._base.travelled - travelled)
         self._tell_contacts()
@@ -112,7 +120,7 @@ class SimulatedRobot:
         self._navigator.cancel("the robot was stopped")
         self._base.brake()
         self._joints.freeze()
-        self._speech_left = 0.0
+        self._voice.silence()
 
     @property
     def time_of_day(self) -> float:
@@ -127,12 +135,14 @@ class SimulatedRobot:
     @property
     def standstill(self) -> Standstill:
         """Nothing else moves it."""
-        return Standstill(self.moving)
+        return Standstill(None if self._base.silent is not None else self.moving)
 
     # Base
     @property
     def pose(self) -> Pose:
-        """Where it is."""
+        """Where it is. Raises SensorSilent where that isn't known."""
+        if self._base.silent is not None:
+            raise SensorSilent(self._base.silent)
         return self._base.pose
 
     @property
@@ -143,7 +153,9 @@ class SimulatedRobot:
 
     @property
     def velocity(self) -> tuple[float, float]:
-        """Metres and degrees a second."""
+        """Metres and degrees a second. Raises SensorSilent."""
+        if self._base.silent is not None:
+            raise SensorSilent(self._base.silent)
         return self._base.velocity
 
     @property
@@ -180,7 +192,7 @@ class SimulatedRobot:
 
     def navigate_to(self, name: str) -> NavigationGoal:
         """Sets out for a place, an object or a person. Raises RobotError for an unknown name."""
-        return self._set_out(self._known(name))
+        return self._set_out(self._surroundings.known(name))
 
     def navigate_to_pose(self, pose: Pose) -> NavigationGoal:
         """Sets out for a pose. On the spot of an object or a person it is a journey to that, as `navigate_to` makes it.
@@ -215,26 +227,15 @@ class SimulatedRobot:
         self._need("scanner")
         if self.faults.scanner_silent:
             raise SensorSilent("the laser scanner is silent")
-        if self._scanner is None:
-            from btlang.robots.scan import Scanner  # brings numpy, which takes longer to import than many missions
-
-            self._scanner = Scanner(self._obstacles, self.body.range)
-        return self._scanner.read(self.pose)
+        return self._scan(self.pose)
 
     def locate(self, name: str) -> Point:
         """Where a place, object or person is. Raises RobotError for an unknown name."""
-        known = self._known(name)
-        for place in self.world.places:
-            if place.name == known:
-                return place.x, place.y
-        if self._obstacles.is_carried(known):
-            return self.pose.x, self.pose.y
-        thing = self._obstacles.things[known]
-        return thing.x, thing.y
+        return self._surroundings.locate(name) or (self.pose.x, self.pose.y)
 
     def choose(self, kind: str, how: str) -> str:
         """A name that is the "nearest" or "random". Raises RobotError where there is none."""
-        names = [name for name in self.world.names.of(kind) if not self._obstacles.is_carried(name)]
+        names = self._surroundings.choices(kind)
         return self._choices.choose(
             kind, how, names, lambda name: self.pose.distance_to(self.locate(name)), self.on_event
         )
@@ -249,31 +250,18 @@ class SimulatedRobot:
         return [name for distance, name in sorted(distances) if distance <= within]
 
     def name_places(self, places: Iterable[Place]) -> None:
-        """The places of a mission beside those of the world, in place of those of the mission before.
-
-        One of the same name is replaced. The floor that is planned on does not grow.
-        """
-        self.world = self._given_world.with_places(places)
+        """The places of a mission beside those of the world, in place of those of the mission before."""
+        self.world = self._surroundings.name_places(places)
         self._navigator.name_places(self.world.places)
 
     def move_thing(self, name: str, x: float, y: float) -> None:
         """Puts an object or a person somewhere else, as somebody in the world would. Raises RobotError."""
-        known = self._known(name)
-        if known not in self._obstacles.things or self._obstacles.is_carried(known):
-            raise RobotError(f"{said(known)} can't be moved")
-        self._obstacles.move(known, x, y)
+        self._surroundings.move(name, x, y)
 
     def put(self, pose: Pose) -> None:
         """Puts the robot somewhere else, at rest, as somebody who carries it would."""
         self._rest()
         self._base.put(pose)
-
-    def _known(self, name: str) -> str:
-        names = self.world.names
-        for known in (*names.places, *names.objects, *names.people):
-            if known.lower() == name.lower():
-                return known
-        raise RobotError(f"I don't know where '{name}' is")
 
     # Power
     @property
@@ -329,19 +317,21 @@ class SimulatedRobot:
         """These joints stay where they are now."""
         self._joints.freeze(names)
 
-    def grasp(self, hand: Hand, name: str | None = None) -> CompletedOperation:
-        """Closes a hand at once on the named or the nearest object. Raises RobotError."""
+    def grasp(self, hand: Hand, name: str | None = None) -> Operation:
+        """Closes a hand on the named or the nearest object. Raises RobotError."""
         if self._latch.refuses:
             raise RobotError("the robot was stopped")
-        found = self._hands.grasp(hand, None if name is None else self._known(name), self.pose, self.time)
-        self._emit("grasp", hand=hand, name=found)
-        return CompletedOperation()
+        found = self._hands.grasp(hand, None if name is None else self._surroundings.known(name), self.pose, self.time)
+        self._emit("grasp", hand=hand, name=found if isinstance(found, str) else name)
+        return CompletedOperation() if isinstance(found, str) else found
 
-    def release(self, hand: Hand) -> CompletedOperation:
-        """Opens a hand at once and puts down what it held."""
-        if not self._latch.refuses:
-            self._emit("release", hand=hand, name=self._hands.release(hand, self.pose))
-        return CompletedOperation()
+    def release(self, hand: Hand) -> Operation:
+        """Opens a hand and puts down what it held."""
+        if self._latch.refuses:
+            return CompletedOperation()
+        found = self._hands.release(hand, self.pose)
+        self._emit("release", hand=hand, name=found if isinstance(found, str) else None)
+        return CompletedOperation() if isinstance(found, str | None) else found
 
     def holding(self, hand: Hand) -> str | None:
         """The name of what the hand holds."""
@@ -351,23 +341,23 @@ class SimulatedRobot:
     def say(self, text: str) -> None:
         """Starts to speak, for as long as the body says."""
         self._need("voice")
-        voice = self.body.voice
-        if voice is not None and not self._latch.refuses:
-            self._speech_left = voice.text + voice.character * len(text)
+        if not self._latch.refuses:
+            self._voice.say(text)
             self._emit("say", text=text)
 
     @property
     def speaking(self) -> bool:
         """True while it speaks."""
-        return self._speech_left > 1e-9
+        return self._voice.speaking
 
     def silence(self) -> None:
         """Ends speech at once."""
-        self._speech_left = 0.0
+        self._voice.silence()
 
     def print(self, text: str) -> None:
         """Shows text at once."""
         self._need("screen")
+        self._voice.print(text)
         self._emit("print", text=text)
 
     def _need(self, need: str) -> None:
@@ -392,7 +382,7 @@ class SimulatedRobot:
     def _drop(self) -> None:
         for hand in _HANDS:
             if hand in self._hands.held and self._hands.held_for(hand, self.time) >= self.faults.holds_for(hand):
-                name = self._hands.release(hand, self.pose)
+                name = self._hands.drop(hand, self._base.pose)
                 self._emit("drop", hand=hand, name=name)
 
     def _tell_contacts(self) -> None:

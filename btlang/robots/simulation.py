@@ -12,25 +12,30 @@ from btlang.run.bus import Bus
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any
+    from collections.abc import Callable
+    from typing import Any, TypeAlias
 
     from btlang.engine.leaves.leaf import LeafBinding
+    from btlang.robots.obstacles import Obstacles
+    from btlang.robots.parts import Parts
     from btlang.run.controls import Controls
     from btlang.run.pace import Pace
     from btlang.tree.node import Tree
     from btlang.vocabulary.entry import Entry
     from btlang.vocabulary.lexicon import Lexicon
 
+    MakeParts: TypeAlias = Callable[[World, Obstacles, Body], Parts]
+
 
 class Simulation:
     """See btlang.run.connection.Connection. The world keeps its state from one run to the next."""
 
-    def __init__(self, world: World, body: Body | None = None) -> None:
+    def __init__(self, world: World, body: Body | None = None, make_parts: MakeParts | None = None) -> None:
         self.world = world
         self.bus = Bus()
         self._early: list[tuple[str, Mapping[str, Any]]] = []  # faults from the start are there before anybody listens
         self._begun = False
-        self.robot = SimulatedRobot(world, self._report, body)
+        self.robot = SimulatedRobot(world, self._report, body, make_parts)
 
     def begin(self, bus: Bus) -> None:
         """A new run: what the robot reports goes on this bus."""

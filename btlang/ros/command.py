@@ -6,7 +6,7 @@ from argparse import ArgumentParser, Namespace
 from contextlib import closing
 
 from btlang.arguments import namespace, robot_on
-from btlang.robots.platforms import ROBOTS
+from btlang.robots.platforms import ALL, ROBOTS
 from btlang.robots.registry import connector, runs_on
 from btlang.ros.available import require_interfaces, require_ros
 from btlang.ros.serving.names import FOLDER
@@ -75,6 +75,15 @@ def add_body_options(parser: ArgumentParser, platforms: Sequence[str] = tuple(RO
     parser.add_argument(
         "--over", choices=platforms, help="what the robot in a file runs on (default: as the file says)"
     )
+    add_simulate(parser)
+
+
+def add_simulate(parser: ArgumentParser) -> None:
+    """The option --simulate."""
+    parser.add_argument(
+        "--simulate", action="append", nargs="?", const=ALL, default=[], metavar="DEVICE",
+        help="simulate the devices of the robot file, or only the one of this name or kind",
+    )  # fmt: skip
 
 
 def add_namespace(parser: ArgumentParser, what: str) -> None:
@@ -84,12 +93,18 @@ def add_namespace(parser: ArgumentParser, what: str) -> None:
 
 def chosen_robot(options: Namespace) -> Connector:
     """As `btlang.Session` takes it. Ends with a usage error where options do not go together. Raises MissionError."""
+    if options.simulate:
+        if options.over not in (None, "devices"):
+            options.refuse("--simulate is for robots that run over devices")
+        options.over = "devices"
     over = platform_of(options)
     if options.servers is not None and over != "actions":
         options.refuse("--servers is for --robot actions")
-    if over == "simulated" and (options.sim_time or options.preflight or options.namespace):
+    if over in ("simulated", "devices") and (options.sim_time or options.preflight or options.namespace):
         options.refuse("--sim-time, --namespace and --preflight are for --robot ros and --robot actions")
     servers = {} if options.servers is None else {"servers": f"/{options.servers.strip('/')}"}
+    if over == "devices":
+        return connector(options.robot, options.over, simulate=options.simulate)
     named = {"sim_time": options.sim_time, "namespace": options.namespace, **servers}
     return connector(options.robot, options.over, **named)
 
@@ -97,7 +112,7 @@ def chosen_robot(options: Namespace) -> Connector:
 def platform_of(options: Namespace) -> str:
     """What the chosen robot runs on. Ends with a usage error where that takes no --speed. Raises MissionError."""
     over = runs_on(options.robot, options.over)[1]
-    if over != "simulated" and options.speed != "real":
+    if over not in ("simulated", "devices") and options.speed != "real":
         how = f"--robot {over}" if options.robot == over else f"--robot {options.robot} over {over}"
         options.refuse(f"{how} runs in real time, so it takes no --speed")
     return over

@@ -315,8 +315,9 @@ class Runner:
 
     def _advance(self, seconds: float) -> None:
         self._clock.advance(seconds)
-        if self._robot is not None and seconds > 0:
-            self._robot.step(seconds)
+        left, self._pace.stepped = seconds - self._pace.stepped, 0.0
+        if self._robot is not None and left > 0:
+            self._robot.step(left)
         self._publish_period()
 
     def _publish_period(self) -> None:

@@ -70,7 +70,7 @@ def test_over_decides(tmp_path: Path) -> None:
     assert runs_on("actions")[1] == "actions"
     with btlang.Session(str(path), over="simulated") as session:
         assert session.run(btlang.parse_tree("print hello"), speed="max").outcome.succeeded
-    with pytest.raises(ValueError, match="over must be 'simulated' or 'ros' or 'actions', not 'tcp'"):
+    with pytest.raises(ValueError, match="over must be 'simulated' or 'devices' or 'ros' or 'actions', not 'tcp'"):
         btlang.Session(over="tcp")
     with pytest.raises(ValueError, match="a robot file"):
         btlang.Session("simulatd")

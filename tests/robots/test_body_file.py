@@ -50,7 +50,7 @@ def test_parts_are_what_words_need(tmp_path: Path) -> None:
         ("", None, 'a robot needs a text "name"'),
         ('name = "x"', None, 'a robot needs a number "radius"'),
         (HEAD + "legs = 2", 3, 'unknown key "legs" in a robot'),
-        (HEAD + 'over = "tcp"', 3, '"over" must be one of "simulated", "ros", "actions"'),
+        (HEAD + 'over = "tcp"', 3, '"over" must be one of "simulated", "devices", "ros", "actions"'),
         (HEAD + "[base]\nwheel_gap = 1", 3, 'base needs a table "driving"'),
         (HEAD + BASE.replace("speed = 1,", "speed = 3,"), 4, '"top_speed" must be at least 3, not 2'),
         (HEAD + BASE + "[navigation]\npeople = 1\nobjects = 0.1", 9, '"objects" must be at least 0.2, not 0.1'),

@@ -70,7 +70,7 @@ WORLDS = {
 }
 ROBOTS = {
     "another robot": (BODY + 'over = "ros"', '"over" may only be "simulated" here'),
-    "no robot": (BODY + 'over = "os:system"', '"over" must be one of "simulated", "ros", "actions"'),
+    "no robot": (BODY + 'over = "os:system"', '"over" must be one of "simulated", "devices", "ros", "actions"'),
     "infinity": ('name = "a"\nradius = inf', "must be a number from"),
     "twice the same": (BODY + f"joints = [{rows(joint)}{joint(7)}]", '"7" is given twice in joints'),
     "many steps": (

@@ -1,0 +1,200 @@
+"""The base over devices: odometry from the encoders, limited acceleration, and a gate for what would hit something."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from math import copysign, cos, degrees, hypot, radians, sin
+
+from btlang.components.safety import Safety
+from btlang.devices.device_set import Reads, reader
+from btlang.devices.driver import DeviceError
+from btlang.devices.kinds import Motion, Pressed, Wheels, WheelSpeeds
+from btlang.robots.body import Body
+from btlang.robots.geometry import Pose, wrap
+
+_STUCK_AFTER = 1.0
+_REST = 0.002  # metres a second: less is noise of the encoders
+_FREE_AGAIN = 0.03
+
+
+class DeviceBase:
+    """See btlang.robots.parts.BasePart. `drive` and `brake` may be called from any thread.
+
+    `wheels`, `imu` and `bumpers` are names of devices. The heading is that of the inertial unit where there is one.
+    Without news of the wheels it tells them to stand, and the pose is not known. `locate` says where it really is, for
+    what knows that better than the wheels; `advance` lets simulated devices live.
+    """
+
+    grips = (1.0, 1.0)
+
+    def __init__(
+        self,
+        pose: Pose,
+        body: Body,
+        devices: Mapping[str, Reads],
+        *,
+        wheels: str,
+        imu: str = "",
+        bumpers: tuple[str, ...] = (),
+        safety: Safety | None = None,
+        locate: Callable[[], Pose] | None = None,
+        advance: Callable[[float], object] = lambda seconds: None,
+    ) -> None:
+        self._pose, self.body = pose, body
+        self._devices, self._drive, self._imu, self._bumpers = devices, wheels, imu, bumpers
+        self._safety, self._locate, self._advance = safety or Safety((), body), locate, advance
+        self._gap = body.base.wheel_gap if body.base is not None else 1.0
+        self.travelled, self.wheels = 0.0, (0.0, 0.0)
+        self.bumps, self.bumped_into = 0, ""
+        self._wanted = self._speeds = (0.0, 0.0)
+        self._velocity: tuple[float, float] | None = None
+        self._seen: Wheels | None = None
+        self._heading: float | None = None
+        self._pressed: set[str] = set()
+        self._contact: Pose | None = None
+        self._idle = 0.0
+
+    @property
+    def pose(self) -> Pose:
+        """Where it is, or was when it was known last."""
+        return self._pose
+
+    @property
+    def velocity(self) -> tuple[float, float]:
+        """Measured metres and degrees a second, 0 where nobody knows."""
+        return self._velocity or (0.0, 0.0)
+
+    @property
+    def silent(self) -> str | None:
+        """Why it isn't known where it is and how it moves, None where that is known."""
+        try:
+            self._read()
+        except DeviceError as problem:
+            return str(problem)
+        return None
+
+    @property
+    def bumped(self) -> bool:
+        """True while a bumper is pressed, and until it has moved away from there."""
+        return bool(self._pressed) or self._contact is not None
+
+    @property
+    def stuck(self) -> bool:
+        """True when it was told to move for a second and does not."""
+        return self._idle >= _STUCK_AFTER
+
+    @property
+    def rolling(self) -> bool:
+        """True until it is at rest; also while nobody knows."""
+        return self._velocity is None or self._velocity != (0.0, 0.0)
+
+    def drive(self, linear: float, angular: float) -> None:
+        """Sets the wanted velocity, within the limits."""
+        driving, turning = self.body.driving, self.body.turning
+        self._wanted = _clip(linear, driving.top_speed), _clip(angular, turning.top_speed)
+        if self._wanted == (0.0, 0.0):
+            self._idle = 0.0
+
+    def brake(self) -> None:
+        """The wheels are told to stand at once."""
+        self._wanted = self._speeds = (0.0, 0.0)
+        self._idle = 0.0
+        self._write(WheelSpeeds())
+
+    def put(self, pose: Pose) -> None:
+        """It stands there from now on, as somebody says who knows."""
+        self._pose, self._contact = pose, None
+
+    def step(self, dt: float) -> None:
+        """Tells the wheels their speeds for the next `dt` seconds, and looks how far they have rolled."""
+        self._command(dt)
+        self._advance(dt)
+        try:
+            wheels = self._read()
+        except DeviceError:
+            self._seen = self._velocity = None
+            self._speeds = (0.0, 0.0)
+            return
+        before = self._pose
+        self._move(wheels)
+        if self._locate is not None:
+            self._pose = self._locate()
+        self._feel()
+        wanted = abs(self._wanted[0]) + self.body.radius * radians(abs(self._wanted[1]))
+        way = before.distance_to((self._pose.x, self._pose.y))
+        turn = abs(wrap(self._pose.heading - before.heading))
+        moved = way + self.body.radius * radians(turn)
+        self._idle = self._idle + dt if moved < 0.05 * wanted * dt else 0.0
+
+    def _command(self, dt: float) -> None:
+        driving, turning = self.body.driving, self.body.turning
+        wanted = self._safety.limited(*self._wanted, bool(self._pressed))
+        linear = _towards(self._speeds[0], wanted[0], driving.acceleration * dt, driving.brake * dt)
+        angular = _towards(self._speeds[1], wanted[1], turning.acceleration * dt, turning.brake * dt)
+        if self._velocity is None:
+            linear = angular = 0.0
+        self._speeds = linear, angular
+        side = radians(angular) * self._gap / 2
+        self._write(WheelSpeeds(linear - side, linear + side))
+
+    def _read(self) -> Wheels:
+        wheels = reader(self._devices, self._drive, "base").read(self._drive)
+        assert isinstance(wheels, Wheels)
+        return wheels
+
+    def _write(self, speeds: WheelSpeeds) -> None:
+        if self._drive in self._devices:
+            self._devices[self._drive].write(self._drive, speeds)
+
+    def _move(self, wheels: Wheels) -> None:
+        before, self._seen = self._seen or wheels, wheels
+        left, right = wheels.left - before.left, wheels.right - before.right
+        way, turn = (left + right) / 2, degrees((right - left) / self._gap)
+        turn = self._turn(turn)
+        middle = radians(self._pose.heading + turn / 2)
+        pose = self._pose
+        self._pose = Pose(pose.x + way * cos(middle), pose.y + way * sin(middle), wrap(pose.heading + turn))
+        self.travelled += abs(way)
+        self.wheels = wheels.left, wheels.right
+        speed = (wheels.left_speed + wheels.right_speed) / 2
+        spin = degrees((wheels.right_speed - wheels.left_speed) / self._gap)
+        still = hypot(wheels.left_speed, wheels.right_speed) < _REST
+        self._velocity = (0.0, 0.0) if still else (speed, spin)
+
+    def _turn(self, by_wheels: float) -> float:
+        """Degrees since the last step, by the inertial unit where it tells a heading."""
+        if not self._imu:
+            return by_wheels
+        try:
+            motion = self._devices[self._imu].read(self._imu)
+        except DeviceError:
+            self._heading = None
+            return by_wheels
+        assert isinstance(motion, Motion)
+        before, self._heading = self._heading, motion.heading
+        return by_wheels if before is None or motion.heading is None else wrap(motion.heading - before)
+
+    def _feel(self) -> None:
+        for name in self._bumpers:
+            try:
+                reading = self._devices[name].read(name)
+            except DeviceError:
+                continue  # the safety gate lets nobody drive by a bumper that is silent
+            if isinstance(reading, Pressed) and reading.pressed and name not in self._pressed:
+                self._pressed.add(name)
+                self.bumps, self.bumped_into, self._contact = self.bumps + 1, "something", self._pose
+            elif isinstance(reading, Pressed) and not reading.pressed:
+                self._pressed.discard(name)
+        if self._contact is not None and self._contact.distance_to((self._pose.x, self._pose.y)) > _FREE_AGAIN:
+            self._contact = None
+
+
+def _clip(value: float, limit: float) -> float:
+    return copysign(min(abs(value), limit), value)
+
+
+def _towards(value: float, target: float, more: float, less: float) -> float:
+    """Steps towards the target: by at most `less` while slowing down, `more` while speeding up."""
+    slows = abs(target) < abs(value) or value * target < 0
+    most = less if slows else more
+    return target if abs(target - value) <= most else value + copysign(most, target - value)

@@ -1,0 +1,115 @@
+"""A robot over its devices: real ones, or their simulated twins."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from contextlib import suppress
+
+from btlang.components.parts import device_parts
+from btlang.devices.device_set import DeviceSet
+from btlang.devices.driver import DeviceError
+from btlang.devices.drivers import SIMULATED
+from btlang.devices.simulated import twin, twins
+from btlang.robots.platforms import ALL
+from btlang.robots.robot import RobotError
+from btlang.robots.simulated import SimulatedRobot
+from btlang.robots.simulation import Simulation
+from btlang.run.controls import Controls
+from btlang.run.pace import Pace
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+    from btlang.robots.body import Body, Device
+    from btlang.robots.obstacles import Obstacles
+    from btlang.robots.parts import Parts
+    from btlang.robots.world import World
+
+_CONTROL = 0.05  # seconds between two looks at the devices, however slowly a mission ticks
+
+
+class DeviceSimulation(Simulation):
+    """See btlang.run.connection.Connection. `devices` are those of the body; simulated ones act on a twin of the robot.
+
+    With only simulated devices it is as fast as one is asked for, and deterministic; else it goes with real time.
+    """
+
+    def __init__(self, world: World, body: Body) -> None:
+        super().__init__(world, body, self._parts)
+        self.real = bool(self.devices.loops)
+        self.robot.moves_by_itself = self.real
+        self.devices.start()
+
+    def pace(self, speed: float, controls: Controls) -> Pace:
+        """Raises ValueError for another speed than 1 where devices are real."""
+        if not self.real:
+            return super().pace(speed, controls)
+        if speed != 1.0:
+            raise ValueError("a robot with real devices runs in real time")
+        return DevicePace(controls, self.robot.step)
+
+    def close(self) -> None:
+        """Brings what moves to rest, and lets go of the ports."""
+        self.robot.disable()
+        self.devices.close()
+
+    def _parts(self, world: World, obstacles: Obstacles, body: Body) -> Parts:
+        self._twin = SimulatedRobot(world, None, body, None, obstacles)
+        self.devices = DeviceSet(body, self._twin, self._report)
+        drive = self.devices.first("drive")
+        self._drives = bool(drive) and self.devices.devices[drive].driver == SIMULATED
+        locate = (lambda: self._twin.pose) if self._drives else None  # as good as the localization of other robots
+        return device_parts(world, obstacles, body, self.devices, self._advance, locate)
+
+    def _advance(self, seconds: float) -> None:
+        """The twin lives on; where the wheels are real, it is put where they are."""
+        self.devices.step()
+        if not self._drives:
+            with suppress(RobotError):  # it stays where it was seen last
+                self._twin.put(self.robot.pose)
+        self._twin.step(seconds)
+
+
+class DevicePace(Pace):
+    """Real time. While it waits for the next tick, however slowly a mission ticks, the devices are read and told."""
+
+    def __init__(self, controls: Controls, step: Callable[[float], object]) -> None:
+        super().__init__(1.0, controls)
+        self._step = step
+
+    def sleep(self, period: float, wait: float = math.inf) -> float:
+        """See Pace."""
+        left, total = min(period, wait), 0.0
+        while left > 1.5 * _CONTROL and not self._woken:
+            passed = super().sleep(_CONTROL)
+            self._step(passed)
+            total, left = total + passed, left - passed
+            self.stepped += passed
+        return total + super().sleep(left)
+
+
+def connect_devices(world: World, *, body: Body, simulate: Sequence[str] = (), **options: Any) -> DeviceSimulation:
+    """A connection to the devices of a body; those whose name or kind is in `simulate` (ALL: every one, and what the
+    body has no device for) are simulated. Raises MissionError (BT071) for devices that can't be used.
+    """
+    from btlang.diagnostics.diagnostic import diagnostic
+    from btlang.diagnostics.errors import MissionError
+    from btlang.text.source import NOWHERE
+
+    try:
+        return DeviceSimulation(world, body.replace(devices=simulated_devices(body, simulate)))
+    except DeviceError as problem:
+        raise MissionError([diagnostic("BT071", NOWHERE, reason=str(problem))]) from None
+
+
+def simulated_devices(body: Body, names: Sequence[str]) -> tuple[Device, ...]:
+    """The devices of a body, of which some are simulated. Raises DeviceError for a name that is none of theirs."""
+    if ALL in names:
+        return twins(body)
+    known = {name for device in body.devices for name in (device.name, device.kind)}
+    for name in names:
+        if name not in known:
+            raise DeviceError(f"the robot has no device '{name}' to simulate")
+    return tuple(twin(each) if {each.name, each.kind} & set(names) else each for each in body.devices)

@@ -1,0 +1,281 @@
+"""The parts of a robot over its devices: those that ship as components."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from math import inf
+
+from btlang.components.base import DeviceBase
+from btlang.components.safety import Guard, Safety
+from btlang.devices.device_set import DeviceSet, Reads, reader
+from btlang.devices.driver import DeviceError
+from btlang.devices.kinds import Charge, Grip, GripTarget, JointState, JointTarget, Scan, Shown
+from btlang.robots.body import Body
+from btlang.robots.geometry import Pose
+from btlang.robots.hands import Hands
+from btlang.robots.joints import clipped, joint_of
+from btlang.robots.obstacles import Obstacles
+from btlang.robots.parts import Parts
+from btlang.robots.robot import Hand, RobotError
+from btlang.robots.voice import Voice
+from btlang.robots.world import World, said
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.robots.capabilities import Operation
+    from btlang.robots.scan import Array
+
+BUMPER = "bumper"
+_GRIP_AFTER = 0.8  # seconds after which a hand that closes on nothing has failed
+
+
+def device_parts(
+    world: World,
+    obstacles: Obstacles,
+    body: Body,
+    devices: DeviceSet,
+    advance: Callable[[float], object],
+    locate: Callable[[], Pose] | None = None,
+) -> Parts:
+    """What the body has, over devices by kind; hands, joints and bumpers by name. A part that has none is silent.
+
+    `advance` and `locate` are those of DeviceBase.
+    """
+    readers = devices.readers
+    bumpers = tuple(name for name, device in devices.devices.items() if device.kind == "button" and BUMPER in name)
+    safety = Safety(
+        [
+            Guard(name, readers[name], float(device.options.get("angle", 0.0)))
+            for name, device in devices.devices.items()
+            if device.kind == "range" or name in bumpers
+        ],
+        body,
+    )
+    base = DeviceBase(
+        world.start, body, readers, wheels=devices.first("drive"), imu=devices.first("imu"), bumpers=bumpers,
+        safety=safety, locate=locate, advance=advance,
+    )  # fmt: skip
+    lidar = devices.first("lidar")
+    displays = {name: readers[name] for name, device in devices.devices.items() if device.kind == "display"}
+    return Parts(
+        base,
+        DevicePower(devices.first("battery"), readers),
+        lambda pose: _scan(lidar, readers),
+        DeviceJoints(body, readers),
+        DeviceHands(body, readers, Hands(obstacles, world.names.objects, body)),
+        DeviceVoice(body, displays),
+    )
+
+
+def _scan(lidar: str, readers: Mapping[str, Reads]) -> Array:
+    import numpy as np  # most missions need none
+
+    reading = reader(readers, lidar, "lidar").read(lidar)
+    assert isinstance(reading, Scan)
+    if (reading.start, reading.step, len(reading.ranges)) == (0.0, 1.0, 360):
+        return np.asarray(reading.ranges, dtype=np.float64)
+    scan: Array = np.full(360, np.inf)
+    beams = np.round(reading.start + reading.step * np.arange(len(reading.ranges))).astype(int) % 360
+    np.minimum.at(scan, beams, np.asarray(reading.ranges, dtype=np.float64))
+    return scan
+
+
+class DevicePower:
+    """See btlang.robots.parts.PowerPart: what a battery tells."""
+
+    def __init__(self, name: str, devices: Mapping[str, Reads]) -> None:
+        self._name, self._devices = name, devices
+        self.docked = False
+
+    @property
+    def level(self) -> float:
+        """Percent. Raises DeviceSilent."""
+        return self._charge().percent
+
+    @property
+    def empty(self) -> bool:
+        """At 0 percent; False also where it is silent."""
+        try:
+            return self._charge().percent <= 0.0
+        except DeviceError:
+            return False
+
+    @property
+    def charging(self) -> bool:
+        """Whether it says so. Raises DeviceSilent."""
+        return bool(self._charge().charging)
+
+    def set_level(self, percent: float) -> None:
+        """Raises RobotError: nobody can."""
+        raise RobotError("the battery of this robot can't be set")
+
+    def connect(self, pose: Pose) -> None:
+        """Raises RobotError where it doesn't charge."""
+        if not self.charging:
+            raise RobotError("the battery doesn't charge")
+        self.docked = True
+
+    def step(self, dt: float, metres: float, pose: Pose) -> bool:
+        """Whether it has just left its dock."""
+        try:
+            charges = bool(self._charge().charging)
+        except DeviceError:
+            return False
+        left, self.docked = self.docked and not charges, charges
+        return left
+
+    def _charge(self) -> Charge:
+        reading = reader(self._devices, self._name, "battery").read(self._name)
+        assert isinstance(reading, Charge)
+        return reading
+
+
+class DeviceJoints:
+    """See btlang.robots.parts.JointsPart: a servo for each joint, of the same name. They are told anew at each step."""
+
+    def __init__(self, body: Body, devices: Mapping[str, Reads]) -> None:
+        self._body, self._devices = body, devices
+        self._targets: dict[str, float] = {}
+
+    @property
+    def moving(self) -> bool:
+        """True while any joint is on its way, as far as that is known."""
+        try:
+            return any(not self._reached(name) for name in tuple(self._targets))
+        except DeviceError:
+            return False
+
+    def angle(self, name: str) -> float:
+        """Raises RobotError for an unknown joint, and DeviceSilent."""
+        reading = reader(self._devices, joint_of(self._body, name).name, name).read(name)
+        assert isinstance(reading, JointState)
+        return reading.position
+
+    def move(self, targets: Mapping[str, float]) -> None:
+        """Sets off towards the targets, clipped to the joints' limits. Raises RobotError."""
+        wanted = clipped(self._body, targets)
+        for name in wanted:
+            self.angle(name)
+        self._targets.update(wanted)
+        self.step(0.0)
+
+    def at_target(self, names: tuple[str, ...]) -> bool:
+        """True when none of them is on its way. Raises DeviceSilent."""
+        return all(self._reached(name) for name in names if name in self._targets)
+
+    def freeze(self, names: tuple[str, ...] | None = None) -> None:
+        """They stay where they are; None: all of them."""
+        for name in tuple(self._targets) if names is None else names:
+            if self._targets.pop(name, None) is not None:
+                self._devices[name].write(name, JointTarget())
+
+    def step(self, dt: float) -> None:
+        """Tells them again; what has arrived holds its place by itself."""
+        for name, target in tuple(self._targets.items()):
+            self._devices[name].write(name, JointTarget(target, joint_of(self._body, name).speed))
+
+    def _reached(self, name: str) -> bool:
+        return abs(self.angle(name) - self._targets[name]) <= joint_of(self._body, name).close_enough
+
+
+class Gripping:
+    """See btlang.robots.capabilities.Operation: a hand that closes or opens. `tell` gets whether something is in it."""
+
+    def __init__(self, name: str, device: Reads, closes: bool, tell: Callable[[bool], object]) -> None:
+        self._name, self._device, self._closes, self._tell = name, device, closes, tell
+        self.done = False
+        self.failure: str | None = None
+        self._passed = 0.0
+
+    def cancel(self) -> None:
+        """The hand stays as it is."""
+        self._end(self.failure)
+
+    def step(self, dt: float) -> None:
+        """Looks how far it is."""
+        if self.done:
+            return
+        self._device.write(self._name, GripTarget(float(self._closes)))
+        self._passed += dt
+        try:
+            reading = self._device.read(self._name)
+        except DeviceError as problem:
+            self._end(str(problem))
+            return
+        holds = isinstance(reading, Grip) and bool(reading.holds)
+        if holds == self._closes or self._passed >= _GRIP_AFTER:
+            self._tell(holds)
+            self._end("nothing is in the hand" if self._closes and not holds else None)
+
+    def _end(self, failure: str | None) -> None:
+        self.done, self.failure = True, failure
+
+
+class DeviceHands:
+    """See btlang.robots.parts.HandsPart: hands by the names "left hand" and "right hand".
+
+    What is in one is what was nearest to it, as far as the robot knows where things are.
+    """
+
+    def __init__(self, body: Body, devices: Mapping[str, Reads], known: Hands) -> None:
+        self._body, self._devices, self._known = body, devices, known
+        self.held: dict[Hand, str] = {}
+        self._grippings: dict[Hand, Gripping] = {}
+
+    def grasp(self, hand: Hand, name: str | None, pose: Pose, now: float) -> Operation:
+        """Begins to close it. Raises RobotError where it holds something."""
+        if hand in self.held:
+            raise RobotError(f"the {hand} hand already holds {said(self.held[hand])}")
+        try:
+            found = self._known.within_reach(hand, name, pose)
+        except RobotError:  # it may be there all the same
+            found = name or "something"
+        return self._begin(hand, True, lambda holds: self.held.update({hand: found} if holds else {}))
+
+    def release(self, hand: Hand, pose: Pose) -> Operation:
+        """Begins to open it."""
+        return self._begin(hand, False, lambda holds: None if holds else self.held.pop(hand, None))
+
+    def drop(self, hand: Hand, pose: Pose) -> str | None:
+        """What was in it is gone."""
+        return self.held.pop(hand, None)
+
+    def held_for(self, hand: Hand, now: float) -> float:
+        """0 while it holds something, inf where the hand tells that it is gone."""
+        return inf if self._is_empty(hand) else 0.0
+
+    def _is_empty(self, hand: Hand) -> bool:
+        name = f"{hand} hand"
+        gripping = self._grippings.get(hand)
+        if name not in self._devices or (gripping is not None and not gripping.done):
+            return False
+        try:
+            reading = self._devices[name].read(name)
+        except DeviceError:
+            return False
+        return isinstance(reading, Grip) and reading.holds is False
+
+    def step(self, dt: float) -> None:
+        """Moves on by `dt` seconds."""
+        for gripping in self._grippings.values():
+            gripping.step(dt)
+
+    def _begin(self, hand: Hand, closes: bool, tell: Callable[[bool], object]) -> Gripping:
+        name = f"{hand} hand"
+        if self._body.hand(hand) is None:
+            raise RobotError(f"the robot has no {name}")
+        gripping = self._grippings[hand] = Gripping(name, reader(self._devices, name, name), closes, tell)
+        return gripping
+
+
+class DeviceVoice(Voice):
+    """The voice as it is simulated, and displays that show what is printed."""
+
+    def __init__(self, body: Body, displays: Mapping[str, Reads]) -> None:
+        super().__init__(body)
+        self._displays = displays
+
+    def print(self, text: str) -> None:
+        """All displays show it."""
+        for name, display in self._displays.items():
+            display.write(name, Shown(text))

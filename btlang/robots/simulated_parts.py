@@ -1,0 +1,33 @@
+"""The parts of a robot that act in a simulated world."""
+
+from __future__ import annotations
+
+from btlang.robots.base import Base
+from btlang.robots.body import Body
+from btlang.robots.geometry import Pose
+from btlang.robots.hands import Hands
+from btlang.robots.joints import Joints
+from btlang.robots.obstacles import Obstacles
+from btlang.robots.parts import Parts
+from btlang.robots.power import Power
+from btlang.robots.voice import Voice
+from btlang.robots.world import World
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.robots.scan import Array, Scanner
+
+
+def simulated_parts(world: World, obstacles: Obstacles, body: Body) -> Parts:
+    """Those that act in a world."""
+    scanners: list[Scanner] = []
+
+    def scan(pose: Pose) -> Array:
+        if not scanners:
+            from btlang.robots.scan import Scanner  # brings numpy, which takes longer to import than many missions
+
+            scanners.append(Scanner(obstacles, body.range))
+        return scanners[0].read(pose)
+
+    base, power = Base(world.start, obstacles, body), Power(world.battery, world.dock, body)
+    return Parts(base, power, scan, Joints(body), Hands(obstacles, world.names.objects, body), Voice(body))

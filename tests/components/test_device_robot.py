@@ -1,0 +1,145 @@
+"""The robot over its devices: the examples on simulated twins, and what it does where devices are silent."""
+
+from __future__ import annotations
+
+import time
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import btlang
+from btlang.examples import examples
+from btlang.robots.platforms import ALL
+from btlang.robots.registry import connector
+from btlang.run.events import Event, Said
+from btlang.vocabulary.shipped import shipped
+from tests.components.robots import robot_file
+
+SHIPPED = Path(shipped("examples"))
+
+
+def run(text: str | Path, robot: Any, world: str | None = None, **options: Any) -> tuple[btlang.Outcome, list[Event]]:
+    events: list[Event] = []
+    mission = btlang.parse_file(str(text), world=world) if isinstance(text, Path) else btlang.parse_tree(text)
+    with btlang.Session(robot, world=mission.world) as session:
+        options = {"speed": "max", "seed": 1, "time_limit": 300.0, **options}
+        outcome = session.run(mission, sinks=[events.append], **options).outcome
+    assert outcome is not None
+    return outcome, events
+
+
+@pytest.mark.parametrize("example", examples(), ids=lambda example: example.name)
+def test_examples_run_unchanged_over_devices(example: Any) -> None:
+    world = str(SHIPPED / "worlds" / Path(example.world).name) if example.world else None
+    path = SHIPPED / f"{example.name}.txt"
+    usual, heard = run(path, "simulated", world)
+    over, told = run(path, connector("standard", "devices", simulate=[ALL]), world)
+    assert (over.status, over.stopped) == (usual.status, usual.stopped)
+    assert [event.text for event in told if isinstance(event, Said)] == [
+        event.text for event in heard if isinstance(event, Said)
+    ]
+    assert over.seconds == pytest.approx(usual.seconds, rel=0.25)
+
+
+def test_without_a_drive_it_says_so_and_does_not_move() -> None:
+    outcome, _ = run("go to the lab", connector("standard", "devices"), speed="real")
+    assert not outcome.succeeded
+    assert "the base has no device" in outcome.why()
+    assert outcome.standstill.still is None  # nobody knows
+
+
+def device(name: str, kind: str, **options: str) -> str:
+    listed = ", ".join(f"{key} = {value}" for key, value in options.items())
+    return f'[[device]]\nname = "{name}"\nkind = "{kind}"\ndriver = "simulated"\noptions = {{ {listed} }}'
+
+
+def test_wheels_that_fall_silent_end_the_journey(tmp_path: Path) -> None:
+    robot = connector(robot_file(tmp_path, device("wheels", "drive", silent="[4, 1000]")), "devices", simulate=[ALL])
+    outcome, _ = run("go to the lab", robot)
+    assert not outcome.succeeded
+    assert "the wheels is silent" in outcome.why()
+    assert outcome.seconds == pytest.approx(4.0, abs=0.2)
+
+
+def test_a_battery_that_is_silent_is_not_known(tmp_path: Path) -> None:
+    robot = connector(robot_file(tmp_path, device("power", "battery", silent="[0, 1000]")), "devices", simulate=[ALL])
+    outcome, events = run("if the battery is below 20%, print low otherwise print fine", robot)
+    assert not outcome.succeeded
+    assert [event.tag for event in events if event.tag in ("print", "warning")] == ["warning"]
+
+
+@pytest.mark.parametrize("sensor", ["range", "button"])
+def test_the_gate_stops_before_a_wall(tmp_path: Path, sensor: str) -> None:
+    """The bumper that is always silent counts as one that is pressed."""
+    guard = (
+        device("front", "range", cone="90")
+        if sensor == "range"
+        else device("front bumper", "button", silent="[0, 1000]")
+    )
+    robot = connector(robot_file(tmp_path, guard), "devices", simulate=[ALL])
+    outcome, events = run("drive forward at 1 m/s for 20 seconds then back up 0.3 m", robot, time_limit=40.0)
+    assert "bump" not in [event.tag for event in events]
+    assert outcome.seconds < 40
+
+
+def test_the_watchdog_stops_a_twin_that_nobody_commands(tmp_path: Path) -> None:
+    from btlang.devices.device_set import DeviceSet
+    from btlang.devices.kinds import WheelSpeeds
+    from btlang.robots.body_file import load_body
+    from btlang.robots.simulated import SimulatedRobot
+    from btlang.robots.world_file import load_world
+
+    body = load_body(robot_file(tmp_path, device("wheels", "drive")))
+    twin = SimulatedRobot(load_world(), body=body)
+    devices = DeviceSet(body, twin, lambda kind, data: None)
+    devices.readers["wheels"].write("wheels", WheelSpeeds(0.2, 0.2))
+    for _ in range(3):
+        twin.step(0.05)
+        devices.step()
+    assert twin.velocity[0] > 0.1
+    for _ in range(6):
+        twin.step(0.05)
+        devices.step()
+    assert twin.velocity == (0.0, 0.0)
+
+
+def test_real_devices_run_in_real_time(tmp_path: Path) -> None:
+    (tmp_path / "wheels.py").write_text(WHEELS, encoding="utf-8")
+    table = '[[device]]\nname = "wheels"\nkind = "drive"\ndriver = "wheels:Driver"'
+    robot = connector(robot_file(tmp_path, table), "devices")
+    began = time.monotonic()
+    outcome, _ = run("move forward 0.2 m", robot, speed="real", rate=2.0)
+    assert outcome.succeeded, outcome.why()
+    assert 0.2 < time.monotonic() - began < 20
+    with pytest.raises(ValueError, match="real time"):
+        run("move forward", robot, speed="max")
+
+
+WHEELS = """
+import time
+from btlang.devices.kinds import Wheels, WheelSpeeds
+
+class Driver:
+    kinds, needs_port, rate = ("drive",), False, 50.0
+
+    def __init__(self, port, devices):
+        self.name = devices[0].name
+        self.at = [0.0, 0.0]
+        self.speeds = WheelSpeeds()
+        self.last = None
+
+    def open(self):
+        self.last = time.monotonic()
+
+    def exchange(self, commands):
+        now = time.monotonic()
+        passed, self.last = now - self.last, now
+        self.at[0] += self.speeds.left * passed
+        self.at[1] += self.speeds.right * passed
+        self.speeds = commands[self.name]
+        return {self.name: Wheels(*self.at, self.speeds.left, self.speeds.right)}
+
+    def close(self):
+        self.speeds = WheelSpeeds()
+"""
