@@ -8,6 +8,7 @@ from __future__ import annotations
 import sys
 import time
 from collections.abc import Iterable
+from contextlib import suppress
 
 from btlang.devices.kinds import (
     KINDS,
@@ -191,13 +192,10 @@ def _moved(reading: Reading, command: Command, seconds: float) -> Reading:
 
 def main(name: str) -> None:
     """Shows a board with one channel of each kind until Ctrl-C."""
-    with SimulatedLine(SimulatedBoard(name)) as line:
+    with suppress(KeyboardInterrupt), SimulatedLine(SimulatedBoard(name)) as line:
         print(line.path, flush=True)
-        try:
-            while True:
-                time.sleep(3600)
-        except KeyboardInterrupt:
-            print()
+        while True:
+            time.sleep(3600)
 
 
 if __name__ == "__main__":
