@@ -22,6 +22,7 @@ HELLO_WAIT = 3.0
 _ASKED_EVERY = 0.1
 _LOOK = 0.01  # seconds that a read blocks at most
 _MOST_BYTES = 4096  # between two messages to a board, which answers each with one frame
+_CLOSED, _LOST = "can't be opened", "is lost"
 _MISSING = (
     "serial-board needs the Python package pyserial, which isn't installed. Install it: pip install 'btlang[serial]'"
 )
@@ -37,7 +38,7 @@ class Line:
             raise DeviceError(_MISSING) from None
         self.path = path
         self._reader, self._received, self._sent, self._echoes = FrameReader(), 0, b"", 0
-        with self._named("can't be opened"):
+        with self._named(_CLOSED):
             self._port: serial.Serial = Serial(path, baud, timeout=_LOOK, write_timeout=_ASKED_EVERY, exclusive=True)
 
     def send(self, message: bytes) -> None:
@@ -79,14 +80,16 @@ class Line:
             self._port.close()
 
     @contextmanager
-    def _named(self, what: str = "is lost") -> Iterator[None]:
+    def _named(self, what: str = _LOST) -> Iterator[None]:
         try:
             yield
         except (OSError, ValueError) as problem:  # pyserial's own are of these
             number = getattr(problem, "errno", None)
-            reason = (
-                "another program uses it" if number == EAGAIN else os.strerror(number).lower() if number else problem
-            )
+            named = {
+                None: str(problem) if what == _CLOSED else "it was unplugged, or hangs",
+                EAGAIN: "another program uses it",
+            }
+            reason = named.get(number) or os.strerror(number or 0).lower()
             raise DeviceError(f"{self.path} {what}: {reason}") from None
 
 
