@@ -25,7 +25,7 @@ class Driver(Protocol):
     and its own options of the robot file; that opens nothing yet."""
 
     rate: float
-    """Cycles a second that it asks for."""
+    """Cycles a second that it asks for; `open` may change it."""
 
     def open(self) -> None:
         """Finds the devices. Raises DeviceError where that can't be done now; it is tried again later."""
@@ -34,8 +34,9 @@ class Driver(Protocol):
         """One cycle: tells all devices their commands, by name, and returns what they tell since the last one.
 
         A device that told nothing new is left out; one that tells what can't be used has an error in place of its
-        reading. It waits for the port only, at most the period of its rate. Raises DeviceError when the port is lost:
-        then it is closed and opened again.
+        reading. A device that measures nothing, such as a light, answers with an empty `Reading()`. It waits for the
+        port only, at most a tenth of a second. Raises DeviceError when the port is lost: then it is closed and opened
+        again.
         """
 
     def close(self) -> None:

@@ -9,14 +9,17 @@ from __future__ import annotations
 import threading
 import time
 from collections.abc import Callable, Mapping
+from contextlib import suppress
+from math import isnan
 
 from btlang.devices.driver import Device, DeviceError, DeviceSilent, Driver
-from btlang.devices.kinds import KINDS, Command, Reading
+from btlang.devices.kinds import KINDS, Command, JointTarget, Reading
 
 SILENCE = 0.2
 """Seconds after which a command no longer counts, and after which a device that moves is silent."""
 _RETRY = 0.25  # seconds until a lost port is opened again
 _JOIN = 2.0
+_NOTHING_NEW, _CLOSED = "it tells nothing new", "its loop is closed"
 
 
 class DeviceLoop:
@@ -54,14 +57,21 @@ class DeviceLoop:
 
     def read(self, name: str) -> Reading:
         """The latest reading. Raises DeviceSilent where there is none that is new."""
-        wrong = self._wrong[name]
-        found = self._readings.get(name)
-        if wrong is None and found is not None and time.monotonic() - found[1] <= self._silence:
+        found, wrong = self._readings.get(name), self.silent(name)
+        if wrong is None and found is not None:
             return found[0]
-        raise DeviceSilent(f"the {name} is silent: {wrong or 'it tells nothing new'}")
+        raise DeviceSilent(f"the {name} is silent: {wrong or _NOTHING_NEW}")
 
     def write(self, name: str, command: Command) -> None:
-        """Tells a device a command, which counts for `silence` seconds; whoever drives tells it again."""
+        """Tells a device a command, which counts for `silence` seconds; whoever drives tells it again.
+
+        Raises DeviceError for one that it doesn't take, or that has what isn't a number in it.
+        """
+        wanted = KINDS[self.devices[name].kind].command
+        if wanted is None or not isinstance(command, wanted):
+            raise DeviceError(f"the {name} doesn't take a {type(command).__name__}")
+        if wrong := _not_numbers(command):
+            raise DeviceError(f"the {name} can't be told a {wrong[0]} that is not a number")
         self._commands[name] = command, time.monotonic()
 
     def rest(self) -> None:
@@ -70,36 +80,40 @@ class DeviceLoop:
 
     def silent(self, name: str) -> str | None:
         """Why a device is silent, None where it tells what it should."""
-        return self._wrong[name]
+        found, wrong = self._readings.get(name), self._wrong[name]
+        if wrong is None and (found is None or time.monotonic() - found[1] > self._silence):
+            return _NOTHING_NEW  # its driver hangs
+        return wrong
 
     def _work(self) -> None:
-        try:
-            while not self._stopped.is_set():
-                try:
-                    self._driver.open()
-                    self._cycle()
-                except DeviceError as problem:
-                    self._lost(str(problem))
-                except Exception as problem:  # of a driver by somebody else: its devices are silent, others go on
-                    self._lost(f"{type(problem).__name__}: {problem}")
+        while not self._stopped.is_set():
+            try:
+                self._driver.open()
+                self._cycle()
+            except DeviceError as problem:
+                self._lost(str(problem))
+            except BaseException as problem:  # of a driver by somebody else, sys.exit() too: others go on
+                self._lost(f"{type(problem).__name__}: {problem}")
+            with suppress(Exception):
                 self._driver.close()
-                self._stopped.wait(_RETRY)
-        finally:
-            self._driver.close()
+            self._stopped.wait(_RETRY)
+        self._lost(_CLOSED)
 
     def _cycle(self) -> None:
         period = 1.0 / self._driver.rate
         due = time.monotonic()
-        counted, since = 0, due
+        counted, since, took = 0, due, 0.0
         while not self._stopped.is_set():
-            told = self._driver.exchange(self._due_commands(due))
+            began = time.monotonic()
+            told = self._driver.exchange(self._due_commands(began + period + took))
             now = time.monotonic()
+            took = now - began
             for name, reading in told.items():
                 self._tell(name, reading, now)
             for name in self.devices:
                 found = self._readings.get(name)
                 if found is not None and self._wrong[name] is None and now - found[1] > self._silence:
-                    self._set_wrong(name, "it tells nothing new")
+                    self._set_wrong(name, _NOTHING_NEW)
             counted += 1
             if now - since >= 1.0:
                 self.rate, counted, since = counted / (now - since), 0, now
@@ -107,14 +121,16 @@ class DeviceLoop:
             if due > now:
                 self._stopped.wait(due - now)
 
-    def _due_commands(self, now: float) -> dict[str, Command]:
+    def _due_commands(self, until: float) -> dict[str, Command]:
+        """Those that count until then, when the devices are told the next ones. What moves rests while it's silent."""
         found: dict[str, Command] = {}
         for name, device in self.devices.items():
             kind = KINDS[device.kind]
             if kind.command is None:
                 continue
             command, told = self._commands.get(name, (None, 0.0))
-            late = kind.moves and now - told > self._silence
+            heard = self._readings.get(name, (None, 0.0))[1]
+            late = kind.moves and until - min(told, heard) > self._silence
             if command is not None and not late:
                 found[name] = _inverse(command, device)
             elif kind.moves:
@@ -122,9 +138,10 @@ class DeviceLoop:
         return found
 
     def _tell(self, name: str, reading: Reading | DeviceError, now: float) -> None:
-        if isinstance(reading, DeviceError):
+        wrong = str(reading) if isinstance(reading, DeviceError) else _untrue(reading, self.devices[name])
+        if wrong or isinstance(reading, DeviceError):
             self._readings.pop(name, None)
-            self._set_wrong(name, str(reading))
+            self._set_wrong(name, wrong)
         else:
             self._readings[name] = _calibrated(reading, self.devices[name]), now
             self._set_wrong(name, None)
@@ -132,13 +149,27 @@ class DeviceLoop:
     def _set_wrong(self, name: str, reason: str | None) -> None:
         if self._wrong[name] != reason:
             self._wrong[name] = reason
-            self._changed(name, reason)
+            with suppress(Exception):  # whoever listens, the devices are read on
+                self._changed(name, reason)
 
     def _lost(self, reason: str) -> None:
         self.rate = 0.0
         for name in self.devices:
             self._readings.pop(name, None)
             self._set_wrong(name, reason)
+
+
+def _untrue(reading: Reading, device: Device) -> str:
+    """Why a reading can't be used, "" where it can."""
+    wanted = KINDS[device.kind].reading or Reading
+    if not isinstance(reading, wanted):
+        return f"its driver gives {type(reading).__name__}, not {wanted.__name__}"
+    wrong = _not_numbers(reading)
+    return f"its {wrong[0]} is not a number" if wrong else ""
+
+
+def _not_numbers(record: Reading | Command) -> list[str]:
+    return [name for name in record.fields if isinstance(value := getattr(record, name), float) and isnan(value)]
 
 
 def _calibrated(reading: Reading, device: Device) -> Reading:
@@ -158,6 +189,7 @@ def _inverse(command: Command, device: Device) -> Command:
     for name in (*kind.scaled, *kind.shifted):
         value = getattr(command, name, None)
         if value is not None:
-            changed[name] = (value - (device.offset if name in kind.shifted else 0.0)) / device.scale
+            scale = abs(device.scale) if isinstance(command, JointTarget) and name == "speed" else device.scale
+            changed[name] = (value - (device.offset if name in kind.shifted else 0.0)) / scale
     made: Command = command.replace(**changed)
     return made

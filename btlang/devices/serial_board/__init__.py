@@ -1,0 +1,1 @@
+"""The driver `serial-board`: a microcontroller with many sensors and motors on a serial line."""

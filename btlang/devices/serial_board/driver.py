@@ -1,0 +1,235 @@
+"""The driver of boards: asks one for its readings at each cycle, with the commands for it, and believes only what can
+be true."""
+
+from __future__ import annotations
+
+import time
+from collections import Counter
+from collections.abc import Mapping, Sequence
+
+from btlang.devices.driver import Device, DeviceError, DeviceSilent
+from btlang.devices.kinds import KINDS, Command, Reading
+from btlang.devices.loop import SILENCE
+from btlang.devices.serial_board.frames import FRAMING, MOST_MESSAGE
+from btlang.devices.serial_board.line import Line, begin_session, find_board
+from btlang.devices.serial_board.messages import (
+    Answer,
+    Channel,
+    Told,
+    answer_size,
+    read_answer,
+    tell_message,
+    tell_size,
+)
+from btlang.devices.serial_board.options import BoardOptions, ChannelOptions, read_options
+from btlang.devices.serial_board.values import COMMANDS, KIND_NUMBERS, READINGS, Tally
+from btlang.record import Record
+
+_SHARE = 0.8  # of what a line carries that is used
+_SLOWEST = 12.5  # cycles a second, so that a board that moves hears a few before it stops alone
+_PATIENCE = 1 / _SLOWEST  # seconds that one cycle waits at most
+_OLD = 0.1  # seconds after which an answer isn't used any more
+_LOST = 0.5  # seconds without an answer after which the port is opened again
+_FROZEN_SAMPLES, _FROZEN = 3, 0.15  # intervals, and seconds at least, without a new sample
+_BITS = 10  # of each byte on the line
+
+
+class _Sent(Record):
+    """A message that waits for its answer: when it was sent, and the commands in it that are only sent once."""
+
+    time: float
+    kept: Mapping[str, bytes]
+
+
+class _Known(Record):
+    """What a device told last: since when its samples have been counted, and since when its value has been the same."""
+
+    count: int
+    counted: float
+    moved: bool
+    integers: tuple[int, ...]
+    changed: float
+
+
+class SerialBoard:
+    """See btlang.devices.driver.Driver."""
+
+    kinds: Sequence[str] = tuple(KIND_NUMBERS)
+    needs_port = True
+
+    def __init__(self, port: str, devices: Sequence[Device]) -> None:
+        self._devices = {device.name: device for device in devices}
+        self._options: Mapping[str, ChannelOptions]
+        self._board: BoardOptions
+        self._board, self._options = read_options(port, devices)
+        self.rate = self._board.rate
+        self._line: Line | None = None
+        self._tallies = {device.name: (Tally(), Tally()) for device in devices}
+        self._session = self._sequence = 0
+        self._name = ""
+        self._begin((), 0.0)
+
+    def open(self) -> None:
+        """See Driver. The port is a path, or `board NAME`: then all serial ports are asked for it."""
+        wanted = self._board
+        self._line = find_board(wanted.name, wanted.baud) if wanted.searched else Line(wanted.path, wanted.baud)
+        hello = begin_session(self._line)
+        if wanted.name and hello.name != wanted.name:
+            raise DeviceError(f"the board at {self._line.path} is '{hello.name}', not '{wanted.name}'")
+        if hello.before == 0 or hello.before != self._session:  # it was started again, or served somebody else
+            for tally in (tally for tallies in self._tallies.values() for tally in tallies):
+                tally.restart()
+        self._session, self._name = hello.session, hello.name
+        self._begin(hello.channels, time.monotonic())
+        moving = tell_size([device.kind for device in self._devices.values() if KINDS[device.kind].moves])
+        if moving > MOST_MESSAGE:
+            raise DeviceError(
+                f"the board '{hello.name}' has too many motors: a message has {MOST_MESSAGE} bytes at most"
+            )
+        size = moving + answer_size(hello.channels) + 2 * FRAMING
+        carried = wanted.baud / _BITS * _SHARE / size
+        if carried < _SLOWEST:
+            raise DeviceError(
+                f"the line is too slow: {size} bytes a cycle at {wanted.baud} baud are {carried:.1f} cycles a second, "
+                f"and it takes {_SLOWEST:g}"
+            )
+        self.rate = min(wanted.rate, carried)
+        self._patience = _PATIENCE
+
+    def exchange(self, commands: Mapping[str, Command]) -> Mapping[str, Reading | DeviceError]:
+        """See Driver."""
+        line = self._line
+        if line is None:
+            raise DeviceError("the port is not open")
+        refused = self._send(line, commands)
+        told: dict[str, Reading | DeviceError] = {}
+        until = time.monotonic() + self._patience
+        while True:
+            for message in line.receive(until):
+                told |= self._take(message)
+            if self._sequence not in self._sent:  # it is answered; answers to those before may come first
+                return told | refused
+            now = time.monotonic()
+            if now - self._answered > _LOST:
+                raise DeviceError(f"the board '{self._name}' at {line.path} doesn't answer")
+            if now >= until:
+                self._patience = min(_PATIENCE, 2 * self._patience)
+                return told | refused
+
+    def close(self) -> None:
+        """See Driver."""
+        line, self._line = self._line, None
+        if line is not None:
+            line.stop()
+            line.close()
+
+    def _begin(self, channels: tuple[Channel, ...], now: float) -> None:
+        """All that belongs to one session."""
+        self._sent: dict[int, _Sent] = {}
+        self._kept: dict[str, bytes] = {}
+        self._known: dict[str, _Known] = {}
+        self._answered = now
+        self._milliseconds: int | None = None
+        self._patience = _PATIENCE
+        self._measuring = tuple(channel for channel in channels if channel.kind in READINGS)
+        kinds = {channel.number: channel.kind for channel in channels}
+        self._unusable: dict[str, DeviceError] = {}
+        for name, device in self._devices.items():
+            number = self._options[name].channel
+            if kinds.get(number) != device.kind:
+                found = f"is of the kind {kinds[number]}, not {device.kind}" if number in kinds else "doesn't exist"
+                self._unusable[name] = DeviceSilent(f"its channel {number} of the board '{self._name}' {found}")
+        users = [name for name in self._devices if name not in self._unusable]
+        users.sort(key=lambda name: not KINDS[self._devices[name].kind].moves)  # these always have room in a message
+        self._users = {self._options[name].channel: name for name in users}
+
+    def _send(self, line: Line, commands: Mapping[str, Command]) -> dict[str, DeviceError]:
+        """Returns the devices that can't be used now. What moves rests unless an answer is sure to have come lately."""
+        now = time.monotonic()
+        blind = now + self._patience - self._answered > SILENCE
+        kinds: list[str] = []
+        packed, kept, refused = [], {}, dict(self._unusable)
+        for number, name in self._users.items():
+            kind = self._devices[name].kind
+            if name not in commands:
+                continue
+            rest = type(commands[name])()
+            try:
+                data = COMMANDS[kind].pack(rest if blind and KINDS[kind].moves else commands[name])
+            except DeviceError as problem:
+                refused[name] = problem
+                data = COMMANDS[kind].pack(rest)
+            if not KINDS[kind].moves:
+                if self._kept.get(name) == data or tell_size([*kinds, kind]) > MOST_MESSAGE:
+                    continue
+                kept[name] = data
+            kinds.append(kind)
+            packed.append((number, kind, data))
+        self._sequence = (self._sequence + 1) % 2**16
+        self._sent = {number: sent for number, sent in self._sent.items() if now - sent.time <= _OLD}
+        self._sent[self._sequence] = _Sent(now, kept)
+        line.send(tell_message(Told(self._session, self._sequence, tuple(packed))))
+        return refused
+
+    def _take(self, message: bytes) -> dict[str, Reading | DeviceError]:
+        """What devices tell in an answer; nothing where it isn't one that can be used."""
+        answer, now = read_answer(message), time.monotonic()
+        if answer is None:
+            return {}
+        if answer.session != self._session:
+            what = "was started again" if answer.session == 0 else "serves another computer"
+            raise DeviceError(f"the board '{self._name}' {what}")
+        sent = self._sent.pop(answer.sequence, None)
+        if sent is None or now - sent.time > _OLD or len(answer.samples) != len(self._measuring):
+            return {}
+        last, self._milliseconds = self._milliseconds, answer.milliseconds
+        if last is not None and (answer.milliseconds - last) % 2**32 >= 2**31:
+            raise DeviceError(f"the time of the board '{self._name}' goes back")
+        self._patience = min(_PATIENCE, max(1 / self.rate, 3 * (now - sent.time)))
+        self._kept |= sent.kept
+        self._answered = now
+        return self._read(answer, now)
+
+    def _read(self, answer: Answer, now: float) -> dict[str, Reading | DeviceError]:
+        kinds = {name: KINDS[self._devices[name].kind] for name in self._users.values()}
+        told: dict[str, Reading | DeviceError] = {
+            name: Reading() for name, kind in kinds.items() if kind.reading is None
+        }
+        claims = Counter(sample.number for sample in answer.samples)
+        for channel, sample in zip(self._measuring, answer.samples, strict=True):
+            name = self._users.get(channel.number)
+            if name is None:
+                continue
+            try:
+                if claims[channel.number] > 1:
+                    raise DeviceSilent(f"two channels answer with its number {channel.number}")
+                if (sample.number, sample.kind) != (channel.number, channel.kind):
+                    said = f"channel {sample.number} of the kind {sample.kind}"
+                    raise DeviceSilent(f"its channel {channel.number} answers as {said}")
+                known = self._counted(name, sample.count, sample.integers, now)
+                self._check_age(name, channel, known, now)
+                if known.moved:
+                    told[name] = READINGS[channel.kind].reading(sample.integers, self._tallies[name])
+            except DeviceError as problem:
+                told[name] = problem
+        return told
+
+    def _counted(self, name: str, count: int, integers: tuple[int, ...], now: float) -> _Known:
+        last = self._known.get(name)
+        if last is None:
+            known = _Known(count, now, False, integers, now)
+        else:
+            new, same = count != last.count, integers == last.integers
+            known = _Known(
+                count, now if new else last.counted, last.moved or new, integers, last.changed if same else now
+            )
+        self._known[name] = known
+        return known
+
+    def _check_age(self, name: str, channel: Channel, known: _Known, now: float) -> None:
+        place = f"its channel {channel.number} of the board '{self._name}'"
+        if now - known.counted > max(_FROZEN, _FROZEN_SAMPLES * channel.interval):
+            raise DeviceSilent(f"{place} measures nothing new")
+        most = self._options[name].frozen
+        if most is not None and now - known.changed > most:
+            raise DeviceSilent(f"{place} has had exactly the same value for {most:g} s")
