@@ -12,6 +12,7 @@ __version__ = "0.1.0"
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.api import Mission, parse_file, parse_tree
+    from btlang.components.component import Component, Parameter
     from btlang.decorators import action, condition, quantity
     from btlang.diagnostics.diagnostic import Diagnostic
     from btlang.diagnostics.errors import MissionError
@@ -21,15 +22,17 @@ if TYPE_CHECKING:
     from btlang.session import Run, Session
 
 __all__ = [
-    "ActionFailed", "Diagnostic", "Mission", "MissionError", "Outcome", "Run", "Session", "Status", "Unknown", "action",
-    "condition", "parse_file", "parse_tree", "quantity",
+    "ActionFailed", "Component", "Diagnostic", "Mission", "MissionError", "Outcome", "Parameter", "Run", "Session",
+    "Status", "Unknown", "action", "condition", "parse_file", "parse_tree", "quantity",
 ]  # fmt: skip
 
 _HOMES = {
     "ActionFailed": "btlang.engine.leaves.leaf",
+    "Component": "btlang.components.component",
     "Diagnostic": "btlang.diagnostics.diagnostic",
     "MissionError": "btlang.diagnostics.errors",
     "Outcome": "btlang.run.runner",
+    "Parameter": "btlang.components.component",
     "Run": "btlang.session",
     "Session": "btlang.session",
     "Status": "btlang.run.statuses",

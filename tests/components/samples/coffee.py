@@ -3,7 +3,7 @@
 import os
 import time
 
-from btlang.components.component import Component, Parameter
+from btlang import Component, Parameter
 
 
 class Machine(Component):
