@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import signal
 import socket
@@ -29,6 +30,7 @@ if TYPE_CHECKING:
 _BEAT = 0.1  # seconds between two looks at it
 _ANSWER = 0.05  # seconds that a tick waits for a condition
 _ERRORS = 2  # where it writes what it prints: standard output is for what people asked for
+_LOADING = 60.0  # seconds that a process gets to start, and to import what its class needs, on a busy computer
 _END = 0.5  # seconds that a process gets to end by itself
 
 
@@ -82,7 +84,8 @@ class ProcessHost:
         self._requests: dict[int, Request] = {}
         self._numbers = 0
         self._lost: str | None = None
-        self._heard = self._beaten = 0.0
+        self._heard = math.inf  # until it says something first
+        self._beaten = 0.0
         self._reader: threading.Thread | None = None
         self.state = UNCONFIGURED
         self.problem = ""
@@ -101,7 +104,7 @@ class ProcessHost:
             self._process = subprocess.Popen(
                 words, pass_fds=[its.fileno()], start_new_session=True, stdin=subprocess.DEVNULL, stdout=_ERRORS
             )
-        self._connection, self._heard = Connection(ours.detach()), time.monotonic()
+        self._connection = Connection(ours.detach())
         self._reader = threading.Thread(target=self._read, name="btlang component", daemon=True)
         self._reader.start()
         part = self._part
@@ -111,12 +114,13 @@ class ProcessHost:
                 parameters=dict(part.parameters), body=None,
             ),
             "load",
+            _LOADING,
         )  # fmt: skip
         return dict(value)
 
     def transition(self, name: str) -> None:
         """See Host."""
-        self._wait(self._request(name), name)
+        self._wait(self._request(name), name, self._part.limit)
 
     def look(self) -> str | None:
         """See Host; to be called every 0.1 s. After a silence it asks, and waits as long again, before it gives up."""
@@ -201,12 +205,12 @@ class ProcessHost:
             self._send(message)
         return request
 
-    def _wait(self, request: Request, what: str) -> Any:
-        until = time.monotonic() + self._part.limit
+    def _wait(self, request: Request, what: str, limit: float) -> Any:
+        until = time.monotonic() + limit
         while not request.done.wait(_BEAT):
             self.look()
             if time.monotonic() > until:
-                self._lose(f"did not {what} within {self._part.limit:g} s")
+                self._lose(f"did not {what} within {limit:g} s")
         if self._lost is not None:
             raise ComponentError(self._lost)
         try:
