@@ -1,0 +1,66 @@
+"""Reads the state of all servos in each cycle, so that one that doesn't answer costs the others little."""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Mapping
+
+from btlang.devices.dynamixel.client import Client
+from btlang.devices.dynamixel.control_table import STATE
+
+_SILENCE = 0.15  # seconds without an answer after which a servo is no longer asked with the others
+_BLAMES = 3  # ... if it was the first that didn't answer as often, since those behind it wait for its answer
+_PLAIN = 1.0  # seconds for which each answers with a packet of its own after a common answer was damaged
+
+
+class _Asked:
+    def __init__(self, address: int, fast: bool, now: float) -> None:
+        self.address, self.fast, self.answered = address, fast, now
+        self.blames = 0
+
+
+class Polling:
+    """Which servos are asked, and how. Servos that can answer with one common packet do; those whose answer is missing
+    are asked last, since in a chain of answers each waits for the one before."""
+
+    def __init__(self, client: Client) -> None:
+        self._client = client
+        self._asked: dict[int, _Asked] = {}
+        self._plain_until = 0.0
+
+    def add(self, id: int, address: int) -> None:
+        """Asks a servo from now on, whose state begins at this address. It is tried whether it knows the fast way."""
+        fast = any(self._client.sync_read(address, STATE.size, (id,), fast=True) for _ in range(2))
+        self._asked[id] = _Asked(address, fast, time.monotonic())
+
+    def remove(self, id: int) -> None:
+        """Asks a servo no more."""
+        self._asked.pop(id, None)
+
+    def read(self) -> Mapping[int, bytes]:
+        """One cycle: the states of the servos that answered."""
+        groups: dict[tuple[int, bool], list[int]] = {}
+        plain = time.monotonic() < self._plain_until
+        for id, asked in self._asked.items():
+            groups.setdefault((asked.address, asked.fast and not plain), []).append(id)
+        found: dict[int, bytes] = {}
+        for (address, fast), ids in groups.items():
+            found |= self._ask(address, sorted(ids, key=lambda id: self._asked[id].blames), fast)
+        return found
+
+    def silent(self) -> list[int]:
+        """The servos that have not answered for so long that they only hold up the others."""
+        now = time.monotonic()
+        return [id for id, asked in self._asked.items() if asked.blames >= _BLAMES and now - asked.answered > _SILENCE]
+
+    def _ask(self, address: int, ids: list[int], fast: bool) -> dict[int, bytes]:
+        found = self._client.sync_read(address, STATE.size, ids, fast)
+        now = time.monotonic()
+        missing = [id for id in ids if id not in found]
+        for id in found:
+            self._asked[id].blames, self._asked[id].answered = 0, now
+        if missing:
+            self._asked[missing[0]].blames += 1
+            if fast:
+                self._plain_until = now + _PLAIN
+        return found
