@@ -54,7 +54,7 @@ class Client:
         raise DeviceSilent(f"servo {id} on {self.line.port} doesn't answer")
 
     def write(self, id: int, address: int, data: bytes) -> None:
-        """Writes bytes, with several tries. Raises DeviceSilent if the servo never answers, DeviceError if it says no."""
+        """Writes bytes, in several tries. Raises DeviceSilent if the servo is silent, DeviceError if it refuses."""
         for _ in range(_TRIES):
             found = self._ask(write_packet(id, address, data), (id,), 0)
             if not found:
