@@ -92,14 +92,25 @@ FAST_ANSWER = bytes.fromhex(
 )
 
 
-def test_the_common_answer_of_the_documentation_is_read_part_by_part() -> None:
-    reader = PacketReader(segment=4)
-    came = [(at, found) for at, byte in enumerate(FAST_ANSWER) for found in reader.feed(bytes((byte,)))]
-    assert came == [
-        (15, Packet(3, STATUS, b"\0\xa6\0\0\0")),
-        (23, Packet(7, STATUS, b"\0\x1f\x08\0\0")),
-        (31, Packet(4, STATUS, b"\0\xff\x03\0\0")),
-    ]
+FAST_PARTS = [
+    Packet(3, STATUS, b"\0\xa6\0\0\0"),
+    Packet(7, STATUS, b"\0\x1f\x08\0\0"),
+    Packet(4, STATUS, b"\0\xff\x03\0\0"),
+]
+
+
+@pytest.mark.parametrize("end", range(len(FAST_ANSWER) + 1))
+def test_the_common_answer_of_the_documentation_is_read_as_far_as_it_came(end: int) -> None:
+    reader = PacketReader(segment=4, parts=3)
+    found = [packet for byte in FAST_ANSWER[:end] for packet in reader.feed(bytes((byte,)))]
+    assert found == (FAST_PARTS if end == len(FAST_ANSWER) else [])
+    assert found + reader.rest() == FAST_PARTS[: max(end - 8, 0) // 8]
+
+
+@pytest.mark.parametrize(("segment", "parts"), [(4, 2), (4, 4), (8, 2), (2, 4)])
+def test_a_common_answer_to_another_question_is_none(segment: int, parts: int) -> None:
+    reader = PacketReader(segment, parts)
+    assert [packet for packet in reader.feed(FAST_ANSWER) + reader.rest() if packet.id != BROADCAST] == []
 
 
 @given(DATA)
@@ -167,16 +178,15 @@ def test_a_damaged_packet_is_none(data: bytes, at: int, flip: int) -> None:
 @given(at=st.integers(0, len(FAST_ANSWER) - 1), flip=st.integers(1, 255))
 @searches(300, 20_000)
 def test_of_a_damaged_common_answer_what_came_before_is_used(at: int, flip: int) -> None:
-    intact = PacketReader(segment=4).feed(FAST_ANSWER)
-    reader = PacketReader(segment=4)
+    reader = PacketReader(segment=4, parts=3)
     damaged = FAST_ANSWER[:at] + bytes((FAST_ANSWER[at] ^ flip,)) + FAST_ANSWER[at + 1 :]
-    assert reader.feed(damaged) + reader.rest() == intact[: max(at - 8, 0) // 8]
+    assert reader.feed(damaged) + reader.rest() == FAST_PARTS[: max(at - 8, 0) // 8]
 
 
 @given(st.lists(st.sampled_from((b"\xff\xff\xfd\x00", b"\xfe", b"\x55", b"\xff\xff")) | st.binary(max_size=6)))
 @searches(200, 10_000)
 def test_noise_ends(pieces: list[bytes]) -> None:
-    reader = PacketReader(segment=4)
+    reader = PacketReader(segment=4, parts=2)
     for piece in pieces:
         reader.feed(piece)
     reader.rest()

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from itertools import pairwise
 
 from btlang.devices.driver import DeviceError, DeviceSilent
 from btlang.devices.dynamixel.line import SerialLine
@@ -84,7 +83,7 @@ class Client:
         self.line.send(packet.encode())
         answer = self.line.seconds((length + (SEGMENT_OVERHEAD if fast else OVERHEAD)) * len(ids))
         until = self.line.sent_by + answer + self.delay * len(ids) + PATIENCE
-        reader = PacketReader(length if fast else 0)
+        reader = PacketReader(length, len(ids)) if fast else PacketReader()
         came: list[tuple[int, bytes]] = []
         while len(came) < len(ids):
             got = self.line.receive(until)
@@ -99,9 +98,10 @@ class Client:
 
 
 def _in_order(came: Sequence[tuple[int, bytes]], ids: Sequence[int]) -> dict[int, bytes]:
+    found = dict(came)
+    if len(found) == len(came) and list(found) == [id for id in ids if id in found]:
+        return found
     places = [ids.index(id) for id, _ in came]
-    if all(a < b for a, b in pairwise(places)):
-        return dict(came)
     return {
         id: parameters
         for at, (id, parameters) in enumerate(came)

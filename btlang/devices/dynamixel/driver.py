@@ -83,7 +83,8 @@ class DynamixelDriver:
         for id in self._polling.silent():
             servo = self._servos[id]
             self._lose(servo, DeviceSilent(f"{servo.where} doesn't answer"))
-        return told | {self._servos[id].name: absent.reason for id, absent in self._absent.items()}
+        told.update((self._servos[id].name, absent.reason) for id, absent in self._absent.items())
+        return told
 
     def close(self) -> None:
         """Joints hold where they are or let go, as their option `at_end` says; the port is free then."""
@@ -105,6 +106,8 @@ class DynamixelDriver:
             self._client.delay = max(self._client.delay, servo.delay)
 
     def _try_one(self) -> None:
+        if not self._absent:
+            return
         now = time.monotonic()
         due = [(absent.due, id) for id, absent in self._absent.items() if absent.due <= now]
         if due:
@@ -116,13 +119,17 @@ class DynamixelDriver:
         self._absent[servo.id] = _Absent(reason, time.monotonic() + pause)
 
     def _send(self, orders: Mapping[int, Orders]) -> None:
-        stopped = [id for id, order in orders.items() if order.watchdog]
+        goals, torques, stopped = {}, {}, []
+        for id, order in orders.items():
+            if order.goal is not None:
+                goals[id] = order.goal
+            if order.torque is not None:
+                torques[id] = bytes((order.torque,))
+            if order.watchdog:
+                stopped.append(id)
         self._client.sync_write(table.WATCHDOG, dict.fromkeys(stopped, b"\0"))  # else it would refuse the goal
-        self._client.sync_write(
-            table.PROFILE_VELOCITY, {id: order.goal for id, order in orders.items() if order.goal is not None}
-        )
+        self._client.sync_write(table.PROFILE_VELOCITY, goals)
         self._client.sync_write(table.WATCHDOG, dict.fromkeys(stopped, bytes((WATCHDOG_SET,))))
-        torques = {id: bytes((order.torque,)) for id, order in orders.items() if order.torque is not None}
         self._client.sync_write(table.TORQUE, torques)
 
     def _rest(self) -> None:

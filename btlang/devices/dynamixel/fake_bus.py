@@ -132,8 +132,7 @@ class FakeBus:
     def _answer(self, servo: FakeServo, error: int, data: bytes) -> None:
         if servo.silent:
             return
-        if servo.late:
-            time.sleep(servo.late)
+        self._wait(servo)
         self._send(Packet(servo.answers_as, STATUS, bytes((error | _alert(servo),)) + data).encode())
 
     def _sync_read(self, packet: Packet) -> None:
@@ -148,9 +147,9 @@ class FakeBus:
             if not fast:
                 self._answer(servo, 0, servo.read(address, size))
                 continue
-            if servo.late:
-                time.sleep(servo.late)
-            answer += bytes((_alert(servo), servo.answers_as)) + servo.read(address, size)
+            part = bytes((_alert(servo), servo.answers_as)) + servo.read(address, size)
+            self._wait(servo)
+            answer += part
             answer += crc16(answer).to_bytes(2, "little")
         if fast and len(answer) > 8:
             self._send(answer)
@@ -159,6 +158,13 @@ class FakeBus:
         self._pace(len(data))
         with suppress(OSError):
             os.write(self._file, self._damaged(data))
+
+    def _wait(self, servo: FakeServo) -> None:
+        """What is sent while a servo is late collides with its answer, and nobody hears it."""
+        if servo.late:
+            time.sleep(servo.late)
+            while select.select((self._file,), (), (), 0)[0]:
+                os.read(self._file, 4096)
 
     def _pace(self, count: int) -> None:
         if self.baud:

@@ -92,14 +92,14 @@ def _words(*values: int) -> bytes:
 class PacketReader:
     """Finds packets in a stream of bytes, whatever is between them; one with a wrong checksum is none.
 
-    `segment` is the data length of a fast sync read under way, else 0: the parts of its answer come out as status
-    packets of their servos, each as soon as it is complete.
+    After a fast sync read, `parts` is how many servos were asked for how many bytes, `segment`: the parts of their
+    common answer come out as a status packet of each servo, of a damaged one those before the damage.
     """
 
-    def __init__(self, segment: int = 0) -> None:
-        self._segment = segment
+    def __init__(self, segment: int = 0, parts: int = 0) -> None:
+        self._size = segment + SEGMENT_OVERHEAD
+        self._common_length = 1 + parts * self._size
         self._bytes = bytearray()
-        self._checked, self._crc = 0, 0  # of the fast answer at the start: how far its parts came out, with what sum
 
     def feed(self, data: bytes) -> list[Packet]:
         """The packets that are complete with these bytes."""
@@ -110,9 +110,11 @@ class PacketReader:
         return found
 
     def rest(self) -> list[Packet]:
-        """When nothing more comes: the packets behind the start of one that never got complete."""
+        """When nothing more comes: what is intact of a packet that never got complete, and the packets behind it."""
         found: list[Packet] = []
         while self._find_header():
+            if self._is_common():
+                self._take_parts(found, len(self._bytes))
             self._drop(1)
             found += self.feed(b"")
         return found
@@ -126,7 +128,6 @@ class PacketReader:
     def _drop(self, count: int) -> None:
         if count:
             del self._bytes[:count]
-            self._checked = 0
 
     def _take(self, found: list[Packet]) -> bool:
         """Takes the packet at the start, or drops its header. False: more bytes are needed."""
@@ -136,11 +137,13 @@ class PacketReader:
         if not 3 <= length <= _LONGEST:
             self._drop(1)
             return True
-        if got[4] == BROADCAST and got[_HEAD] == STATUS:
-            return self._take_segments(found, end)
         if len(got) < end:
             return False
-        if crc16(got[: end - 2]) == int.from_bytes(got[end - 2 : end], "little"):
+        is_intact = crc16(got[: end - 2]) == int.from_bytes(got[end - 2 : end], "little")
+        if self._is_common():
+            self._take_parts(found, end, is_intact)
+            self._drop(end if is_intact else 1)
+        elif is_intact:
             body = bytes(got[_HEAD : end - 2]).replace(_STUFFED, _PLAIN)
             found.append(Packet(got[4], body[0], body[1:]))
             self._drop(end)
@@ -148,22 +151,22 @@ class PacketReader:
             self._drop(1)
         return True
 
-    def _take_segments(self, found: list[Packet], end: int) -> bool:
-        got, size = self._bytes, self._segment + SEGMENT_OVERHEAD
-        if not self._segment or (end - _HEAD - 1) % size:
-            self._drop(1)
-            return True
-        if not self._checked:
-            self._checked, self._crc = _HEAD + 1, crc16(got[: _HEAD + 1])
-        while self._checked < end:
-            start, stop = self._checked, self._checked + size
-            if len(got) < stop:
-                return False
-            crc = crc16(got[start : stop - 2], self._crc)
-            if crc != int.from_bytes(got[stop - 2 : stop], "little"):
-                self._drop(1)
-                return True
-            found.append(Packet(got[start + 1], STATUS, bytes(got[start : start + 1] + got[start + 2 : stop - 2])))
-            self._checked, self._crc = stop, crc16(got[stop - 2 : stop], crc)
-        self._drop(end)
-        return True
+    def _is_common(self) -> bool:
+        got = self._bytes  # its length tells it from a late answer to a question for other bytes
+        return (
+            got[_HEAD] == STATUS
+            and got[4] == BROADCAST
+            and int.from_bytes(got[5:_HEAD], "little") == self._common_length
+        )
+
+    def _take_parts(self, found: list[Packet], end: int, is_intact: bool = False) -> None:
+        """Of a common answer: each part has the checksum of all before it and itself."""
+        got, size = bytes(self._bytes[:end]), self._size
+        crc, begin = 0, 0
+        for start in range(_HEAD + 1, end - size + 1, size):
+            stop = start + size - 2
+            if not is_intact or not begin:  # the first says whether the parts are as long as asked for
+                crc, begin = crc16(got[begin:stop], crc), stop
+                if crc != int.from_bytes(got[stop : stop + 2], "little"):
+                    return
+            found.append(Packet(got[start + 1], STATUS, got[start : start + 1] + got[start + 2 : stop]))

@@ -137,10 +137,9 @@ class Servo:
     def _goal(self, target: JointTarget) -> tuple[int | None, int]:
         """In ticks, within the limits, and the highest speed in units of the servo."""
         position, speed = target.position, target.speed
-        for value in (position, speed):
-            if value is not None and not math.isfinite(value):
-                self._refused = DeviceError(f"the {self.name} can't be told to go to {position} at a speed of {speed}")
-                return None, self._fastest
+        if not math.isfinite(position or 0.0) or not math.isfinite(speed or 0.0):
+            self._refused = DeviceError(f"the {self.name} can't be told to go to {position} at a speed of {speed}")
+            return None, self._fastest
         if position is None or (speed is not None and speed <= 0):
             return None, self._fastest
         fastest = self._fastest
