@@ -1,14 +1,16 @@
 """Fourteen servos at 100 cycles a second, beside dynamixel-sdk: `python -m tests.benchmarks.dynamixel [--seconds 10]`.
 
-Simulated servos in a process of their own are on a pty; each cycle writes all goals and reads all states. The clients take
-turns, each in a process of its own: how many cycles a second, how late does each begin, and what share of a core does
-the thread take that reads and writes? Where the system allows it, there is a round with real-time priority (SCHED_FIFO) too.
+Simulated servos in a process of their own are on a pty; each cycle writes all goals and reads all states. The clients
+take turns, each in a process of its own: how many cycles a second, how late does each begin, and what share of a core
+does the thread take that reads and writes? Where the system allows it, they have real-time priority (SCHED_FIFO) in a
+second round.
 """
 
 from __future__ import annotations
 
 import argparse
 import json
+import math
 import os
 import signal
 import subprocess
@@ -76,7 +78,7 @@ class MarkedDriver(DynamixelDriver):
 
 
 def btlang_client(port: str, seconds: float) -> dict[str, Any]:
-    """The loop of devices with the driver; goals are told 50 times a second by another thread, as ticks do."""
+    """The loop of devices with the driver; new goals come 20 times a second from another thread, as from ticks."""
     devices = tuple(Device(f"j{id}", "joint", "dynamixel", port, {"id": id}) for id in IDS)
     driver = MarkedDriver(port, devices)
     driver.clock = clock = Clock(seconds)
@@ -84,8 +86,8 @@ def btlang_client(port: str, seconds: float) -> dict[str, Any]:
     loop.start()
     while time.monotonic() < clock.end:
         for device in devices:
-            loop.write(device.name, JointTarget(10.0))
-        time.sleep(0.02)
+            loop.write(device.name, JointTarget(10.0 * math.sin(time.monotonic())))
+        time.sleep(0.05)
     figures = clock.figures(driver.failed)
     loop.close()
     return figures

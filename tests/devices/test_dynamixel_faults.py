@@ -1,4 +1,4 @@
-"""Faults of servos and their line: no wrong value is used, who is at fault is named, and service comes back by itself."""
+"""Faults of servos and their line: no wrong value is used, who fails is named, and service comes back by itself."""
 
 from __future__ import annotations
 

@@ -26,7 +26,7 @@ from tests.profiles import searches
 
 
 class Oracle(Protocol2PacketHandler):
-    """dynamixel-sdk 4.1 for Python computes the byte stuffing of what it sends, and then sends the packet without it."""
+    """dynamixel-sdk 4.1 for Python computes the byte stuffing of what it sends, and sends it without."""
 
     def addStuffing(self, packet: list[int]) -> list[int]:
         packet[:] = super().addStuffing(packet)

@@ -37,6 +37,8 @@ class Client:
     def __init__(self, line: SerialLine) -> None:
         self.line = line
         self.delay = LONGEST_DELAY
+        self._pending = b""
+        self._written: dict[int, tuple[Mapping[int, bytes], bytes]] = {}  # the latest to each address, and its packet
 
     def ping(self, id: int) -> tuple[int, int] | None:
         """The model number and firmware of a servo, None if it doesn't answer."""
@@ -66,9 +68,20 @@ class Client:
         raise DeviceSilent(f"servo {id} on {self.line.port} doesn't answer")
 
     def sync_write(self, address: int, values: Mapping[int, bytes]) -> None:
-        """Writes to several servos at once. Nothing says whether it arrived."""
-        if values:
-            self.line.send(sync_write_packet(address, values).encode())
+        """Writes to several servos at once, with the next question or `flush`. Nothing says whether it arrived."""
+        if not values:
+            return
+        latest, data = self._written.get(address, ({}, b""))
+        if latest != values:  # most goals stay the same for many cycles
+            data = sync_write_packet(address, values).encode()
+            self._written[address] = values, data
+        self._pending += data
+
+    def flush(self) -> None:
+        """Sends what waits for the next question."""
+        data, self._pending = self._pending, b""
+        if data:
+            self.line.send(data)
 
     def sync_read(self, address: int, length: int, ids: Sequence[int], fast: bool = False) -> dict[int, bytes]:
         """The same bytes of several servos, by id. Who doesn't answer is left out, and so is an answer that comes twice
@@ -80,7 +93,8 @@ class Client:
 
     def _ask(self, packet: Packet, ids: Sequence[int], length: int, fast: bool = False) -> dict[int, bytes]:
         """The parameters of the status packets of these servos, as far as they came in time."""
-        self.line.send(packet.encode())
+        self._pending += packet.encode()
+        self.flush()
         answer = self.line.seconds((length + (SEGMENT_OVERHEAD if fast else OVERHEAD)) * len(ids))
         until = self.line.sent_by + answer + self.delay * len(ids) + PATIENCE
         reader = PacketReader(length, len(ids)) if fast else PacketReader()

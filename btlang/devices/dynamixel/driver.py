@@ -140,6 +140,7 @@ class DynamixelDriver:
         targets = {servo.id: JointTarget(loose=servo.options.at_end == "loose") for servo in self._servos.values()}
         for _ in range(2):  # nothing says whether it arrived
             self._send({id: self._servos[id].orders(target) for id, target in targets.items()})
+            self._client.flush()
         for servo in present:
             try:
                 self._client.write(servo.id, table.WATCHDOG, b"\0")

@@ -42,7 +42,7 @@ class Polling:
         self._groups = None
 
     def read(self) -> Mapping[int, bytes]:
-        """One cycle: the states of the servos that answered."""
+        """One cycle: the states of the servos that answered, and perhaps some bytes more."""
         if self._groups is None or 0 < self._plain_until < time.monotonic():
             self._groups = self._grouped()
         found: dict[int, bytes] = {}
@@ -76,4 +76,4 @@ class Polling:
             self._extra = (self._extra + 1) % _LENGTHS
             if fast:
                 self._plain_until = now + _PLAIN
-        return {id: state[: STATE.size] for id, state in found.items()}
+        return found

@@ -45,6 +45,8 @@ class Servo:
         self._position = table.CENTRE
         self._hold: int | None = None  # where it rests
         self._refused: DeviceError | None = None
+        self._target: JointTarget | None = None
+        self._orders, self._is_steady = Orders(), False  # for the target, as long as nothing happens that changes them
         self._fault: DeviceError | None = None
 
     @property
@@ -82,10 +84,18 @@ class Servo:
         client.write(self.id, table.WATCHDOG, bytes((WATCHDOG_SET,)))
         self._has_torque, self._is_tripped, self._is_hot = bool(torque), False, False
         self._hold = self._refused = self._fault = None
+        self._is_steady = False
 
     def orders(self, target: JointTarget | None) -> Orders:
         """What to send for a target; None: nothing is known of what it should do."""
-        self._refused = None
+        if target is self._target and self._is_steady:
+            return self._orders
+        self._refused, self._target = None, target
+        self._orders = self._make_orders(target)
+        self._is_steady = self._has_torque and not self._is_tripped and self._fault is None
+        return self._orders
+
+    def _make_orders(self, target: JointTarget | None) -> Orders:
         if self._fault is not None or (target is not None and target.loose):
             self._hold = None
             return Orders(torque=False if self._has_torque else None, watchdog=self._is_tripped)
@@ -106,17 +116,19 @@ class Servo:
     def reading(self, state: bytes) -> JointState:
         """What its state means. Raises Restarted where it has to be made ready again, DeviceError where it is at fault
         or was told a goal that is none."""
-        torque, error, watchdog, load, velocity, position, temperature = table.STATE.unpack(state)
+        torque, error, watchdog, load, velocity, position, temperature = table.STATE.unpack_from(state)
         if torque > 1 or watchdog not in (WATCHDOG_SET, table.WATCHDOG_TRIPPED):
-            self._has_torque = False  # as far as is known; the position is none either
+            self._has_torque = self._is_steady = False  # as far as is known; the position is none either
             raise Restarted(f"{self.where} was without power for a moment")
         self._position, self._has_torque, self._is_tripped = position, torque == 1, watchdog == table.WATCHDOG_TRIPPED
-        self._fault = self._find_fault(error, temperature)
+        if error or temperature > self._hottest or self._fault is not None:
+            self._fault = self._find_fault(error, temperature)
+        self._is_steady &= self._has_torque and not self._is_tripped and self._fault is None
         wrong = self._fault or self._refused
         if wrong is not None:
             raise wrong
         return JointState(
-            self._degrees(self._position),
+            self._degrees(position),
             velocity * table.SPEED_UNIT * self._sign,
             100 * load / self._model.full_load * self._sign,
             float(temperature),
