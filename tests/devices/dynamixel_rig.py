@@ -12,7 +12,7 @@ from btlang.devices.dynamixel.driver import DynamixelDriver
 from btlang.devices.dynamixel.fake_bus import FakeBus
 from btlang.devices.dynamixel.fake_servo import FakeServo
 from btlang.devices.kinds import JointState, JointTarget
-from btlang.devices.loop import DeviceLoop
+from btlang.devices.loop import SILENCE, DeviceLoop
 
 PATIENCE = 20.0  # seconds: much more than anything takes, since other tests keep the computer busy
 
@@ -26,10 +26,10 @@ def device(id: int, port: str, /, **options: Any) -> Device:
 class Rig:
     """A loop over the servos of a bus. `events` are the changes that it reported."""
 
-    def __init__(self, bus: FakeBus, devices: tuple[Device, ...]) -> None:
+    def __init__(self, bus: FakeBus, devices: tuple[Device, ...], silence: float = SILENCE) -> None:
         self.bus, self.events = bus, list[tuple[str, str | None]]()
         self.driver = DynamixelDriver(devices[0].port, devices)
-        self.loop = DeviceLoop(self.driver, devices, lambda name, reason: self.events.append((name, reason)))
+        self.loop = DeviceLoop(self.driver, devices, lambda name, reason: self.events.append((name, reason)), silence)
         self.seen: dict[str, list[JointState]] = {device.name: [] for device in devices}
 
     def until(self, holds: Callable[[], object], targets: Mapping[str, JointTarget] | None = None) -> None:
@@ -63,11 +63,10 @@ class Rig:
 
 
 @contextmanager
-def rig(*servos: FakeServo, options: Mapping[int, Mapping[str, Any]] | None = None, **common: Any) -> Iterator[Rig]:
+def rig(*servos: FakeServo, silence: float = SILENCE, **options: Any) -> Iterator[Rig]:
     """Servos on a bus, and a loop that has not begun to open it."""
     with FakeBus(servos) as bus:
-        made = (device(servo.id, bus.port, **common, **(options or {}).get(servo.id, {})) for servo in servos)
-        found = Rig(bus, tuple(made))
+        found = Rig(bus, tuple(device(servo.id, bus.port, **options) for servo in servos), silence)
         try:
             yield found
         finally:
