@@ -7,7 +7,7 @@ from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 from typing import Any
 
-from btlang.devices.driver import Device, DeviceSilent
+from btlang.devices.driver import Device, DeviceSilent, MakesDriver
 from btlang.devices.dynamixel.driver import DynamixelDriver
 from btlang.devices.dynamixel.fake_bus import FakeBus
 from btlang.devices.dynamixel.fake_servo import FakeServo
@@ -28,7 +28,8 @@ class Rig:
 
     def __init__(self, bus: FakeBus, devices: tuple[Device, ...], silence: float = SILENCE) -> None:
         self.bus, self.events = bus, list[tuple[str, str | None]]()
-        self.driver = DynamixelDriver(devices[0].port, devices)
+        make: MakesDriver = DynamixelDriver
+        self.driver = make(devices[0].port, devices)
         self.loop = DeviceLoop(self.driver, devices, lambda name, reason: self.events.append((name, reason)), silence)
         self.seen: dict[str, list[JointState]] = {device.name: [] for device in devices}
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import sys
 from typing import Any
 
 import pytest
@@ -235,3 +236,9 @@ def test_ports_that_cannot_be_used(tmp_path: Any) -> None:
         first.close()
         second.open()
         second.close()
+
+
+def test_without_pyserial(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(sys.modules, "serial", None)
+    with pytest.raises(DeviceError, match=r"need the package pyserial: pip install 'btlang\[serial\]'"):
+        DynamixelDriver("/dev/null", [device(1, "/dev/null")]).open()

@@ -59,6 +59,18 @@ def test_a_silent_servo_is_named_and_the_others_go_on() -> None:
         assert {name for name, _ in r.events} == {"j2"}
 
 
+def test_a_servo_that_only_hears_is_told_to_stop() -> None:
+    with rig(*servos()) as r:
+        r.loop.start()
+        goals = {"j2": JointTarget(-90.0, 20.0)}
+        servo = r.bus.servos[2]
+        r.until(lambda: degrees(servo) < 35, goals)
+        servo.silent = True
+        r.until(lambda: not r.is_back("j2"), goals)
+        r.until(lambda: servo.goal > 2048, goals)
+        assert degrees(servo) > 0
+
+
 def test_a_silent_servo_is_asked_less_often() -> None:
     with rig(*servos()) as r:
         r.bus.servos[2].silent = True

@@ -37,8 +37,8 @@ class DynamixelDriver:
     A servo that can't be used is named in each cycle and tried again from time to time; the others go on.
     """
 
-    kinds = ("joint",)
-    needs_port = True
+    kinds: Sequence[str] = ("joint",)
+    needs_port: bool = True
 
     def __init__(self, port: str, devices: Sequence[Device]) -> None:
         options = read_all(devices)

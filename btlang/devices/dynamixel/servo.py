@@ -72,9 +72,8 @@ class Servo:
             raise DeviceError(f"{self.where} has the firmware {firmware}, but {wanted}")
         self._read_settings(client.read(self.id, 0, table.SETTINGS.size))
         client.sync_write(table.STATUS_RETURN, {self.id: b"\2"})  # until then it might not answer what is written
-        client.write(self.id, table.INDIRECT_ADDRESS, table.INDIRECT)
         if client.read(self.id, table.INDIRECT_ADDRESS, len(table.INDIRECT)) != table.INDIRECT:
-            raise DeviceError(f"{self.where} doesn't keep what is written to it")
+            client.write(self.id, table.INDIRECT_ADDRESS, table.INDIRECT)
         client.write(self.id, table.WATCHDOG, b"\0")
         torque, _, _, _, _, self._position, _ = table.STATE.unpack(
             client.read(self.id, self.state_address, table.STATE.size)
