@@ -33,9 +33,14 @@ class Rig:
         self.loop = DeviceLoop(self.driver, devices, lambda name, reason: self.events.append((name, reason)), silence)
         self.seen: dict[str, list[JointState]] = {device.name: [] for device in devices}
 
-    def until(self, holds: Callable[[], object], targets: Mapping[str, JointTarget] | None = None) -> None:
+    def until(
+        self,
+        holds: Callable[[], object],
+        targets: Mapping[str, JointTarget] | None = None,
+        patience: float = PATIENCE,
+    ) -> None:
         """Tells the targets again and again until something holds; all readings are kept in `seen`."""
-        end = time.monotonic() + PATIENCE
+        end = time.monotonic() + patience
         while not holds():
             assert time.monotonic() < end, f"waited in vain; reported: {self.events}"
             for name, target in (targets or {}).items():
@@ -48,7 +53,7 @@ class Rig:
     def for_a_while(self, seconds: float, targets: Mapping[str, JointTarget] | None = None) -> None:
         """Tells the targets for some time."""
         end = time.monotonic() + seconds
-        self.until(lambda: time.monotonic() > end, targets)
+        self.until(lambda: time.monotonic() > end, targets, seconds + PATIENCE)
 
     def is_back(self, *names: str) -> bool:
         """Whether these joints, else all, tell what they should."""

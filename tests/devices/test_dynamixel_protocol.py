@@ -114,14 +114,14 @@ def test_a_common_answer_to_another_question_is_none(segment: int, parts: int) -
 
 
 @given(DATA)
-@searches(100, 5000)
+@searches(100, 4000)
 def test_checksums_are_those_of_the_oracle(data: bytes) -> None:
     assert crc16(data) == HANDLER.updateCRC(0, data, len(data))
 
 
 @given(id=st.integers(0, 252), address=st.integers(0, 600), data=DATA, ids=IDS, fast=st.booleans())
 @example(id=1, address=116, data=b"\xff\xff\xfd", ids=[1], fast=True)
-@searches(200, 10_000)
+@searches(200, 4000)
 def test_instructions_are_those_of_the_oracle(id: int, address: int, data: bytes, ids: list[int], fast: bool) -> None:
     def sent(call: Any, *arguments: Any) -> bytes:
         port = FakePort()
@@ -145,7 +145,7 @@ def test_instructions_are_those_of_the_oracle(id: int, address: int, data: bytes
 
 @given(id=st.integers(0, 252), error=st.integers(0, 255), data=DATA, noise=DATA)
 @example(id=1, error=0, data=b"\xff\xff\xfd\xfd\xff\xff\xfd", noise=b"")
-@searches(200, 10_000)
+@searches(200, 4000)
 def test_answers_are_understood_as_by_the_oracle(id: int, error: int, data: bytes, noise: bytes) -> None:
     packet = Packet(id, STATUS, bytes((error,)) + data)
     read, result = HANDLER.rxPacket(FakePort(packet.encode()), False)
@@ -156,7 +156,7 @@ def test_answers_are_understood_as_by_the_oracle(id: int, error: int, data: byte
 
 
 @given(packets=st.lists(DATA, min_size=1, max_size=5), cuts=st.lists(st.integers(0, 200)))
-@searches(100, 5000)
+@searches(100, 4000)
 def test_packets_come_in_pieces(packets: list[bytes], cuts: list[int]) -> None:
     sent = [Packet(id, STATUS, b"\0" + data) for id, data in enumerate(packets)]
     line = b"".join(packet.encode() for packet in sent)
@@ -166,7 +166,7 @@ def test_packets_come_in_pieces(packets: list[bytes], cuts: list[int]) -> None:
 
 
 @given(data=DATA, at=st.integers(0, 60), flip=st.integers(1, 255))
-@searches(300, 20_000)
+@searches(300, 4000)
 def test_a_damaged_packet_is_none(data: bytes, at: int, flip: int) -> None:
     sent = Packet(1, STATUS, b"\0" + data).encode()
     assume(at < len(sent))
@@ -176,7 +176,7 @@ def test_a_damaged_packet_is_none(data: bytes, at: int, flip: int) -> None:
 
 
 @given(at=st.integers(0, len(FAST_ANSWER) - 1), flip=st.integers(1, 255))
-@searches(300, 20_000)
+@searches(300, 4000)
 def test_of_a_damaged_common_answer_what_came_before_is_used(at: int, flip: int) -> None:
     reader = PacketReader(segment=4, parts=3)
     damaged = FAST_ANSWER[:at] + bytes((FAST_ANSWER[at] ^ flip,)) + FAST_ANSWER[at + 1 :]
@@ -184,7 +184,7 @@ def test_of_a_damaged_common_answer_what_came_before_is_used(at: int, flip: int)
 
 
 @given(st.lists(st.sampled_from((b"\xff\xff\xfd\x00", b"\xfe", b"\x55", b"\xff\xff")) | st.binary(max_size=6)))
-@searches(200, 10_000)
+@searches(200, 4000)
 def test_noise_ends(pieces: list[bytes]) -> None:
     reader = PacketReader(segment=4, parts=2)
     for piece in pieces:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Mapping, Sequence
 from contextlib import suppress
+from typing import ClassVar
 
 from btlang.devices.driver import Device, DeviceError, DeviceSilent
 from btlang.devices.dynamixel import control_table as table
@@ -37,8 +38,8 @@ class DynamixelDriver:
     A servo that can't be used is named in each cycle and tried again from time to time; the others go on.
     """
 
-    kinds: Sequence[str] = ("joint",)
-    needs_port: bool = True
+    kinds: ClassVar[Sequence[str]] = ("joint",)
+    needs_port: ClassVar[bool] = True
 
     def __init__(self, port: str, devices: Sequence[Device]) -> None:
         options = read_all(devices)
