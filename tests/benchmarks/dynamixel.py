@@ -2,8 +2,8 @@
 
 Simulated servos in a process of their own are on a pty; each cycle writes all goals and reads all states. The clients
 take turns, each in a process of its own: how many cycles a second, how late does each begin, and what share of a core
-does the thread take that reads and writes? Where the system allows it, they have real-time priority (SCHED_FIFO) in a
-second round.
+does the thread take that reads and writes? Where the system allows it, clients and servos have real-time priority
+(SCHED_FIFO) in a second round.
 """
 
 from __future__ import annotations
@@ -26,7 +26,7 @@ from dynamixel_sdk import COMM_SUCCESS, GroupSyncRead, GroupSyncWrite, PacketHan
 from btlang.devices.driver import Device, DeviceError
 from btlang.devices.dynamixel.control_table import GOAL, LOAD, PROFILE_VELOCITY, TEMPERATURE
 from btlang.devices.dynamixel.driver import DynamixelDriver
-from btlang.devices.kinds import Command, JointTarget, Reading
+from btlang.devices.kinds import Command, JointState, JointTarget, Reading
 from btlang.devices.loop import DeviceLoop
 
 ROOT = Path(__file__).parents[2]
@@ -73,13 +73,13 @@ class MarkedDriver(DynamixelDriver):
     def exchange(self, commands: Mapping[str, Command]) -> Mapping[str, Reading | DeviceError]:
         self.clock.mark()
         told = super().exchange(commands)
-        self.failed += len(told) != len(IDS)
+        self.failed += sum(isinstance(told.get(f"j{id}"), JointState) for id in IDS) != len(IDS)
         return told
 
 
-def btlang_client(port: str, seconds: float) -> dict[str, Any]:
+def btlang_client(port: str, seconds: float, missing: tuple[int, ...] = ()) -> dict[str, Any]:
     """The loop of devices with the driver; new goals come 20 times a second from another thread, as from ticks."""
-    devices = tuple(Device(f"j{id}", "joint", "dynamixel", port, {"id": id}) for id in IDS)
+    devices = tuple(Device(f"j{id}", "joint", "dynamixel", port, {"id": id}) for id in (*IDS, *missing))
     driver = MarkedDriver(port, devices)
     driver.clock = clock = Clock(seconds)
     loop = DeviceLoop(driver, devices)
@@ -93,8 +93,13 @@ def btlang_client(port: str, seconds: float) -> dict[str, Any]:
     return figures
 
 
+def silent_client(port: str, seconds: float) -> dict[str, Any]:
+    """The same with one servo more, which doesn't answer."""
+    return btlang_client(port, seconds, missing=(100,))
+
+
 def sdk_client(port: str, seconds: float) -> dict[str, Any]:
-    """The same with dynamixel-sdk: a sync write and a fast sync read in each cycle."""
+    """Without loop and threads, dynamixel-sdk alone: a sync write and a fast sync read in each cycle."""
     handler, line = PacketHandler(2.0), PortHandler(port)
     line.setBaudRate(1_000_000)
     write = GroupSyncWrite(line, handler, PROFILE_VELOCITY, GOAL.size)
@@ -113,7 +118,11 @@ def sdk_client(port: str, seconds: float) -> dict[str, Any]:
     return clock.figures(failed)
 
 
-CLIENTS: dict[str, Callable[[str, float], dict[str, Any]]] = {"btlang": btlang_client, "dynamixel-sdk": sdk_client}
+CLIENTS: dict[str, Callable[[str, float], dict[str, Any]]] = {
+    "btlang": btlang_client,
+    "btlang, one silent": silent_client,
+    "dynamixel-sdk": sdk_client,
+}
 
 
 def measured(client: str, port: str, seconds: float, real_time: bool) -> dict[str, Any]:
@@ -154,6 +163,9 @@ def main() -> None:
             port = bus.stdout.readline().strip()
             print("late, ms: median, 99th percentile and most; share of a core; cycles that were not answered in full")
             for real_time in (False, True) if allows_real_time() else (False,):
+                if real_time:  # servos don't wait for a computer that has other things to do
+                    for thread in Path(f"/proc/{bus.pid}/task").iterdir():
+                        os.sched_setscheduler(int(thread.name), os.SCHED_FIFO, os.sched_param(_PRIORITY))
                 for client in CLIENTS:
                     show(client, real_time, measured(client, port, given.seconds, real_time))
         finally:
@@ -165,7 +177,7 @@ def show(client: str, real_time: bool, figures: Mapping[str, Any]) -> None:
     late = figures["late"]
     told = " ".join(f"{late[min(int(len(late) * p), len(late) - 1)] * 1e3:7.3f}" for p in (0.5, 0.99, 1))
     name = f"{client}{', real time' if real_time else ''}"
-    print(f"{name:24} {figures['rate']:6.2f} Hz  late {told}  {figures['share']:6.1%}  {figures['failed']}", flush=True)
+    print(f"{name:30} {figures['rate']:6.2f} Hz  late {told}  {figures['share']:6.1%}  {figures['failed']}", flush=True)
 
 
 if __name__ == "__main__":
