@@ -59,8 +59,9 @@ def test_a_silent_servo_is_named_and_the_others_go_on() -> None:
         assert {name for name, _ in r.events} == {"j2"}
 
 
-def test_a_servo_that_only_hears_is_told_to_stop() -> None:
-    with rig(*servos()) as r:
+@pytest.mark.parametrize("count", [1, COUNT])
+def test_a_servo_that_only_hears_is_told_to_stop(count: int) -> None:
+    with rig(*servos()[1 : 1 + count]) as r:
         r.loop.start()
         goals = {"j2": JointTarget(-90.0, 20.0)}
         servo = r.bus.servos[2]

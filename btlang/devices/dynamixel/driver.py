@@ -9,7 +9,7 @@ from typing import ClassVar
 
 from btlang.devices.driver import Device, DeviceError, DeviceSilent
 from btlang.devices.dynamixel import control_table as table
-from btlang.devices.dynamixel.client import LONGEST_DELAY, Client
+from btlang.devices.dynamixel.client import Client
 from btlang.devices.dynamixel.line import LineLost, SerialLine
 from btlang.devices.dynamixel.options import read_all
 from btlang.devices.dynamixel.polling import Polling
@@ -54,7 +54,7 @@ class DynamixelDriver:
     def open(self) -> None:
         """Finds the servos. Raises DeviceError if none can be used now."""
         self._line.open()
-        self._client.delay = LONGEST_DELAY
+        self._client = Client(self._line)
         self._polling = Polling(self._client)
         self._absent = {}
         for servo in self._servos.values():
@@ -81,6 +81,7 @@ class DynamixelDriver:
                 self._lose(servo, problem, pause=0.0)
             except DeviceError as problem:
                 told[servo.name] = problem
+        self._client.flush()  # where nobody was asked
         for id in self._polling.silent():
             servo = self._servos[id]
             self._lose(servo, DeviceSilent(f"{servo.where} doesn't answer"))
