@@ -152,7 +152,7 @@ def _components(body: Body) -> Iterator[Problem]:
             yield Problem(f'"{part.name}" is the name of a device, too', "component", index, "name")
         own = set(part.needs)
         try:
-            own |= set(describe_apart(part, body.folder)["needs"])
+            own |= set(describe_apart(part, body.folder)["needs"]) if part.node is None else set()
         except ComponentError as problem:
             yield Problem(str(problem), "component", index, "parameters" if "parameter" in str(problem) else "class")
         known = names | {device.name for device in body.devices} | set(CAPABILITIES)
@@ -173,6 +173,8 @@ def _components(body: Body) -> Iterator[Problem]:
 def _words(body: Body) -> list[str]:
     found = []
     for part in body.components:
+        if part.node is not None:
+            continue
         try:
             path = words_file(located(part.place), body.folder)
         except ComponentError:

@@ -17,6 +17,10 @@ class ComponentError(ActionFailed):
     """Why a component can't be loaded or used, in plain English."""
 
 
+class ComponentAbsent(ComponentError):
+    """It isn't there, and somebody else has to start it: that is waited for, and isn't a failure."""
+
+
 class Parameter:
     """A value that the robot file may set: a number, a text or a flag, of the type of its default.
 

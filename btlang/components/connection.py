@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 from collections import deque
-from collections.abc import Callable, Mapping
-from inspect import Parameter, Signature
+from collections.abc import Callable, Generator, Mapping
+from inspect import Parameter, Signature, isgeneratorfunction, signature
 
 from btlang.backends.engine import leaf_binding
 from btlang.components.component import ComponentError
@@ -15,6 +15,7 @@ from btlang.components.manager import Keeper, Manager
 from btlang.components.process_host import ProcessHost
 from btlang.devices.device_set import DeviceSet
 from btlang.devices.simulated import twin
+from btlang.robots.platforms import node_function
 from btlang.robots.simulation import Simulation
 from btlang.vocabulary.entry import COMPARISONS, MEASURED
 
@@ -24,7 +25,7 @@ if TYPE_CHECKING:
 
     from btlang.components.host import Host
     from btlang.engine.leaves.leaf import LeafBinding
-    from btlang.robots.body import Body, ComponentPart
+    from btlang.robots.body import Body, ComponentPart, RosNode
     from btlang.run.bus import Bus
     from btlang.run.connection import Connection
     from btlang.run.controls import Controls
@@ -51,6 +52,8 @@ class ComponentConnection:
             mine = body.replace(devices=tuple(map(twin, body.devices))) if simulated else body
             self.devices = DeviceSet(mine, inner.robot, self._tell)
             self.devices.start()
+        has_nodes = any(part.node is not None for part in body.components)
+        self._nodes: Any = node_function()(inner.robot, body) if has_nodes else None
         self.manager = Manager(body.components, self._host, self._tell, self._in_use)
         self.robot.on_step = self._step
         self.manager.start()
@@ -63,13 +66,29 @@ class ComponentConnection:
 
     def bind(self, entry: Entry, vocabulary: Lexicon) -> LeafBinding | None:
         """See Connection. A word whose `call` is a method of a component is done by it, as it is by then."""
+        if entry.ros is not None and self._nodes is not None:
+            return self._bound_to_node(entry, vocabulary)
         place, _, method = entry.call.rpartition(".") if isinstance(entry.call, str) else ("", "", "")
-        keeper = next((each for each in self.manager.keepers if located(each.part.place) == place), None)
+        keeper = next(
+            (each for each in self.manager.keepers if each.part.node is None and located(each.part.place) == place),
+            None,
+        )
         if keeper is None:
             return self._inner.bind(entry, vocabulary)
         self._used.add(keeper.part.name)
         call = _asking(keeper, method, entry) if entry.sort == "condition" else _leaf_class(keeper, method, entry)
         return leaf_binding(entry, vocabulary, call, entry.slots).replace(thread=False)  # type: ignore[no-any-return]
+
+    def _bound_to_node(self, entry: Entry, vocabulary: Lexicon) -> LeafBinding | None:
+        """A word with a `ros` table. Where it uses what is below the name of a component, it fails with that."""
+        bound = self._inner.bind(entry, vocabulary) or self._nodes.bind(entry, vocabulary)
+        assert entry.ros is not None
+        name = f"/{entry.ros.name.lstrip('/')}"
+        keeper = next((each for each in self.manager.keepers if _is_below(name, each.part.node)), None)
+        if keeper is None or bound is None:
+            return bound
+        self._used.add(keeper.part.name)
+        return bound.replace(call=_led(keeper, bound.call))  # type: ignore[no-any-return]
 
     def check(self, tree: Tree, vocabulary: Lexicon) -> None:
         """See Connection."""
@@ -89,14 +108,24 @@ class ComponentConnection:
         """See Connection."""
         try:
             self.manager.close()
+            if self._nodes is not None:
+                self._nodes.close()
             self.devices.close()
         finally:
             self._inner.close()
 
     def _host(self, part: ComponentPart, changed: Callable[[], object]) -> Host:
+        if part.node is not None:
+            return self._node_host(part, changed)
         if part.runs == "here":
             return InsideHost(part, self._body, self.devices.readers, changed, self._tell)
         return ProcessHost(part, self._body.folder, self.devices.readers, changed, self._tell)
+
+    def _node_host(self, part: ComponentPart, changed: Callable[[], object]) -> Host:
+        if self._nodes is None:
+            raise ComponentError("is a ROS 2 node: it is loaded when the robot starts, from its robot file")
+        host: Host = self._nodes.host(part, changed, lambda: self.manager.closing)
+        return host
 
     def _in_use(self, name: str) -> bool:
         return name in self._used and not self.bus.closed
@@ -115,6 +144,35 @@ class ComponentConnection:
     def _flush(self) -> None:
         while self._changes:
             self.bus.emit_robot(*self._changes.popleft())
+
+
+def _is_below(name: str, node: RosNode | None) -> bool:
+    return node is not None and name.startswith(f"{node.name}/")
+
+
+def _led(keeper: Keeper, call: Callable[..., Any]) -> Callable[..., Any]:
+    """A leaf that fails as soon as its component isn't active."""
+    led: Any
+
+    def steps(**ports: Any) -> Generator[object, Any, object]:
+        keeper.working()
+        generator = call(**ports)
+        try:
+            while True:
+                yield next(generator)
+                keeper.working()
+        except StopIteration as end:
+            return end.value
+        finally:
+            generator.close()
+
+    def once(**ports: Any) -> Any:
+        keeper.working()
+        return call(**ports)
+
+    led = steps if isgeneratorfunction(call) else once
+    led.__signature__ = signature(call)
+    return led  # type: ignore[no-any-return]
 
 
 def _asking(keeper: Keeper, method: str, entry: Entry) -> Callable[..., Any]:
@@ -156,7 +214,8 @@ def component_connection(connect: Callable[[], Connection], body: Body) -> Conne
 
     try:
         for part in body.components:
-            located(part.place)
+            if part.node is None:
+                located(part.place)
     except ComponentError as problem:
         raise MissionError([diagnostic("BT071", NOWHERE, reason=str(problem))]) from None
     return ComponentConnection(connect(), body)

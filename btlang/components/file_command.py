@@ -9,9 +9,11 @@ from btlang.components.component import ComponentError
 from btlang.components.order import levels
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source
-from btlang.robots.body import Body
+from btlang.robots.body import Body, ComponentPart
 from btlang.text.escaping import one_line
 from btlang.text.output import show
+
+_OF_NODES = {"version": "", "needs": []}
 
 
 def serve_file(act: str, path: str) -> int:
@@ -58,17 +60,26 @@ def _components(body: Body) -> list[tuple[str, list[str]]]:
     for part in body.components:
         own = set(part.needs)
         try:
-            known = describe_apart(part, body.folder)
+            known = describe_apart(part, body.folder) if part.node is None else _OF_NODES
             own |= set(known["needs"])
             version = f" {known['version']}" if known["version"] else ""
         except ComponentError as problem:
             version = f" [{one_line(str(problem))}]"
         needs[part.name] = own
-        where = "a process of its own" if part.runs == "process" else "the robot's process"
+        where = _where(part)
         below = [f"needs {', '.join(sorted(own))}"] if own else []
         below += [f"{name} = {value}" for name, value in part.parameters.items()]
-        lines[part.name] = f"{one_line(part.name)}: {part.place}{version}, in {where}", below
+        lines[part.name] = f"{one_line(part.name)}: {part.place}{version}, {where}", below
     return [lines[name] for group in levels(needs) for name in group]
+
+
+def _where(part: ComponentPart) -> str:
+    if part.node is None:
+        return "in a process of its own" if part.runs == "process" else "in the robot's process"
+    if part.node.container:
+        return f"{part.node.plugin} loaded into {part.node.container}"
+    started = " ".join(map(one_line, part.node.command))
+    return f"ROS 2 node started by '{started}'" if started else "ROS 2 node"
 
 
 def _devices(body: Body) -> list[tuple[str, list[str]]]:

@@ -7,7 +7,7 @@ import time
 from collections import deque
 from collections.abc import Callable, Iterable, Mapping, Sequence
 
-from btlang.components.component import ComponentError
+from btlang.components.component import ComponentAbsent, ComponentError
 from btlang.components.life_cycle import ACTIVE, FINALIZED, INACTIVE, UNCONFIGURED
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.record import Record
@@ -172,7 +172,7 @@ class Keeper:
         self._starts = 0
         self._failures: deque[float] = deque()
         self._due = 0.0
-        self._given_up = self.gone = self.leaving = False
+        self._given_up = self._absent = self.gone = self.leaving = False
         self._thread = threading.Thread(target=self._keep, name=f"btlang component {part.name}", daemon=True)
 
     def start(self) -> None:
@@ -192,7 +192,7 @@ class Keeper:
     @property
     def settled(self) -> bool:
         """Whether it is active, or will not be without help."""
-        return self.state == ACTIVE or self._given_up or self.gone or bool(self._failures)
+        return self.state == ACTIVE or self._given_up or self._absent or self.gone or bool(self._failures)
 
     def status(self) -> ComponentStatus:
         """What is known of it."""
@@ -244,6 +244,7 @@ class Keeper:
         self.leaving, self._starts = False, self._starts + 1
         try:
             known = host.load()
+            self._absent = False
             self.version, self.needs = known["version"], tuple({*self.part.needs, *known["needs"]})
             host.transition("configure")
             self._change(INACTIVE, "")
@@ -254,6 +255,9 @@ class Keeper:
                     self._watch(host)
             self._bring_down(host)
             self._change(UNCONFIGURED, "was brought down")
+        except ComponentAbsent as problem:
+            self._absent, self._starts, self._due = True, self._starts - 1, time.monotonic() + _LOOK
+            self._change(UNCONFIGURED, str(problem))
         except ComponentError as problem:
             self._fail(str(problem))
         finally:

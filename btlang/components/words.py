@@ -21,7 +21,7 @@ def robot_words(robot: str | Source) -> list[str]:
     """
     body = body_of(robot)
     try:
-        files = [words_file(part.place, body.folder) for part in body.components]
+        files = [words_file(part.place, body.folder) for part in body.components if part.node is None]
     except ComponentError as problem:
         raise MissionError([diagnostic("BT071", NOWHERE, reason=str(problem))]) from None
     return [file for file in dict.fromkeys(files) if file is not None]

@@ -129,8 +129,21 @@ class Device(Record):
     offset: float = 0.0
 
 
+class RosNode(Record):
+    """A ROS 2 lifecycle node, by its full name. Somebody else has started it, unless there is a `command` that does, or
+    a `container`, the full name of a node into which the `plugin` of a `package` is loaded.
+    """
+
+    name: str
+    command: tuple[str, ...] = ()
+    container: str = ""
+    package: str = ""
+    plugin: str = ""
+
+
 class ComponentPart(Record):
-    """A component of a robot: `place` is its class, `module:Class` or the name of an installed one.
+    """A component of a robot: `place` is its class, `module:Class` or the name of an installed one; of one that is a
+    ROS 2 `node` it is the name of that.
 
     `runs` is "process" or "here", in the robot's own process. `needs` are those beside the ones that its class names.
     `restarts` says how often in a minute it is started again after it has failed. It is given up where a transition
@@ -145,6 +158,7 @@ class ComponentPart(Record):
     restarts: int = 5
     limit: float = 10.0
     silence: float = 0.8
+    node: RosNode | None = None
 
 
 class Body(Record):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+import re
 from collections.abc import Callable, Collection, Mapping
 from functools import cache
 
@@ -18,6 +19,7 @@ from btlang.robots.body import (
     Joint,
     Limits,
     Navigation,
+    RosNode,
     Sensor,
     Step,
     Voice,
@@ -38,6 +40,7 @@ if TYPE_CHECKING:
 _HANDS = ("left", "right")
 _SENSORS = ("scanner", "bumper")
 _RUNS = ("process", "here")
+_NODE = re.compile(r"(?:/[A-Za-z_][A-Za-z0-9_]*)+")
 _LEAST = 0.001
 _FOREIGN = 'components, and drivers but for "simulated", may only be in a robot file on this computer: they run code'
 
@@ -227,14 +230,36 @@ def _device(table: Table) -> Device:
 
 
 def _component(table: Table) -> ComponentPart:
+    name, node = table.text("name"), _node(table) if table.has("node") else None
+    if node is not None and table.has("class"):
+        raise table.problem("class", 'a component has a "class" or a "node", not both')
+    if node is not None and table.has("runs"):
+        raise table.problem("runs", 'a "node" is in a process of its own, so it has no "runs"')
     made = ComponentPart(
-        table.text("name"),
-        table.text("class"),
+        name,
+        table.text("class") if node is None else node.name,
         table.choice("runs", _RUNS, _RUNS[0]),
         table.texts("needs"),
         table.values("parameters"),
         int(table.number("restarts", 5, low=0, high=1000)),
         table.number("limit", 10.0, low=0.1, high=3600.0),
         table.number("silence", 0.8, low=0.3, high=3600.0),
+        node,
     )
     return table.finish(made)
+
+
+def _node(table: Table) -> RosNode:
+    name, command = _node_name(table, "node"), table.texts("command")
+    if not table.has("container"):
+        return RosNode(name, command)
+    if command:
+        raise table.problem("command", 'a node is started by a "command" or loaded into a "container", not both')
+    return RosNode(name, (), _node_name(table, "container"), table.text("package"), table.text("plugin"))
+
+
+def _node_name(table: Table, key: str) -> str:
+    name = table.text(key)
+    if _NODE.fullmatch(name) is None:
+        raise table.problem(key, f'"{key}" must be the full name of a ROS 2 node; write {key} = "/arm_driver"')
+    return name

@@ -7,6 +7,7 @@ from importlib import import_module
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Callable
+    from typing import Any
 
     from btlang.run.connection import Connection
 
@@ -24,6 +25,9 @@ ALL = "all"
 COMPONENTS = "btlang.components.connection:component_connection"
 """What adds the components and devices of a body to a connection."""
 
+NODES = "btlang.ros.command:component_nodes"
+"""What leads the components of a body that are ROS 2 nodes."""
+
 
 def connection_function(name: str) -> Callable[..., Connection]:
     """What connects to a robot, by a name in ROBOTS."""
@@ -35,7 +39,12 @@ def component_function() -> Callable[..., Connection]:
     return _imported(COMPONENTS)
 
 
-def _imported(place: str) -> Callable[..., Connection]:
+def node_function() -> Callable[..., Any]:
+    """That of NODES."""
+    return _imported(NODES)
+
+
+def _imported(place: str) -> Callable[..., Any]:
     module, _, function = place.partition(":")
-    made: Callable[..., Connection] = getattr(import_module(module), function)
+    made: Callable[..., Any] = getattr(import_module(module), function)
     return made

@@ -19,8 +19,10 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
     from typing import Any
 
+    from btlang.robots.body import Body
     from btlang.robots.registry import Connector
     from btlang.robots.world import World
+    from btlang.ros.component_nodes import ComponentNodes
     from btlang.ros.connection import RosConnection
     from btlang.tree.node import Tree
     from btlang.vocabulary.lexicon import Lexicon
@@ -45,6 +47,15 @@ def connect_actions(world: World, *, namespace: str = "", servers: str = "", **o
     require_interfaces()
     servers = servers or f"/{namespace.strip('/')}/{FOLDER}".replace("//", "/")
     return connect_ros(world, namespace=namespace, servers=servers, **options)
+
+
+def component_nodes(robot: Any, body: Body) -> ComponentNodes:
+    """What leads the components of a robot that are nodes. Raises MissionError (BT100) without ROS 2."""
+    containers = any(part.node is not None and part.node.container for part in body.components)
+    require_ros("lifecycle_msgs", "rcl_interfaces", "std_msgs", *(("composition_interfaces",) if containers else ()))
+    from btlang.ros.component_nodes import ComponentNodes
+
+    return ComponentNodes(robot)
 
 
 def add_robot_options(parser: ArgumentParser) -> None:

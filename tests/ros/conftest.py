@@ -29,6 +29,7 @@ if TYPE_CHECKING:
 
 HERE = Path(__file__).parent
 _NAV2, _OWN = "nav2_msgs.action", "btlang_interfaces.action"
+_COMPOSITION = "composition_interfaces.srv"
 
 
 class _Skipped(pytest.Module):
@@ -67,10 +68,12 @@ def domain() -> Iterator[int]:
 
 @pytest.fixture(scope="session", autouse=True)
 def _interfaces() -> None:
-    """Compiles btlang's own and what Nav2 would bring, once for all workers; where that cannot be, tests skip."""
-    packages = {_NAV2: str(HERE / "nav2_msgs"), _OWN: "--own"}
+    """Compiles btlang's own, what Nav2 and what containers would bring, once for all workers; where that cannot be, tests skip."""
+    packages = {
+        _NAV2: str(HERE / "nav2_msgs"), _OWN: "--own", _COMPOSITION: str(HERE / "composition_interfaces")
+    }  # fmt: skip
     with _lock(Path(sys.prefix, ".btlang-interfaces.lock")):
-        there = {_NAV2: _found(_NAV2), _OWN: _is_current()}
+        there = {_NAV2: _found(_NAV2), _OWN: _is_current(), _COMPOSITION: _found(_COMPOSITION)}
         missing = [folder for module, folder in packages.items() if not there[module]]
         if not missing or interfaces.missing_tools() is not None:
             return
@@ -94,6 +97,13 @@ def run_mission() -> Any:
     if not _found(_OWN):
         pytest.skip(f"btlang_interfaces is not installed and cannot be compiled: {interfaces.missing_tools()}")
     return importlib.import_module(_OWN).RunMission
+
+
+@pytest.fixture
+def composition() -> None:
+    """The interfaces of component containers."""
+    if not _found(_COMPOSITION):
+        pytest.skip(f"composition_interfaces can't be compiled: {interfaces.missing_tools()}")
 
 
 @pytest.fixture
