@@ -86,7 +86,6 @@ class NodeHost:
             self._container = Container(self._node, self._questions, self._limit)
             self._container.load(self._part.parameters)
         self._wait_for_node()
-        self._questions.do(self._connect)
         self._reset()
         self._set_parameters()
         return {"version": "", "needs": []}
@@ -128,21 +127,11 @@ class NodeHost:
     def close(self) -> None:
         """See Host."""
         self.state = UNCONFIGURED
-        clients, self._clients = tuple(self._clients.values()), {}
-        subscriptions, self._subscriptions = tuple(self._subscriptions), []
-
-        def disconnect(node: Node) -> bool:
-            for client in clients:
-                node.destroy_client(client)
-            for subscription in subscriptions:
-                node.destroy_subscription(subscription)
-            return True
-
         try:
             if self._container is not None:
                 self._container.unload()
             with suppress(ComponentError):
-                self._questions.do(disconnect)
+                self._questions.do(self._disconnect)
         finally:
             if self._program is not None:
                 self._program.close(0.0 if self._failed else _END)
@@ -189,6 +178,7 @@ class NodeHost:
             raise ComponentError(f"has started, but there is no node {name}")
 
     def _connect(self, node: Node) -> bool:
+        self._disconnect(node)
         name, alive = self._node.name, QoSProfile(
             depth=1, liveliness=LivelinessPolicy.AUTOMATIC, liveliness_lease_duration=Duration(seconds=_SILENCE)
         )  # fmt: skip
@@ -202,6 +192,15 @@ class NodeHost:
             node.create_subscription(TransitionEvent, f"{name}/transition_event", self._hear, 10),
             node.create_subscription(Empty, f"{name}/alive", lambda _: None, alive, event_callbacks=events),
         ]
+        return True
+
+    def _disconnect(self, node: Node) -> bool:
+        clients, self._clients = tuple(self._clients.values()), {}
+        subscriptions, self._subscriptions = tuple(self._subscriptions), []
+        for client in clients:
+            node.destroy_client(client)
+        for subscription in subscriptions:
+            node.destroy_subscription(subscription)
         return True
 
     def _live(self, info: Any) -> None:
@@ -219,10 +218,17 @@ class NodeHost:
         """Brings a node down that a robot before this one has left up. Raises ComponentError."""
         # the first answer of a program is that of its start: a node before it that was killed is in the graph for long
         until = time.monotonic() + (self._limit if self._program is None else max(self._limit, _STARTING))
-        while (state := self._ask_state(_ANSWER)) not in STATES:
+        servers, state = 0, ""
+        while state not in STATES:
+            found = self._questions.servers(f"{self._node.name}/get_state")
+            if found != servers:  # a client that has found the dead one takes seconds to find another
+                servers = found
+                self._questions.do(self._connect)
+            state = self._ask_state(_ANSWER) if servers else ""
             self._check_program()
-            if time.monotonic() > until:
-                raise ComponentError(f"its node {self._node.name} has no life cycle, or doesn't answer")
+            if state not in STATES and (self._closing() or time.monotonic() > until):
+                reason = f"its node {self._node.name} has no life cycle, or doesn't answer"
+                raise ComponentError(reason) if self._program is not None else ComponentAbsent(reason)
         self.state = state
         if state == FINALIZED:
             raise ComponentAbsent(f"waits for the node {self._node.name}, which is finalized, to be started again")

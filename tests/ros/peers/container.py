@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import sys
+from contextlib import suppress
 from typing import Any
 
 import rclpy
@@ -62,10 +63,8 @@ def main(name: str) -> None:
     executor.add_node(node)
     kept = Container(node, executor)
     print("ready", flush=True)
-    try:
+    with suppress(KeyboardInterrupt, ExternalShutdownException):
         executor.spin()
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
     del kept
 
 

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import sys
 import time
+from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
@@ -22,7 +23,7 @@ from std_srvs.srv import Trigger
 ALIVE = QoSProfile(depth=1, liveliness=LivelinessPolicy.AUTOMATIC, liveliness_lease_duration=Duration(seconds=0.25))
 
 
-class ArmDriver(LifecycleNode):
+class ArmDriver(LifecycleNode):  # type: ignore[misc]
     """Says what it does, one line for each transition."""
 
     def __init__(self, name: str, plan: Path | None = None, **options: Any) -> None:
@@ -56,10 +57,8 @@ def main(name: str, folder: str = "") -> None:
     """Until a signal comes."""
     rclpy.init()
     node = ArmDriver(name, Path(folder, "plan") if folder else None)
-    try:
+    with suppress(KeyboardInterrupt, ExternalShutdownException):
         rclpy.spin(node)
-    except (KeyboardInterrupt, ExternalShutdownException):
-        pass
 
 
 if __name__ == "__main__":
