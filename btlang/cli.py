@@ -373,6 +373,7 @@ _ELSEWHERE = {
     "edit": "btlang.server.edit_command",
     "sim-ros": "btlang.ros.simulator.command",
     "ros-node": "btlang.ros.mission.command",
+    "ros-devices": "btlang.ros.devices.command",
     "serve-actions": "btlang.ros.serving.command",
 }
 """The verbs that other modules do, each with the one whose `serve` does it."""

@@ -314,6 +314,13 @@ def _ros_node_options(parser: argparse.ArgumentParser) -> None:
     add_node_options(parser)
 
 
+def _ros_devices_options(parser: argparse.ArgumentParser) -> None:
+    from btlang.ros.devices.command import add_device_options
+
+    _world_option(parser)
+    add_device_options(parser)
+
+
 def _completion_options(parser: argparse.ArgumentParser) -> None:
     from btlang.shell_completion import SHELLS
 
@@ -352,6 +359,7 @@ _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "format": ("format missions: indentation, spaces, empty lines", _format_options),
     "sim-ros": ("run the simulated robot as a ROS 2 node", _sim_ros_options),
     "ros-node": ("run missions for other programs, as a ROS 2 node", _ros_node_options),
+    "ros-devices": ("show the devices of a robot as ROS 2 topics", _ros_devices_options),
     "serve-actions": (
         "serve btlang's actions as ROS 2 actions",
         _elsewhere("btlang.ros.serving.command", "add_serving_options", True),

@@ -17,6 +17,7 @@ SIMULATED = "simulated"
 DRIVERS = {
     "serial-board": "btlang.devices.serial_board.driver:SerialBoard",
     "dynamixel": "btlang.devices.dynamixel.driver:DynamixelDriver",
+    "topic": "btlang.ros.devices.driver:TopicDriver",
 }
 """Places of the classes; SIMULATED devices have none, since they act in the world of the simulated robot."""
 ENTRY_POINTS = "btlang.drivers"

@@ -68,7 +68,7 @@ def domain() -> Iterator[int]:
 
 @pytest.fixture(scope="session", autouse=True)
 def _interfaces() -> None:
-    """Compiles btlang's own, and what Nav2 and containers would bring, once for all; where that cannot be, tests skip."""
+    """Compiles btlang's own, and what Nav2 and containers would bring, once for all; else tests skip."""
     packages = {
         _NAV2: str(HERE / "nav2_msgs"), _OWN: "--own", _COMPOSITION: str(HERE / "composition_interfaces")
     }  # fmt: skip

@@ -1,7 +1,7 @@
 """Lifecycle nodes as somebody else would write them, in Python. `lifecycle.py NAME [FOLDER]`
 
-The node has the service `~/grip` and the parameters `force` and `wrong`: "raise", "hang" (in configure) or "slow", whose
-answers come late. What it was told last is read from the file `plan` in FOLDER, if that is there, in place of `wrong`.
+The node has the service `~/grip` and the parameters `force`, the seconds it takes, and `wrong`, what configure does:
+"raise", "hang" or "slow". The file `plan` in FOLDER, if there is one, counts once in place of `wrong`.
 """
 
 from __future__ import annotations

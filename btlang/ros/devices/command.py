@@ -1,0 +1,90 @@
+"""What `btc ros-devices` does: the devices of a robot as topics, until a signal ends it. Imports no ROS before that."""
+
+from __future__ import annotations
+
+import argparse
+import os
+import time
+from collections.abc import Mapping
+from contextlib import closing
+
+from btlang.components.device_robot import simulated_devices
+from btlang.devices.device_set import DeviceSet
+from btlang.devices.driver import DeviceError
+from btlang.diagnostics.diagnostic import diagnostic
+from btlang.diagnostics.errors import MissionError
+from btlang.robots.body import Body
+from btlang.robots.registry import runs_on
+from btlang.robots.simulated import SimulatedRobot
+from btlang.robots.world import World
+from btlang.robots.world_problem import read_world
+from btlang.ros.available import require_ros
+from btlang.ros.command import add_body_options, add_namespace
+from btlang.ros.devices.driver import PACKAGES
+from btlang.ros.ending import EndingSignals, ending_signals
+from btlang.run.controls import Controls
+from btlang.text.output import show
+from btlang.text.source import NOWHERE
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+_RATE = 30.0  # looks a second at the devices
+
+
+def add_device_options(parser: argparse.ArgumentParser) -> None:
+    """The options of `btc ros-devices` but its world."""
+    add_body_options(parser, ("devices",))
+    add_namespace(parser, "namespace of all topics (default: none)")
+
+
+def serve(options: argparse.Namespace) -> int:
+    """Until a signal comes; returns the exit code, 128 and the number of the signal.
+
+    Raises MissionError (BT070, BT071, BT100).
+    """
+    body = runs_on("standard" if options.robot == "simulated" else options.robot, "devices")[0]
+    world = read_world(options.world, body)
+    try:
+        body = body.replace(devices=simulated_devices(body, options.simulate))
+    except DeviceError as problem:
+        raise MissionError([diagnostic("BT071", NOWHERE, reason=str(problem))]) from None
+    with ending_signals() as came:  # before ROS 2 is imported, where an interrupt may get lost
+        return _show_devices(options, body, world, came)
+
+
+def _show_devices(options: argparse.Namespace, body: Body, world: World, came: EndingSignals) -> int:
+    require_ros(*PACKAGES)
+    from btlang.ros.devices.topics import DeviceTopics
+    from btlang.ros.node import SpunNode
+
+    controls = Controls()
+    came.on_arrival = controls.wake
+    twin = SimulatedRobot(world, None, body)
+    try:
+        devices = DeviceSet(body, twin, _tell)
+    except DeviceError as problem:
+        raise MissionError([diagnostic("BT071", NOWHERE, reason=str(problem))]) from None
+    with closing(devices):
+        devices.start()
+        spun = SpunNode("btlang_device_topics", namespace=options.namespace)
+        with closing(spun):
+            topics = DeviceTopics(spun.node, devices.devices, devices.readers, body)
+            spun.start()
+            where = f"domain {os.environ.get('ROS_DOMAIN_ID') or 0}, namespace /{options.namespace.strip('/')}"
+            show(f"btlang ros-devices: ready with {len(devices.devices)} devices ({where}); Ctrl-C ends it")
+            last = time.monotonic()
+            while not came.numbers:
+                controls.wait(1 / _RATE)
+                now = time.monotonic()
+                devices.step()
+                twin.step(now - last)
+                last = now
+                topics.publish()
+    return 128 + came.numbers[0]
+
+
+def _tell(kind: str, data: Mapping[str, Any]) -> None:
+    """A device has fallen silent, or is back."""
+    show(f"{data['name']}: {data['why'] or 'works'}")

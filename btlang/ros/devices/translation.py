@@ -1,0 +1,54 @@
+"""What makes messages of the readings and commands of one device, and back."""
+
+from __future__ import annotations
+
+from math import isnan
+
+from btlang.devices.driver import DeviceSilent
+from btlang.devices.kinds import Command, Reading
+from btlang.ros.devices.setting import Setting
+from btlang.ros.gate import Gate
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+
+class Translation:
+    """Of one device. `reads` and `takes` are the classes of messages for readings and commands; None: it has none."""
+
+    reads: Any = None
+    takes: Any = None
+
+    def __init__(self, setting: Setting) -> None:
+        self._setting = setting
+        self._gate = Gate(self.reads)
+
+    def reading(self, message: Any) -> Reading:
+        """What a message says. Raises DeviceSilent where that can't be true."""
+        reason = self._gate.refuses(message)
+        if reason:
+            raise DeviceSilent(f"it {reason}")
+        return self._read(message)
+
+    def _read(self, message: Any) -> Reading:
+        raise NotImplementedError
+
+    def shown(self, reading: Any) -> Any:
+        """The message for a reading."""
+        raise NotImplementedError
+
+    def told(self, command: Any) -> Any:
+        """The message for a command. Raises RobotError where it is beyond all limits."""
+        raise NotImplementedError
+
+    def command(self, message: Any) -> Command:
+        """The command that a message is. Raises DeviceError."""
+        raise NotImplementedError
+
+
+def number(value: float, what: str) -> float:
+    """A number that a message has. Raises DeviceSilent for one that isn't."""
+    if isnan(value):
+        raise DeviceSilent(f"its {what} is not a number")
+    return float(value)
