@@ -4,14 +4,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Mapping
-from contextlib import suppress
 
 from lifecycle_msgs.msg import Transition, TransitionEvent
 from lifecycle_msgs.srv import ChangeState, GetState
 from rcl_interfaces.srv import SetParameters
 from rclpy.duration import Duration
 from rclpy.event_handler import SubscriptionEventCallbacks
-from rclpy.node import Node
 from rclpy.parameter import Parameter
 from rclpy.qos import LivelinessPolicy, QoSProfile
 from std_msgs.msg import Empty
@@ -19,8 +17,11 @@ from std_msgs.msg import Empty
 from btlang.components.component import ComponentAbsent, ComponentError
 from btlang.components.life_cycle import ACTIVE, FINALIZED, INACTIVE, STATES, TRANSITIONS, UNCONFIGURED
 from btlang.components.started_process import StartedProcess
+from btlang.diagnostics.errors import MissionError
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.ros.container import Container
+from btlang.ros.node import SpunNode
+from btlang.ros.questions import Questions
 from btlang.ros.waiting import wait_until
 
 TYPE_CHECKING = False
@@ -28,7 +29,7 @@ if TYPE_CHECKING:
     from typing import Any
 
     from btlang.robots.body import ComponentPart
-    from btlang.ros.questions import Question, Questions
+    from btlang.ros.questions import Question
 
 _NUMBERS = {
     "configure": Transition.TRANSITION_CONFIGURE,
@@ -48,7 +49,9 @@ _DISCOVERY = 7.0  # seconds in which a node that is there is found: DDS announce
 _BEAT = 1.0  # seconds between two questions for its state
 _END = 2.0  # seconds that a program gets to end by itself
 _DOUBT = 0.3  # seconds that it gets to answer where DDS says that it is dead
-_SILENCE = 0.5  # seconds without a word after which DDS says that it is dead
+_ALIVE = QoSProfile(
+    depth=1, liveliness=LivelinessPolicy.AUTOMATIC, liveliness_lease_duration=Duration(seconds=0.5)
+)  # fmt: skip
 
 
 class NodeHost:
@@ -58,16 +61,14 @@ class NodeHost:
     node is of no use any more. A node that somebody else has started is left unconfigured at the end, for the next one.
     """
 
-    def __init__(
-        self, part: ComponentPart, questions: Questions, changed: Callable[[], object], closing: Callable[[], bool]
-    ) -> None:
+    def __init__(self, part: ComponentPart, changed: Callable[[], object], closing: Callable[[], bool]) -> None:
         assert part.node is not None
         self._part, self._node, self._limit = part, part.node, part.limit
-        self._questions, self._changed, self._closing = questions, changed, closing
+        self._changed, self._closing = changed, closing
+        self._spun: SpunNode | None = None
         self._program: StartedProcess | None = None
         self._container: Container | None = None
         self._clients: dict[str, Any] = {}
-        self._subscriptions: list[Any] = []
         self._beat: Question | None = None
         self._asked = self._answered = 0.0
         self._lived = self._died = self._failed = False
@@ -80,6 +81,7 @@ class NodeHost:
 
     def load(self) -> Mapping[str, Any]:
         """See Host. Raises ComponentAbsent where somebody else has to start it."""
+        self._questions = self._connect()
         if self._node.command:
             self._program = StartedProcess(self._node.command)
         elif self._node.container:
@@ -130,8 +132,8 @@ class NodeHost:
         try:
             if self._container is not None:
                 self._container.unload()
-            with suppress(ComponentError):
-                self._questions.do(self._disconnect)
+            if self._spun is not None:
+                self._spun.close()
         finally:
             if self._program is not None:
                 self._program.close(0.0 if self._failed else _END)
@@ -177,31 +179,29 @@ class NodeHost:
                 raise ComponentAbsent(f"waits for the node {name}")
             raise ComponentError(f"has started, but there is no node {name}")
 
-    def _connect(self, node: Node) -> bool:
-        self._disconnect(node)
-        name, alive = self._node.name, QoSProfile(
-            depth=1, liveliness=LivelinessPolicy.AUTOMATIC, liveliness_lease_duration=Duration(seconds=_SILENCE)
-        )  # fmt: skip
+    def _connect(self) -> Questions:
+        """A node of its own for each life: one that knew a node before that was killed takes seconds to find the next.
+
+        Raises ComponentError.
+        """
+        try:
+            self._spun = SpunNode(f"btlang_{self._node.name.rpartition('/')[2]}")
+        except MissionError as problem:
+            raise ComponentError(str(problem)) from None
+        node, name = self._spun.node, self._node.name
         self._clients = {
             "get": node.create_client(GetState, f"{name}/get_state"),
             "change": node.create_client(ChangeState, f"{name}/change_state"),
             "set": node.create_client(SetParameters, f"{name}/set_parameters"),
         }
-        events = SubscriptionEventCallbacks(liveliness=self._live)
-        self._subscriptions = [
-            node.create_subscription(TransitionEvent, f"{name}/transition_event", self._hear, 10),
-            node.create_subscription(Empty, f"{name}/alive", lambda _: None, alive, event_callbacks=events),
-        ]
-        return True
-
-    def _disconnect(self, node: Node) -> bool:
-        clients, self._clients = tuple(self._clients.values()), {}
-        subscriptions, self._subscriptions = tuple(self._subscriptions), []
-        for client in clients:
-            node.destroy_client(client)
-        for subscription in subscriptions:
-            node.destroy_subscription(subscription)
-        return True
+        node.create_subscription(TransitionEvent, f"{name}/transition_event", self._hear, 10)
+        node.create_subscription(
+            Empty, f"{name}/alive", lambda _: None, _ALIVE,
+            event_callbacks=SubscriptionEventCallbacks(liveliness=self._live),
+        )  # fmt: skip
+        questions = Questions(node)
+        self._spun.start()
+        return questions
 
     def _live(self, info: Any) -> None:
         """In the thread that spins: DDS itself says whether the node lives, where that publishes ~/alive."""
@@ -216,17 +216,10 @@ class NodeHost:
 
     def _reset(self) -> None:
         """Brings a node down that a robot before this one has left up. Raises ComponentError."""
-        # the first answer of a program is that of its start: a node before it that was killed is in the graph for long
-        until = time.monotonic() + (self._limit if self._program is None else max(self._limit, _STARTING))
-        servers, state = 0, ""
-        while state not in STATES:
-            found = self._questions.servers(f"{self._node.name}/get_state")
-            if found != servers:  # a client that has found the dead one takes seconds to find another
-                servers = found
-                self._questions.do(self._connect)
-            state = self._ask_state(_ANSWER) if servers else ""
-            self._check_program()
-            if state not in STATES and (self._closing() or time.monotonic() > until):
+        until = time.monotonic() + self._limit
+        while (state := self._ask_state(_ANSWER)) not in STATES:
+            self._check_life()
+            if self._closing() or time.monotonic() > until:
                 reason = f"its node {self._node.name} has no life cycle, or doesn't answer"
                 raise ComponentError(reason) if self._program is not None else ComponentAbsent(reason)
         self.state = state

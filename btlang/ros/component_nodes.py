@@ -12,7 +12,6 @@ from btlang.ros.clients import Clients
 from btlang.ros.component_host import NodeHost
 from btlang.ros.node import SpunNode
 from btlang.ros.places import Places
-from btlang.ros.questions import Questions
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -33,7 +32,7 @@ class ComponentNodes:
         self._robot = robot
         self._spun = SpunNode("btlang_components")
         try:
-            self._questions, self._clients = Questions(self._spun.node), Clients(self._spun.node)
+            self._clients = Clients(self._spun.node)
             self._spun.start()
         except BaseException:
             self._spun.close()
@@ -41,7 +40,7 @@ class ComponentNodes:
 
     def host(self, part: ComponentPart, changed: Callable[[], object], closing: Callable[[], bool]) -> NodeHost:
         """Where a component lives that is a node."""
-        return NodeHost(part, self._questions, changed, closing)
+        return NodeHost(part, changed, closing)
 
     def bind(self, entry: Entry, vocabulary: Lexicon) -> LeafBinding | None:
         """What does a word with a `ros` table, for robots that are none of ROS 2. Raises MissionError."""

@@ -73,10 +73,6 @@ class Questions:
         wait_until(client.service_is_ready, seconds)
         return self.begin(client, request).wait(seconds) if client.service_is_ready() else None
 
-    def servers(self, name: str) -> int:
-        """How many nodes serve a service, as far as the graph knows: who was killed is in it for long."""
-        return int(self._node.count_services(name))
-
     def is_there(self, name: str) -> bool:
         """Whether the graph has a node of this full name."""
         nodes = self._node.get_node_names_and_namespaces()
