@@ -65,7 +65,7 @@ class StartedProcess:
 def main(command: Sequence[str]) -> int:
     """Until the program or the robot ends; the exit code is that of the program, 128 and the number of its signal."""
     for number in (signal.SIGINT, signal.SIGTERM):
-        signal.signal(number, signal.SIG_IGN)
+        signal.signal(number, lambda *_: None)  # not ignored: the program would inherit that
     environment = {name: value for name, value in os.environ.items() if name != _WHEELS}
     try:
         process = subprocess.Popen(

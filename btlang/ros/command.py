@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from argparse import ArgumentParser, Namespace
 from contextlib import closing
+from importlib.util import find_spec
 
 from btlang.arguments import namespace, robot_on
 from btlang.robots.options import add_simulate
 from btlang.robots.platforms import ROBOTS
 from btlang.robots.registry import connector, runs_on
-from btlang.ros.available import require_interfaces, require_ros
+from btlang.ros.available import require_interfaces, require_ros, unusable
 from btlang.ros.serving.names import FOLDER
 from btlang.text.output import show
 from btlang.text.table import Table
@@ -28,6 +29,8 @@ if TYPE_CHECKING:
     from btlang.vocabulary.lexicon import Lexicon
 
 _PACKAGES = ("geometry_msgs", "nav_msgs", "rosgraph_msgs", "sensor_msgs", "std_msgs", "std_srvs", "trajectory_msgs")
+
+_COMPILE = "Compile it: python -m btlang.ros.interfaces tests/ros/composition_interfaces, in a clone of btlang"
 
 
 def connect_ros(world: World, **options: Any) -> RosConnection:
@@ -52,7 +55,9 @@ def connect_actions(world: World, *, namespace: str = "", servers: str = "", **o
 def component_nodes(robot: Any, body: Body) -> ComponentNodes:
     """What leads the components of a robot that are nodes. Raises MissionError (BT100) without ROS 2."""
     containers = any(part.node is not None and part.node.container for part in body.components)
-    require_ros("lifecycle_msgs", "rcl_interfaces", "std_msgs", *(("composition_interfaces",) if containers else ()))
+    require_ros("lifecycle_msgs", "rcl_interfaces", "std_msgs")
+    if containers and find_spec("composition_interfaces") is None:
+        raise unusable("there is no Python package composition_interfaces", _COMPILE)
     from btlang.ros.component_nodes import ComponentNodes
 
     return ComponentNodes(robot)

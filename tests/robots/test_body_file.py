@@ -6,6 +6,7 @@ from pathlib import Path
 
 import pytest
 
+from btlang.robots.body import RosNode
 from btlang.robots.body_file import BodyError, load_body, shipped_bodies, standard_body
 from btlang.vocabulary.shipped import BODIES
 
@@ -13,6 +14,14 @@ HEAD = 'name = "x"\nradius = 0.2\n'
 LIMITS = "{ speed = 1, top_speed = 2, acceleration = 1, slowing = 1, brake = 1, hard_brake = 1 }"
 BASE = f"[base]\ndriving = {LIMITS}\nturning = {LIMITS}\nwheel_gap = 0.3\n"
 JOINT = '[[joints]]\nname = "neck"\npart = "head"\nlow = -10\nhigh = 10\nspeed = 1\n'
+NODE = '[[component]]\nname = "arm driver"\nnode = "/arm_driver"\n'
+IN_CONTAINER = """[[component]]
+name = "eye"
+node = "/left/eye"
+container = "/box"
+package = "camera"
+plugin = "camera::Driver"
+"""
 
 
 def written(folder: Path, text: str) -> str:
@@ -44,11 +53,28 @@ def test_parts_are_what_words_need(tmp_path: Path) -> None:
     assert not any(map(body.has, ("navigation", "left arm", "scanner", "posture down")))
 
 
+def test_a_component_is_a_class_or_a_node(tmp_path: Path) -> None:
+    text = HEAD + NODE + 'command = ["ros2", "run", "arm", "driver"]\n' + IN_CONTAINER
+    first, second = load_body(written(tmp_path, text)).components
+    assert first.node == RosNode("/arm_driver", ("ros2", "run", "arm", "driver"))
+    assert (first.place, second.place) == ("/arm_driver", "/left/eye")
+    assert second.node == RosNode("/left/eye", (), "/box", "camera", "camera::Driver")
+
+
 @pytest.mark.parametrize(
     ("text", "line", "message"),
     [
         ("", None, 'a robot needs a text "name"'),
         ('name = "x"', None, 'a robot needs a number "radius"'),
+        (HEAD + NODE + 'class = "arm:Arm"', 6, 'a component has a "class" or a "node", not both'),
+        (HEAD + NODE + 'runs = "here"', 6, 'so it has no "runs"'),
+        (
+            HEAD + NODE.replace("/arm_driver", "arm driver"),
+            5,
+            'the full name of a ROS 2 node; write node = "/arm_driver"',
+        ),
+        (HEAD + IN_CONTAINER + 'command = ["eye"]', 9, 'by a "command" or loaded into a "container", not both'),
+        (HEAD + IN_CONTAINER.replace("plugin", "#"), 3, 'needs a text "plugin"'),
         (HEAD + "legs = 2", 3, 'unknown key "legs" in a robot'),
         (HEAD + 'over = "tcp"', 3, '"over" must be one of "simulated", "devices", "ros", "actions"'),
         (HEAD + "[base]\nwheel_gap = 1", 3, 'base needs a table "driving"'),
