@@ -361,9 +361,7 @@ def _version(options: argparse.Namespace) -> int:
 
 
 _ELSEWHERE = {
-    "replay": "btlang.recording.command",
-    "why": "btlang.recording.command",
-    "diff": "btlang.recording.command",
+    **dict.fromkeys(("replay", "why", "diff"), "btlang.recording.command"),
     "test": "btlang.testing.command",
     "mcp": "btlang.mcp_server",
     "task": "btlang.task.command",

@@ -13,6 +13,7 @@ from itertools import takewhile
 from btlang.arguments import between, duration, picture, speed
 from btlang.diagnostics.report import FORMATS
 from btlang.frontends.mission.reader import DEFAULT_PARSER, PARSERS
+from btlang.robots.options import add_world
 from btlang.run.limits import RATES
 from btlang.text.output import WIDEST, columns, show
 from btlang.text.spelling import nearest, respellings
@@ -139,11 +140,7 @@ def _words_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument(
         "--language", default=ENGLISH, metavar="LANG", help="of the mission: en, es, or a folder (default: en)"
     )
-    _world_option(parser)
-
-
-def _world_option(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("--world", metavar="FILE", help="world file (default: the world that ships)")
+    add_world(parser)
 
 
 def _reading_options(parser: argparse.ArgumentParser) -> None:
@@ -299,26 +296,12 @@ def _format_options(parser: argparse.ArgumentParser) -> None:
     several.add_argument("-c", dest="text", metavar="TEXT", help="mission as text")
 
 
-def _sim_ros_options(parser: argparse.ArgumentParser) -> None:
-    from btlang.ros.simulator.command import add_simulator_options
-
-    _world_option(parser)
-    add_simulator_options(parser)
-
-
 def _ros_node_options(parser: argparse.ArgumentParser) -> None:
     from btlang.ros.mission.command import add_node_options
 
     _reading_options(parser)
     _speed_option(parser)
     add_node_options(parser)
-
-
-def _ros_devices_options(parser: argparse.ArgumentParser) -> None:
-    from btlang.ros.devices.command import add_device_options
-
-    _world_option(parser)
-    add_device_options(parser)
 
 
 def _completion_options(parser: argparse.ArgumentParser) -> None:
@@ -357,9 +340,15 @@ _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "examples": ("list, print or copy the example missions", _examples_options),
     "explain": ("show how a mission is understood, or explain a message code", _explain_options),
     "format": ("format missions: indentation, spaces, empty lines", _format_options),
-    "sim-ros": ("run the simulated robot as a ROS 2 node", _sim_ros_options),
+    "sim-ros": (
+        "run the simulated robot as a ROS 2 node",
+        _elsewhere("btlang.ros.simulator.command", "add_simulator_options"),
+    ),
     "ros-node": ("run missions for other programs, as a ROS 2 node", _ros_node_options),
-    "ros-devices": ("show the devices of a robot as ROS 2 topics", _ros_devices_options),
+    "ros-devices": (
+        "show the devices of a robot as ROS 2 topics",
+        _elsewhere("btlang.ros.devices.command", "add_device_options"),
+    ),
     "serve-actions": (
         "serve btlang's actions as ROS 2 actions",
         _elsewhere("btlang.ros.serving.command", "add_serving_options", True),

@@ -13,3 +13,8 @@ def add_simulate(parser: ArgumentParser) -> None:
         "--simulate", action="append", nargs="?", const=ALL, default=[], metavar="DEVICE",
         help="simulate the devices of the robot file, or only the one of this name or kind",
     )  # fmt: skip
+
+
+def add_world(parser: ArgumentParser) -> None:
+    """The option --world."""
+    parser.add_argument("--world", metavar="FILE", help="world file (default: the world that ships)")

@@ -15,7 +15,7 @@ from btlang.devices.kinds import KINDS, Command, Reading, Sound
 from btlang.devices.loop import SILENCE
 from btlang.engine.leaves.leaf import described
 from btlang.robots.robot import RobotError
-from btlang.ros.devices.driver import TopicDevice
+from btlang.ros.devices.setting import TopicDevice
 from btlang.ros.devices.translations import TRANSLATIONS
 from btlang.ros.node import LATCHED, SpunNode
 from btlang.ros.times import seconds_of

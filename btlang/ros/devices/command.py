@@ -14,6 +14,7 @@ from btlang.devices.driver import DeviceError
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.robots.body import Body
+from btlang.robots.options import add_world
 from btlang.robots.registry import runs_on
 from btlang.robots.simulated import SimulatedRobot
 from btlang.robots.world import World
@@ -34,7 +35,8 @@ _RATE = 30.0  # looks a second at the devices
 
 
 def add_device_options(parser: argparse.ArgumentParser) -> None:
-    """The options of `btc ros-devices` but its world."""
+    """The options of `btc ros-devices`."""
+    add_world(parser)
     add_body_options(parser, ("devices",))
     add_namespace(parser, "namespace of all topics (default: none)")
 

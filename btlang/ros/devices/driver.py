@@ -8,9 +8,8 @@ from btlang.devices.driver import Device, DeviceError
 from btlang.devices.kinds import KINDS, Command, Reading
 from btlang.devices.loop import SILENCE
 from btlang.diagnostics.errors import MissionError
-from btlang.record import Record
 from btlang.ros.available import require_ros
-from btlang.ros.devices.setting import COMMANDS, Setting, topic_name
+from btlang.ros.devices.setting import COMMANDS, Setting, TopicDevice, topic_name
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -22,17 +21,6 @@ PACKAGES = ("geometry_msgs", "nav_msgs", "sensor_msgs", "std_msgs", "trajectory_
 """The packages of messages that devices are in."""
 _SLOW = 2.0  # seconds without a message after which what doesn't move is silent
 _OF_KINDS = {"drive": ("wheel_gap",), "joint": ("joint", "slides"), "hand": ("joint",), "range": (), "lidar": ()}
-
-
-class TopicDevice(Record):
-    """A device with its topics, "" where it has none, and the seconds after which it is silent."""
-
-    name: str
-    kind: str
-    topic: str
-    command: str
-    silence: float
-    setting: Setting
 
 
 class TopicDriver:

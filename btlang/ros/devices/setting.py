@@ -27,6 +27,17 @@ class Setting(Record):
         return 1.0 if self.slides else pi / 180
 
 
+class TopicDevice(Record):
+    """A device with its topics, "" where it has none, and the seconds after which it is silent."""
+
+    name: str
+    kind: str
+    topic: str
+    command: str
+    silence: float
+    setting: Setting
+
+
 def topic_name(device: str) -> str:
     """That of a device where nothing else is said, without a namespace: other signs than ROS 2 takes become `_`."""
     name = "".join(each if each.isascii() and each.isalnum() else "_" for each in device)

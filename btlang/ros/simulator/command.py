@@ -9,6 +9,7 @@ from time import monotonic
 
 from btlang.arguments import between, real_speed
 from btlang.robots.body import Body
+from btlang.robots.options import add_world
 from btlang.robots.registry import runs_on
 from btlang.robots.world import World
 from btlang.robots.world_problem import read_world
@@ -26,7 +27,8 @@ PACKAGES = (
 
 
 def add_simulator_options(parser: argparse.ArgumentParser) -> None:
-    """The options of `btc sim-ros` but its world."""
+    """The options of `btc sim-ros`."""
+    add_world(parser)
     add_body_options(parser, ("simulated",))
     parser.add_argument("--speed", type=real_speed, default="real", help="real, or a factor of real time")
     parser.add_argument(
