@@ -15,6 +15,7 @@ import pytest
 
 import btlang
 from btlang.components.manager import Keeper
+from btlang.robots.registry import connector
 from btlang.run.events import Event
 from tests.components.robots import robot_file
 from tests.ros.processes import LONG, REPOSITORY, start, wait_until
@@ -154,3 +155,14 @@ def test_a_container(tmp_path: Path, composition: None) -> None:
             wait_until(lambda: "can't be loaded into /box: could not find arm::Hand" in keeper.why, "the reason")
         box.kill()
         assert said.read() == "loaded /arm_driver {'force': 0.2}\nunloaded /arm_driver\n"
+
+
+@pytest.mark.parametrize("over", ["devices", "ros"])
+def test_it_belongs_to_any_robot(tmp_path: Path, over: str, start_sim: Any) -> None:
+    options: dict[str, Any] = {"simulate": ["all"]} if over == "devices" else {"sim_time": True}
+    if over == "ros":
+        start_sim()
+    robot = connector(robot_file(tmp_path, table(STARTED, parameters="{ force = 0.1 }")), over, **options)
+    text = "clench then turn left 20 degrees"
+    with btlang.Session(robot) as session:
+        assert session.run(mission(tmp_path, text), time_limit=60.0).outcome.succeeded  # type: ignore[union-attr]
