@@ -69,7 +69,7 @@ class NodeHost:
         self._program: StartedProcess | None = None
         self._container: Container | None = None
         self._clients: dict[str, Any] = {}
-        self._beat: Question | None = None
+        self._beats: list[Question] = []
         self._asked = self._answered = 0.0
         self._lived = self._died = self._failed = False
         self.state = UNCONFIGURED
@@ -105,10 +105,13 @@ class NodeHost:
         except ComponentError as problem:
             return str(problem)
         now = time.monotonic()
-        if self._beat is None and now - self._asked > _BEAT:
-            self._beat, self._asked = self._questions.begin(self._clients["get"], GetState.Request()), now
-        if self._beat is not None and self._beat.answer is not None:
-            state, self._beat, self._answered = _label(self._beat.answer), None, now
+        if now - self._asked > _BEAT:  # also where the answer before is missing, which may be lost
+            self._beats.append(self._questions.begin(self._clients["get"], GetState.Request()))
+            self._asked = now
+        answers = [beat.answer for beat in self._beats if beat.answer is not None]
+        if answers:
+            state, self._answered = _label(answers[-1]), now
+            self._beats.clear()
             if state != self.state:
                 before, self.state = self.state, state
                 return f"is {state} by itself, after it was {before}"
@@ -142,7 +145,7 @@ class NodeHost:
         if name == "shut down" and self._program is None and self._container is None:
             self.state = FINALIZED
             return
-        self._beat = None
+        self._beats.clear()
         transition, until = TRANSITIONS[name], time.monotonic() + self._limit
         if self.state not in transition.begins:
             raise ComponentError(f"it can't {name}: it is {self.state}")
@@ -233,9 +236,11 @@ class NodeHost:
         values = [Parameter(name, value=value).to_parameter_msg() for name, value in self._part.parameters.items()]
         if not values:
             return
-        answer = self._questions.ask(self._clients["set"], SetParameters.Request(parameters=values), self._limit)
-        if answer is None:
-            raise ComponentError("its parameters can't be set: there is no answer")
+        until, answer = time.monotonic() + self._limit, None
+        while answer is None:
+            answer = self._questions.ask(self._clients["set"], SetParameters.Request(parameters=values), _BEAT)
+            if answer is None and time.monotonic() > until:
+                raise ComponentError("its parameters can't be set: there is no answer")
         for name, result in zip(self._part.parameters, answer.results, strict=False):
             if not result.successful:
                 raise ComponentError(f'its parameter "{name}" can\'t be set: {result.reason}')

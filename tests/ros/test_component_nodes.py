@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import itertools
 import os
 import signal
 import subprocess
 import sys
+import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 from pathlib import Path
@@ -16,6 +18,7 @@ import pytest
 import btlang
 from btlang.components.manager import Keeper
 from btlang.robots.registry import connector
+from btlang.ros.questions import Question
 from btlang.run.events import Event
 from tests.components.robots import robot_file
 from tests.ros.processes import LONG, REPOSITORY, start, wait_until
@@ -155,6 +158,17 @@ def test_a_container(tmp_path: Path, composition: None) -> None:
             wait_until(lambda: "can't be loaded into /box: could not find arm::Hand" in keeper.why, "the reason")
         box.kill()
         assert said.read() == "loaded /arm_driver {'force': 0.2}\nunloaded /arm_driver\n"
+
+
+def test_answers_that_are_lost(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Every third of them: it is asked again, and nothing has failed."""
+    came, count = Question.came, itertools.count()
+    monkeypatch.setattr(Question, "came", lambda self, future: came(self, future) if next(count) % 3 else None)
+    with up(tmp_path, table(STARTED, parameters="{ force = 0.1 }", limit=5.0)) as (_, keeper):
+        becomes(keeper, "active")
+        time.sleep(2.0)  # of its heartbeat
+        assert (keeper.state, keeper.status().starts) == ("active", 1)
+    assert next(count) > 8
 
 
 @pytest.mark.parametrize("over", ["devices", "ros"])
