@@ -9,6 +9,7 @@ from inspect import Parameter, Signature
 from btlang.backends.engine import leaf_binding
 from btlang.components.component import ComponentError
 from btlang.components.device_robot import DeviceSimulation
+from btlang.components.gate import Gate
 from btlang.components.inside_host import InsideHost
 from btlang.components.location import located
 from btlang.components.manager import Keeper, Manager
@@ -51,6 +52,8 @@ class ComponentConnection:
             mine = body.replace(devices=tuple(map(twin, body.devices))) if simulated else body
             self.devices = DeviceSet(mine, inner.robot, self._tell)
             self.devices.start()
+        kinds = {name: device.kind for name, device in self.devices.devices.items()}
+        self._gates = {name: Gate(reads, kinds[name], self.robot) for name, reads in self.devices.readers.items()}
         self.manager = Manager(body.components, self._host, self._tell, self._in_use)
         self.robot.on_step = self._step
         self.manager.start()
@@ -95,8 +98,8 @@ class ComponentConnection:
 
     def _host(self, part: ComponentPart, changed: Callable[[], object]) -> Host:
         if part.runs == "here":
-            return InsideHost(part, self._body, self.devices.readers, changed, self._tell)
-        return ProcessHost(part, self._body.folder, self.devices.readers, changed, self._tell)
+            return InsideHost(part, self._body, self._gates, changed, self._tell)
+        return ProcessHost(part, self._body.folder, self._gates, changed, self._tell)
 
     def _in_use(self, name: str) -> bool:
         return name in self._used and not self.bus.closed

@@ -18,6 +18,7 @@ from multiprocessing.connection import Connection
 from btlang.components.component import ComponentError
 from btlang.components.life_cycle import ACTIVE, UNCONFIGURED
 from btlang.components.plain import packed, unpacked
+from btlang.devices.driver import DeviceError
 from btlang.engine.leaves.leaf import ActionFailed, Unknown, described
 from btlang.robots.proxy import RobotProxy
 
@@ -256,7 +257,8 @@ class ProcessHost:
         elif "write" in message:
             device = self._devices.get(message["write"])
             if device is not None and self.state == ACTIVE:
-                device.write(message["write"], message["command"])
+                with suppress(DeviceError):  # it is told again as long as that counts
+                    device.write(message["write"], message["command"])
         elif "tell" in message:
             self._tell(str(message["tell"]), dict(message["data"]))
 

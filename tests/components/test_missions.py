@@ -110,6 +110,24 @@ def test_a_halt_ends_the_method_and_what_it_drives(tmp_path: Path) -> None:
     assert outcome.seconds < 5
 
 
+@WHERE
+def test_an_emergency_stop_holds_what_a_component_moves_itself(tmp_path: Path, runs: str) -> None:
+    wheels = '\n[[device]]\nname = "wheels"\nkind = "drive"\ndriver = "simulated"\n'
+    robot = robot_file(tmp_path, machine(runs=f'"{runs}"', needs='["wheels"]') + wheels)
+    mission = btlang.parse_tree("push the wheels", keywords=robot_words(robot))
+    with btlang.Session(robot) as session:
+        run = session.start(mission)
+        while session.robot.velocity[0] < 0.25:
+            time.sleep(0.01)
+        run.emergency_stop()
+        outcome = run.wait(30)
+        assert outcome is not None
+        assert outcome.standstill.still
+        for _ in range(20):  # nobody ticks any more; the component may go on to write
+            session.robot.step(0.05)
+        assert session.robot.velocity == (0.0, 0.0)
+
+
 def test_a_newer_version_waits_for_the_mission(tmp_path: Path) -> None:
     robot = robot_file(tmp_path, machine())
     mission = btlang.parse_tree("brew tea then wait 2 seconds then brew tea", keywords=robot_words(robot))

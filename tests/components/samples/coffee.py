@@ -4,6 +4,7 @@ import os
 import time
 
 from btlang import Component, Parameter
+from btlang.devices.kinds import WheelSpeeds
 
 
 class Machine(Component):
@@ -33,6 +34,11 @@ class Machine(Component):
     def roll(self, robot):
         robot.drive(0.3, 0.0)
         while True:
+            yield
+
+    def push(self):
+        while True:
+            self.write("wheels", WheelSpeeds(0.3, 0.3))
             yield
 
     def has_brewed(self):
