@@ -41,7 +41,7 @@ class ComponentStatus(Record):
 class Manager:
     """The components of one robot, by name. Each is led by a thread of its own; all methods are for any thread.
 
-    `make` makes the host of a part. `tell` gets an event of each change: "component" with name, state, why, version.
+    `make` makes the host of a part. `tell` gets an event of each change: see PartChanged.
     `in_use` says whether a running mission uses the component of a name: then it is not replaced.
     """
 
@@ -127,8 +127,10 @@ class Manager:
     def tell(self, keeper: Keeper) -> None:
         """A state has changed; called with the lock."""
         self.changed.notify_all()
-        status = keeper.status()
-        self._tell("component", {name: getattr(status, name) for name in ("name", "state", "why", "version")})
+        name, state = keeper.part.name, keeper.state
+        why = keeper.why if keeper.has_failed else ""
+        text = f"the {name} {why}" if why else f"the {name} is active" if state == ACTIVE else ""
+        self._tell("part", {"kind": "component", "name": name, "state": state, "text": text})
 
     def make(self, part: ComponentPart) -> Host:
         """A host, not started."""
@@ -193,6 +195,11 @@ class Keeper:
     def settled(self) -> bool:
         """Whether it is active, or will not be without help."""
         return self.state == ACTIVE or self._given_up or self.gone or bool(self._failures)
+
+    @property
+    def has_failed(self) -> bool:
+        """Whether it is down since it failed."""
+        return bool(self._failures) and self.state == UNCONFIGURED
 
     def status(self) -> ComponentStatus:
         """What is known of it."""

@@ -12,7 +12,7 @@ import pytest
 
 import btlang
 from btlang.components.words import robot_words
-from btlang.run.events import Event, RobotEvent
+from btlang.run.events import Event, PartChanged
 from tests.components.robots import machine, robot_file
 
 WHERE = pytest.mark.parametrize("runs", ["process", "here"])
@@ -80,9 +80,9 @@ def test_a_death_fails_the_command_at_once_and_it_is_back_for_the_next(tmp_path:
         assert run.outcome.succeeded, run.why()
         assert manager.statuses()[0].process not in (process, None)
     assert printed(events) == ["lost", "brewing tea at 90"]
-    told = [dict(event.data) for event in events if isinstance(event, RobotEvent) and event.kind == "component"]
-    assert "was killed by signal 9" in [each["why"] for each in told]
-    assert told[-1]["state"] == "active"
+    told = [event for event in events if isinstance(event, PartChanged)]
+    assert "the machine was killed by signal 9" in [event.text for event in told]
+    assert (told[-1].state, told[-1].text) == ("active", "the machine is active")
     for pid in (process, manager.statuses()[0].process):
         assert pid is None or not os.path.exists(f"/proc/{pid}")
 
