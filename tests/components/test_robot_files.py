@@ -24,7 +24,7 @@ driving = { speed = 0.5, top_speed = 1, acceleration = 1.0, slowing = 0.6, brake
 turning = { speed = 90, top_speed = 180, acceleration = 240, slowing = 180, brake = 480, hard_brake = 960 }
 wheel_gap = 0.3
 """
-PORT = '[[device]]\nname = "{}"\nkind = "{}"\ndriver = "{}"\nport = "{}"\n'
+ON = '[[device]]\nname = "{}"\nkind = "{}"\ndriver = "{}"\nport = "{}"\n'
 WHEELS = '[[device]]\nname = "wheels"\nkind = "drive"\ndriver = "simulated"\n'
 
 
