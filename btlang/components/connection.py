@@ -17,6 +17,7 @@ from btlang.components.process_host import ProcessHost
 from btlang.devices.device_set import DeviceSet
 from btlang.devices.simulated import twin
 from btlang.robots.simulation import Simulation
+from btlang.run.events import RobotEvent
 from btlang.vocabulary.entry import COMPARISONS, MEASURED
 
 TYPE_CHECKING = False
@@ -98,8 +99,8 @@ class ComponentConnection:
 
     def _host(self, part: ComponentPart, changed: Callable[[], object]) -> Host:
         if part.runs == "here":
-            return InsideHost(part, self._body, self._gates, changed, self._tell)
-        return ProcessHost(part, self._body.folder, self._gates, changed, self._tell)
+            return InsideHost(part, self._body, self._gates, changed, self._told)
+        return ProcessHost(part, self._body.folder, self._gates, changed, self._told)
 
     def _in_use(self, name: str) -> bool:
         return name in self._used and not self.bus.closed
@@ -107,6 +108,10 @@ class ComponentConnection:
     def _tell(self, kind: str, data: Mapping[str, Any]) -> None:
         """From any thread; who watches the mission hears of it from the thread that ticks."""
         self._changes.append((kind, data))
+
+    def _told(self, kind: str, data: Mapping[str, Any]) -> None:
+        """What a component says of itself: whatever it is, it is no event of the robot's own."""
+        self._changes.append(("", {"kind": kind, "data": data}))
 
     def _step(self, seconds: float) -> None:
         self.devices.step()
@@ -117,7 +122,11 @@ class ComponentConnection:
 
     def _flush(self) -> None:
         while self._changes:
-            self.bus.emit_robot(*self._changes.popleft())
+            kind, data = self._changes.popleft()
+            if kind:
+                self.bus.emit_robot(kind, data)
+            else:
+                self.bus.emit(RobotEvent, data["kind"], data["data"])
 
 
 def _asking(keeper: Keeper, method: str, entry: Entry) -> Callable[..., Any]:

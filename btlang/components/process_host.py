@@ -81,7 +81,7 @@ class ProcessHost:
         self._changed, self._tell = changed, tell
         self._process: subprocess.Popen[bytes] | None = None
         self._connection: Connection | None = None
-        self._sending = threading.Lock()
+        self._sending, self._numbering = threading.Lock(), threading.Lock()
         self._requests: dict[int, Request] = {}
         self._numbers = 0
         self._lost: str | None = None
@@ -197,13 +197,13 @@ class ProcessHost:
             process.wait()
 
     def _request(self, do: str, wake: Callable[[], object] = lambda: None, **data: Any) -> Request:
-        self._numbers += 1
-        message = {"id": self._numbers, "do": do, **data}
-        request = self._requests[self._numbers] = Request(self._numbers, message, wake)
+        with self._numbering:  # so that they come in their order
+            self._numbers += 1
+            message = {"id": self._numbers, "do": do, **data}
+            request = self._requests[self._numbers] = Request(self._numbers, message, wake)
+            self._send(message)
         if self._lost is not None:
             request.end({"problem": f"the {self._part.name} {self._lost}"})
-        else:
-            self._send(message)
         return request
 
     def _wait(self, request: Request, what: str, limit: float) -> Any:

@@ -12,7 +12,7 @@ import pytest
 
 import btlang
 from btlang.components.words import robot_words
-from btlang.run.events import Event, PartChanged
+from btlang.run.events import Event, PartChanged, RobotEvent
 from tests.components.robots import machine, robot_file
 
 WHERE = pytest.mark.parametrize("runs", ["process", "here"])
@@ -43,6 +43,8 @@ def test_words_conditions_and_quantities(tmp_path: Path, runs: str) -> None:
     outcome, events = run(robot, text)
     assert outcome.succeeded, outcome.why()
     assert printed(events) == ["brewing tea at 70", "brewing coffee at 70", "many"]
+    told = [(event.kind, dict(event.data)) for event in events if isinstance(event, RobotEvent)]
+    assert told == [("say", {"cups": 0}), ("say", {"cups": 1})]
     assert outcome.seconds < 60
 
 
