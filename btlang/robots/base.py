@@ -65,7 +65,7 @@ class Base:
 
     def drive(self, linear: float, angular: float) -> None:
         """Sets the wanted velocity, within the limits."""
-        self._wanted = (_clip(linear, self._driving.top_speed), _clip(angular, self._turning.top_speed))
+        self._wanted = (clipped_speed(linear, self._driving.top_speed), clipped_speed(angular, self._turning.top_speed))
         self._hard = False
         if self._wanted == (0.0, 0.0):
             self._forget_trouble()
@@ -99,8 +99,8 @@ class Base:
         linear, angular = self._speeds
         driving, turning = self._driving, self._turning
         brake, turn_brake = (driving.hard_brake, turning.hard_brake) if self._hard else (driving.brake, turning.brake)
-        linear = _towards(linear, self._wanted[0], driving.acceleration * h, brake * h)
-        angular = _towards(angular, self._wanted[1], turning.acceleration * h, turn_brake * h)
+        linear = towards(linear, self._wanted[0], driving.acceleration * h, brake * h)
+        angular = towards(angular, self._wanted[1], turning.acceleration * h, turn_brake * h)
         self._speeds = linear, angular
         v, w = self._on_floor(linear, angular)
         old = self.pose
@@ -171,11 +171,12 @@ class Base:
         self._contact = pose
 
 
-def _clip(value: float, limit: float) -> float:
+def clipped_speed(value: float, limit: float) -> float:
+    """The same direction, at most so fast."""
     return copysign(min(abs(value), limit), value)
 
 
-def _towards(value: float, target: float, more: float, less: float) -> float:
+def towards(value: float, target: float, more: float, less: float) -> float:
     """Steps towards the target: by at most `less` while slowing down, `more` while speeding up."""
     slowing = abs(target) < abs(value) or target * value < 0.0
     limit = less if slowing else more
