@@ -13,9 +13,18 @@ from btlang.robots.capabilities import Robot
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Callable, Mapping
-    from typing import Any
+    from typing import Any, Protocol
 
-    from btlang.components.worker import Worker
+    from btlang.components.component import Component
+
+    class Link(Protocol):
+        """The way to a robot: see btlang.components.worker.Worker."""
+
+        @property
+        def component(self) -> Component: ...
+        def send(self, message: dict[str, Any]) -> None: ...
+        def ended(self, number: int, outcome: dict[str, Any]) -> None: ...
+
 
 _PERIOD = 0.05  # seconds that a `yield` waits
 _AGAIN = 0.2  # seconds after which a question to the robot is asked once more
@@ -24,7 +33,7 @@ _AGAIN = 0.2  # seconds after which a question to the robot is asked once more
 class Questions:
     """What one thread of the component asks its robot, one thing after the other."""
 
-    def __init__(self, worker: Worker, number: int = 0) -> None:
+    def __init__(self, worker: Link, number: int = 0) -> None:
         self._worker, self.number = worker, number
         self.halted = threading.Event()
         self._asked = 0
@@ -62,7 +71,7 @@ class Questions:
 class Call(Questions):
     """One call of a method, in a thread of its own."""
 
-    def __init__(self, worker: Worker, number: int, method: str, arguments: Mapping[str, Any]) -> None:
+    def __init__(self, worker: Link, number: int, method: str, arguments: Mapping[str, Any]) -> None:
         super().__init__(worker, number)
         self._method, self._arguments = method, dict(arguments)
         self._stored: dict[str, Any] = {}
@@ -145,7 +154,7 @@ class RemoteOperation:
 class RemoteDevice:
     """A device of the robot, which its process reads and writes."""
 
-    def __init__(self, worker: Worker) -> None:
+    def __init__(self, worker: Link) -> None:
         self._worker = worker
 
     def read(self, name: str) -> Any:

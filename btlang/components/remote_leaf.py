@@ -12,9 +12,14 @@ from btlang.robots.proxy import RobotProxy
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any
+    from typing import Any, Protocol
 
-    from btlang.components.process_host import ProcessHost
+    class Link(Protocol):
+        """The way to the process: see btlang.components.process_host.ProcessHost."""
+
+        def begin(self, method: str, arguments: dict[str, Any], wake: Callable[[], object]) -> Request: ...
+        def halt(self, request: Request) -> None: ...
+        def answer(self, request: Request, asked: dict[str, Any], answer: dict[str, Any]) -> None: ...
 
 
 class Request:
@@ -53,7 +58,7 @@ class RemoteLeaf:
 
     def __init__(
         self,
-        host: ProcessHost,
+        host: Link,
         method: str,
         outputs: tuple[str, ...],
         robot: Any,
