@@ -22,6 +22,8 @@ if TYPE_CHECKING:
 
         @property
         def component(self) -> Component: ...
+        @property
+        def questions(self) -> Questions: ...
         def send(self, message: dict[str, Any]) -> None: ...
         def ended(self, number: int, outcome: dict[str, Any]) -> None: ...
 
@@ -155,11 +157,11 @@ class RemoteDevice:
     """A device of the robot, which its process reads and writes."""
 
     def __init__(self, worker: Link) -> None:
-        self._worker = worker
+        self._worker, self._questions = worker, worker.questions
 
     def read(self, name: str) -> Any:
         """See Component.read."""
-        return self._worker.questions.ask(device=name)
+        return self._questions.ask(device=name)
 
     def write(self, name: str, command: Any) -> None:
         """See Component.write."""
