@@ -45,6 +45,7 @@ _PERIOD = 0.05  # seconds that a `yield` waits
 _AGAIN = 0.2  # seconds after which a question to the robot is asked once more
 _ALONE = 2.0  # seconds that a shared component waits for another robot
 _DIE_WITH_PARENT = 1  # PR_SET_PDEATHSIG
+_MOST_FILES = 1024  # that are open at the start of a process
 _HEIGHTS = {FINALIZED: -1, UNCONFIGURED: 0, INACTIVE: 1, ACTIVE: 2}
 
 
@@ -242,10 +243,24 @@ def _end() -> None:
     os.killpg(0, signal.SIGKILL)
 
 
+def _leave_nothing() -> None:
+    """Forks a process that waits for the end of this one, however it ends, and ends what this one has started."""
+    waits, held = os.pipe()
+    if os.fork():
+        os.close(waits)
+        return
+    os.close(held)
+    os.closerange(3, waits)
+    os.closerange(waits + 1, _MOST_FILES)
+    os.read(waits, 1)
+    _end()
+
+
 def main(descriptor: int, robot: int) -> None:
     """Works for the robot whose process has the number `robot`, over an inherited socket."""
     ctypes.CDLL(None).prctl(_DIE_WITH_PARENT, signal.SIGKILL)  # also while this process is stopped
     if os.getppid() == robot:
+        _leave_nothing()
         life = Life()
         life.workers.append(worker := Worker(Connection(descriptor), life))
         worker.run()
@@ -257,6 +272,7 @@ def main_shared(path: str) -> None:
     if os.fork():  # no robot is its parent: whoever started it may be gone before the others
         os._exit(0)
     os.setsid()
+    _leave_nothing()
     with open(f"{path}.lock", "w") as lock, socket.socket(socket.AF_UNIX) as door:
         try:
             fcntl.flock(lock, fcntl.LOCK_EX | fcntl.LOCK_NB)
