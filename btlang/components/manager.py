@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 _LOOK = 0.1  # seconds between two looks at each component
 _MINUTE = 60.0
 _PAUSE, _LONGEST = 0.1, 10.0  # seconds before it is started again: doubled each time, and the longest
-_SOUND = 5.0  # seconds that it has to be active until pauses are short again
+_SOUND = 2.0  # seconds that it has to be active until pauses are short again
 
 
 class ComponentStatus(Record):
