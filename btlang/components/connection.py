@@ -9,6 +9,7 @@ from inspect import Parameter, Signature, isgeneratorfunction, signature
 from btlang.backends.engine import leaf_binding
 from btlang.components.component import ComponentError
 from btlang.components.device_robot import DeviceSimulation
+from btlang.components.gate import Gate
 from btlang.components.inside_host import InsideHost
 from btlang.components.location import located
 from btlang.components.manager import Keeper, Manager
@@ -17,6 +18,7 @@ from btlang.devices.device_set import DeviceSet
 from btlang.devices.simulated import twin
 from btlang.robots.platforms import node_function
 from btlang.robots.simulation import Simulation
+from btlang.run.events import RobotEvent
 from btlang.vocabulary.entry import COMPARISONS, MEASURED
 
 TYPE_CHECKING = False
@@ -54,6 +56,8 @@ class ComponentConnection:
             self.devices.start()
         has_nodes = any(part.node is not None for part in body.components)
         self._nodes: Any = node_function()(inner.robot, body) if has_nodes else None
+        kinds = {name: device.kind for name, device in self.devices.devices.items()}
+        self._gates = {name: Gate(reads, kinds[name], self.robot) for name, reads in self.devices.readers.items()}
         self.manager = Manager(body.components, self._host, self._tell, self._in_use)
         self.robot.on_step = self._step
         self.manager.start()
@@ -118,8 +122,8 @@ class ComponentConnection:
         if part.node is not None:
             return self._node_host(part, changed)
         if part.runs == "here":
-            return InsideHost(part, self._body, self.devices.readers, changed, self._tell)
-        return ProcessHost(part, self._body.folder, self.devices.readers, changed, self._tell)
+            return InsideHost(part, self._body, self._gates, changed, self._told)
+        return ProcessHost(part, self._body.file, self._gates, changed, self._told)
 
     def _node_host(self, part: ComponentPart, changed: Callable[[], object]) -> Host:
         if self._nodes is None:
@@ -134,6 +138,10 @@ class ComponentConnection:
         """From any thread; who watches the mission hears of it from the thread that ticks."""
         self._changes.append((kind, data))
 
+    def _told(self, kind: str, data: Mapping[str, Any]) -> None:
+        """What a component says of itself: whatever it is, it is no event of the robot's own."""
+        self._changes.append(("", {"kind": kind, "data": data}))
+
     def _step(self, seconds: float) -> None:
         self.devices.step()
         for keeper in self.manager.keepers:
@@ -143,7 +151,11 @@ class ComponentConnection:
 
     def _flush(self) -> None:
         while self._changes:
-            self.bus.emit_robot(*self._changes.popleft())
+            kind, data = self._changes.popleft()
+            if kind:
+                self.bus.emit_robot(kind, data)
+            else:
+                self.bus.emit(RobotEvent, data["kind"], data["data"])
 
 
 def _is_below(name: str, node: RosNode | None) -> bool:

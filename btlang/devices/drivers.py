@@ -16,6 +16,8 @@ if TYPE_CHECKING:
 SIMULATED = "simulated"
 DRIVERS = {
     "serial-board": "btlang.devices.serial_board.driver:SerialBoard",
+    "camera": "btlang.devices.media.camera:Camera",
+    "sound": "btlang.devices.media.sound:SoundCard",
     "dynamixel": "btlang.devices.dynamixel.driver:DynamixelDriver",
     "topic": "btlang.ros.devices.driver:TopicDriver",
 }

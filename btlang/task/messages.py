@@ -241,6 +241,14 @@ class Components(Command):
     changes = False
 
 
+class Picture(Command):
+    """What a camera sees now: the answer has it as a PNG in base64, at most 320 pixels wide."""
+
+    tag = "picture"
+    changes = False
+    device: str
+
+
 class ChangeComponent(Command):
     """Starts a component anew ("restart"), takes it from the robot file as that is by now ("load"), or out of the robot
     ("unload"): at once, or as soon as no running mission uses it.
@@ -275,7 +283,7 @@ COMMANDS: dict[str, type[Command]] = {
     for kind in (
         Submit, List, Show, Cancel, Kill, Interrupt, Resume, Skip, Reorder, Again, AddSchedule, RemoveSchedule,
         Schedules, Put, Delete, Library, Pause, Step, EmergencyStop, Release, Say, Down, Status, Report,
-        Trail, Components, ChangeComponent,
+        Trail, Components, ChangeComponent, Picture,
     )
 }  # fmt: skip
 """By their names."""
