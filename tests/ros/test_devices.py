@@ -13,6 +13,7 @@ from sensor_msgs.msg import Image, Range
 from std_msgs.msg import Int16MultiArray, String
 
 import btlang
+from btlang.cli import main
 from btlang.devices.device_set import DeviceSet
 from btlang.devices.driver import DeviceError
 from btlang.robots.body_file import load_body
@@ -130,3 +131,17 @@ def test_topics_that_say_nothing(tmp_path: Path, domain: int, client: Client, mo
             eye.read("front")
     finally:
         devices.close()
+
+
+@pytest.mark.parametrize(
+    ("options", "reason"),
+    [
+        ([], "the following arguments are required: --robot"),
+        (["--robot", "ros"], "expected small, standard or a robot file, not 'ros'"),
+        (["--robot", "standard"], "the robot file has no [[device]]; --simulate shows simulated ones"),
+    ],
+)
+def test_options_of_ros_devices(options: list[str], reason: str, capsys: pytest.CaptureFixture[str]) -> None:
+    with pytest.raises(SystemExit):
+        main(["ros-devices", *options])
+    assert reason in capsys.readouterr().err

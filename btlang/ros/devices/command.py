@@ -8,19 +8,20 @@ import time
 from collections.abc import Mapping
 from contextlib import closing
 
+from btlang.arguments import robot_on
 from btlang.components.device_robot import simulated_devices
 from btlang.devices.device_set import DeviceSet
 from btlang.devices.driver import DeviceError
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.robots.body import Body
-from btlang.robots.options import add_world
+from btlang.robots.options import add_simulate, add_world
 from btlang.robots.registry import runs_on
 from btlang.robots.simulated import SimulatedRobot
 from btlang.robots.world import World
 from btlang.robots.world_problem import read_world
 from btlang.ros.available import require_ros
-from btlang.ros.command import add_body_options, add_namespace
+from btlang.ros.command import add_namespace
 from btlang.ros.devices.driver import PACKAGES
 from btlang.ros.ending import EndingSignals, ending_signals
 from btlang.run.controls import Controls
@@ -37,7 +38,10 @@ _RATE = 30.0  # looks a second at the devices
 def add_device_options(parser: argparse.ArgumentParser) -> None:
     """The options of `btc ros-devices`."""
     add_world(parser)
-    add_body_options(parser, ("devices",))
+    parser.add_argument(
+        "--robot", type=robot_on(()), required=True, metavar="ROBOT", help="a robot file or the name of one that ships"
+    )
+    add_simulate(parser)
     add_namespace(parser, "namespace of all topics (default: none)")
 
 
@@ -46,12 +50,14 @@ def serve(options: argparse.Namespace) -> int:
 
     Raises MissionError (BT070, BT071, BT100).
     """
-    body = runs_on("standard" if options.robot == "simulated" else options.robot, "devices")[0]
+    body = runs_on(options.robot, "devices")[0]
     world = read_world(options.world, body)
     try:
         body = body.replace(devices=simulated_devices(body, options.simulate))
     except DeviceError as problem:
         raise MissionError([diagnostic("BT071", NOWHERE, reason=str(problem))]) from None
+    if not body.devices:
+        options.refuse("the robot file has no [[device]]; --simulate shows simulated ones")
     with ending_signals() as came:  # before ROS 2 is imported, where an interrupt may get lost
         return _show_devices(options, body, world, came)
 
