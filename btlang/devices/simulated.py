@@ -88,7 +88,10 @@ class SimulatedDevice:
         return self._past[0][1]
 
     def _read(self) -> Reading:
-        return _READ[self._device.kind](self) if self._kind.reading is not None else Reading()
+        try:
+            return _READ[self._device.kind](self) if self._kind.reading is not None else Reading()
+        except RobotError as problem:
+            raise DeviceSilent(f"the {self._device.name} is silent: {problem}") from None
 
     def write(self, name: str, command: Command) -> None:
         """Tells it a command."""

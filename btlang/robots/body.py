@@ -151,7 +151,8 @@ class Body(Record):
     """All that is known of a robot. What it lacks is None, or is not in the tuples.
 
     `over` is what it runs on where nothing else is said: a name of btlang.robots.registry.ROBOTS. Joints that a posture
-    does not name stay where they are; its steps follow each other. `file` is where this comes from.
+    does not name stay where they are; its steps follow each other. `file` is where this comes from, `world` the path of
+    the world file of the place where it works; "" without one.
     """
 
     name: str
@@ -170,6 +171,7 @@ class Body(Record):
     devices: tuple[Device, ...] = ()
     components: tuple[ComponentPart, ...] = ()
     file: str = ""
+    world: str = ""
 
     @property
     def folder(self) -> str:

@@ -6,6 +6,7 @@ import os
 from collections.abc import Callable, Collection, Mapping
 from functools import cache
 
+from btlang.diagnostics.reading import is_below, real_path
 from btlang.robots.body import (
     BEARING,
     Base,
@@ -98,7 +99,7 @@ def _body(top: Table, overs: Collection[str], file: str) -> Body:
     components = _listed(top, "component", _component, problems)
     made = Body(
         name, radius, over, base, navigation, joints, postures, hands, sensors, battery, dock, voice, screen,
-        devices, components, file,
+        devices, components, file, problems.part(lambda: _world(top, file), ""),
     )  # fmt: skip
     problems.part(lambda: top.finish(made), made)
     if not file:
@@ -107,6 +108,16 @@ def _body(top: Table, overs: Collection[str], file: str) -> Body:
         problems.found += [Problem(_FOREIGN, "device", index, "driver") for index in real]
     problems.end()
     return made
+
+
+def _world(top: Table, file: str) -> str:
+    if not top.has("world"):
+        return ""
+    folder = os.path.dirname(file)
+    path = os.path.join(folder, top.text("world"))
+    if not (file and is_below(real_path(path), folder) and os.path.isfile(path)):
+        raise top.problem("world", '"world" must be a file in the folder of the robot file')
+    return path
 
 
 def _listed(
