@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from math import copysign, cos, degrees, hypot, radians, sin
+from math import cos, degrees, hypot, radians, sin
 
 from btlang.components.safety import Safety
 from btlang.devices.device_set import Reads, reader
 from btlang.devices.driver import DeviceError
 from btlang.devices.kinds import Motion, Pressed, Wheels, WheelSpeeds
+from btlang.robots.base import clipped_speed, towards
 from btlang.robots.body import Body
 from btlang.robots.geometry import Pose, wrap
 
@@ -91,7 +92,7 @@ class DeviceBase:
     def drive(self, linear: float, angular: float) -> None:
         """Sets the wanted velocity, within the limits."""
         driving, turning = self.body.driving, self.body.turning
-        self._wanted = _clip(linear, driving.top_speed), _clip(angular, turning.top_speed)
+        self._wanted = clipped_speed(linear, driving.top_speed), clipped_speed(angular, turning.top_speed)
         if self._wanted == (0.0, 0.0):
             self._idle = 0.0
 
@@ -129,8 +130,8 @@ class DeviceBase:
     def _command(self, dt: float) -> None:
         driving, turning = self.body.driving, self.body.turning
         wanted = self._safety.limited(*self._wanted, bool(self._pressed))
-        linear = _towards(self._speeds[0], wanted[0], driving.acceleration * dt, driving.brake * dt)
-        angular = _towards(self._speeds[1], wanted[1], turning.acceleration * dt, turning.brake * dt)
+        linear = towards(self._speeds[0], wanted[0], driving.acceleration * dt, driving.brake * dt)
+        angular = towards(self._speeds[1], wanted[1], turning.acceleration * dt, turning.brake * dt)
         if self._velocity is None:
             linear = angular = 0.0
         self._speeds = linear, angular
@@ -187,14 +188,3 @@ class DeviceBase:
                 self._pressed.discard(name)
         if self._contact is not None and self._contact.distance_to((self._pose.x, self._pose.y)) > _FREE_AGAIN:
             self._contact = None
-
-
-def _clip(value: float, limit: float) -> float:
-    return copysign(min(abs(value), limit), value)
-
-
-def _towards(value: float, target: float, more: float, less: float) -> float:
-    """Steps towards the target: by at most `less` while slowing down, `more` while speeding up."""
-    slows = abs(target) < abs(value) or value * target < 0
-    most = less if slows else more
-    return target if abs(target - value) <= most else value + copysign(most, target - value)

@@ -9,6 +9,7 @@ from inspect import Parameter, Signature
 from btlang.backends.engine import leaf_binding
 from btlang.components.component import ComponentError
 from btlang.components.device_robot import DeviceSimulation
+from btlang.components.gate import Gate
 from btlang.components.inside_host import InsideHost
 from btlang.components.location import located
 from btlang.components.manager import Keeper, Manager
@@ -16,6 +17,7 @@ from btlang.components.process_host import ProcessHost
 from btlang.devices.device_set import DeviceSet
 from btlang.devices.simulated import twin
 from btlang.robots.simulation import Simulation
+from btlang.run.events import RobotEvent
 from btlang.vocabulary.entry import COMPARISONS, MEASURED
 
 TYPE_CHECKING = False
@@ -51,6 +53,8 @@ class ComponentConnection:
             mine = body.replace(devices=tuple(map(twin, body.devices))) if simulated else body
             self.devices = DeviceSet(mine, inner.robot, self._tell)
             self.devices.start()
+        kinds = {name: device.kind for name, device in self.devices.devices.items()}
+        self._gates = {name: Gate(reads, kinds[name], self.robot) for name, reads in self.devices.readers.items()}
         self.manager = Manager(body.components, self._host, self._tell, self._in_use)
         self.robot.on_step = self._step
         self.manager.start()
@@ -95,8 +99,8 @@ class ComponentConnection:
 
     def _host(self, part: ComponentPart, changed: Callable[[], object]) -> Host:
         if part.runs == "here":
-            return InsideHost(part, self._body, self.devices.readers, changed, self._tell)
-        return ProcessHost(part, self._body.folder, self.devices.readers, changed, self._tell)
+            return InsideHost(part, self._body, self._gates, changed, self._told)
+        return ProcessHost(part, self._body.folder, self._gates, changed, self._told)
 
     def _in_use(self, name: str) -> bool:
         return name in self._used and not self.bus.closed
@@ -104,6 +108,10 @@ class ComponentConnection:
     def _tell(self, kind: str, data: Mapping[str, Any]) -> None:
         """From any thread; who watches the mission hears of it from the thread that ticks."""
         self._changes.append((kind, data))
+
+    def _told(self, kind: str, data: Mapping[str, Any]) -> None:
+        """What a component says of itself: whatever it is, it is no event of the robot's own."""
+        self._changes.append(("", {"kind": kind, "data": data}))
 
     def _step(self, seconds: float) -> None:
         self.devices.step()
@@ -114,7 +122,11 @@ class ComponentConnection:
 
     def _flush(self) -> None:
         while self._changes:
-            self.bus.emit_robot(*self._changes.popleft())
+            kind, data = self._changes.popleft()
+            if kind:
+                self.bus.emit_robot(kind, data)
+            else:
+                self.bus.emit(RobotEvent, data["kind"], data["data"])
 
 
 def _asking(keeper: Keeper, method: str, entry: Entry) -> Callable[..., Any]:

@@ -21,7 +21,8 @@ if TYPE_CHECKING:
 
 _LOOK = 0.1  # seconds between two looks at each component
 _MINUTE = 60.0
-_PAUSE, _LONGEST = 0.1, 10.0  # seconds before it is started again: the first, doubled each time, and the longest
+_PAUSE, _LONGEST = 0.1, 10.0  # seconds before it is started again: doubled each time, and the longest
+_SOUND = 5.0  # seconds that it has to be active until pauses are short again
 
 
 class ComponentStatus(Record):
@@ -41,7 +42,7 @@ class ComponentStatus(Record):
 class Manager:
     """The components of one robot, by name. Each is led by a thread of its own; all methods are for any thread.
 
-    `make` makes the host of a part. `tell` gets an event of each change: "component" with name, state, why, version.
+    `make` makes the host of a part. `tell` gets an event of each change: see PartChanged.
     `in_use` says whether a running mission uses the component of a name: then it is not replaced.
     """
 
@@ -127,8 +128,10 @@ class Manager:
     def tell(self, keeper: Keeper) -> None:
         """A state has changed; called with the lock."""
         self.changed.notify_all()
-        status = keeper.status()
-        self._tell("component", {name: getattr(status, name) for name in ("name", "state", "why", "version")})
+        name, state = keeper.part.name, keeper.state
+        why = keeper.why if keeper.has_failed else ""
+        text = f"the {name} {why}" if why else f"the {name} is active" if state == ACTIVE else ""
+        self._tell("part", {"kind": "component", "name": name, "state": state, "text": text})
 
     def make(self, part: ComponentPart) -> Host:
         """A host, not started."""
@@ -171,6 +174,8 @@ class Keeper:
         self.needs: tuple[str, ...] = part.needs
         self._starts = 0
         self._failures: deque[float] = deque()
+        self._in_a_row = 0
+        self._active_since: float | None = None
         self._due = 0.0
         self._given_up = self.gone = self.leaving = False
         self._thread = threading.Thread(target=self._keep, name=f"btlang component {part.name}", daemon=True)
@@ -186,13 +191,18 @@ class Keeper:
 
     def replace(self, part: ComponentPart | None) -> None:
         """It is to be another one, or none; called with the lock of the manager."""
-        self._next, self._asked, self._given_up, self._due = part, True, False, 0.0
+        self._next, self._asked, self._given_up, self._due, self._in_a_row = part, True, False, 0.0, 0
         self._failures.clear()
 
     @property
     def settled(self) -> bool:
         """Whether it is active, or will not be without help."""
         return self.state == ACTIVE or self._given_up or self.gone or bool(self._failures)
+
+    @property
+    def has_failed(self) -> bool:
+        """Whether it is down since it failed."""
+        return bool(self._failures) and self.state == UNCONFIGURED
 
     def status(self) -> ComponentStatus:
         """What is known of it."""
@@ -250,6 +260,7 @@ class Keeper:
             while not self._leaves():
                 if self._wait_for_needs():
                     host.transition("activate")
+                    self._active_since = time.monotonic()
                     self._change(ACTIVE, "")
                     self._watch(host)
             self._bring_down(host)
@@ -303,9 +314,11 @@ class Keeper:
         with self._manager.changed:
             while self._failures and now - self._failures[0] > _MINUTE:
                 self._failures.popleft()
-            pause = _PAUSE * 2 ** len(self._failures) if self._failures else 0.0
+            if self._active_since is not None and now - self._active_since > _SOUND:
+                self._in_a_row = 0
+            self._due = now + (min(_PAUSE * 2**self._in_a_row, _LONGEST) if self._in_a_row else 0.0)
+            self._in_a_row, self._active_since = self._in_a_row + 1, None
             self._failures.append(now)
-            self._due = now + min(pause, _LONGEST)
             if len(self._failures) > self.part.restarts:
                 self._given_up = True
                 reason = f"{reason}; it was given up after {len(self._failures)} attempts in a minute"

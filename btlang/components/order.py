@@ -9,18 +9,19 @@ def circle(needs: Mapping[str, Collection[str]]) -> list[str]:
     """Names that need each other in a circle, the first one again at the end; none where there is no circle."""
     done: set[str] = set()
     for start in needs:
-        path: list[str] = []
+        path: dict[str, None] = {}
         stack = [iter([start])]
         while stack:
             name = next(stack[-1], None)
             if name is None:
                 stack.pop()
                 if path:
-                    done.add(path.pop())
+                    done.add(path.popitem()[0])
             elif name in path:
-                return [*path[path.index(name) :], name]
+                names = list(path)
+                return [*names[names.index(name) :], name]
             elif name not in done:
-                path.append(name)
+                path[name] = None
                 stack.append(iter(sorted(needs.get(name, ()))))
     return []
 

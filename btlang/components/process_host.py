@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 import os
 import signal
 import socket
@@ -17,6 +18,7 @@ from multiprocessing.connection import Connection
 from btlang.components.component import ComponentError
 from btlang.components.life_cycle import ACTIVE, UNCONFIGURED
 from btlang.components.plain import packed, unpacked
+from btlang.devices.driver import DeviceError
 from btlang.engine.leaves.leaf import ActionFailed, Unknown, described
 from btlang.robots.proxy import RobotProxy
 
@@ -29,6 +31,7 @@ if TYPE_CHECKING:
 _BEAT = 0.1  # seconds between two looks at it
 _ANSWER = 0.05  # seconds that a tick waits for a condition
 _ERRORS = 2  # where it writes what it prints: standard output is for what people asked for
+_LOADING = 60.0  # seconds that a process gets to start, and to import what its class needs, on a busy computer
 _END = 0.5  # seconds that a process gets to end by itself
 
 
@@ -78,11 +81,12 @@ class ProcessHost:
         self._changed, self._tell = changed, tell
         self._process: subprocess.Popen[bytes] | None = None
         self._connection: Connection | None = None
-        self._sending = threading.Lock()
+        self._sending, self._numbering = threading.Lock(), threading.Lock()
         self._requests: dict[int, Request] = {}
         self._numbers = 0
         self._lost: str | None = None
-        self._heard = self._beaten = 0.0
+        self._heard = math.inf  # until it says something first
+        self._beaten = 0.0
         self._reader: threading.Thread | None = None
         self.state = UNCONFIGURED
         self.problem = ""
@@ -101,7 +105,7 @@ class ProcessHost:
             self._process = subprocess.Popen(
                 words, pass_fds=[its.fileno()], start_new_session=True, stdin=subprocess.DEVNULL, stdout=_ERRORS
             )
-        self._connection, self._heard = Connection(ours.detach()), time.monotonic()
+        self._connection = Connection(ours.detach())
         self._reader = threading.Thread(target=self._read, name="btlang component", daemon=True)
         self._reader.start()
         part = self._part
@@ -111,12 +115,13 @@ class ProcessHost:
                 parameters=dict(part.parameters), body=None,
             ),
             "load",
+            _LOADING,
         )  # fmt: skip
         return dict(value)
 
     def transition(self, name: str) -> None:
         """See Host."""
-        self._wait(self._request(name), name)
+        self._wait(self._request(name), name, self._part.limit)
 
     def look(self) -> str | None:
         """See Host; to be called every 0.1 s. After a silence it asks, and waits as long again, before it gives up."""
@@ -192,21 +197,21 @@ class ProcessHost:
             process.wait()
 
     def _request(self, do: str, wake: Callable[[], object] = lambda: None, **data: Any) -> Request:
-        self._numbers += 1
-        message = {"id": self._numbers, "do": do, **data}
-        request = self._requests[self._numbers] = Request(self._numbers, message, wake)
+        with self._numbering:  # so that they come in their order
+            self._numbers += 1
+            message = {"id": self._numbers, "do": do, **data}
+            request = self._requests[self._numbers] = Request(self._numbers, message, wake)
+            self._send(message)
         if self._lost is not None:
             request.end({"problem": f"the {self._part.name} {self._lost}"})
-        else:
-            self._send(message)
         return request
 
-    def _wait(self, request: Request, what: str) -> Any:
-        until = time.monotonic() + self._part.limit
+    def _wait(self, request: Request, what: str, limit: float) -> Any:
+        until = time.monotonic() + limit
         while not request.done.wait(_BEAT):
             self.look()
             if time.monotonic() > until:
-                self._lose(f"did not {what} within {self._part.limit:g} s")
+                self._lose(f"did not {what} within {limit:g} s")
         if self._lost is not None:
             raise ComponentError(self._lost)
         try:
@@ -252,7 +257,8 @@ class ProcessHost:
         elif "write" in message:
             device = self._devices.get(message["write"])
             if device is not None and self.state == ACTIVE:
-                device.write(message["write"], message["command"])
+                with suppress(DeviceError):  # it is told again as long as that counts
+                    device.write(message["write"], message["command"])
         elif "tell" in message:
             self._tell(str(message["tell"]), dict(message["data"]))
 

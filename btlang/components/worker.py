@@ -105,8 +105,9 @@ class Call(Questions):
         if isgenerator(result):
             generator = result
             try:
-                while not self.halted.wait(_PERIOD):
+                while not self.halted.is_set():
                     next(generator)
+                    self.halted.wait(_PERIOD)
                 return False
             except StopIteration as end:
                 result = end.value

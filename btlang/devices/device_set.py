@@ -36,7 +36,7 @@ def reader(devices: Mapping[str, Reads], name: str, part: str) -> Reads:
 class DeviceSet:
     """The devices of a body: those of one driver and port share a loop. `robot` is where simulated ones act.
 
-    `tell` gets an event when a device falls silent or is back: "device" with name, kind and why.
+    `tell` gets an event when a device falls silent or is back: see btlang.run.events.PartChanged.
     """
 
     def __init__(self, body: Body, robot: Any, tell: Callable[[str, Mapping[str, Any]], object]) -> None:
@@ -92,4 +92,6 @@ class DeviceSet:
         return [(device, self._reads[name].silent(name)) for name, device in self.devices.items()]
 
     def _changed(self, name: str, reason: str | None) -> None:
-        self._tell("device", {"name": name, "kind": self.devices[name].kind, "why": reason or ""})
+        state = "works" if reason is None else "silent"
+        text = f"the {name} works" if reason is None else f"the {name} is silent: {reason}"
+        self._tell("part", {"kind": "device", "name": name, "state": state, "text": text})

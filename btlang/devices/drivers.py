@@ -16,7 +16,9 @@ if TYPE_CHECKING:
 SIMULATED = "simulated"
 DRIVERS = {
     "serial-board": "btlang.devices.serial_board.driver:SerialBoard",
-    "dynamixel": "btlang.devices.dynamixel.driver:DynamixelBus",
+    "camera": "btlang.devices.media.camera:Camera",
+    "sound": "btlang.devices.media.sound:SoundCard",
+    "dynamixel": "btlang.devices.dynamixel.driver:DynamixelDriver",
 }
 """Places of the classes; SIMULATED devices have none, since they act in the world of the simulated robot."""
 ENTRY_POINTS = "btlang.drivers"

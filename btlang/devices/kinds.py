@@ -107,6 +107,16 @@ class Image(Reading):
     height: int
     pixels: bytes
 
+    def smaller(self, widest: int) -> Image:
+        """At most so many pixels wide: every second one, or third one, and so on."""
+        each = -(-self.width // widest)
+        if each <= 1:
+            return self
+        rows = [self.pixels[3 * self.width * y : 3 * self.width * (y + 1)] for y in range(0, self.height, each)]
+        wide = len(range(0, self.width, each))
+        parts = [b"".join(row[3 * x : 3 * x + 3] for x in range(0, self.width, each)) for row in rows]
+        return Image(wide, len(rows), b"".join(parts))
+
 
 class Sound(Reading):
     """Of a microphone: samples since the last reading, 16 bits signed, little-endian, one channel."""

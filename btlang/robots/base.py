@@ -14,9 +14,7 @@ _FREE_AGAIN = 0.03
 
 
 class Base:
-    """Metres, degrees and seconds. `bumped_into` names what a contact was with, `bumps` counts contacts, and `wheels`
-    are how far the left and the right wheel have rolled.
-    """
+    """Metres, degrees and seconds. `bumped_into` names what a contact was with, `bumps` counts contacts."""
 
     silent = None
     """It is always known where it is."""
@@ -31,7 +29,7 @@ class Base:
         self.bumps = 0
         self.bumped_into = ""
         self.travelled = 0.0
-        self.wheels = (0.0, 0.0)
+        self._rolled = self._turned = 0.0
         self.grips = (1.0, 1.0)
         self._obstacles = obstacles
         self._wanted = (0.0, 0.0)
@@ -43,6 +41,12 @@ class Base:
         self._free = 0.0
         self._near = ""
         self._version = -1
+
+    @property
+    def wheels(self) -> tuple[float, float]:
+        """Metres that the left and the right wheel have rolled."""
+        side = radians(self._turned) * self._wheel_gap / 2
+        return self._rolled - side, self._rolled + side
 
     @property
     def bumped(self) -> bool:
@@ -61,7 +65,7 @@ class Base:
 
     def drive(self, linear: float, angular: float) -> None:
         """Sets the wanted velocity, within the limits."""
-        self._wanted = (_clip(linear, self._driving.top_speed), _clip(angular, self._turning.top_speed))
+        self._wanted = (clipped_speed(linear, self._driving.top_speed), clipped_speed(angular, self._turning.top_speed))
         self._hard = False
         if self._wanted == (0.0, 0.0):
             self._forget_trouble()
@@ -95,8 +99,8 @@ class Base:
         linear, angular = self._speeds
         driving, turning = self._driving, self._turning
         brake, turn_brake = (driving.hard_brake, turning.hard_brake) if self._hard else (driving.brake, turning.brake)
-        linear = _towards(linear, self._wanted[0], driving.acceleration * h, brake * h)
-        angular = _towards(angular, self._wanted[1], turning.acceleration * h, turn_brake * h)
+        linear = towards(linear, self._wanted[0], driving.acceleration * h, brake * h)
+        angular = towards(angular, self._wanted[1], turning.acceleration * h, turn_brake * h)
         self._speeds = linear, angular
         v, w = self._on_floor(linear, angular)
         old = self.pose
@@ -114,8 +118,8 @@ class Base:
         self.pose = new
         self.velocity = v, w
         self.travelled += abs(v) * h
-        side = radians(angular) * self._wheel_gap / 2
-        self.wheels = self.wheels[0] + (linear - side) * h, self.wheels[1] + (linear + side) * h
+        self._rolled += linear * h
+        self._turned += angular * h
         if self._contact is not None and self._contact.distance_to((new.x, new.y)) > _FREE_AGAIN:
             self._contact = None
         wanted = abs(self._wanted[0]) + self._radius * radians(abs(self._wanted[1]))
@@ -167,11 +171,12 @@ class Base:
         self._contact = pose
 
 
-def _clip(value: float, limit: float) -> float:
+def clipped_speed(value: float, limit: float) -> float:
+    """The same direction, at most so fast."""
     return copysign(min(abs(value), limit), value)
 
 
-def _towards(value: float, target: float, more: float, less: float) -> float:
+def towards(value: float, target: float, more: float, less: float) -> float:
     """Steps towards the target: by at most `less` while slowing down, `more` while speeding up."""
     slowing = abs(target) < abs(value) or target * value < 0.0
     limit = less if slowing else more

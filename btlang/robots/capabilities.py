@@ -91,6 +91,10 @@ class Machine(Protocol):
         """Accepts commands again. For a run that starts or continues: nothing else may undo an emergency stop."""
 
     @property
+    def refuses(self) -> bool:
+        """Whether it takes no command: it was stopped or disabled."""
+
+    @property
     def stops(self) -> int:
         """How often `stop` was called."""
 

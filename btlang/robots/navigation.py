@@ -76,6 +76,11 @@ class Navigator:
         self._planner: Planner | None = None
         self.goal: NavigationGoal | None = None
 
+    @property
+    def way(self) -> list[Point]:
+        """The points of the way of the goal under way; none where there is no goal."""
+        return [] if self.goal is None or self.goal.done else self.goal.path
+
     def name_places(self, places: Iterable[Place]) -> None:
         """These are the named places from now on."""
         self._places = {place.name: place for place in places}

@@ -20,11 +20,12 @@ class BasePart(Protocol):
 
     body: Body
     travelled: float
-    wheels: tuple[float, float]
     bumps: int
     bumped_into: str
     grips: tuple[float, float]
 
+    @property
+    def wheels(self) -> tuple[float, float]: ...
     @property
     def pose(self) -> Pose: ...
     @property

@@ -67,8 +67,7 @@ class SimulatedRobot:
         self._navigator = Navigator(world, self._base, self._obstacles, self.faults)
         self._choices = Choices()
         self._latch = Latch()
-        self._bumps_told = 0
-        self._stuck_told = False
+        self._bumps_told, self._stuck_told = 0, False
         self._begin_faults()
 
     def step(self, dt: float) -> None:
@@ -116,6 +115,11 @@ class SimulatedRobot:
             self._rest()  # again, as in `step`
         self._latch.open()
 
+    @property
+    def refuses(self) -> bool:
+        """Whether it takes no command: it was stopped."""
+        return self._latch.refuses
+
     def _rest(self) -> None:
         self._navigator.cancel("the robot was stopped")
         self._base.brake()
@@ -148,8 +152,7 @@ class SimulatedRobot:
     @property
     def way(self) -> Sequence[Point]:
         """The points of the way that it follows, in metres from where it was planned; none where it follows none."""
-        goal = self._navigator.goal
-        return () if goal is None or goal.done else goal.path
+        return self._navigator.way
 
     @property
     def velocity(self) -> tuple[float, float]:
@@ -221,7 +224,6 @@ class SimulatedRobot:
         """A journey under way fails, as if the navigation had lost it."""
         self._navigator.cancel(reason)
 
-    # Senses
     def scan(self) -> Array:
         """360 distances, computed when first read after a step. Raises RobotError when the scanner is silent."""
         self._need("scanner")
@@ -236,9 +238,7 @@ class SimulatedRobot:
     def choose(self, kind: str, how: str) -> str:
         """A name that is the "nearest" or "random". Raises RobotError where there is none."""
         names = self._surroundings.choices(kind)
-        return self._choices.choose(
-            kind, how, names, lambda name: self.pose.distance_to(self.locate(name)), self.on_event
-        )
+        return self._choices.choose(kind, how, names, self._distance, self.on_event)
 
     def seed_choices(self, seed: int, made: int = 0) -> None:
         """A run begins, whose random choices follow from the seed; so many have been made."""
@@ -246,8 +246,11 @@ class SimulatedRobot:
 
     def nearby_people(self, within: float) -> list[str]:
         """Names of the people within so many metres, nearest first."""
-        distances = [(self.pose.distance_to(self.locate(name)), name) for name in self.world.names.people]
-        return [name for distance, name in sorted(distances) if distance <= within]
+        distances = sorted((self._distance(name), name) for name in self.world.names.people)
+        return [name for distance, name in distances if distance <= within]
+
+    def _distance(self, name: str) -> float:
+        return self.pose.distance_to(self.locate(name))
 
     def name_places(self, places: Iterable[Place]) -> None:
         """The places of a mission beside those of the world, in place of those of the mission before."""
@@ -337,7 +340,6 @@ class SimulatedRobot:
         """The name of what the hand holds."""
         return self._hands.held.get(hand)
 
-    # Voice
     def say(self, text: str) -> None:
         """Starts to speak, for as long as the body says."""
         self._need("voice")

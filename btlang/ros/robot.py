@@ -125,6 +125,11 @@ class RosRobot:
             self.on_step(dt)
 
     @property
+    def refuses(self) -> bool:
+        """Whether it takes no command: it was stopped."""
+        return self._latch.refuses
+
+    @property
     def time_of_day(self) -> float:
         """That of this computer, in its time zone; in simulated time that of the world, which began at 0."""
         clock = self._node.get_clock()

@@ -230,6 +230,19 @@ class FaultInjected(Event):
     text: str
 
 
+class PartChanged(Event):
+    """A component has another state (see btlang.components.life_cycle), or a device "works" or is "silent".
+
+    `kind` is "component" or "device"; `text` says it to people, "" for what they need not know.
+    """
+
+    tag = "part"
+    kind: str
+    name: str
+    state: str
+    text: str = ""
+
+
 class Notice(Event):
     """A text for people, about the node at `path` and a `place` of the mission, if any."""
 
@@ -328,7 +341,7 @@ ROBOT_EVENTS: dict[str, type[Event]] = {
     event.tag: event
     for event in (
         Said, Printed, Chosen, NavigationStarted, Arrived, Bumped, Stuck, Stopped, Grasped, Released, Dropped,
-        JointsMoved, Docked, Undocked, BatteryEmpty, FaultInjected, Warned, Troubled,
+        JointsMoved, Docked, Undocked, BatteryEmpty, FaultInjected, PartChanged, Warned, Troubled,
     )
 }  # fmt: skip
 """What robots report, by the kinds of btlang.robots.robot.Robot.on_event."""

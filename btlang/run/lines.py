@@ -12,6 +12,7 @@ from btlang.run.events import (
     FaultInjected,
     Notice,
     Overrun,
+    PartChanged,
     Printed,
     Said,
     StatusChanged,
@@ -62,7 +63,7 @@ class Lines:
             self._line(event.t, "drops", event.name or "")
         elif isinstance(event, Stuck):
             self._line(event.t, event.tag, "")
-        elif isinstance(event, FaultInjected | Notice):
+        elif isinstance(event, FaultInjected | Notice | PartChanged) and event.text:
             self._line(event.t, event.tag, event.text)
 
     def _action(self, event: StatusChanged, node: Node) -> None:

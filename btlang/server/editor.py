@@ -33,7 +33,8 @@ from btlang.server.files import Files, TreeFiles, english_beside, tree_sort
 from btlang.server.links import Robots
 from btlang.server.pages import BUILT
 from btlang.server.roles import Role
-from btlang.task.messages import Answer, is_whole
+from btlang.task.keepable import is_whole
+from btlang.task.messages import Answer
 from btlang.text.escaping import one_line
 from btlang.text.output import show
 from btlang.text.source import NOWHERE

@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
+import base64
 from collections.abc import Iterable, Mapping
 from enum import StrEnum
 
 from btlang.components.component import ComponentError
 from btlang.components.connection import ComponentConnection
 from btlang.components.manager import Manager
+from btlang.devices.driver import DeviceError
+from btlang.devices.kinds import Image
+from btlang.devices.png import png
 from btlang.robots.body_file import read_body
 from btlang.task import messages
 from btlang.task.checks import choice
@@ -19,6 +23,8 @@ if TYPE_CHECKING:
     from typing import Any
 
     from btlang.session import Session
+
+_WIDEST = 320  # pixels of a picture: many may watch
 
 
 class Change(StrEnum):
@@ -40,6 +46,22 @@ class ComponentHandler:
         data = component_data(self._session)
         lines = [*map(_component_line, data["components"]), *map(_device_line, data["devices"])]
         return Answer(True, "\n".join(lines) or "The robot has no components or devices of its own.", data)
+
+    def picture(self, command: messages.Picture, person: str) -> Answer:
+        """What a camera sees. Raises MissionError."""
+        connection = self._session.connection
+        readers = connection.devices.readers if isinstance(connection, ComponentConnection) else {}
+        if command.device not in readers:
+            raise wrong(command.tag, f"the robot has no device '{one_line(command.device)}'")
+        try:
+            image = readers[command.device].read(command.device)
+        except DeviceError as problem:
+            raise wrong(command.tag, str(problem)) from None
+        if not isinstance(image, Image):
+            raise wrong(command.tag, f"the {one_line(command.device)} is no camera")
+        small = image.smaller(_WIDEST)
+        data = {"png": base64.b64encode(png(small)).decode(), "width": small.width, "height": small.height}
+        return Answer(True, f"A picture of {small.width} by {small.height} pixels.", data)
 
     def change(self, command: messages.ChangeComponent, person: str) -> Answer:
         """One of them. Raises MissionError."""

@@ -48,7 +48,8 @@ class Feed:
     """`sinks` makes the sinks of a run; `watch` tells what happens, beginning with what is now.
 
     `robot` gives what keeps the robot from working, `words` are where its words and its world are, `world` is its map
-    where it has one, `recordings` the folder of its recordings, "" for none. Methods may be called from any thread.
+    where it has one, `recordings` the folder of its recordings, "" for none, `parts` gives its components and devices.
+    Methods may be called from any thread.
     """
 
     def __init__(
@@ -58,8 +59,10 @@ class Feed:
         words: dict[str, Any],
         world: World | None = None,
         recordings: str = "",
+        parts: Callable[[], dict[str, Any]] = dict,
     ) -> None:
-        self._recordings = recordings
+        self._recordings, self._look_at_parts = recordings, parts
+        self._parts = parts()
         self._store, self._robot, self._words, self._world = store, robot, words, world
         self._watchers: list[_Watcher] = []
         self._current: _Watched | None = None
@@ -113,6 +116,7 @@ class Feed:
             if self._watchers and event.wall >= self._next_scan:
                 self._next_scan = event.wall + _SCANS
                 self._scan, self._scanned_from = _scan(event), None if event.state is None else event.state.place
+                self._parts = self._look_at_parts()
         elif isinstance(event, StatusesChanged):
             watched.changed = event.wall
         for watcher in tuple(self._watchers):
@@ -154,6 +158,9 @@ class Feed:
         if robot != watcher.robot:
             watcher.robot = robot
             yield {"type": "robot", **robot}
+        if self._parts != watcher.parts:
+            watcher.parts = self._parts
+            yield {"type": "components", **self._parts}
         if self._world is not None and not watcher.has_map:
             watcher.has_map = True
             yield {"type": "map", **self._world.as_map()}
@@ -174,6 +181,7 @@ class _Watcher:
         self.runs: deque[_Watched] = deque(maxlen=_MOST_RUNS)
         self.events: deque[tuple[_Watched, Event]] = deque(maxlen=_MOST_EVENTS)
         self.robot: dict[str, Any] = {}
+        self.parts: dict[str, Any] = {"components": [], "devices": []}
         self.has_map = False
         self.scan: list[float | None] = []
         self.way: list[list[float]] = []

@@ -84,6 +84,7 @@ class Handler:
             messages.Release: self._release, messages.Say: self._say, messages.Down: self._end_all,
             messages.Status: self._status, messages.Report: self._report, messages.Trail: self._trail,
             messages.Components: components.list, messages.ChangeComponent: components.change,
+            messages.Picture: components.picture,
         }  # fmt: skip
 
     def handle(self, command: Command, person: str) -> Answer:

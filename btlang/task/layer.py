@@ -5,6 +5,7 @@ from __future__ import annotations
 import os
 import time
 from collections.abc import Callable
+from functools import partial
 
 from btlang.api import Mission
 from btlang.diagnostics.diagnostic import diagnostic
@@ -12,6 +13,7 @@ from btlang.diagnostics.errors import MissionError
 from btlang.robots.needs import check_body, needs_of_tree
 from btlang.robots.registry import runs_on
 from btlang.session import Run, Session
+from btlang.task.component_handler import component_data
 from btlang.task.emergency import EmergencyStop, latch_path
 from btlang.task.executor import Executor
 from btlang.task.feed import Feed
@@ -87,7 +89,7 @@ class TaskLayer:
         knows = self.reader.world is not None or not getattr(self.session.robot, "moves_by_itself", True)
         self.feed = Feed(
             self.store, self._hindrances, self.reader.words, self.session.world if knows else None,
-            "" if recordings is None else os.path.abspath(recordings),
+            "" if recordings is None else os.path.abspath(recordings), partial(component_data, self.session),
         )  # fmt: skip
         self.emergency.listeners.append(self.feed.wake)
         self.manager = Manager(self.store, keeps, self._needs)

@@ -5,12 +5,12 @@ As JSON a command is an object with its name under "command" and its fields; `sc
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.record import Record
+from btlang.task.keepable import can_be_kept
 from btlang.task.task import Kind, Missed, Overlap, Restart
 from btlang.text.source import NOWHERE
 from btlang.text.spelling import nearest
@@ -241,6 +241,14 @@ class Components(Command):
     changes = False
 
 
+class Picture(Command):
+    """What a camera sees now: the answer has it as a PNG in base64, at most 320 pixels wide."""
+
+    tag = "picture"
+    changes = False
+    device: str
+
+
 class ChangeComponent(Command):
     """Starts a component anew ("restart"), takes it from the robot file as that is by now ("load"), or out of the robot
     ("unload"): at once, or as soon as no running mission uses it.
@@ -275,7 +283,7 @@ COMMANDS: dict[str, type[Command]] = {
     for kind in (
         Submit, List, Show, Cancel, Kill, Interrupt, Resume, Skip, Reorder, Again, AddSchedule, RemoveSchedule,
         Schedules, Put, Delete, Library, Pause, Step, EmergencyStop, Release, Say, Down, Status, Report,
-        Trail, Components, ChangeComponent,
+        Trail, Components, ChangeComponent, Picture,
     )
 }  # fmt: skip
 """By their names."""
@@ -371,32 +379,9 @@ def _checked(kind: type[Command], field: str, value: Any) -> Any:
     fits = isinstance(value, expected) and not isinstance(value, bool)
     if not fits or (texts and not all(isinstance(each, str) for each in value)) or value != value:
         raise wrong(kind.tag, f"'{field}' must be of the type {described['type']}")
-    if not _can_be_kept(value):
+    if not can_be_kept(value):
         raise wrong(kind.tag, f"'{field}' has a NUL or half a character (a lone surrogate), or a number without end")
     return tuple(value) if texts else value
-
-
-def _can_be_kept(value: Any) -> bool:
-    """Whether stores, files and messages of ROS 2 take all texts and numbers in a value of JSON."""
-    waiting = [value]
-    while waiting:
-        each = waiting.pop()
-        if isinstance(each, dict):
-            waiting += [*each.keys(), *each.values()]
-        elif isinstance(each, list | tuple):
-            waiting += each
-        elif (isinstance(each, float) and not math.isfinite(each)) or (isinstance(each, str) and not is_whole(each)):
-            return False
-    return True
-
-
-def is_whole(text: str) -> bool:
-    """Whether it has no NUL and no half of a character."""
-    try:
-        text.encode()
-    except UnicodeEncodeError:
-        return False
-    return "\0" not in text
 
 
 def wrong(name: str, reason: str) -> MissionError:

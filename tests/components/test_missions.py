@@ -12,7 +12,7 @@ import pytest
 
 import btlang
 from btlang.components.words import robot_words
-from btlang.run.events import Event, RobotEvent
+from btlang.run.events import Event, PartChanged, RobotEvent
 from tests.components.robots import machine, robot_file
 
 WHERE = pytest.mark.parametrize("runs", ["process", "here"])
@@ -43,6 +43,8 @@ def test_words_conditions_and_quantities(tmp_path: Path, runs: str) -> None:
     outcome, events = run(robot, text)
     assert outcome.succeeded, outcome.why()
     assert printed(events) == ["brewing tea at 70", "brewing coffee at 70", "many"]
+    told = [(event.kind, dict(event.data)) for event in events if isinstance(event, RobotEvent)]
+    assert told == [("say", {"cups": 0}), ("say", {"cups": 1})]
     assert outcome.seconds < 60
 
 
@@ -80,9 +82,9 @@ def test_a_death_fails_the_command_at_once_and_it_is_back_for_the_next(tmp_path:
         assert run.outcome.succeeded, run.why()
         assert manager.statuses()[0].process not in (process, None)
     assert printed(events) == ["lost", "brewing tea at 90"]
-    told = [dict(event.data) for event in events if isinstance(event, RobotEvent) and event.kind == "component"]
-    assert "was killed by signal 9" in [each["why"] for each in told]
-    assert told[-1]["state"] == "active"
+    told = [event for event in events if isinstance(event, PartChanged)]
+    assert "the machine was killed by signal 9" in [event.text for event in told]
+    assert (told[-1].state, told[-1].text) == ("active", "the machine is active")
     for pid in (process, manager.statuses()[0].process):
         assert pid is None or not os.path.exists(f"/proc/{pid}")
 
@@ -108,6 +110,24 @@ def test_a_halt_ends_the_method_and_what_it_drives(tmp_path: Path) -> None:
     outcome, _ = run(robot, "roll away for 1 second then brew tea", speed="real")
     assert outcome.succeeded, outcome.why()
     assert outcome.seconds < 5
+
+
+@WHERE
+def test_an_emergency_stop_holds_what_a_component_moves_itself(tmp_path: Path, runs: str) -> None:
+    wheels = '\n[[device]]\nname = "wheels"\nkind = "drive"\ndriver = "simulated"\n'
+    robot = robot_file(tmp_path, machine(runs=f'"{runs}"', needs='["wheels"]') + wheels)
+    mission = btlang.parse_tree("push the wheels", keywords=robot_words(robot))
+    with btlang.Session(robot) as session:
+        run = session.start(mission)
+        while session.robot.velocity[0] < 0.25:
+            time.sleep(0.01)
+        run.emergency_stop()
+        outcome = run.wait(30)
+        assert outcome is not None
+        assert outcome.standstill.still
+        for _ in range(20):  # nobody ticks any more; the component may go on to write
+            session.robot.step(0.05)
+        assert session.robot.velocity == (0.0, 0.0)
 
 
 def test_a_newer_version_waits_for_the_mission(tmp_path: Path) -> None:

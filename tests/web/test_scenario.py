@@ -9,9 +9,11 @@ from pathlib import Path
 
 import pytest
 
+from tests.components.robots import machine, robot_file
 from tests.profiles import amount, only_long
 from tests.server.doors import PASSWORD, Program
 from tests.web.packages import installed, node
+from tests.web.served import served
 
 HERE = Path(__file__).parent
 
@@ -40,6 +42,15 @@ def test_a_picture_in_which_something_moved_differs(robot: str, tmp_path: Path) 
 def test_every_screen(robot: str, tmp_path: Path) -> None:
     node(HERE / "screens.mjs", robot, PASSWORD, str(tmp_path), folder=installed(HERE))
     assert len(list(tmp_path.glob("*.png"))) > 20
+
+
+@only_long
+def test_components_devices_and_a_camera(tmp_path: Path) -> None:
+    eye = '[[device]]\nname = "eye"\nkind = "camera"\ndriver = "simulated"\n'
+    sonar = '[[device]]\nname = "sonar"\nkind = "range"\ndriver = "simulated"\noptions = { silent = [0, 1e6] }\n'
+    robot = robot_file(tmp_path, f"{machine()}\n{eye}{sonar}")
+    with served("--robot", robot) as address:
+        node(HERE / "parts.mjs", address, PASSWORD, str(tmp_path), folder=installed(HERE))
 
 
 @only_long

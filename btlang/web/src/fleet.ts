@@ -32,6 +32,24 @@ export interface Entry {
   event: Record<string, any>;
 }
 
+export interface Component {
+  name: string;
+  place: string;
+  version: string;
+  state: string;
+  why: string;
+  starts: number;
+}
+
+/** `silent` is why it tells nothing, "" where it works. */
+export interface Device {
+  name: string;
+  kind: string;
+  driver: string;
+  port: string;
+  silent: string;
+}
+
 const MOST_ENTRIES = 500;
 const MOST_STEPS = 2000;
 
@@ -42,6 +60,7 @@ export class Robot {
   away = false;
   state: { stopped: string; paused: boolean; hindrance: string; pose: [number, number, number] | null; battery: number | null; left: string | null; right: string | null } | null = null;
   map: WorldMap | null = null;
+  parts: { components: Component[]; devices: Device[] } = { components: [], devices: [] };
   /** What its scanner saw, counter-clockwise from straight ahead, and where it was then. */
   scan: { ranges: (number | null)[]; pose: [number, number, number] } | null = null;
   /** The latest mission. */
@@ -63,7 +82,7 @@ export class Robot {
   constructor(readonly name: string) {}
 }
 
-export type Kind = "up" | "away" | "run" | "statuses" | "robot" | "map" | "scan" | "way" | "event" | "change" | "offline";
+export type Kind = "up" | "away" | "run" | "statuses" | "robot" | "map" | "scan" | "way" | "components" | "event" | "change" | "offline";
 export type Watcher = (robot: Robot, kind: Kind, news: News | null) => void;
 
 /** All robots by their names. Watchers are called after each message has been taken in. */
@@ -102,6 +121,7 @@ export class Fleet {
     else if (news.type === "map") robot.map = news as unknown as WorldMap;
     else if (news.type === "scan") robot.scan = news["pose"] ? { ranges: news["ranges"], pose: news["pose"] } : null;
     else if (news.type === "way") robot.way = news["points"];
+    else if (news.type === "components") robot.parts = { components: news["components"], devices: news["devices"] };
     else if (news.type === "change") {
       if (news["state"] === "underway") robot.task = news["task"];
       else if (robot.task === news["task"]) robot.task = 0;

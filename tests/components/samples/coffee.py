@@ -4,6 +4,7 @@ import os
 import time
 
 from btlang import Component, Parameter
+from btlang.devices.kinds import WheelSpeeds
 
 
 class Machine(Component):
@@ -20,6 +21,7 @@ class Machine(Component):
 
     def brew(self, drink, robot):
         self._go_wrong("brew")
+        self.tell("say", cups=self.cups)  # with the name of an event of robots, but other fields
         robot.print(f"brewing {drink} at {self.heat:g}")
         yield
         self.cups += 1
@@ -33,6 +35,11 @@ class Machine(Component):
     def roll(self, robot):
         robot.drive(0.3, 0.0)
         while True:
+            yield
+
+    def push(self):
+        while True:
+            self.write("wheels", WheelSpeeds(0.3, 0.3))
             yield
 
     def has_brewed(self):

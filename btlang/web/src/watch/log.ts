@@ -9,7 +9,7 @@ const SAID: Record<string, Key> = {
   RUNNING: "log.running", SUCCESS: "log.success", FAILURE: "log.failure", SKIPPED: "log.skipped",
   say: "log.say", print: "log.print", navigate: "log.navigate", choose: "log.choose", arrive: "log.arrive", bump: "log.bump",
   stuck: "log.stuck", stop: "log.stop", grasp: "log.grasp", release: "log.release", drop: "log.drop", dock: "log.dock",
-  undock: "log.undock", battery: "log.battery", fault: "log.fault", warning: "log.warning", error: "log.error",
+  undock: "log.undock", battery: "log.battery", fault: "log.fault", part: "log.part", warning: "log.warning", error: "log.error",
 };
 const BAD = new Set(["FAILURE", "bump", "stuck", "drop", "battery", "fault", "warning", "error"]);
 
@@ -19,6 +19,7 @@ export function inWords(event: Record<string, any>): string {
     if (event["stopped"]) return t("log.ended", { why: event["stopped"] });
     return event["outcome"] === "FAILURE" ? t("log.failed", { why: event["reason"] ?? "" }) : event["outcome"] === "SUCCESS" ? t("log.succeeded") : "";
   }
+  if (event["event"] === "part" && !event["text"]) return "";
   const key = SAID[event["event"]];
   return key ? t(key, event) : "";
 }

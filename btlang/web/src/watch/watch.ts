@@ -11,6 +11,7 @@ import type { Context, View } from "../view";
 import { Failure } from "./failure";
 import { LogView } from "./log";
 import { MapView } from "./map";
+import { Parts } from "./parts";
 
 const MOST_RUNNING = 12; // that are listed
 const RESTING = 2; // nodes of the tree of a robot that has nothing to do
@@ -36,6 +37,7 @@ class Watch implements View {
   private empty = h("p", { class: "empty" }, t("watch.nothing"));
   private map = new MapView(() => this.robot);
   private log = new LogView();
+  private parts: Parts;
   private failure: Failure;
   private queue: Queue;
   private unwatch: () => void;
@@ -44,6 +46,7 @@ class Watch implements View {
 
   constructor(private context: Context) {
     this.robot = context.fleet.get(context.robot);
+    this.parts = new Parts(context);
     this.failure = new Failure(context, (path) => this.select(path));
     this.queue = new Queue(context, () => this.refresh());
     const operates = may(context.me, "operator");
@@ -57,6 +60,7 @@ class Watch implements View {
         { class: "side" },
         h("div", { class: "card place" }, this.map.canvas, this.says),
         operates && h("details", { class: "card" }, h("summary", {}, t("submit.title")), submitForm(context)),
+        this.parts.element,
         h("div", { class: "card events" }, h("h2", {}, t("log")), this.log.element),
       ),
     );
@@ -74,6 +78,7 @@ class Watch implements View {
     this.unwatch();
     this.queue.close();
     this.map.close();
+    this.parts.close();
     this.tree.close();
   }
 
@@ -89,6 +94,7 @@ class Watch implements View {
     fill(this.title, task ? called(task) : robot.name);
     fill(this.says, robot.says && `“${robot.says}”`);
     this.map.redraw();
+    this.parts.show(robot);
     this.log.update(robot.entries);
     this.showControls();
   }

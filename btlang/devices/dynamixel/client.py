@@ -1,0 +1,123 @@
+"""Asks servos on a line and writes to them. It waits for answers with `select`, never longer than they can take."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+
+from btlang.devices.driver import DeviceError, DeviceSilent
+from btlang.devices.dynamixel.line import SerialLine
+from btlang.devices.dynamixel.protocol import (
+    ALERT,
+    ERRORS,
+    OVERHEAD,
+    PING,
+    SEGMENT_OVERHEAD,
+    STATUS,
+    Packet,
+    PacketReader,
+    read_packet,
+    sync_read_packet,
+    sync_write_packet,
+    write_packet,
+)
+
+PATIENCE = 0.008
+"""Seconds that an adapter and a busy computer may add to an answer."""
+LONGEST_DELAY = 0.000508
+"""Seconds that a servo can be set to wait before it answers, which they are when they are new."""
+_TRIES = 5
+
+
+class Client:
+    """The servos on a line. All methods raise LineLost when the line is lost.
+
+    `delay` is how long each servo may wait before it answers, in seconds.
+    """
+
+    def __init__(self, line: SerialLine) -> None:
+        self.line = line
+        self.delay = LONGEST_DELAY
+        self._pending = b""
+        self._written: dict[int, tuple[Mapping[int, bytes], bytes]] = {}  # the latest to each address, and its packet
+
+    def ping(self, id: int) -> tuple[int, int] | None:
+        """The model number and firmware of a servo, None if it doesn't answer."""
+        found = self._ask(Packet(id, PING), (id,), 3)
+        data = found.get(id)
+        return None if data is None else (int.from_bytes(data[1:3], "little"), data[3])
+
+    def read(self, id: int, address: int, length: int) -> bytes:
+        """Bytes from an address on, with several tries. Raises DeviceSilent if the servo never answers."""
+        for _ in range(_TRIES):
+            found = self._ask(read_packet(id, address, length), (id,), length)
+            if found:
+                return found[id][1:]
+        raise DeviceSilent(f"servo {id} on {self.line.port} doesn't answer")
+
+    def write(self, id: int, address: int, data: bytes) -> None:
+        """Writes bytes, in several tries. Raises DeviceSilent if the servo is silent, DeviceError if it refuses."""
+        for _ in range(_TRIES):
+            found = self._ask(write_packet(id, address, data), (id,), 0)
+            if not found:
+                continue
+            error = found[id][0] & ~ALERT
+            if error:
+                reason = ERRORS.get(error, f"error {error}")
+                raise DeviceError(f"servo {id} on {self.line.port} refuses a value for its address {address}: {reason}")
+            return
+        raise DeviceSilent(f"servo {id} on {self.line.port} doesn't answer")
+
+    def sync_write(self, address: int, values: Mapping[int, bytes]) -> None:
+        """Writes to several servos at once, with the next question or `flush`. Nothing says whether it arrived."""
+        if not values:
+            return
+        latest, data = self._written.get(address, ({}, b""))
+        if latest != values:  # most goals stay the same for many cycles
+            data = sync_write_packet(address, values).encode()
+            self._written[address] = values, data
+        self._pending += data
+
+    def flush(self) -> None:
+        """Sends what waits for the next question."""
+        data, self._pending = self._pending, b""
+        if data:
+            self.line.send(data)
+
+    def sync_read(self, address: int, length: int, ids: Sequence[int], fast: bool = False) -> dict[int, bytes]:
+        """The same bytes of several servos, by id. Who doesn't answer is left out, and so is an answer that comes twice
+        or out of order: somebody answers with another's id."""
+        if not ids:
+            return {}
+        found = self._ask(sync_read_packet(address, length, ids, fast), ids, length, fast)
+        return {id: parameters[1:] for id, parameters in found.items()}
+
+    def _ask(self, packet: Packet, ids: Sequence[int], length: int, fast: bool = False) -> dict[int, bytes]:
+        """The parameters of the status packets of these servos, as far as they came in time."""
+        self._pending += packet.encode()
+        self.flush()
+        answer = self.line.seconds((length + (SEGMENT_OVERHEAD if fast else OVERHEAD)) * len(ids))
+        until = self.line.sent_by + answer + self.delay * len(ids) + PATIENCE
+        reader = PacketReader(length, len(ids)) if fast else PacketReader()
+        came: list[tuple[int, bytes]] = []
+        while len(came) < len(ids):
+            got = self.line.receive(until)
+            came += [
+                (found.id, found.parameters)
+                for found in (reader.feed(got) if got else reader.rest())
+                if found.instruction == STATUS and found.id in ids and len(found.parameters) == length + 1
+            ]
+            if not got:
+                break
+        return _in_order(came, ids)
+
+
+def _in_order(came: Sequence[tuple[int, bytes]], ids: Sequence[int]) -> dict[int, bytes]:
+    found = dict(came)
+    if len(found) == len(came) and list(found) == [id for id in ids if id in found]:
+        return found
+    places = [ids.index(id) for id, _ in came]
+    return {
+        id: parameters
+        for at, (id, parameters) in enumerate(came)
+        if places.count(places[at]) == 1 and all(later > places[at] for later in places[at + 1 :])
+    }

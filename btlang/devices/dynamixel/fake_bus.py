@@ -1,0 +1,200 @@
+"""A simulated bus of servos behind a pseudo terminal, for tests and for people without servos:
+
+    python -m btlang.devices.dynamixel.fake_bus 1 2 3
+
+prints the port and serves it until Ctrl-C.
+"""
+
+from __future__ import annotations
+
+import argparse
+import os
+import random
+import select
+import threading
+import time
+import tty
+from collections.abc import Iterable
+from contextlib import suppress
+
+from btlang.devices.dynamixel import control_table as table
+from btlang.devices.dynamixel.fake_servo import FakeServo
+from btlang.devices.dynamixel.protocol import (
+    ALERT,
+    BROADCAST,
+    FAST_SYNC_READ,
+    PING,
+    READ,
+    REBOOT,
+    SEGMENT_OVERHEAD,
+    STATUS,
+    SYNC_READ,
+    SYNC_WRITE,
+    WRITE,
+    Packet,
+    PacketReader,
+    crc16,
+)
+
+_UNKNOWN = 2
+
+
+class FakeBus:
+    """Servos by their ids on a port of this machine, from `start` to `close`; usable as a context.
+
+    Faults that may be set at any time: `damage` is the share of bytes that arrive flipped in both directions, with
+    `echo` what is sent comes back too, and `baud` paces both directions like a line. As on a real line, who is behind
+    a silent servo in a common answer waits for it in vain.
+    """
+
+    def __init__(self, servos: Iterable[FakeServo], seed: int = 0) -> None:
+        self.servos = {servo.id: servo for servo in servos}
+        self.damage, self.echo, self.baud = 0.0, False, 0
+        self.heard: dict[int, int] = {}
+        """How often each instruction was heard."""
+        self._random = random.Random(seed)
+        self._file, self._other = os.openpty()
+        tty.setraw(self._other)
+        self.port = os.ttyname(self._other)
+        """The path to open."""
+        self._wake, self._woken = os.pipe()
+        self._thread = threading.Thread(target=self._serve, name="fake Dynamixel bus", daemon=True)
+
+    def start(self) -> FakeBus:
+        """Begins to answer."""
+        self._thread.start()
+        return self
+
+    def close(self) -> None:
+        """The port is gone, as if its cable was pulled. May be called twice."""
+        if self._file < 0:
+            return
+        os.write(self._woken, b"x")
+        if self._thread.ident is not None:
+            self._thread.join()
+        for file in (self._file, self._other, self._wake, self._woken):
+            os.close(file)
+        self._file = -1
+
+    def __enter__(self) -> FakeBus:
+        return self.start()
+
+    def __exit__(self, *_: object) -> None:
+        self.close()
+
+    def _serve(self) -> None:
+        reader = PacketReader()
+        while True:
+            ready = select.select((self._file, self._wake), (), ())[0]
+            if self._wake in ready:
+                return
+            data = os.read(self._file, 4096)
+            self._pace(len(data))
+            if self.echo:
+                self._send(data)
+            for packet in reader.feed(self._damaged(data)):
+                self._hear(packet)
+
+    def _hear(self, packet: Packet) -> None:
+        now = time.monotonic()
+        self.heard[packet.instruction] = self.heard.get(packet.instruction, 0) + 1
+        for servo in self.servos.values():
+            servo.hear(now)
+        with suppress(IndexError, ValueError):  # too few parameters: nobody answers
+            if packet.id != BROADCAST:
+                if packet.id in self.servos:
+                    self._answer(self.servos[packet.id], *self._do(self.servos[packet.id], packet))
+            elif packet.instruction == PING:
+                for servo in self.servos.values():
+                    self._answer(servo, *self._do(servo, packet))
+            elif packet.instruction in (SYNC_READ, FAST_SYNC_READ):
+                self._sync_read(packet)
+            elif packet.instruction == SYNC_WRITE:
+                address, size = _words(packet.parameters)
+                for at in range(4, len(packet.parameters), size + 1):
+                    id, data = packet.parameters[at], packet.parameters[at + 1 : at + 1 + size]
+                    if id in self.servos:
+                        self.servos[id].write(address, data)
+
+    def _do(self, servo: FakeServo, packet: Packet) -> tuple[int, bytes]:
+        """What a servo does with an instruction: the error and the data of its answer."""
+        if packet.instruction == PING:
+            return 0, servo.read(0, 2) + servo.read(6, 1)
+        if packet.instruction == READ:
+            return 0, servo.read(*_words(packet.parameters))
+        if packet.instruction == WRITE:
+            return servo.write(_words(packet.parameters + b"\0\0")[0], packet.parameters[2:]), b""
+        if packet.instruction == REBOOT:
+            servo.reboot()
+            return 0, b""
+        return _UNKNOWN, b""
+
+    def _answer(self, servo: FakeServo, error: int, data: bytes) -> None:
+        if servo.silent:
+            return
+        self._wait(servo)
+        self._send(Packet(servo.answers_as, STATUS, bytes((error | _alert(servo),)) + data).encode())
+
+    def _sync_read(self, packet: Packet) -> None:
+        address, size = _words(packet.parameters)
+        servos = [self.servos.get(id) for id in packet.parameters[4:]]
+        fast = packet.instruction == FAST_SYNC_READ
+        length = 1 + len(servos) * (size + SEGMENT_OVERHEAD)
+        answer = b"\xff\xff\xfd\x00\xfe" + length.to_bytes(2, "little") + bytes((STATUS,))
+        for servo in servos:
+            if servo is None or servo.silent or (fast and not servo.is_fast):
+                break
+            if not fast:
+                self._answer(servo, 0, servo.read(address, size))
+                continue
+            part = bytes((_alert(servo), servo.answers_as)) + servo.read(address, size)
+            self._wait(servo)
+            answer += part
+            answer += crc16(answer).to_bytes(2, "little")
+        if fast and len(answer) > 8:
+            self._send(answer)
+
+    def _send(self, data: bytes) -> None:
+        self._pace(len(data))
+        with suppress(OSError):
+            os.write(self._file, self._damaged(data))
+
+    def _wait(self, servo: FakeServo) -> None:
+        """What is sent while a servo is late collides with its answer, and nobody hears it."""
+        if servo.late:
+            time.sleep(servo.late)
+            while select.select((self._file,), (), (), 0)[0]:
+                os.read(self._file, 4096)
+
+    def _pace(self, count: int) -> None:
+        if self.baud:
+            time.sleep(count * 10 / self.baud)
+
+    def _damaged(self, data: bytes) -> bytes:
+        if not self.damage:
+            return data
+        flips = (1 << self._random.randrange(8) if self._random.random() < self.damage else 0 for _ in data)
+        return bytes(byte ^ flip for byte, flip in zip(data, flips, strict=True))
+
+
+def _alert(servo: FakeServo) -> int:
+    return ALERT if servo.memory[table.HARDWARE_ERROR] else 0
+
+
+def _words(parameters: bytes) -> tuple[int, int]:
+    return int.from_bytes(parameters[:2], "little"), int.from_bytes(parameters[2:4], "little")
+
+
+def main() -> None:
+    """Serves a bus until Ctrl-C."""
+    options = argparse.ArgumentParser(description="Simulated Dynamixel servos on a pseudo terminal.")
+    options.add_argument("ids", type=int, nargs="*", default=[1], metavar="ID", help="ids of the servos")
+    given = options.parse_args()
+    with FakeBus(FakeServo(id) for id in given.ids) as bus:
+        print(bus.port, flush=True)
+        with suppress(KeyboardInterrupt):
+            threading.Event().wait()
+
+
+if __name__ == "__main__":
+    main()

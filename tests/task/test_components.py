@@ -1,0 +1,97 @@
+"""The components and devices of a robot that is up: listed, started anew, loaded, unloaded, and what a camera sees."""
+
+from __future__ import annotations
+
+import base64
+import time
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+from btlang.components.words import robot_words
+from btlang.task import messages
+from btlang.task.layer import TaskLayer
+from btlang.task.messages import Answer, Command
+from btlang.task.missions import MissionReader
+from tests.components.robots import machine, robot_file
+
+EYE = '\n[[device]]\nname = "eye"\nkind = "camera"\ndriver = "simulated"\n'
+SONAR = '\n[[device]]\nname = "sonar"\nkind = "range"\ndriver = "simulated"\noptions = { silent = [0, 1e6] }\n'
+
+
+@pytest.fixture
+def layer(tmp_path: Path) -> Iterator[TaskLayer]:
+    robot = robot_file(tmp_path, machine() + EYE + SONAR)
+    with TaskLayer(robot, MissionReader(robot_words(robot)), folder=str(tmp_path / "data")) as layer:
+        yield layer
+
+
+def lines(layer: TaskLayer) -> list[str]:
+    return layer.handle(messages.Components()).text.splitlines()
+
+
+def until(holds: Any) -> None:
+    end = time.monotonic() + 30
+    while not holds():
+        assert time.monotonic() < end
+        time.sleep(0.02)
+
+
+def test_they_are_listed(layer: TaskLayer) -> None:
+    answer = layer.handle(messages.Components())
+    assert [line.split()[:2] for line in answer.text.splitlines()] == [
+        ["machine", "active"], ["eye", "works"], ["sonar", "silent"],
+    ]  # fmt: skip
+    assert answer.data["components"][0]["version"] == "1.0"
+    assert answer.data["devices"][1]["silent"] == "it is switched off in the robot file"
+
+
+def test_restart_load_and_unload(layer: TaskLayer, tmp_path: Path) -> None:
+    assert layer.handle(messages.ChangeComponent("machine", "restart")).ok
+    until(lambda: "started 2 times" in lines(layer)[0] and " active " in lines(layer)[0])
+    path = tmp_path / "robot.toml"
+    path.write_text(path.read_text(encoding="utf-8").replace("coffee:Machine", "tea:Machine"), encoding="utf-8")
+    (tmp_path / "tea.py").write_text("from coffee import Machine\n", encoding="utf-8")
+    assert layer.handle(messages.ChangeComponent("machine", "load")).ok
+    until(lambda: " active " in lines(layer)[0] and "tea:Machine" in lines(layer)[0])
+    assert layer.handle(messages.ChangeComponent("machine", "unload")).ok
+    until(lambda: lines(layer)[0].startswith("eye"))
+
+
+@pytest.mark.parametrize(
+    ("command", "reason"),
+    [
+        (messages.ChangeComponent("nobody", "restart"), 'there is no component "nobody"; the components are machine'),
+        (messages.ChangeComponent("machine", "explode"), "explode"),
+        (messages.ChangeComponent("nobody", "load"), "the robot file has no component"),
+        (messages.Picture("nobody"), "the robot has no device 'nobody'"),
+        (messages.Picture("sonar"), "the sonar is silent"),
+    ],
+)
+def test_refusals(layer: TaskLayer, command: Command, reason: str) -> None:
+    answer: Answer = layer.handle(command)
+    assert (answer.ok, reason in answer.text) == (False, True), answer.text
+
+
+def test_a_picture(layer: TaskLayer) -> None:
+    answer = layer.handle(messages.Picture("eye"))
+    assert (answer.data["width"], answer.data["height"]) == (160, 120)
+    assert base64.b64decode(answer.data["png"]).startswith(b"\x89PNG")
+
+
+def test_a_robot_without_any(tmp_path: Path) -> None:
+    with TaskLayer(folder=str(tmp_path / "data")) as layer:
+        assert lines(layer) == ["The robot has no components or devices of its own."]
+        assert not layer.handle(messages.ChangeComponent("machine", "restart")).ok
+        assert not layer.handle(messages.Picture("eye")).ok
+
+
+def test_watchers_hear_of_changes(layer: TaskLayer) -> None:
+    watcher = layer.feed.watch()
+    told = (message for message in watcher if message["type"] == "components")
+    assert next(told)["components"][0]["starts"] == 1
+    layer.handle(messages.ChangeComponent("machine", "restart"))
+    until(lambda: next(told)["components"][0]["starts"] == 2)
+    watcher.close()
