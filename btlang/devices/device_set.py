@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol
 
@@ -16,6 +17,8 @@ if TYPE_CHECKING:
     from typing import Any
 
     from btlang.robots.body import Body, Device
+
+_FIRST = 3.0  # seconds
 
 
 class Reads(Protocol):
@@ -59,9 +62,12 @@ class DeviceSet:
             self._reads.update(dict.fromkeys(loop.devices, loop))
 
     def start(self) -> None:
-        """Begins to read and write."""
+        """Begins to read and write; waits a moment for what the devices say first, so that a mission has it."""
         for loop in self.loops:
             loop.start()
+        until = time.monotonic() + _FIRST
+        for loop in self.loops:
+            loop.settled.wait(max(0.0, until - time.monotonic()))
 
     def close(self) -> None:
         """Brings what moves to rest, and lets go of the ports. May be called twice."""

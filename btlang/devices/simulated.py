@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
-from math import inf, radians
+from math import inf, isfinite, radians
 from random import Random
 
 from btlang.devices.driver import Device, DeviceError, DeviceSilent
@@ -20,6 +20,7 @@ from btlang.devices.kinds import (
     Image,
     JointState,
     JointTarget,
+    Measured,
     Motion,
     Play,
     Playing,
@@ -48,15 +49,19 @@ class SimulatedDevice:
     Options of all kinds: `noise` (standard deviation), `delay` in seconds, `silent` and `frozen` as [from, until].
     Of a range sensor: `angle` (degrees left of ahead), `cone` (degrees), `range` (metres). Of a camera: `angle`, `view`
     (degrees). Of a joint or hand: `part`, the name in the body, by default that of the device. Of a button: `bumper`.
+    Of a gauge: `value`, what it measures.
     """
 
     def __init__(self, device: Device, robot: Any) -> None:
         self._device, self._robot = device, robot
         self._kind = KINDS[device.kind]
         known = {"noise", "delay", "silent", "frozen", *_OPTIONS.get(device.kind, ())}
-        for name in device.options:
+        for name, value in device.options.items():
             if name not in known:
                 raise DeviceError(f'unknown option "{name}" of the {device.name}; it has {", ".join(sorted(known))}')
+            is_right, wanted = _VALUES.get(name, (_is_number, "a number"))
+            if not is_right(value):
+                raise DeviceError(f'"{name}" of the {device.name} must be {wanted}, not {value!r}')
         self._is_perfect = not {"noise", "delay", "silent", "frozen"} & set(device.options)
         self._random = Random(device.name)
         self._past: deque[tuple[float, Reading]] = deque()
@@ -223,9 +228,24 @@ class SimulatedDevice:
         return Pressed(self._robot.bumped if self._option("bumper", False) else self.is_pressed)
 
 
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value)
+
+
+def _is_span(value: object) -> bool:
+    return isinstance(value, list) and len(value) == 2 and all(map(_is_number, value))
+
+
+_VALUES: dict[str, tuple[Callable[[Any], bool], str]] = {
+    "silent": (_is_span, "[from, until] in seconds"),
+    "frozen": (_is_span, "[from, until] in seconds"),
+    "part": (lambda value: isinstance(value, str), "a name"),
+    "bumper": (lambda value: isinstance(value, bool), "true or false"),
+}
+"""What options may be, where that isn't a number."""
 _OPTIONS = {
     "range": ("angle", "cone", "range"), "camera": ("angle", "view"), "joint": ("part",), "hand": ("part",),
-    "button": ("bumper",),
+    "button": ("bumper",), "gauge": ("value",),
 }  # fmt: skip
 _READ: dict[str, Callable[[SimulatedDevice], Reading]] = {
     "range": SimulatedDevice._distance,
@@ -239,6 +259,7 @@ _READ: dict[str, Callable[[SimulatedDevice], Reading]] = {
     "microphone": SimulatedDevice._sound,
     "speaker": SimulatedDevice._playing,
     "button": SimulatedDevice._pressed,
+    "gauge": lambda device: Measured(float(device._option("value", 0.0))),
 }
 _WRITE: dict[str, Callable[[SimulatedDevice, Command], None]] = {
     "drive": SimulatedDevice._roll,

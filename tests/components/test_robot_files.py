@@ -40,7 +40,7 @@ def wrong(folder: Path, text: str) -> list[str]:
         ("", ["the base needs a device of the kind \"drive\""]),
         (WHEELS.replace('"drive"', '"drve"'), [
             "there is no kind \"drve\"; the kinds are range, lidar, drive, imu, battery, joint, hand, camera, "
-            "microphone, speaker, button, light, display",
+            "microphone, speaker, button, gauge, light, display",
             "the base needs a device of the kind \"drive\"",
         ]),
         (WHEELS.replace("simulated", "nothing:There"), [
