@@ -7,8 +7,8 @@ import subprocess
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 
-from btlang.components.component import ComponentError
-from btlang.components.location import located, words_file
+from btlang.components.component import ComponentError, ParameterError
+from btlang.components.location import WRONG_PARAMETERS, located, words_file
 from btlang.components.order import circle
 from btlang.devices.driver import DeviceError
 from btlang.devices.drivers import SIMULATED, driver_class
@@ -49,7 +49,7 @@ def check_robot(source: Source) -> tuple[Body | None, list[Diagnostic]]:
 
 
 def describe_apart(part: ComponentPart, folder: str) -> Mapping[str, Any]:
-    """What its class says of itself, in a process of its own. Raises ComponentError."""
+    """What its class says of itself, in a process of its own. Raises ComponentError, or ParameterError."""
     command = [
         sys.executable,
         "-B",
@@ -65,7 +65,8 @@ def describe_apart(part: ComponentPart, folder: str) -> Mapping[str, Any]:
         raise ComponentError(f"{part.place} isn't loaded after {_DESCRIBE:g} s") from None
     if done.returncode:
         lines = done.stderr.decode("utf-8", "replace").strip().splitlines()
-        raise ComponentError(lines[-1] if lines else f"{part.place} ended with exit code {done.returncode}")
+        wrong = ParameterError if done.returncode == WRONG_PARAMETERS else ComponentError
+        raise wrong(lines[-1] if lines else f"{part.place} ended with exit code {done.returncode}")
     known: Mapping[str, Any] = json.loads(done.stdout.splitlines()[-1])
     return known
 
@@ -154,7 +155,9 @@ def _components(body: Body) -> Iterator[Problem]:
         try:
             own |= set(describe_apart(part, body.folder)["needs"])
         except ComponentError as problem:
-            yield Problem(str(problem), "component", index, "parameters" if "parameter" in str(problem) else "class")
+            yield Problem(
+                str(problem), "component", index, "parameters" if isinstance(problem, ParameterError) else "class"
+            )
         known = names | {device.name for device in body.devices} | set(CAPABILITIES)
         for need in sorted(own - known):
             yield Problem(

@@ -9,7 +9,7 @@ from importlib import import_module
 from importlib.machinery import PathFinder
 from importlib.util import find_spec
 
-from btlang.components.component import Component, ComponentError
+from btlang.components.component import Component, ComponentError, ParameterError
 from btlang.engine.leaves.leaf import described
 from btlang.text.output import pass_on, show
 
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from typing import Any
 
 ENTRY_POINTS = "btlang.components"
+WRONG_PARAMETERS = 3
 
 
 def located(place: str) -> str:
@@ -72,13 +73,16 @@ def describe(place: str, folder: str) -> dict[str, Any]:
 
 
 def main(place: str, folder: str, parameters: str) -> int:
-    """Prints what a class says of itself, for `btc robot check`: in a process of its own, as the class is loaded."""
+    """Prints what a class says of itself, for `btc robot check`: in a process of its own, as the class is loaded.
+
+    Returns WRONG_PARAMETERS where only these are wrong.
+    """
     try:
         load_class(place, folder)().set_parameters(json.loads(parameters))
         pass_on(json.dumps(describe(place, folder)) + "\n")
     except ComponentError as problem:
         show(str(problem), sys.stderr)
-        return 1
+        return WRONG_PARAMETERS if isinstance(problem, ParameterError) else 1
     return 0
 
 
