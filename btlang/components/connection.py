@@ -100,7 +100,7 @@ class ComponentConnection:
     def _host(self, part: ComponentPart, changed: Callable[[], object]) -> Host:
         if part.runs == "here":
             return InsideHost(part, self._body, self._gates, changed, self._told)
-        return ProcessHost(part, self._body.folder, self._gates, changed, self._told)
+        return ProcessHost(part, self._body.file, self._gates, changed, self._told)
 
     def _in_use(self, name: str) -> bool:
         return name in self._used and not self.bus.closed

@@ -5,6 +5,9 @@ from __future__ import annotations
 from collections.abc import Callable, Mapping
 from typing import Any, Protocol
 
+SHARED = "--shared"
+"""The option of a process that several robots share, before the path of its socket."""
+
 
 class Host(Protocol):
     """One component, from its start to its end. The methods are for the thread of its keeper; `leaf` and `ask` are for

@@ -6,21 +6,24 @@ import math
 import os
 import signal
 import socket
+import struct
 import subprocess
 import sys
 import threading
 import time
-from collections import deque
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from contextlib import suppress
+from hashlib import sha256
 from multiprocessing.connection import Connection
 
 from btlang.components.component import ComponentError
+from btlang.components.host import SHARED
 from btlang.components.life_cycle import ACTIVE, UNCONFIGURED
 from btlang.components.plain import packed, unpacked
+from btlang.components.remote_leaf import RemoteLeaf, Request
 from btlang.devices.driver import DeviceError
 from btlang.engine.leaves.leaf import ActionFailed, Unknown, described
-from btlang.robots.proxy import RobotProxy
+from btlang.robots.sockets import socket_folder
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -30,40 +33,10 @@ if TYPE_CHECKING:
 
 _BEAT = 0.1  # seconds between two looks at it
 _ANSWER = 0.05  # seconds that a tick waits for a condition
+_SEND = struct.pack("ll", 0, 300_000)  # seconds and microseconds after which a process that reads nothing is given up
 _ERRORS = 2  # where it writes what it prints: standard output is for what people asked for
 _LOADING = 60.0  # seconds that a process gets to start, and to import what its class needs, on a busy computer
 _END = 0.5  # seconds that a process gets to end by itself
-
-
-class Request:
-    """Something that the component is to do. `outcome` is there once `done` is set."""
-
-    def __init__(self, number: int, message: dict[str, Any], wake: Callable[[], object]) -> None:
-        self.number, self.message, self.sent, self._wake = number, message, time.monotonic(), wake
-        self.done = threading.Event()
-        self.outcome: dict[str, Any] = {}
-        self.asked: deque[dict[str, Any]] = deque()
-        self.answers: dict[int, dict[str, Any] | None] = {}
-
-    def end(self, outcome: dict[str, Any]) -> None:
-        """It is done, or nobody will do it."""
-        if not self.done.is_set():
-            self.outcome = outcome
-            self.done.set()
-            self._wake()
-
-    def ask(self, message: dict[str, Any]) -> None:
-        """A question to the robot, for the thread that ticks."""
-        self.answers[message["ask"]] = None
-        self.asked.append(message)
-        self._wake()
-
-    @property
-    def value(self) -> Any:
-        """What it has led to. Raises ActionFailed."""
-        if "problem" in self.outcome:
-            raise (Unknown if self.outcome.get("unknown") else ActionFailed)(self.outcome["problem"])
-        return self.outcome.get("value")
 
 
 class ProcessHost:
@@ -72,12 +45,12 @@ class ProcessHost:
     def __init__(
         self,
         part: ComponentPart,
-        folder: str,
+        file: str,
         devices: Mapping[str, Any],
         changed: Callable[[], object],
         tell: Callable[[str, Mapping[str, Any]], object],
     ) -> None:
-        self._part, self._folder, self._devices = part, folder, devices
+        self._part, self._file, self._devices = part, file, devices
         self._changed, self._tell = changed, tell
         self._process: subprocess.Popen[bytes] | None = None
         self._connection: Connection | None = None
@@ -88,31 +61,56 @@ class ProcessHost:
         self._heard = math.inf  # until it says something first
         self._beaten = 0.0
         self._reader: threading.Thread | None = None
+        self._peer: int | None = None
+        self._hangs = False
         self.state = UNCONFIGURED
         self.problem = ""
 
     @property
     def process(self) -> int | None:
         """The number of its process, while there is one."""
+        if self._part.shared:
+            return self._peer
         return self._process.pid if self._process is not None and self._process.poll() is None else None
+
+    def _own(self) -> socket.socket:
+        """The way to a process of its own."""
+        ours, its = socket.socketpair()
+        with its:
+            words = [str(its.fileno()), str(os.getpid())]
+            self._process = _begin(words, pass_fds=[its.fileno()])
+        return ours
+
+    def _shared(self) -> socket.socket:
+        """The way to the process that other robots of this user share; it is started where there is none."""
+        path = os.path.join(socket_folder(), f"component-{sha256(self._part.shared.encode()).hexdigest()[:16]}.sock")
+        link, until = socket.socket(socket.AF_UNIX), time.monotonic() + _LOADING
+        while True:
+            try:
+                link.connect(path)
+                break
+            except OSError as problem:
+                if time.monotonic() > until:
+                    link.close()
+                    raise ComponentError(f"can't be reached: {problem}") from None
+            with _begin([SHARED, path]) as process:
+                process.wait()
+            time.sleep(_BEAT / 2)
+        self._peer = int(struct.unpack("3i", link.getsockopt(socket.SOL_SOCKET, socket.SO_PEERCRED, 12))[0])
+        return link
 
     def load(self) -> Mapping[str, Any]:
         """See Host."""
-        ours, its = socket.socketpair()
-        with its:
-            # -B: a version that is written in the second after another one isn't told apart by a compiled file
-            words = [sys.executable, "-B", "-m", "btlang.components.worker", str(its.fileno()), str(os.getpid())]
-            self._process = subprocess.Popen(
-                words, pass_fds=[its.fileno()], start_new_session=True, stdin=subprocess.DEVNULL, stdout=_ERRORS
-            )
-        self._connection = Connection(ours.detach())
+        link = self._own() if not self._part.shared else self._shared()
+        link.setsockopt(socket.SOL_SOCKET, socket.SO_SNDTIMEO, _SEND)
+        self._connection = Connection(link.detach())
         self._reader = threading.Thread(target=self._read, name="btlang component", daemon=True)
         self._reader.start()
         part = self._part
         value = self._wait(
             self._request(
-                "load", place=part.place, folder=self._folder, name=part.name, devices=list(self._devices),
-                parameters=dict(part.parameters), body=None,
+                "load", place=part.place, folder=os.path.dirname(self._file), file=self._file, name=part.name,
+                devices=list(self._devices), parameters=dict(part.parameters),
             ),
             "load",
             _LOADING,
@@ -128,6 +126,7 @@ class ProcessHost:
         if self._lost is None and self._connection is not None:
             now = time.monotonic()
             if now - self._heard > self._part.silence:
+                self._hangs = True
                 self._lose(f"hasn't answered for {now - self._heard:.1f} s")
             elif now - self._beaten >= _BEAT:
                 self._beaten = now
@@ -187,6 +186,11 @@ class ProcessHost:
             if self._reader is not None:
                 self._reader.join()
             connection.close()
+        if self._part.shared:
+            if self._hangs and self._peer is not None:
+                with suppress(ProcessLookupError):
+                    os.killpg(self._peer, signal.SIGKILL)
+            return
         if process is None:
             return
         try:
@@ -226,8 +230,14 @@ class ProcessHost:
             raise ActionFailed(str(problem)) from None
         connection = self._connection
         if connection is not None:
-            with self._sending, suppress(OSError, ValueError):  # what it has not got is noticed as silence
-                connection.send_bytes(data)
+            try:
+                with self._sending:
+                    connection.send_bytes(data)
+            except BlockingIOError:
+                self._hangs = True
+                self._lose("doesn't take what it is told")
+            except (OSError, ValueError):
+                pass  # it is gone, which the reader notices too
 
     def _read(self) -> None:
         connection = self._connection
@@ -302,7 +312,7 @@ class ProcessHost:
             self._changed()
 
     def _ending(self) -> str:
-        process = self._process
+        process = None if self._part.shared else self._process
         try:
             code = process.wait(_END) if process is not None else None
         except subprocess.TimeoutExpired:
@@ -312,77 +322,9 @@ class ProcessHost:
         return f"was killed by signal {-code}" if code < 0 else f"ended with exit code {code}"
 
 
-class RemoteLeaf:
-    """A method of a component as a leaf. What the method asks of the robot is done in the thread that ticks."""
-
-    def __init__(
-        self,
-        host: ProcessHost,
-        method: str,
-        outputs: tuple[str, ...],
-        robot: Any,
-        wake: Callable[[], object],
-        beside: set[object],
-    ) -> None:
-        self._host, self._method, self._outputs, self._wake, self._beside = host, method, outputs, wake, beside
-        self._proxy = RobotProxy(robot, lambda call: call())
-        self._request: Request | None = None
-        self._stores: dict[str, Callable[[Any], object]] = {}
-        self._operations: list[Any] = []
-
-    def start(self, **ports: Any) -> object:
-        """Calls the method."""
-        self._stores = {name: ports.pop(name) for name in self._outputs if name in ports}
-        self._operations = []
-        arguments = {**ports, "outputs": list(self._stores)} if self._stores else ports
-        self._request = self._host.begin(self._method, arguments, self._wake)
-        self._beside.add(self)
-        return None
-
-    def tick(self) -> object:
-        """Does what it asks for, and looks whether it has ended."""
-        request = self._request
-        assert request is not None
-        while request.asked:
-            asked = request.asked.popleft()
-            self._host.answer(request, asked, self._do(asked))
-        if not request.done.is_set():
-            return None
-        self._request = None
-        self._beside.discard(self)
-        try:
-            value = request.value
-        except ActionFailed:
-            self._proxy.let_go()
-            raise
-        for name, stored in request.outcome.get("stored", {}).items():
-            self._stores[name](stored)
-        return True if value is None else value
-
-    def halt(self) -> None:
-        """Ends the method, and what it has set about."""
-        request, self._request = self._request, None
-        self._beside.discard(self)
-        if request is not None:
-            self._host.halt(request)
-            self._proxy.let_go()
-
-    def _do(self, asked: dict[str, Any]) -> dict[str, Any]:
-        """A use of the robot, or of an operation that it has begun."""
-        try:
-            subject = self._operations[asked["operation"]] if "operation" in asked else self._proxy
-            name = asked["robot"]
-            if name.startswith("_"):
-                raise ActionFailed(f"a robot has no {name}")
-            value = getattr(subject, name)
-            if "args" in asked:
-                value = value(*asked["args"], **asked.get("named", {}))
-        except KeyboardInterrupt:
-            raise
-        except BaseException as problem:
-            text = str(problem) if isinstance(problem, ActionFailed) else described(problem)
-            return {"problem": text, "unknown": isinstance(problem, Unknown)}
-        if hasattr(value, "cancel"):
-            self._operations.append(value)
-            return {"value": {"operation": len(self._operations) - 1}}
-        return {"value": value}
+def _begin(words: Sequence[str], pass_fds: Sequence[int] = ()) -> subprocess.Popen[bytes]:
+    # -B: a version that is written in the second after another one isn't told apart by a compiled file
+    command = [sys.executable, "-B", "-m", "btlang.components.worker", *words]
+    return subprocess.Popen(
+        command, pass_fds=pass_fds, start_new_session=True, stdin=subprocess.DEVNULL, stdout=_ERRORS
+    )

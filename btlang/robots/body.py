@@ -132,7 +132,8 @@ class Device(Record):
 class ComponentPart(Record):
     """A component of a robot: `place` is its class, `module:Class` or the name of an installed one.
 
-    `runs` is "process" or "here", in the robot's own process. `needs` are those beside the ones that its class names.
+    `runs` is "process" or "here", in the robot's own process. Robots of one user whose components have the same name
+    in `shared` have one process for them. `needs` are those beside the ones that its class names.
     `restarts` says how often in a minute it is started again after it has failed. It is given up where a transition
     takes longer than `limit` seconds, or it is silent for longer than `silence` seconds.
     """
@@ -145,6 +146,7 @@ class ComponentPart(Record):
     restarts: int = 5
     limit: float = 10.0
     silence: float = 0.8
+    shared: str = ""
 
 
 class Body(Record):

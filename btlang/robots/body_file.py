@@ -247,5 +247,8 @@ def _component(table: Table) -> ComponentPart:
         int(table.number("restarts", 5, low=0, high=1000)),
         table.number("limit", 10.0, low=0.1, high=3600.0),
         table.number("silence", 0.8, low=0.3, high=3600.0),
+        table.text("shared") if table.has("shared") else "",
     )
+    if made.shared and made.runs != "process":
+        raise table.problem("shared", '"shared" is for components in a process of their own')
     return table.finish(made)

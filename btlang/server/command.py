@@ -15,8 +15,8 @@ from ipaddress import ip_address
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import reason_of
+from btlang.robots.sockets import socket_folder
 from btlang.task.companion import require_server
-from btlang.task.paths import socket_folder
 from btlang.text.output import show
 from btlang.text.source import NOWHERE
 from btlang.user_dirs import user_dir

@@ -16,8 +16,9 @@ from contextlib import closing, contextmanager, suppress
 
 from btlang.diagnostics.diagnostic import diagnostic
 from btlang.diagnostics.errors import MissionError
+from btlang.robots.sockets import socket_folder
 from btlang.task.messages import Answer, EmergencyStop
-from btlang.task.paths import socket_folder, socket_path
+from btlang.task.paths import socket_path
 from btlang.text.source import NOWHERE
 
 TYPE_CHECKING = False

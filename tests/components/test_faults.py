@@ -77,7 +77,7 @@ def test_twenty_components_in_a_storm(tmp_path: Path, record_property: Any) -> N
             wait_until(lambda keeper=keeper: keeper.state == ACTIVE)
             back.append(time.monotonic() - began)
         processes |= {status.process for status in manager.statuses()}
-    assert [process for process in processes if os.path.exists(f"/proc/{process}")] == []
+    wait_until(lambda: not running_in(processes))
     record_property("seconds until noticed, until back", (max(noticed), max(back)))
     if many > len(NAMES):
         print(f"of {many}: noticed after {max(noticed):.2f} s, back after {max(back):.2f} s at the latest")
@@ -96,9 +96,23 @@ def test_a_robot_that_is_killed_leaves_no_component(tmp_path: Path) -> None:
         assert process.stdout is not None
         components = [int(each) for each in process.stdout.readline().split()]
         assert len(components) == 2
+        assert len(running_in(set(components))) >= 4
         os.kill(components[0], signal.SIGSTOP)
         process.kill()
-    wait_until(lambda: not any(os.path.exists(f"/proc/{each}") for each in components))
+    wait_until(lambda: not running_in(set(components)))
+
+
+def running_in(groups: set[int | None]) -> list[int]:
+    """The processes in these process groups: components, and what they have started."""
+    found = []
+    for each in filter(str.isdigit, os.listdir("/proc")):
+        try:
+            stat = Path(f"/proc/{each}/stat").read_text(encoding="utf-8", errors="replace").rsplit(")", 1)[1].split()
+        except OSError:  # it has just ended
+            continue
+        if int(stat[2]) in groups and stat[0] != "Z":
+            found.append(int(each))
+    return found
 
 
 def hit(keeper: Keeper, fault: str, folder: Path) -> None:

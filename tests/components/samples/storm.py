@@ -2,6 +2,7 @@
 
 import os
 import random
+import subprocess
 import sys
 import time
 from pathlib import Path
@@ -13,6 +14,7 @@ HERE = Path(__file__).parent
 
 class Member(Component):
     def configure(self):
+        subprocess.Popen(["sleep", "1000"])  # which nobody must have to look for
         plan = HERE / f"{self.name}.plan"
         what = plan.read_text(encoding="utf-8") if plan.exists() else ""
         plan.unlink(missing_ok=True)

@@ -1,0 +1,129 @@
+"""A method of a component in another process as a leaf of a tree."""
+
+from __future__ import annotations
+
+import threading
+import time
+from collections import deque
+from collections.abc import Callable
+
+from btlang.engine.leaves.leaf import ActionFailed, Unknown, described
+from btlang.robots.proxy import RobotProxy
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any, Protocol
+
+    class Link(Protocol):
+        """The way to the process: see btlang.components.process_host.ProcessHost."""
+
+        def begin(self, method: str, arguments: dict[str, Any], wake: Callable[[], object]) -> Request: ...
+        def halt(self, request: Request) -> None: ...
+        def answer(self, request: Request, asked: dict[str, Any], answer: dict[str, Any]) -> None: ...
+
+
+class Request:
+    """Something that the component is to do. `outcome` is there once `done` is set."""
+
+    def __init__(self, number: int, message: dict[str, Any], wake: Callable[[], object]) -> None:
+        self.number, self.message, self.sent, self._wake = number, message, time.monotonic(), wake
+        self.done = threading.Event()
+        self.outcome: dict[str, Any] = {}
+        self.asked: deque[dict[str, Any]] = deque()
+        self.answers: dict[int, dict[str, Any] | None] = {}
+
+    def end(self, outcome: dict[str, Any]) -> None:
+        """It is done, or nobody will do it."""
+        if not self.done.is_set():
+            self.outcome = outcome
+            self.done.set()
+            self._wake()
+
+    def ask(self, message: dict[str, Any]) -> None:
+        """A question to the robot, for the thread that ticks."""
+        self.answers[message["ask"]] = None
+        self.asked.append(message)
+        self._wake()
+
+    @property
+    def value(self) -> Any:
+        """What it has led to. Raises ActionFailed."""
+        if "problem" in self.outcome:
+            raise (Unknown if self.outcome.get("unknown") else ActionFailed)(self.outcome["problem"])
+        return self.outcome.get("value")
+
+
+class RemoteLeaf:
+    """A method of a component as a leaf. What the method asks of the robot is done in the thread that ticks."""
+
+    def __init__(
+        self,
+        host: Link,
+        method: str,
+        outputs: tuple[str, ...],
+        robot: Any,
+        wake: Callable[[], object],
+        beside: set[object],
+    ) -> None:
+        self._host, self._method, self._outputs, self._wake, self._beside = host, method, outputs, wake, beside
+        self._proxy = RobotProxy(robot, lambda call: call())
+        self._request: Request | None = None
+        self._stores: dict[str, Callable[[Any], object]] = {}
+        self._operations: list[Any] = []
+
+    def start(self, **ports: Any) -> object:
+        """Calls the method."""
+        self._stores = {name: ports.pop(name) for name in self._outputs if name in ports}
+        self._operations = []
+        arguments = {**ports, "outputs": list(self._stores)} if self._stores else ports
+        self._request = self._host.begin(self._method, arguments, self._wake)
+        self._beside.add(self)
+        return None
+
+    def tick(self) -> object:
+        """Does what it asks for, and looks whether it has ended."""
+        request = self._request
+        assert request is not None
+        while request.asked:
+            asked = request.asked.popleft()
+            self._host.answer(request, asked, self._do(asked))
+        if not request.done.is_set():
+            return None
+        self._request = None
+        self._beside.discard(self)
+        try:
+            value = request.value
+        except ActionFailed:
+            self._proxy.let_go()
+            raise
+        for name, stored in request.outcome.get("stored", {}).items():
+            self._stores[name](stored)
+        return True if value is None else value
+
+    def halt(self) -> None:
+        """Ends the method, and what it has set about."""
+        request, self._request = self._request, None
+        self._beside.discard(self)
+        if request is not None:
+            self._host.halt(request)
+            self._proxy.let_go()
+
+    def _do(self, asked: dict[str, Any]) -> dict[str, Any]:
+        """A use of the robot, or of an operation that it has begun."""
+        try:
+            subject = self._operations[asked["operation"]] if "operation" in asked else self._proxy
+            name = asked["robot"]
+            if name.startswith("_"):
+                raise ActionFailed(f"a robot has no {name}")
+            value = getattr(subject, name)
+            if "args" in asked:
+                value = value(*asked["args"], **asked.get("named", {}))
+        except KeyboardInterrupt:
+            raise
+        except BaseException as problem:
+            text = str(problem) if isinstance(problem, ActionFailed) else described(problem)
+            return {"problem": text, "unknown": isinstance(problem, Unknown)}
+        if hasattr(value, "cancel"):
+            self._operations.append(value)
+            return {"value": {"operation": len(self._operations) - 1}}
+        return {"value": value}
