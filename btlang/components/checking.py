@@ -11,7 +11,7 @@ from btlang.components.component import ComponentError, ParameterError
 from btlang.components.location import WRONG_PARAMETERS, located, words_file
 from btlang.components.order import circle
 from btlang.devices.driver import DeviceError
-from btlang.devices.drivers import SIMULATED, driver_class
+from btlang.devices.drivers import SIMULATED, driver_class, make_driver
 from btlang.devices.kinds import KINDS
 from btlang.devices.simulated import SimulatedDevice
 from btlang.diagnostics.diagnostic import Diagnostic
@@ -120,7 +120,7 @@ def _of_driver(body: Body, driver: str, port: str, members: Sequence[tuple[int, 
     if wrong:
         return
     try:
-        kind(port, [device for _, device in members])
+        make_driver(driver, body.folder, port, [device for _, device in members])
     except DeviceError as problem:
         named = [at for at, device in members if device.name in str(problem)]
         yield Problem(str(problem), "device", *(named or [index])[:1], "options")

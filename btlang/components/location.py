@@ -5,12 +5,11 @@ from __future__ import annotations
 import json
 import os
 import sys
-from importlib import import_module
-from importlib.machinery import PathFinder
 from importlib.util import find_spec
 
 from btlang.components.component import Component, ComponentError, ParameterError
 from btlang.engine.leaves.leaf import described
+from btlang.robots.modules import module_of
 from btlang.text.output import pass_on, show
 
 TYPE_CHECKING = False
@@ -52,10 +51,8 @@ def words_file(place: str, folder: str) -> str | None:
 def load_class(place: str, folder: str) -> type[Component]:
     """The class, from the folder of its robot file or from what is installed. Raises ComponentError."""
     module, _, name = located(place).partition(":")
-    if folder and folder not in sys.path and PathFinder.find_spec(module, [folder]) is not None:
-        sys.path.insert(0, folder)
     try:
-        found: Any = import_module(module)
+        found: Any = module_of(module, folder)
         for part in name.split("."):
             found = getattr(found, part)
     except Exception as problem:  # whatever somebody's module raises
@@ -65,11 +62,11 @@ def load_class(place: str, folder: str) -> type[Component]:
     return found
 
 
-def describe(place: str, folder: str) -> dict[str, Any]:
-    """What a class says of itself, as JSON: version, needs, rate, parameters. Raises ComponentError."""
-    found = load_class(place, folder)
-    parameters = [parameter.described() for parameter in found.parameters().values()]
-    return {"version": str(found.version), "needs": list(found.needs), "rate": found.rate, "parameters": parameters}
+def describe(component: Component) -> dict[str, Any]:
+    """What the class of a component says of itself, as JSON: version, needs, rate, parameters."""
+    kind = type(component)
+    parameters = [parameter.described() for parameter in kind.parameters().values()]
+    return {"version": str(kind.version), "needs": list(kind.needs), "rate": kind.rate, "parameters": parameters}
 
 
 def main(place: str, folder: str, parameters: str) -> int:
@@ -78,8 +75,9 @@ def main(place: str, folder: str, parameters: str) -> int:
     Returns WRONG_PARAMETERS where only these are wrong.
     """
     try:
-        load_class(place, folder)().set_parameters(json.loads(parameters))
-        pass_on(json.dumps(describe(place, folder)) + "\n")
+        component = load_class(place, folder)()
+        component.set_parameters(json.loads(parameters))
+        pass_on(json.dumps(describe(component)) + "\n")
     except ComponentError as problem:
         show(str(problem), sys.stderr)
         return WRONG_PARAMETERS if isinstance(problem, ParameterError) else 1

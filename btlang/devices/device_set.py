@@ -7,7 +7,7 @@ from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol
 
 from btlang.devices.driver import DeviceSilent
-from btlang.devices.drivers import SIMULATED, driver_class
+from btlang.devices.drivers import SIMULATED, make_driver
 from btlang.devices.kinds import KINDS, Command, Reading
 from btlang.devices.loop import DeviceLoop
 from btlang.devices.simulated import SimulatedDevice
@@ -57,7 +57,7 @@ class DeviceSet:
             else:
                 ports.setdefault((device.driver, device.port), []).append(device)
         for (driver, port), devices in ports.items():
-            loop = DeviceLoop(driver_class(driver, body.folder)(port, devices), tuple(devices), self._changed)
+            loop = DeviceLoop(make_driver(driver, body.folder, port, devices), tuple(devices), self._changed)
             self.loops.append(loop)
             self._reads.update(dict.fromkeys(loop.devices, loop))
 
