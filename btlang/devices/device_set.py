@@ -6,7 +6,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol
 
-from btlang.devices.driver import DeviceSilent
+from btlang.devices.driver import DeviceError, DeviceSilent
 from btlang.devices.drivers import SIMULATED, make_driver
 from btlang.devices.kinds import KINDS, Command, Reading
 from btlang.devices.loop import DeviceLoop
@@ -50,6 +50,8 @@ class DeviceSet:
         self._simulated: list[SimulatedDevice] = []
         ports: dict[tuple[str, str], list[Device]] = {}
         for device in body.devices:
+            if device.kind not in KINDS:
+                raise DeviceError(f'there is no kind "{device.kind}"; the kinds are {", ".join(KINDS)}')
             if device.driver == SIMULATED:
                 simulated = self._reads[device.name] = SimulatedDevice(device, robot)
                 if KINDS[device.kind].moves:

@@ -91,3 +91,17 @@ def test_faulty_drivers_are_problems_of_the_robot_file(driver: str, reason: str,
     assert reason in " ".join(each.message for each in found)
     with pytest.raises(btlang.MissionError, match="BT071"):
         btlang.Session(f"{folder}/robot.toml")
+
+
+@pytest.mark.parametrize("over", ["simulated", "devices"])
+@pytest.mark.parametrize(
+    ("device", "reason"),
+    [
+        ('kind = "rang"\ndriver = "simulated"', 'there is no kind "rang"'),
+        ('kind = "range"\ndriver = "simulated"\noptions = { noise = "x" }', '"noise" of the a must be a number'),
+    ],
+)
+def test_devices_that_cannot_be(over: str, device: str, reason: str, tmp_path: Path) -> None:
+    (tmp_path / "robot.toml").write_text(f'{ROBOT}[[device]]\nname = "a"\n{device}\n')
+    with pytest.raises(btlang.MissionError, match=reason):
+        btlang.Session(str(tmp_path / "robot.toml"), over=over)
