@@ -10,19 +10,18 @@ from collections.abc import Iterator, Mapping, Sequence
 from btlang.components.component import ComponentError, ParameterError
 from btlang.components.location import WRONG_PARAMETERS, located, words_file
 from btlang.components.order import circle
+from btlang.components.word_checking import check_words
 from btlang.devices.driver import DeviceError
 from btlang.devices.drivers import SIMULATED, driver_class, make_driver
 from btlang.devices.kinds import KINDS
 from btlang.devices.simulated import SimulatedDevice
 from btlang.diagnostics.diagnostic import Diagnostic
-from btlang.diagnostics.errors import MissionError
 from btlang.robots.body import Body, ComponentPart, Device
 from btlang.robots.body_file import BodyError, load_body
 from btlang.robots.data_file import as_mission_error, placed
 from btlang.text.source import Source
 from btlang.text.toml_table import Problem
 from btlang.vocabulary.capabilities import CAPABILITIES
-from btlang.vocabulary.load import load_vocabulary
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -38,13 +37,13 @@ def check_robot(source: Source) -> tuple[Body | None, list[Diagnostic]]:
     except BodyError as error:
         return None, list(as_mission_error(error).diagnostics)
     found: list[Diagnostic] = []
-    for problem in (*_devices(body), *_components(body)):
+    described: dict[str, Mapping[str, Any]] = {}
+    for problem in (*_devices(body), *_components(body, described)):
         found += as_mission_error(placed(problem, source, source.name, BodyError)).diagnostics
+    all_loaded = all(part.place in described for part in body.components)
+    methods = {located(place): known["methods"] for place, known in described.items()} if all_loaded else {}
     for path in _words(body):
-        try:
-            load_vocabulary([path])
-        except MissionError as error:
-            found += error.diagnostics
+        found += check_words(path, methods)
     return body, found
 
 
@@ -145,7 +144,8 @@ def _lacking(body: Body) -> Iterator[Problem]:
             yield Problem(f'the hand needs a device "{hand.name} hand"', "hands", index)
 
 
-def _components(body: Body) -> Iterator[Problem]:
+def _components(body: Body, described: dict[str, Mapping[str, Any]]) -> Iterator[Problem]:
+    """Fills `described` with what the class at each place says of itself, where that can be loaded."""
     names = {part.name for part in body.components}
     needs: dict[str, set[str]] = {}
     for index, part in enumerate(body.components):
@@ -153,7 +153,8 @@ def _components(body: Body) -> Iterator[Problem]:
             yield Problem(f'"{part.name}" is the name of a device, too', "component", index, "name")
         own = set(part.needs)
         try:
-            own |= set(describe_apart(part, body.folder)["needs"])
+            says = described[part.place] = describe_apart(part, body.folder)
+            own |= set(says["needs"])
         except ComponentError as problem:
             yield Problem(
                 str(problem), "component", index, "parameters" if isinstance(problem, ParameterError) else "class"

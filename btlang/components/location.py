@@ -6,6 +6,7 @@ import json
 import os
 import sys
 from importlib.util import find_spec
+from inspect import signature
 
 from btlang.components.component import Component, ComponentError, ParameterError
 from btlang.engine.leaves.leaf import described
@@ -63,10 +64,32 @@ def load_class(place: str, folder: str) -> type[Component]:
 
 
 def describe(component: Component) -> dict[str, Any]:
-    """What the class of a component says of itself, as JSON: version, needs, rate, parameters."""
+    """What the class of a component says of itself, as JSON: version, needs, rate, parameters and methods."""
     kind = type(component)
     parameters = [parameter.described() for parameter in kind.parameters().values()]
-    return {"version": str(kind.version), "needs": list(kind.needs), "rate": kind.rate, "parameters": parameters}
+    methods = {name: _takes(getattr(component, name)) for name in dir(kind) if _is_method(kind, name)}
+    return {
+        "version": str(kind.version), "needs": list(kind.needs), "rate": kind.rate, "parameters": parameters,
+        "methods": methods,
+    }  # fmt: skip
+
+
+def _is_method(kind: type[Component], name: str) -> bool:
+    return name[0] != "_" and not hasattr(Component, name) and callable(getattr(kind, name, None))
+
+
+def _takes(method: Any) -> dict[str, Any]:
+    """The names of its parameters, of those without a default, and whether it takes all others, too."""
+    try:
+        parameters = signature(method).parameters.values()
+    except (TypeError, ValueError):  # of a method that isn't written in Python
+        return {"takes": [], "required": [], "takes_all": True}
+    named = [each for each in parameters if each.kind in (each.POSITIONAL_OR_KEYWORD, each.KEYWORD_ONLY)]
+    return {
+        "takes": [each.name for each in named],
+        "required": [each.name for each in named if each.default is each.empty],
+        "takes_all": any(each.kind is each.VAR_KEYWORD for each in parameters),
+    }
 
 
 def main(place: str, folder: str, parameters: str) -> int:
