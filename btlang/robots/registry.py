@@ -46,7 +46,9 @@ def body_of(robot: str | Source) -> Body:
     path = installed_robot(robot)
     if path is None:
         names = " or ".join(map(repr, ROBOTS))
-        raise ValueError(f"robot must be {names}, a robot file, or a function that connects to one, not {robot!r}")
+        raise ValueError(
+            f"robot must be {names}, a robot file, an installed robot, or a function that connects to one, not {robot!r}"
+        )
     return read_body(path)
 
 
