@@ -21,8 +21,9 @@ if TYPE_CHECKING:
 
 _LOOK = 0.1  # seconds between two looks at each component
 _MINUTE = 60.0
+_CLOSING = 3.0  # seconds that all of them get to go down by themselves
 _PAUSE, _LONGEST = 0.1, 10.0  # seconds before it is started again: doubled each time, and the longest
-_SOUND = 5.0  # seconds that it has to be active until pauses are short again
+_SOUND = 2.0  # seconds that it has to be active until pauses are short again
 
 
 class ComponentStatus(Record):
@@ -77,8 +78,10 @@ class Manager:
         with self.changed:
             self._closing = True
             self.changed.notify_all()
+        until = time.monotonic() + _CLOSING
         for keeper in tuple(self._keepers.values()):
-            keeper.join()
+            if not keeper.join(until - time.monotonic()):
+                keeper.abandon()
 
     @property
     def closing(self) -> bool:
@@ -149,8 +152,10 @@ class Manager:
 
     def is_free(self, name: str) -> bool:
         """Whether no running mission uses it, or one that needs it."""
-        users = (keeper.part.name for keeper in tuple(self._keepers.values()) if name in keeper.needs)
-        return self._closing or not (self._in_use(name) or any(not self.is_free(user) for user in users))
+        users, keepers = [name], tuple(self._keepers.values())
+        for user in users:  # which grows
+            users += [each.part.name for each in keepers if user in each.needs and each.part.name not in users]
+        return self._closing or not any(map(self._in_use, users))
 
     def forget(self, keeper: Keeper) -> None:
         """It was unloaded."""
@@ -184,10 +189,17 @@ class Keeper:
         """Begins to bring it up."""
         self._thread.start()
 
-    def join(self) -> None:
-        """Waits until it is down."""
+    def join(self, seconds: float) -> bool:
+        """Waits until it is down, but no longer than that; whether it is."""
         if self._thread.ident is not None:
-            self._thread.join()
+            self._thread.join(max(0.0, seconds))
+        return not self._thread.is_alive()
+
+    def abandon(self) -> None:
+        """Lets go of it, whatever it does."""
+        if self.host is not None:
+            self.host.close()
+        self.join(_LOOK * 10)
 
     def replace(self, part: ComponentPart | None) -> None:
         """It is to be another one, or none; called with the lock of the manager."""

@@ -11,6 +11,7 @@ from typing import Any
 import pytest
 
 import btlang
+from btlang.components import connection
 from btlang.components.words import robot_words
 from btlang.run.events import Event, PartChanged, RobotEvent
 from tests.components.robots import machine, robot_file
@@ -110,6 +111,29 @@ def test_a_halt_ends_the_method_and_what_it_drives(tmp_path: Path) -> None:
     outcome, _ = run(robot, "roll away for 1 second then brew tea", speed="real")
     assert outcome.succeeded, outcome.why()
     assert outcome.seconds < 5
+
+
+@WHERE
+def test_one_that_hangs_keeps_no_robot_from_going_down(
+    tmp_path: Path, runs: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr(connection, "_UP", 0.5)
+    hangs = machine(runs=f'"{runs}"', parameters='{ wrong = "hang in configure" }', limit=600)
+    robot = robot_file(tmp_path, hangs)
+    began = time.monotonic()
+    with btlang.Session(robot) as session:
+        process = session.connection.manager.statuses()[0].process  # type: ignore[attr-defined]
+    assert time.monotonic() - began < 20
+    assert process is None or not os.path.exists(f"/proc/{process}")
+
+
+def test_components_that_need_each_other_wait(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(connection, "_UP", 0.5)
+    robot = robot_file(tmp_path, machine(needs='["other"]') + "\n" + machine(name='"other"', needs='["machine"]'))
+    with btlang.Session(robot) as session:
+        manager = session.connection.manager  # type: ignore[attr-defined]
+        assert [each.why for each in manager.statuses()] == ["waits for the other", "waits for the machine"]
+        assert manager.is_free("machine")
 
 
 @WHERE
