@@ -47,7 +47,8 @@ def body_of(robot: str | Source) -> Body:
     if path is None:
         names = " or ".join(map(repr, ROBOTS))
         raise ValueError(
-            f"robot must be {names}, a robot file, an installed robot, or a function that connects to one, not {robot!r}"
+            f"robot must be {names}, a robot file, an installed robot, or a function that connects to one, "
+            f"not {robot!r}"
         )
     return read_body(path)
 
