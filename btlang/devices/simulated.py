@@ -47,9 +47,8 @@ class SimulatedDevice:
     """One device. `read` and `write` are for any thread, `step` for that of the robot. Seconds are those of its world.
 
     Options of all kinds: `noise` (standard deviation), `delay` in seconds, `silent` and `frozen` as [from, until].
-    Of a range sensor: `angle` (degrees left of ahead), `cone` (degrees), `range` (metres). Of a camera: `angle`, `view`
-    (degrees). Of a joint or hand: `part`, the name in the body, by default that of the device. Of a button: `bumper`.
-    Of a gauge: `value`, what it measures.
+    Of a range sensor: `cone` (degrees), `range` (metres). Of a camera: `view` (degrees). Of a joint or hand: `part`,
+    the name in the body, by default that of the device. Of a button: `bumper`. Of a gauge: `value`.
     """
 
     def __init__(self, device: Device, robot: Any) -> None:
@@ -141,7 +140,7 @@ class SimulatedDevice:
         return noisy
 
     def _distance(self) -> Distance:
-        angle, cone = float(self._option("angle", 0.0)), float(self._option("cone", 15.0))
+        angle, cone = self._device.angle, float(self._option("cone", 15.0))
         ranges = self._robot.scan()
         beams = range(round(angle - cone / 2), round(angle + cone / 2) + 1)
         nearest = min(float(ranges[beam % 360]) for beam in beams) - self._robot.radius  # it sits on the rim
@@ -202,7 +201,7 @@ class SimulatedDevice:
         """What the scanner sees, as walls that are darker and lower the farther they are."""
         import numpy as np  # most missions need none
 
-        view, angle = float(self._option("view", 60.0)), float(self._option("angle", 0.0))
+        view, angle = float(self._option("view", 60.0)), self._device.angle
         ranges = np.asarray(self._robot.scan())
         columns = np.arange(_WIDTH)
         bearings = angle + view / 2 - columns * view / _WIDTH
@@ -244,7 +243,7 @@ _VALUES: dict[str, tuple[Callable[[Any], bool], str]] = {
 }
 """What options may be, where that isn't a number."""
 _OPTIONS = {
-    "range": ("angle", "cone", "range"), "camera": ("angle", "view"), "joint": ("part",), "hand": ("part",),
+    "range": ("cone", "range"), "camera": ("view",), "joint": ("part",), "hand": ("part",),
     "button": ("bumper",), "gauge": ("value",),
 }  # fmt: skip
 _READ: dict[str, Callable[[SimulatedDevice], Reading]] = {
@@ -295,4 +294,4 @@ def twin(device: Device) -> Device:
     if device.driver == SIMULATED:
         return device
     options = {"bumper": True} if device.kind == "button" and "bumper" in device.name else {}
-    return Device(device.name, device.kind, SIMULATED, options=options)
+    return Device(device.name, device.kind, SIMULATED, options=options, angle=device.angle)

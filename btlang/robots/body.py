@@ -118,6 +118,7 @@ class Device(Record):
     """A device of a robot: `kind` and `driver` are names of btlang.devices, `options` are those of its driver.
 
     `scale` and `offset` make what its driver tells true: value * scale + offset; for a command the other way round.
+    It looks `angle` degrees left of ahead.
     """
 
     name: str
@@ -127,6 +128,7 @@ class Device(Record):
     options: Mapping[str, Any] = {}
     scale: float = 1.0
     offset: float = 0.0
+    angle: float = 0.0
 
 
 class ComponentPart(Record):

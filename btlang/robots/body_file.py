@@ -234,7 +234,8 @@ def _device(table: Table) -> Device:
     scale, offset = table.number("scale", 1.0), table.number("offset", 0.0)
     if scale == 0.0:
         raise table.problem("scale", '"scale" must not be 0')
-    return table.finish(Device(name, kind, driver, port, table.values("options"), scale, offset))
+    angle = table.number("angle", 0.0, low=-360, high=360)
+    return table.finish(Device(name, kind, driver, port, table.values("options"), scale, offset, angle))
 
 
 def _component(table: Table) -> ComponentPart:
