@@ -26,15 +26,25 @@ def robot_on(platforms: Sequence[str]) -> Callable[[str], str]:
     def robot(text: str) -> str:
         from btlang.robots.body_file import shipped_bodies
         from btlang.robots.platforms import ROBOTS
+        from btlang.robots.registry import installed_robot
 
         if text in platforms:
             return text
         names = (*platforms, *shipped_bodies())
         if text in names or text.endswith(".toml") or (os.path.exists(text) and text not in ROBOTS):
             return text
+        if installed_robot(text) is not None:
+            return text
         raise argparse.ArgumentTypeError(f"expected {', '.join(names)} or a robot file, not '{text}'")
 
     return robot
+
+
+def kept_robot(text: str) -> str:
+    """Any robot that missions can run on, or `library:NAME`."""
+    from btlang.robots.platforms import ROBOTS
+
+    return text if text.startswith("library:") else robot_on(tuple(ROBOTS))(text)
 
 
 def namespace(text: str) -> str:

@@ -12,7 +12,7 @@ from importlib import import_module
 
 import btlang
 from btlang.api import Mission, format_mission, world_vocabulary
-from btlang.cli_input import add_robot_words, hinting, mission_of, parsed_mission, source_of, typed_source
+from btlang.cli_input import add_robot_files, hinting, mission_of, parsed_mission, source_of, typed_source
 from btlang.cli_options import parsed, show_help, verb_parsers
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source, reason_of
@@ -43,7 +43,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         options = parsed(arguments)
         options.report = Report(options.format, on_output=options.verb == "check")
         try:
-            add_robot_words(options)
+            add_robot_files(options)
             code = _VERBS[options.verb](options)
         except MissionError as error:
             options.report.add(error.diagnostics)
@@ -239,24 +239,19 @@ def _explain(options: argparse.Namespace) -> int:
 
     subject = options.file
     if options.text is not None or (subject is not None and not is_code(subject) and _is_file(subject)):
-        return _explain_mission(options)
-    if subject is not None:
+        show(mission_of(options).explain(listing_width(100)))
+    elif subject is not None:
         with hinting(subject, "explain"):
             show(explain_code(subject))
-        return SUCCESS
-    show(all_codes())
-    show("\nTo read one: btc explain CODE")
+    else:
+        show(all_codes())
+        show("\nTo read one: btc explain CODE")
     return SUCCESS
 
 
 def _is_file(subject: str) -> bool:
     """Whether it names a file, there or not: a word alone that names none is meant as a code."""
     return subject == "-" or os.path.exists(subject) or (subject != "" and not subject.isalnum())
-
-
-def _explain_mission(options: argparse.Namespace) -> int:
-    show(mission_of(options).explain(listing_width(100)))
-    return SUCCESS
 
 
 def _format(options: argparse.Namespace) -> int:
@@ -364,6 +359,7 @@ _ELSEWHERE = {
     **dict.fromkeys(("replay", "why", "diff"), "btlang.recording.command"),
     "test": "btlang.testing.command",
     "mcp": "btlang.mcp_server",
+    "new": "btlang.templates.command",
     "task": "btlang.task.command",
     "components": "btlang.task.component_command",
     "serve": "btlang.server.command",

@@ -23,13 +23,17 @@ def typed_source(options: argparse.Namespace) -> Source:
     return Source(options.text, "<command line>", roots=roots, may_load=True)
 
 
-def add_robot_words(options: argparse.Namespace) -> None:
-    """The words of a robot's components count as those of --keywords do, in every verb that takes both."""
+def add_robot_files(options: argparse.Namespace) -> None:
+    """The words of a robot's components count as those of --keywords do, and its world as that of --world where none is
+    given, in every verb that takes these.
+    """
     robot = getattr(options, "robot", "")
     if options.verb != "robot" and hasattr(options, "keywords") and robot not in ("", *ROBOTS):
         from btlang.components.words import robot_words
+        from btlang.robots.registry import body_of
 
         options.keywords = [*robot_words(robot), *options.keywords]
+        options.world = options.world or body_of(robot).world or None
 
 
 def mission_of(options: argparse.Namespace, source: Source | None = None) -> Mission:

@@ -304,12 +304,6 @@ def _ros_node_options(parser: argparse.ArgumentParser) -> None:
     add_node_options(parser)
 
 
-def _completion_options(parser: argparse.ArgumentParser) -> None:
-    from btlang.shell_completion import SHELLS
-
-    parser.add_argument("shell", choices=list(SHELLS), help="bash, zsh or fish; the script says how to use it")
-
-
 def _help_options(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("subject", nargs="?", metavar="VERB", help="whose options to list")
 
@@ -338,6 +332,7 @@ _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
     "edit": ("write a mission in the browser", _elsewhere("btlang.server.options", "add_edit_options", True)),
     "mcp": ("let language models write and simulate missions, as an MCP server", _words_options),
     "examples": ("list, print or copy the example missions", _examples_options),
+    "new": ("begin a component, a device or a robot", _elsewhere("btlang.templates.options", "add_new_options")),
     "explain": ("show how a mission is understood, or explain a message code", _explain_options),
     "format": ("format missions: indentation, spaces, empty lines", _format_options),
     "sim-ros": (
@@ -353,7 +348,10 @@ _OPTIONS: dict[str, tuple[str, Callable[[argparse.ArgumentParser], None]]] = {
         "serve btlang's actions as ROS 2 actions",
         _elsewhere("btlang.ros.serving.command", "add_serving_options", True),
     ),
-    "completion": ("print a script that completes btc in a shell", _completion_options),
+    "completion": (
+        "print a script that completes btc in a shell",
+        _elsewhere("btlang.shell_completion", "add_completion_options"),
+    ),
     "help": ("show this help, or that of a verb", _help_options),
     "version": ("print the version", lambda _: None),
 }

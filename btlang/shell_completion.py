@@ -168,3 +168,8 @@ def _fish_text(text: str) -> str:
 
 
 SHELLS: dict[str, Callable[[list[Verb]], Iterator[str]]] = {"bash": _bash, "zsh": _zsh, "fish": _fish}
+
+
+def add_completion_options(parser: ArgumentParser) -> None:
+    """Those of `btc completion`."""
+    parser.add_argument("shell", choices=list(SHELLS), help="bash, zsh or fish; the script says how to use it")

@@ -94,8 +94,10 @@ def run(arguments: list[str], folder: Path) -> subprocess.CompletedProcess[str]:
 
 
 def btc(line: str, folder: Path) -> subprocess.CompletedProcess[str]:
-    """Runs a line `btc ...`, or `python3 FILE`."""
+    """Runs a line `btc ...`, `python3 FILE` or `pytest FILE`."""
     words = shlex.split(line, comments=True)
+    if words[0] == "pytest":
+        return run(["-m", *words, "-n0", "-p", "no:cacheprovider"], folder)
     if words[0] == "python3":
         return run(["-W", "error", *words[1:]], folder)
     assert words[0] == "btc", line
@@ -197,11 +199,15 @@ def test_missions_compile(block: Block, folder: Path, monkeypatch: pytest.Monkey
 
 
 def test_every_python_file_runs() -> None:
-    """A command runs it, or a keyword file calls it."""
-    calls = "".join(block.text for block in BLOCKS if block.language == "toml")
+    """A command runs it, or a keyword file or robot file names it."""
+    calls = "".join(block.text for block in BLOCKS if block.language in ("toml", "sh"))
     files = [block.file for block in BLOCKS if block.language == "python" and block.file]
-    idle = [file for file in files if not commands_with(file) and f'"{file.removesuffix(".py")}:' not in calls]
+    idle = [file for file in files if not commands_with(file) and not called(file, calls)]
     assert idle == []
+
+
+def called(file: str, calls: str) -> bool:
+    return f'"{file.removesuffix(".py")}:' in calls or f"pytest {file}" in calls
 
 
 def test_no_two_files_of_the_pages_have_one_name() -> None:
@@ -250,6 +256,7 @@ def test_files_of_the_pages_load(folder: Path, monkeypatch: pytest.MonkeyPatch) 
             option = "--world" if block.file.endswith("world.toml") else "--keywords"
             command = f"btc check {option} {block.file} -c wave"
             if block.file.endswith("robot.toml"):
-                command = f"btc run --speed max --robot {block.file} -c 'wait 1 s'"
+                twins = "--simulate" if 'over = "devices"' in block.text else ""
+                command = f"btc run --speed max {twins} --robot {block.file} -c 'wait 1 s'"
             code, printed = quick(command)
             assert code == 0, printed

@@ -7,22 +7,21 @@ import subprocess
 import sys
 from collections.abc import Iterator, Mapping, Sequence
 
-from btlang.components.component import ComponentError
-from btlang.components.location import located, words_file
+from btlang.components.component import ComponentError, ParameterError
+from btlang.components.location import WRONG_PARAMETERS, located, words_file
 from btlang.components.order import circle
+from btlang.components.word_checking import check_words
 from btlang.devices.driver import DeviceError
-from btlang.devices.drivers import SIMULATED, driver_class
+from btlang.devices.drivers import SIMULATED, driver_class, make_driver
 from btlang.devices.kinds import KINDS
 from btlang.devices.simulated import SimulatedDevice
 from btlang.diagnostics.diagnostic import Diagnostic
-from btlang.diagnostics.errors import MissionError
 from btlang.robots.body import Body, ComponentPart, Device
 from btlang.robots.body_file import BodyError, load_body
 from btlang.robots.data_file import as_mission_error, placed
 from btlang.text.source import Source
 from btlang.text.toml_table import Problem
 from btlang.vocabulary.capabilities import CAPABILITIES
-from btlang.vocabulary.load import load_vocabulary
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -38,18 +37,18 @@ def check_robot(source: Source) -> tuple[Body | None, list[Diagnostic]]:
     except BodyError as error:
         return None, list(as_mission_error(error).diagnostics)
     found: list[Diagnostic] = []
-    for problem in (*_devices(body), *_components(body)):
+    described: dict[str, Mapping[str, Any]] = {}
+    for problem in (*_devices(body), *_components(body, described)):
         found += as_mission_error(placed(problem, source, source.name, BodyError)).diagnostics
+    all_loaded = all(part.place in described for part in body.components if part.node is None)
+    methods = {located(place): known["methods"] for place, known in described.items()} if all_loaded else {}
     for path in _words(body):
-        try:
-            load_vocabulary([path])
-        except MissionError as error:
-            found += error.diagnostics
+        found += check_words(path, methods)
     return body, found
 
 
 def describe_apart(part: ComponentPart, folder: str) -> Mapping[str, Any]:
-    """What its class says of itself, in a process of its own. Raises ComponentError."""
+    """What its class says of itself, in a process of its own. Raises ComponentError, or ParameterError."""
     command = [
         sys.executable,
         "-B",
@@ -65,7 +64,8 @@ def describe_apart(part: ComponentPart, folder: str) -> Mapping[str, Any]:
         raise ComponentError(f"{part.place} isn't loaded after {_DESCRIBE:g} s") from None
     if done.returncode:
         lines = done.stderr.decode("utf-8", "replace").strip().splitlines()
-        raise ComponentError(lines[-1] if lines else f"{part.place} ended with exit code {done.returncode}")
+        wrong = ParameterError if done.returncode == WRONG_PARAMETERS else ComponentError
+        raise wrong(lines[-1] if lines else f"{part.place} ended with exit code {done.returncode}")
     known: Mapping[str, Any] = json.loads(done.stdout.splitlines()[-1])
     return known
 
@@ -119,7 +119,7 @@ def _of_driver(body: Body, driver: str, port: str, members: Sequence[tuple[int, 
     if wrong:
         return
     try:
-        kind(port, [device for _, device in members])
+        make_driver(driver, body.folder, port, [device for _, device in members])
     except DeviceError as problem:
         named = [at for at, device in members if device.name in str(problem)]
         yield Problem(str(problem), "device", *(named or [index])[:1], "options")
@@ -144,7 +144,8 @@ def _lacking(body: Body) -> Iterator[Problem]:
             yield Problem(f'the hand needs a device "{hand.name} hand"', "hands", index)
 
 
-def _components(body: Body) -> Iterator[Problem]:
+def _components(body: Body, described: dict[str, Mapping[str, Any]]) -> Iterator[Problem]:
+    """Fills `described` with what the class at each place says of itself, where that can be loaded."""
     names = {part.name for part in body.components}
     needs: dict[str, set[str]] = {}
     for index, part in enumerate(body.components):
@@ -152,9 +153,13 @@ def _components(body: Body) -> Iterator[Problem]:
             yield Problem(f'"{part.name}" is the name of a device, too', "component", index, "name")
         own = set(part.needs)
         try:
-            own |= set(describe_apart(part, body.folder)["needs"]) if part.node is None else set()
+            if part.node is None:
+                says = described[part.place] = describe_apart(part, body.folder)
+                own |= set(says["needs"])
         except ComponentError as problem:
-            yield Problem(str(problem), "component", index, "parameters" if "parameter" in str(problem) else "class")
+            yield Problem(
+                str(problem), "component", index, "parameters" if isinstance(problem, ParameterError) else "class"
+            )
         known = names | {device.name for device in body.devices} | set(CAPABILITIES)
         for need in sorted(own - known):
             yield Problem(

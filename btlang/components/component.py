@@ -21,6 +21,10 @@ class ComponentAbsent(ComponentError):
     """It isn't there, and somebody else has to start it: that is waited for, and isn't a failure."""
 
 
+class ParameterError(ComponentError):
+    """What is wrong with the parameters in the robot file."""
+
+
 class Parameter:
     """A value that the robot file may set: a number, a text or a flag, of the type of its default.
 
@@ -142,13 +146,18 @@ class Component:
         return {name: value for name, value in found.items() if isinstance(value, Parameter)}
 
     def set_parameters(self, values: Mapping[str, object]) -> None:
-        """Sets them as a robot file does. Raises ComponentError for what is unknown or out of its limits."""
-        known = self.parameters()
+        """Sets them as a robot file does. Raises ParameterError for those that are unknown or out of their limits."""
+        known, problems = self.parameters(), list[str]()
         for name, value in values.items():
             if name not in known:
-                listed = ", ".join(known) or "none"
-                raise ComponentError(f'unknown parameter "{name}"; the parameters are {listed}')
-            self.__dict__[name] = known[name].checked(value)
+                problems.append(f'unknown parameter "{name}"; the parameters are {", ".join(known) or "none"}')
+                continue
+            try:
+                self.__dict__[name] = known[name].checked(value)
+            except ComponentError as problem:
+                problems.append(str(problem))
+        if problems:
+            raise ParameterError("; ".join(problems))
 
     def _device(self, name: str) -> Any:
         if name not in self._devices:

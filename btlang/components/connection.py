@@ -15,6 +15,7 @@ from btlang.components.location import located
 from btlang.components.manager import Keeper, Manager
 from btlang.components.process_host import ProcessHost
 from btlang.devices.device_set import DeviceSet
+from btlang.devices.driver import DeviceError
 from btlang.devices.simulated import twin
 from btlang.robots.platforms import node_function
 from btlang.robots.simulation import Simulation
@@ -219,15 +220,23 @@ def _leaf_class(keeper: Keeper, method: str, entry: Entry) -> type:
 
 
 def component_connection(connect: Callable[[], Connection], body: Body) -> Connection:
-    """What `connect` gives, with the components of the body. Raises MissionError (BT071) for what isn't a component."""
+    """What `connect` gives, with the components and devices of the body. Raises MissionError (BT071) for those that
+    can't be.
+    """
     from btlang.diagnostics.diagnostic import diagnostic
     from btlang.diagnostics.errors import MissionError
     from btlang.text.source import NOWHERE
 
+    inner: Connection | None = None
     try:
         for part in body.components:
             if part.node is None:
                 located(part.place)
-    except ComponentError as problem:
+        inner = connect()
+        return ComponentConnection(inner, body)
+    except (ComponentError, DeviceError, MissionError) as problem:
+        if inner is not None:
+            inner.close()
+        if isinstance(problem, MissionError):  # without ROS 2
+            raise
         raise MissionError([diagnostic("BT071", NOWHERE, reason=str(problem))]) from None
-    return ComponentConnection(connect(), body)

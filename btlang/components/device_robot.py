@@ -11,6 +11,7 @@ from btlang.devices.device_set import DeviceSet
 from btlang.devices.driver import DeviceError
 from btlang.devices.drivers import SIMULATED
 from btlang.devices.simulated import twin, twins
+from btlang.robots.body import Sensor
 from btlang.robots.platforms import ALL
 from btlang.robots.robot import RobotError
 from btlang.robots.simulated import SimulatedRobot
@@ -28,6 +29,7 @@ if TYPE_CHECKING:
     from btlang.robots.world import World
 
 _CONTROL = 0.05  # seconds between two looks at the devices, however slowly a mission ticks
+_EYES = Sensor("scanner", "", 100.0)  # of the twin of a robot without a scanner, for its other sensors
 
 
 class DeviceSimulation(Simulation):
@@ -56,7 +58,8 @@ class DeviceSimulation(Simulation):
         self.devices.close()
 
     def _parts(self, world: World, obstacles: Obstacles, body: Body) -> Parts:
-        self._twin = SimulatedRobot(world, None, body, None, obstacles)
+        sees = body if body.range else body.replace(sensors=(*body.sensors, _EYES))
+        self._twin = SimulatedRobot(world, None, sees, None, obstacles)
         self.devices = DeviceSet(body, self._twin, self._report)
         drive = self.devices.first("drive")
         self._drives = bool(drive) and self.devices.devices[drive].driver == SIMULATED

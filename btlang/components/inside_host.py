@@ -40,12 +40,12 @@ class InsideHost:
 
     def load(self) -> Mapping[str, Any]:
         """See Host."""
-        part, folder = self._part, self._body.folder
-        component = self._component = load_class(part.place, folder)()
+        part = self._part
+        component = self._component = load_class(part.place, self._body.folder)()
         component.name, component.body = part.name, self._body
         component._devices, component._tell = self._devices, self._tell
         component.set_parameters(part.parameters)
-        return describe(part.place, folder)
+        return describe(component)
 
     def transition(self, name: str) -> None:
         """See Host."""

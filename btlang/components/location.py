@@ -5,12 +5,12 @@ from __future__ import annotations
 import json
 import os
 import sys
-from importlib import import_module
-from importlib.machinery import PathFinder
 from importlib.util import find_spec
+from inspect import signature
 
-from btlang.components.component import Component, ComponentError
+from btlang.components.component import Component, ComponentError, ParameterError
 from btlang.engine.leaves.leaf import described
+from btlang.robots.modules import module_of
 from btlang.text.output import pass_on, show
 
 TYPE_CHECKING = False
@@ -18,6 +18,7 @@ if TYPE_CHECKING:
     from typing import Any
 
 ENTRY_POINTS = "btlang.components"
+WRONG_PARAMETERS = 3
 
 
 def located(place: str) -> str:
@@ -51,10 +52,8 @@ def words_file(place: str, folder: str) -> str | None:
 def load_class(place: str, folder: str) -> type[Component]:
     """The class, from the folder of its robot file or from what is installed. Raises ComponentError."""
     module, _, name = located(place).partition(":")
-    if folder and folder not in sys.path and PathFinder.find_spec(module, [folder]) is not None:
-        sys.path.insert(0, folder)
     try:
-        found: Any = import_module(module)
+        found: Any = module_of(module, folder)
         for part in name.split("."):
             found = getattr(found, part)
     except Exception as problem:  # whatever somebody's module raises
@@ -64,21 +63,47 @@ def load_class(place: str, folder: str) -> type[Component]:
     return found
 
 
-def describe(place: str, folder: str) -> dict[str, Any]:
-    """What a class says of itself, as JSON: version, needs, rate, parameters. Raises ComponentError."""
-    found = load_class(place, folder)
-    parameters = [parameter.described() for parameter in found.parameters().values()]
-    return {"version": str(found.version), "needs": list(found.needs), "rate": found.rate, "parameters": parameters}
+def describe(component: Component) -> dict[str, Any]:
+    """What the class of a component says of itself, as JSON: version, needs, rate, parameters and methods."""
+    kind = type(component)
+    parameters = [parameter.described() for parameter in kind.parameters().values()]
+    methods = {name: _takes(getattr(component, name)) for name in dir(kind) if _is_method(kind, name)}
+    return {
+        "version": str(kind.version), "needs": list(kind.needs), "rate": kind.rate, "parameters": parameters,
+        "methods": methods,
+    }  # fmt: skip
+
+
+def _is_method(kind: type[Component], name: str) -> bool:
+    return name[0] != "_" and not hasattr(Component, name) and callable(getattr(kind, name, None))
+
+
+def _takes(method: Any) -> dict[str, Any]:
+    """The names of its parameters, of those without a default, and whether it takes all others, too."""
+    try:
+        parameters = signature(method).parameters.values()
+    except (TypeError, ValueError):  # of a method that isn't written in Python
+        return {"takes": [], "required": [], "takes_all": True}
+    named = [each for each in parameters if each.kind in (each.POSITIONAL_OR_KEYWORD, each.KEYWORD_ONLY)]
+    return {
+        "takes": [each.name for each in named],
+        "required": [each.name for each in named if each.default is each.empty],
+        "takes_all": any(each.kind is each.VAR_KEYWORD for each in parameters),
+    }
 
 
 def main(place: str, folder: str, parameters: str) -> int:
-    """Prints what a class says of itself, for `btc robot check`: in a process of its own, as the class is loaded."""
+    """Prints what a class says of itself, for `btc robot check`: in a process of its own, as the class is loaded.
+
+    Returns WRONG_PARAMETERS where only these are wrong.
+    """
     try:
-        load_class(place, folder)().set_parameters(json.loads(parameters))
-        pass_on(json.dumps(describe(place, folder)) + "\n")
+        component = load_class(place, folder)()
+        component.set_parameters(json.loads(parameters))
+        pass_on(json.dumps(describe(component)) + "\n")
     except ComponentError as problem:
         show(str(problem), sys.stderr)
-        return 1
+        return WRONG_PARAMETERS if isinstance(problem, ParameterError) else 1
     return 0
 
 

@@ -45,7 +45,7 @@ def device_parts(
     bumpers = tuple(name for name, device in devices.devices.items() if device.kind == "button" and BUMPER in name)
     safety = Safety(
         [
-            Guard(name, readers[name], float(device.options.get("angle", 0.0)))
+            Guard(name, readers[name], device.angle)
             for name, device in devices.devices.items()
             if device.kind == "range" or name in bumpers
         ],

@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from btlang.robots.body import ComponentPart
 
 _BEAT = 0.1  # seconds between two looks at it
-_ANSWER = 0.05  # seconds that a tick waits for a condition
+_ANSWER = 0.2  # seconds that a tick waits for a condition: late is better than not known
 _SEND = struct.pack("ll", 0, 300_000)  # seconds and microseconds after which a process that reads nothing is given up
 _ERRORS = 2  # where it writes what it prints: standard output is for what people asked for
 _LOADING = 60.0  # seconds that a process gets to start, and to import what its class needs, on a busy computer

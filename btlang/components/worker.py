@@ -183,7 +183,7 @@ class Life:
             self._loaded = message
         elif any(self._loaded[key] != message[key] for key in ("place", "parameters")):
             raise ComponentError("another robot shares it with another class or other parameters")
-        return describe(message["place"], message["folder"])
+        return describe(self.component)
 
     def _go(self, worker: Worker, name: str) -> str:
         transition = TRANSITIONS[name]

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Callable, Mapping, Sequence
 from typing import Protocol
 
-from btlang.devices.driver import DeviceSilent
-from btlang.devices.drivers import SIMULATED, driver_class
+from btlang.devices.driver import DeviceError, DeviceSilent
+from btlang.devices.drivers import SIMULATED, make_driver
 from btlang.devices.kinds import KINDS, Command, Reading
 from btlang.devices.loop import DeviceLoop
 from btlang.devices.simulated import SimulatedDevice
@@ -16,6 +17,8 @@ if TYPE_CHECKING:
     from typing import Any
 
     from btlang.robots.body import Body, Device
+
+_FIRST = 3.0  # seconds
 
 
 class Reads(Protocol):
@@ -47,6 +50,8 @@ class DeviceSet:
         self._simulated: list[SimulatedDevice] = []
         ports: dict[tuple[str, str], list[Device]] = {}
         for device in body.devices:
+            if device.kind not in KINDS:
+                raise DeviceError(f'there is no kind "{device.kind}"; the kinds are {", ".join(KINDS)}')
             if device.driver == SIMULATED:
                 simulated = self._reads[device.name] = SimulatedDevice(device, robot)
                 if KINDS[device.kind].moves:
@@ -54,14 +59,17 @@ class DeviceSet:
             else:
                 ports.setdefault((device.driver, device.port), []).append(device)
         for (driver, port), devices in ports.items():
-            loop = DeviceLoop(driver_class(driver, body.folder)(port, devices), tuple(devices), self._changed)
+            loop = DeviceLoop(make_driver(driver, body.folder, port, devices), tuple(devices), self._changed)
             self.loops.append(loop)
             self._reads.update(dict.fromkeys(loop.devices, loop))
 
     def start(self) -> None:
-        """Begins to read and write."""
+        """Begins to read and write; waits a moment for what the devices say first, so that a mission has it."""
         for loop in self.loops:
             loop.start()
+        until = time.monotonic() + _FIRST
+        for loop in self.loops:
+            loop.settled.wait(max(0.0, until - time.monotonic()))
 
     def close(self) -> None:
         """Brings what moves to rest, and lets go of the ports. May be called twice."""

@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-import sys
-from importlib import import_module
-
 from btlang.devices.driver import DeviceError
+from btlang.engine.leaves.leaf import described
+from btlang.robots.modules import module_of
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
+    from collections.abc import Sequence
     from typing import Any
 
-    from btlang.devices.driver import MakesDriver
+    from btlang.devices.driver import Device, Driver, MakesDriver
 
 SIMULATED = "simulated"
 DRIVERS = {
@@ -40,10 +40,24 @@ def driver_class(name: str, folder: str = "") -> MakesDriver:
             raise DeviceError(f'there is no driver "{name}"; the drivers are {listed}, or write module:Class')
         place = places[0]
     module, _, attribute = place.partition(":")
-    if folder and folder not in sys.path and name not in DRIVERS:
-        sys.path.insert(0, folder)
     try:
-        found: Any = getattr(import_module(module), attribute)
+        found: Any = getattr(module_of(module, "" if name in DRIVERS else folder), attribute)
     except Exception as problem:  # whatever somebody's module raises
         raise DeviceError(f'the driver "{name}" can\'t be loaded: {problem}') from problem
-    return found  # type: ignore[no-any-return]
+    lacks = next(
+        (each for each in ("kinds", "needs_port", "open", "exchange", "close") if not hasattr(found, each)), ""
+    )
+    if not isinstance(found, type) or lacks:
+        raise DeviceError(f'"{name}" isn\'t a class of drivers' + (f": it has no {lacks}" if lacks else ""))
+    return found  # type: ignore[return-value]
+
+
+def make_driver(name: str, folder: str, port: str, devices: Sequence[Device]) -> Driver:
+    """A driver, not opened yet. Raises DeviceError, whatever its constructor raises."""
+    kind = driver_class(name, folder)
+    try:
+        return kind(port, devices)
+    except DeviceError:
+        raise
+    except Exception as problem:
+        raise DeviceError(f'the driver "{name}" can\'t be made: {described(problem)}') from problem

@@ -144,6 +144,12 @@ class Pressed(Reading):
     pressed: bool
 
 
+class Measured(Reading):
+    """Of any other sensor, such as a thermometer: a number in the unit that is usual for what it measures."""
+
+    value: float
+
+
 class Colour(Command):
     """Red, green and blue of a light, 0 to 1."""
 
@@ -187,6 +193,7 @@ KINDS = {
         Kind("microphone", Sound),
         Kind("speaker", Playing, Play),
         Kind("button", Pressed),
+        Kind("gauge", Measured, shifted=("value",)),
         Kind("light", None, Colour),
         Kind("display", None, Shown),
     )

@@ -19,7 +19,7 @@ SILENCE = 0.2
 """Seconds after which a command no longer counts, and after which a device that moves is silent."""
 _RETRY = 0.25  # seconds until a lost port is opened again
 _JOIN = 2.0
-_NOTHING_NEW, _CLOSED = "it tells nothing new", "its loop is closed"
+_NOT_YET, _NOTHING_NEW, _CLOSED = "it has not answered yet", "it tells nothing new", "its loop is closed"
 
 
 class DeviceLoop:
@@ -39,7 +39,9 @@ class DeviceLoop:
         self.devices: Mapping[str, Device] = {device.name: device for device in devices}
         self._commands: dict[str, tuple[Command, float]] = {}
         self._readings: dict[str, tuple[Reading, float]] = {}
-        self._wrong: dict[str, str | None] = dict.fromkeys(self.devices, "it has not answered yet")
+        self._wrong: dict[str, str | None] = dict.fromkeys(self.devices, _NOT_YET)
+        self.settled = threading.Event()
+        """Set once it is known of each device whether it answers."""
         self._stopped = threading.Event()
         self._thread = threading.Thread(target=self._work, name="btlang devices", daemon=True)
         self.rate = 0.0
@@ -151,6 +153,8 @@ class DeviceLoop:
             self._wrong[name] = reason
             with suppress(Exception):  # whoever listens, the devices are read on
                 self._changed(name, reason)
+            if _NOT_YET not in self._wrong.values():
+                self.settled.set()
 
     def _lost(self, reason: str) -> None:
         self.rate = 0.0

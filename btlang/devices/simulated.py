@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections import deque
 from collections.abc import Callable
 from contextlib import suppress
-from math import inf, radians
+from math import inf, isfinite, radians
 from random import Random
 
 from btlang.devices.driver import Device, DeviceError, DeviceSilent
@@ -20,6 +20,7 @@ from btlang.devices.kinds import (
     Image,
     JointState,
     JointTarget,
+    Measured,
     Motion,
     Play,
     Playing,
@@ -46,17 +47,20 @@ class SimulatedDevice:
     """One device. `read` and `write` are for any thread, `step` for that of the robot. Seconds are those of its world.
 
     Options of all kinds: `noise` (standard deviation), `delay` in seconds, `silent` and `frozen` as [from, until].
-    Of a range sensor: `angle` (degrees left of ahead), `cone` (degrees), `range` (metres). Of a camera: `angle`, `view`
-    (degrees). Of a joint or hand: `part`, the name in the body, by default that of the device. Of a button: `bumper`.
+    Of a range sensor: `cone` (degrees), `range` (metres). Of a camera: `view` (degrees). Of a joint or hand: `part`,
+    the name in the body, by default that of the device. Of a button: `bumper`. Of a gauge: `value`.
     """
 
     def __init__(self, device: Device, robot: Any) -> None:
         self._device, self._robot = device, robot
         self._kind = KINDS[device.kind]
         known = {"noise", "delay", "silent", "frozen", *_OPTIONS.get(device.kind, ())}
-        for name in device.options:
+        for name, value in device.options.items():
             if name not in known:
                 raise DeviceError(f'unknown option "{name}" of the {device.name}; it has {", ".join(sorted(known))}')
+            is_right, wanted = _VALUES.get(name, (_is_number, "a number"))
+            if not is_right(value):
+                raise DeviceError(f'"{name}" of the {device.name} must be {wanted}, not {value!r}')
         self._is_perfect = not {"noise", "delay", "silent", "frozen"} & set(device.options)
         self._random = Random(device.name)
         self._past: deque[tuple[float, Reading]] = deque()
@@ -88,7 +92,10 @@ class SimulatedDevice:
         return self._past[0][1]
 
     def _read(self) -> Reading:
-        return _READ[self._device.kind](self) if self._kind.reading is not None else Reading()
+        try:
+            return _READ[self._device.kind](self) if self._kind.reading is not None else Reading()
+        except RobotError as problem:
+            raise DeviceSilent(f"the {self._device.name} is silent: {problem}") from None
 
     def write(self, name: str, command: Command) -> None:
         """Tells it a command."""
@@ -133,7 +140,7 @@ class SimulatedDevice:
         return noisy
 
     def _distance(self) -> Distance:
-        angle, cone = float(self._option("angle", 0.0)), float(self._option("cone", 15.0))
+        angle, cone = self._device.angle, float(self._option("cone", 15.0))
         ranges = self._robot.scan()
         beams = range(round(angle - cone / 2), round(angle + cone / 2) + 1)
         nearest = min(float(ranges[beam % 360]) for beam in beams) - self._robot.radius  # it sits on the rim
@@ -194,7 +201,7 @@ class SimulatedDevice:
         """What the scanner sees, as walls that are darker and lower the farther they are."""
         import numpy as np  # most missions need none
 
-        view, angle = float(self._option("view", 60.0)), float(self._option("angle", 0.0))
+        view, angle = float(self._option("view", 60.0)), self._device.angle
         ranges = np.asarray(self._robot.scan())
         columns = np.arange(_WIDTH)
         bearings = angle + view / 2 - columns * view / _WIDTH
@@ -220,9 +227,24 @@ class SimulatedDevice:
         return Pressed(self._robot.bumped if self._option("bumper", False) else self.is_pressed)
 
 
+def _is_number(value: object) -> bool:
+    return isinstance(value, int | float) and not isinstance(value, bool) and isfinite(value)
+
+
+def _is_span(value: object) -> bool:
+    return isinstance(value, list) and len(value) == 2 and all(map(_is_number, value))
+
+
+_VALUES: dict[str, tuple[Callable[[Any], bool], str]] = {
+    "silent": (_is_span, "[from, until] in seconds"),
+    "frozen": (_is_span, "[from, until] in seconds"),
+    "part": (lambda value: isinstance(value, str), "a name"),
+    "bumper": (lambda value: isinstance(value, bool), "true or false"),
+}
+"""What options may be, where that isn't a number."""
 _OPTIONS = {
-    "range": ("angle", "cone", "range"), "camera": ("angle", "view"), "joint": ("part",), "hand": ("part",),
-    "button": ("bumper",),
+    "range": ("cone", "range"), "camera": ("view",), "joint": ("part",), "hand": ("part",),
+    "button": ("bumper",), "gauge": ("value",),
 }  # fmt: skip
 _READ: dict[str, Callable[[SimulatedDevice], Reading]] = {
     "range": SimulatedDevice._distance,
@@ -236,6 +258,7 @@ _READ: dict[str, Callable[[SimulatedDevice], Reading]] = {
     "microphone": SimulatedDevice._sound,
     "speaker": SimulatedDevice._playing,
     "button": SimulatedDevice._pressed,
+    "gauge": lambda device: Measured(float(device._option("value", 0.0))),
 }
 _WRITE: dict[str, Callable[[SimulatedDevice, Command], None]] = {
     "drive": SimulatedDevice._roll,
@@ -271,4 +294,4 @@ def twin(device: Device) -> Device:
     if device.driver == SIMULATED:
         return device
     options = {"bumper": True} if device.kind == "button" and "bumper" in device.name else {}
-    return Device(device.name, device.kind, SIMULATED, options=options)
+    return Device(device.name, device.kind, SIMULATED, options=options, angle=device.angle)

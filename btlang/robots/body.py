@@ -118,6 +118,7 @@ class Device(Record):
     """A device of a robot: `kind` and `driver` are names of btlang.devices, `options` are those of its driver.
 
     `scale` and `offset` make what its driver tells true: value * scale + offset; for a command the other way round.
+    It looks `angle` degrees left of ahead.
     """
 
     name: str
@@ -127,6 +128,7 @@ class Device(Record):
     options: Mapping[str, Any] = {}
     scale: float = 1.0
     offset: float = 0.0
+    angle: float = 0.0
 
 
 class RosNode(Record):
@@ -167,7 +169,8 @@ class Body(Record):
     """All that is known of a robot. What it lacks is None, or is not in the tuples.
 
     `over` is what it runs on where nothing else is said: a name of btlang.robots.registry.ROBOTS. Joints that a posture
-    does not name stay where they are; its steps follow each other. `file` is where this comes from.
+    does not name stay where they are; its steps follow each other. `file` is where this comes from, `world` the path of
+    the world file of the place where it works; "" without one.
     """
 
     name: str
@@ -186,6 +189,7 @@ class Body(Record):
     devices: tuple[Device, ...] = ()
     components: tuple[ComponentPart, ...] = ()
     file: str = ""
+    world: str = ""
 
     @property
     def folder(self) -> str:

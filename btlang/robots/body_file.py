@@ -7,6 +7,7 @@ import re
 from collections.abc import Callable, Collection, Mapping
 from functools import cache
 
+from btlang.diagnostics.reading import is_below, real_path
 from btlang.robots.body import (
     BEARING,
     Base,
@@ -101,7 +102,7 @@ def _body(top: Table, overs: Collection[str], file: str) -> Body:
     components = _listed(top, "component", _component, problems)
     made = Body(
         name, radius, over, base, navigation, joints, postures, hands, sensors, battery, dock, voice, screen,
-        devices, components, file,
+        devices, components, file, problems.part(lambda: _world(top, file), ""),
     )  # fmt: skip
     problems.part(lambda: top.finish(made), made)
     if not file:
@@ -110,6 +111,16 @@ def _body(top: Table, overs: Collection[str], file: str) -> Body:
         problems.found += [Problem(_FOREIGN, "device", index, "driver") for index in real]
     problems.end()
     return made
+
+
+def _world(top: Table, file: str) -> str:
+    if not top.has("world"):
+        return ""
+    folder = os.path.dirname(file)
+    path = os.path.join(folder, top.text("world"))
+    if not (file and is_below(real_path(path), folder) and os.path.isfile(path)):
+        raise top.problem("world", '"world" must be a file in the folder of the robot file')
+    return path
 
 
 def _listed(
@@ -226,7 +237,8 @@ def _device(table: Table) -> Device:
     scale, offset = table.number("scale", 1.0), table.number("offset", 0.0)
     if scale == 0.0:
         raise table.problem("scale", '"scale" must not be 0')
-    return table.finish(Device(name, kind, driver, port, table.values("options"), scale, offset))
+    angle = table.number("angle", 0.0, low=-360, high=360)
+    return table.finish(Device(name, kind, driver, port, table.values("options"), scale, offset, angle))
 
 
 def _component(table: Table) -> ComponentPart:

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
+from contextlib import suppress
 from functools import partial
+from importlib.util import find_spec
 
 from btlang.record import Record
 from btlang.robots.body_file import read_body, shipped_bodies, standard_body
-from btlang.robots.platforms import ROBOTS, component_function, connection_function
+from btlang.robots.platforms import ALL, ROBOTS, component_function, connection_function
 from btlang.text.source import Source
 from btlang.vocabulary.shipped import BODIES
 
@@ -23,8 +25,13 @@ if TYPE_CHECKING:
     Connect: TypeAlias = Callable[[World], Connection]
 
 
+ENTRY_POINTS = "btlang.robots"
+"""Each names a package with a file `robot.toml`: an installed robot."""
+
+
 def body_of(robot: str | Source) -> Body:
-    """The body of a robot: of a name in ROBOTS that which ships, else of the robot file, or of its text.
+    """The body of a robot: of a name in ROBOTS that which ships, else of the robot file, of its text, or of the package
+    that is installed by this name.
 
     Raises MissionError (BT071), and ValueError for what is no robot.
     """
@@ -34,10 +41,28 @@ def body_of(robot: str | Source) -> Body:
         return standard_body()
     if robot in shipped_bodies():
         return read_body(os.path.join(BODIES, f"{robot}.toml"))
-    if not (robot.endswith(".toml") or os.path.exists(robot)):
+    if robot.endswith(".toml") or (os.path.exists(robot) and not os.path.isdir(robot)):
+        return read_body(robot)
+    path = installed_robot(robot)
+    if path is None:
         names = " or ".join(map(repr, ROBOTS))
-        raise ValueError(f"robot must be {names}, a robot file, or a function that connects to one, not {robot!r}")
-    return read_body(robot)
+        raise ValueError(
+            f"robot must be {names}, a robot file, an installed robot, or a function that connects to one, "
+            f"not {robot!r}"
+        )
+    return read_body(path)
+
+
+def installed_robot(name: str) -> str | None:
+    """The robot file of an installed package, by the name of its entry point; None where there is none."""
+    from importlib.metadata import entry_points
+
+    for entry_point in entry_points(group=ENTRY_POINTS, name=name):
+        with suppress(ImportError, ValueError):
+            spec = find_spec(entry_point.value)
+            for folder in (spec.submodule_search_locations or ()) if spec is not None else ():
+                return os.path.join(folder, "robot.toml")
+    return None
 
 
 def runs_on(robot: str | Source, over: str | None = None) -> tuple[Body, str]:
@@ -49,6 +74,16 @@ def runs_on(robot: str | Source, over: str | None = None) -> tuple[Body, str]:
         raise ValueError(f"over must be {' or '.join(map(repr, ROBOTS))}, not {over!r}")
     body = body_of(robot)
     return body, over or (robot if robot in ROBOTS else body.over)
+
+
+def runs_in_real_time(body: Body, over: str, simulate: Sequence[str] = ()) -> bool:
+    """Whether it takes no other speed: it is elsewhere, or has devices that are real, since `simulate` doesn't name
+    them (see btlang.components.device_robot).
+    """
+    if over != "devices":
+        return over != "simulated"
+    real = (device for device in body.devices if device.driver != "simulated")
+    return ALL not in simulate and any(not {device.name, device.kind} & set(simulate) for device in real)
 
 
 class Connector(Record):

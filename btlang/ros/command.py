@@ -9,7 +9,7 @@ from importlib.util import find_spec
 from btlang.arguments import namespace, robot_on
 from btlang.robots.options import add_simulate
 from btlang.robots.platforms import ROBOTS
-from btlang.robots.registry import connector, runs_on
+from btlang.robots.registry import connector, runs_in_real_time, runs_on
 from btlang.ros.available import require_interfaces, require_ros, unusable
 from btlang.ros.serving.names import FOLDER
 from btlang.text.output import show
@@ -87,7 +87,7 @@ def add_body_options(parser: ArgumentParser, platforms: Sequence[str] = tuple(RO
         type=robot_on(platforms),
         default="simulated",
         metavar="ROBOT",
-        help=f"{', '.join(platforms)}, a robot file or the name of one that ships (default: %(default)s)",
+        help=f"{', '.join(platforms)}, a robot file or the name of a robot (default: %(default)s)",
     )
     parser.add_argument(
         "--over", choices=platforms, help="what the robot in a file runs on (default: as the file says)"
@@ -120,8 +120,8 @@ def chosen_robot(options: Namespace) -> Connector:
 
 def platform_of(options: Namespace) -> str:
     """What the chosen robot runs on. Ends with a usage error where that takes no --speed. Raises MissionError."""
-    over = runs_on(options.robot, options.over)[1]
-    if over not in ("simulated", "devices") and options.speed != "real":
+    body, over = runs_on(options.robot, options.over)
+    if options.speed != "real" and runs_in_real_time(body, over, options.simulate):
         how = f"--robot {over}" if options.robot == over else f"--robot {options.robot} over {over}"
         options.refuse(f"{how} runs in real time, so it takes no --speed")
     return over

@@ -5,7 +5,7 @@ from __future__ import annotations
 import argparse
 import re
 
-from btlang.arguments import at_least, between, duration, port, speed
+from btlang.arguments import at_least, between, duration, kept_robot, port, speed
 from btlang.diagnostics.errors import MissionError
 from btlang.robots.options import add_simulate
 from btlang.robots.platforms import ROBOTS
@@ -16,8 +16,9 @@ def add_robot_options(parser: argparse.ArgumentParser) -> None:
     """Those of `btc robot`."""
     _add_name(parser)
     parser.add_argument(
-        "--robot", default="simulated", metavar="ROBOT", help="robot file, or library:NAME (default: simulated)"
-    )
+        "--robot", type=kept_robot, default="simulated", metavar="ROBOT",
+        help="robot file, installed robot, or library:NAME (default: simulated)",
+    )  # fmt: skip
     parser.add_argument("--over", choices=ROBOTS, help="what it runs on (default: as its file says)")
     add_simulate(parser)
     parser.add_argument("--world", metavar="FILE", help="world file, or library:NAME")

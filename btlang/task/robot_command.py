@@ -15,7 +15,7 @@ from urllib.parse import parse_qs, urlsplit
 from btlang.components.file_command import serve_file
 from btlang.components.words import robot_words
 from btlang.diagnostics.errors import MissionError
-from btlang.robots.registry import connector
+from btlang.robots.registry import connector, runs_in_real_time
 from btlang.run.emergency import emergency_signal
 from btlang.task import messages
 from btlang.task.applicable import check_robot_words
@@ -40,7 +40,7 @@ if TYPE_CHECKING:
     import argparse
     from typing import Any
 
-    from btlang.robots.registry import Connect
+    from btlang.robots.registry import Connector
     from btlang.text.source import Source
 
 _UNIT = """{note}[Unit]
@@ -120,6 +120,8 @@ def _up(options: argparse.Namespace) -> int:
     try:  # the name is ours before the store and the robot are touched
         kept = layer_options(options, name)
         robot, world = _from_library(options, kept)
+        if options.speed != "real" and runs_in_real_time(robot.body, robot.over, options.simulate):
+            options.refuse(f"the robot runs in real time over {robot.over}, so it takes no --speed")
         words = [] if options.robot.startswith(_LIBRARY) else robot_words(options.robot)
         reader = MissionReader(
             [*words, *options.keywords],
@@ -153,20 +155,20 @@ def _up(options: argparse.Namespace) -> int:
     return code or (0 if ended_well else 1)
 
 
-def _from_library(options: argparse.Namespace, kept: Mapping[str, Any]) -> tuple[str | Connect, str | Source | None]:
+def _from_library(options: argparse.Namespace, kept: Mapping[str, Any]) -> tuple[Connector, str | Source | None]:
     """The robot and the world that options name, the newest revisions where these are in the robot's own library."""
     robot, world = options.robot, options.world
     over, named = options.over or ("devices" if options.simulate else None), {}
     if options.simulate:
         named["simulate"] = options.simulate
-    if not any(each is not None and each.startswith(_LIBRARY) for each in (robot, world)):
-        return connector(robot, over, **named), world
-    os.makedirs(kept["folder"], mode=0o700, exist_ok=True)
-    with open_store(kept["store"]) as store:
-        found = kept_text(store, robot.removeprefix(_LIBRARY), Kind.ROBOT) if robot.startswith(_LIBRARY) else robot
-        if world is not None and world.startswith(_LIBRARY):
-            world = kept_text(store, world.removeprefix(_LIBRARY), Kind.WORLD)
-    return connector(found, over, **named), world
+    if any(each is not None and each.startswith(_LIBRARY) for each in (robot, world)):
+        os.makedirs(kept["folder"], mode=0o700, exist_ok=True)
+        with open_store(kept["store"]) as store:
+            robot = kept_text(store, robot.removeprefix(_LIBRARY), Kind.ROBOT) if robot.startswith(_LIBRARY) else robot
+            if world is not None and world.startswith(_LIBRARY):
+                world = kept_text(store, world.removeprefix(_LIBRARY), Kind.WORLD)
+    chosen = connector(robot, over, **named)
+    return chosen, world or chosen.body.world or None
 
 
 def _unit(options: argparse.Namespace) -> str:

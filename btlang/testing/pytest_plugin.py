@@ -1,4 +1,6 @@
-"""The plugin for pytest: collects files of tests (`*.test.txt`), each test an item. pytest finds it by itself."""
+"""The plugin for pytest, which finds it by itself: files of tests (`*.test.txt`), each test an item, and fixtures for
+components and drivers.
+"""
 
 from __future__ import annotations
 
@@ -10,15 +12,42 @@ from btlang.testing.names import is_test_file
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from collections.abc import Iterator
+    from collections.abc import Callable, Iterator
     from typing import Any
 
+    from btlang.testing.bench import ComponentBench, DeviceBench
     from btlang.testing.test import MissionTest
 
 
 def pytest_collect_file(file_path: Path, parent: pytest.Collector) -> pytest.Collector | None:
     """None for other files."""
     return MissionTestFile.from_parent(parent, path=file_path) if is_test_file(file_path.name) else None
+
+
+@pytest.fixture
+def component() -> Iterator[ComponentBench]:
+    """Makes components that are tested alone: see btlang.testing.bench.ComponentBench."""
+    from btlang.testing.bench import ComponentBench
+
+    bench = ComponentBench()
+    yield bench
+    bench.close()
+
+
+@pytest.fixture
+def device() -> Iterator[Callable[..., DeviceBench]]:
+    """Makes devices whose driver is tested alone: the parameters are those of btlang.testing.bench.DeviceBench."""
+    from btlang.testing.bench import DeviceBench
+
+    benches: list[DeviceBench] = []
+
+    def make(*args: Any, **options: Any) -> DeviceBench:
+        benches.append(DeviceBench(*args, **options))
+        return benches[-1]
+
+    yield make
+    for bench in benches:
+        bench.close()
 
 
 class MissionTestFile(pytest.File):

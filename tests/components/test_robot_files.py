@@ -40,7 +40,7 @@ def wrong(folder: Path, text: str) -> list[str]:
         ("", ["the base needs a device of the kind \"drive\""]),
         (WHEELS.replace('"drive"', '"drve"'), [
             "there is no kind \"drve\"; the kinds are range, lidar, drive, imu, battery, joint, hand, camera, "
-            "microphone, speaker, button, light, display",
+            "microphone, speaker, button, gauge, light, display",
             "the base needs a device of the kind \"drive\"",
         ]),
         (WHEELS.replace("simulated", "nothing:There"), [
@@ -115,3 +115,25 @@ def test_order() -> None:
     assert circle({"a": ["a"]}) == ["a", "a"]
     deep = {str(n): [str(n + 1)] for n in range(20_000)}
     assert circle(deep) == []
+
+
+@pytest.mark.parametrize(
+    ("before", "after", "reason"),
+    [
+        ("Machine.brew", "Machine.brow", "coffee:Machine has no method brow"),
+        ("Machine.brew", "Pot.brew", "the robot has no component of the class coffee:Pot"),
+        ("{drink}]\"", "{drink} [now {count}]]\"", "coffee:Machine.brew takes no parameter count"),
+        ("brew [[a] {drink}]", "brew", "coffee:Machine.brew has a parameter drink, which is no slot"),
+    ],
+)  # fmt: skip
+def test_words_that_do_not_fit_their_class(tmp_path: Path, before: str, after: str, reason: str) -> None:
+    robot = robot_file(tmp_path, machine())
+    words = tmp_path / "coffee.toml"
+    text = words.read_text(encoding="utf-8")
+    text = text.replace(before, after)
+    if after == "brew":
+        text = "\n".join(line for line in text.splitlines() if not line.startswith("slots"))
+    words.write_text(text, encoding="utf-8")
+    _, found = check_robot(read_source(robot))
+    assert reason in " ".join(each.message for each in found)
+    assert {each.span.source.name for each in found} == {str(words)}

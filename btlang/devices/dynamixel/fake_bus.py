@@ -35,6 +35,7 @@ from btlang.devices.dynamixel.protocol import (
     PacketReader,
     crc16,
 )
+from btlang.text.output import show
 
 _UNKNOWN = 2
 
@@ -191,7 +192,7 @@ def main() -> None:
     options.add_argument("ids", type=int, nargs="*", default=[1], metavar="ID", help="ids of the servos")
     given = options.parse_args()
     with FakeBus(FakeServo(id) for id in given.ids) as bus:
-        print(bus.port, flush=True)
+        show(bus.port)
         with suppress(KeyboardInterrupt):
             threading.Event().wait()
 

@@ -41,6 +41,7 @@ from btlang.devices.serial_board.messages import (
 )
 from btlang.devices.serial_board.simulated_line import SimulatedLine
 from btlang.devices.serial_board.values import COMMANDS, READINGS
+from btlang.text.output import show
 
 SILENCE = 0.18
 """Seconds without a command after which a channel comes to rest: all is at rest in 0.2 s."""
@@ -193,7 +194,7 @@ def _moved(reading: Reading, command: Command, seconds: float) -> Reading:
 def main(name: str) -> None:
     """Shows a board with one channel of each kind until Ctrl-C."""
     with suppress(KeyboardInterrupt), SimulatedLine(SimulatedBoard(name)) as line:
-        print(line.path, flush=True)
+        show(line.path)
         while True:
             time.sleep(3600)
 

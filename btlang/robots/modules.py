@@ -1,0 +1,34 @@
+"""Python modules that a robot file names: those in its folder come before the ones that are installed."""
+
+from __future__ import annotations
+
+import sys
+from importlib import import_module
+from importlib.machinery import PathFinder
+from importlib.util import module_from_spec
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from types import ModuleType
+
+
+def module_of(name: str, folder: str) -> ModuleType:
+    """A module. One in the folder is read anew each time: it may have a newer version, or be that of another robot with
+    one of the same name. Raises what the module raises.
+    """
+    top = name.partition(".")[0]
+    spec = PathFinder.find_spec(top, [folder]) if folder and top else None
+    if spec is not None and folder not in sys.path:
+        sys.path.insert(0, folder)
+    if spec is None or spec.loader is None or top != name:
+        return import_module(name)
+    before, module = sys.modules.get(name), module_from_spec(spec)
+    sys.modules[name] = module
+    try:
+        spec.loader.exec_module(module)
+    except BaseException:
+        del sys.modules[name]
+        if before is not None:
+            sys.modules[name] = before
+        raise
+    return module

@@ -1,0 +1,1 @@
+"""The robot "gadget": its robot file, its world and its missions."""

@@ -1,0 +1,16 @@
+"""Its missions on the robot of robot.toml. What missions do elsewhere is tested by patrol.test.txt."""
+
+from pathlib import Path
+
+import btlang
+import pytest
+
+FOLDER = Path(__file__).parent
+MISSIONS = sorted(path for path in FOLDER.glob("*.txt") if not path.name.endswith(".test.txt"))
+
+
+@pytest.mark.parametrize("path", MISSIONS, ids=lambda path: path.name)
+def test_missions_succeed(path):
+    mission = btlang.parse_file(str(path))
+    outcome = mission.run(robot=str(FOLDER / "robot.toml"), speed="max", seed=0, time_limit=600)
+    assert outcome.succeeded, outcome.why()
