@@ -66,6 +66,7 @@ def component_nodes(robot: Any, body: Body) -> ComponentNodes:
 def add_robot_options(parser: ArgumentParser) -> None:
     """The options of `btc run` that choose a robot."""
     add_body_options(parser)
+    add_simulate(parser)
     parser.add_argument(
         "--sim-time", action="store_true", help="with --robot ros or actions: use the time of the topic /clock"
     )
@@ -92,7 +93,6 @@ def add_body_options(parser: ArgumentParser, platforms: Sequence[str] = tuple(RO
     parser.add_argument(
         "--over", choices=platforms, help="what the robot in a file runs on (default: as the file says)"
     )
-    add_simulate(parser)
 
 
 def add_namespace(parser: ArgumentParser, what: str) -> None:
