@@ -14,6 +14,7 @@ import sys
 from contextlib import suppress
 
 from btlang.components.component import ComponentError
+from btlang.text.output import show
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -72,9 +73,9 @@ def main(command: Sequence[str]) -> int:
             command, start_new_session=True, stdin=subprocess.DEVNULL, stdout=_ERRORS, env=environment
         )
     except OSError as problem:
-        print(problem.strerror, flush=True)
+        show(problem.strerror or str(problem))
         return 1
-    print(process.pid, flush=True)
+    show(str(process.pid))
     ended = os.pidfd_open(process.pid)
     select.select([ended, sys.stdin], [], [])
     with suppress(ProcessLookupError):

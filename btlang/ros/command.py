@@ -121,7 +121,7 @@ def chosen_robot(options: Namespace) -> Connector:
 def platform_of(options: Namespace) -> str:
     """What the chosen robot runs on. Ends with a usage error where that takes no --speed. Raises MissionError."""
     body, over = runs_on(options.robot, options.over)
-    if options.speed != "real" and runs_in_real_time(body, over, options.simulate):
+    if options.speed != "real" and runs_in_real_time(body, over, getattr(options, "simulate", ())):
         how = f"--robot {over}" if options.robot == over else f"--robot {options.robot} over {over}"
         options.refuse(f"{how} runs in real time, so it takes no --speed")
     return over
