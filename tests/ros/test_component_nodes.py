@@ -70,7 +70,10 @@ def test_a_killed_node_fails_its_command_and_is_back_for_the_next(tmp_path: Path
         process = keeper.status().process
         assert process is not None
         run = session.start(
-            mission(tmp_path, "try repeat clench otherwise print lost\nwait 5 seconds\nclench"), sinks=[told.append]
+            mission(
+                tmp_path, "try repeat clench otherwise print lost\nwait 5 seconds\ntry clench up to 5 times every 2 s"
+            ),
+            sinks=[told.append],
         )
         wait_until(lambda: len(told) > 3, "it has begun")
         os.kill(process, signal.SIGKILL)
@@ -105,7 +108,7 @@ def test_a_node_that_somebody_else_starts_late_and_kills(tmp_path: Path) -> None
         assert "the arm driver waits for the node /arm_driver" in outcome.why()
         first = start(*STARTED, stderr=subprocess.DEVNULL)
         becomes(keeper, "active")
-        assert session.run(mission(tmp_path, "clench")).outcome.succeeded
+        wait_until(lambda: session.run(mission(tmp_path, "clench")).outcome.succeeded, "its word", 4 * LONG)
         first.kill()
         first.wait()
         wait_until(lambda: keeper.state != "active", "its death")
@@ -152,7 +155,7 @@ def test_a_container(tmp_path: Path, composition: None) -> None:
         keys = {"container": '"/box"', "package": '"arm"', "plugin": '"arm::Driver"', "parameters": "{ force = 0.2 }"}
         with up(tmp_path, table(**keys)) as (session, keeper):
             becomes(keeper, "active")
-            assert session.run(mission(tmp_path, "clench")).outcome.succeeded
+            wait_until(lambda: session.run(mission(tmp_path, "clench")).outcome.succeeded, "its word", 4 * LONG)
         with up(tmp_path, table(**{**keys, "plugin": '"arm::Hand"'}, restarts=0)) as (_, keeper):
             wait_until(lambda: "can't be loaded into /box: could not find arm::Hand" in keeper.why, "the reason")
         box.kill()
