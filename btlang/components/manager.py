@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from btlang.components.component import ComponentError
 from btlang.components.life_cycle import ACTIVE, FINALIZED, INACTIVE, UNCONFIGURED
-from btlang.engine.leaves.leaf import ActionFailed
+from btlang.engine.leaves.leaf import ActionFailed, described
 from btlang.record import Record
 from btlang.robots.body import ComponentPart
 
@@ -279,6 +279,8 @@ class Keeper:
             self._change(UNCONFIGURED, "was brought down")
         except ComponentError as problem:
             self._fail(str(problem))
+        except BaseException as problem:  # of a class by somebody else, sys.exit() too
+            self._fail(described(problem))
         finally:
             host.close()
 
@@ -333,7 +335,9 @@ class Keeper:
             self._failures.append(now)
             if len(self._failures) > self.part.restarts:
                 self._given_up = True
-                reason = f"{reason}; it was given up after {len(self._failures)} attempts in a minute"
+                tries = len(self._failures)
+                attempts = f"{tries} attempts in a minute" if tries > 1 else "the first attempt"
+                reason = f"{reason}; it was given up after {attempts}"
             self._set(UNCONFIGURED, reason)
 
     def _change(self, state: str, why: str) -> None:

@@ -1,0 +1,70 @@
+"""Components that raise where nobody expects it, lie, flood, or go on after they were given up."""
+
+from __future__ import annotations
+
+from pathlib import Path
+from typing import Any
+
+import pytest
+
+import btlang
+from btlang.components.manager import Manager
+from btlang.robots.body import ComponentPart
+from tests.components.robots import robot_file
+from tests.components.test_faults import wait_until
+
+WORD = """
+[[action]]
+phrase = "misbehave"
+id = "Misbehave"
+call = "hostile:{call}"
+needs = ["base"]
+help = "Does what it must not."
+example = "misbehave"
+"""
+
+
+def hostile(folder: Path, name: str, **keys: object) -> str:
+    """A robot with one of the hostile components."""
+    lines = "\n".join(f"{key} = {value}" for key, value in keys.items())
+    return robot_file(folder, f'[[component]]\nname = "villain"\nclass = "hostile:{name}"\n{lines}')
+
+
+def misbehave(folder: Path, call: str, text: str = "misbehave") -> btlang.Mission:
+    (folder / "hostile.toml").write_text(WORD.format(call=call), encoding="utf-8")
+    return btlang.parse_tree(text, keywords=[str(folder / "hostile.toml")])
+
+
+def statuses(session: btlang.Session) -> Any:
+    return session.connection.manager.statuses()  # type: ignore[attr-defined]
+
+
+@pytest.mark.parametrize("runs", ["process", "here"])
+def test_a_constructor_that_raises_is_a_failure_like_others(tmp_path: Path, runs: str) -> None:
+    robot = hostile(tmp_path, "BrokenConstructor", runs=f'"{runs}"', restarts=1)
+    with btlang.Session(robot) as session:
+        wait_until(lambda: "given up" in (statuses(session) or [None])[0].why, 10)
+        assert "no water" in statuses(session)[0].why
+        assert statuses(session)[0].starts == 2
+
+
+class _LyingHost:
+    """Says of itself what nobody can use."""
+
+    state, process = "unconfigured", None
+
+    def load(self) -> Any:
+        return 5
+
+    def close(self) -> None:
+        pass
+
+
+def test_a_host_that_says_nonsense_of_itself_is_given_up() -> None:
+    manager = Manager([ComponentPart("villain", "hostile:Liar", restarts=0)], lambda part, changed: _LyingHost())  # type: ignore[arg-type,return-value]
+    manager.start()
+    assert not manager.wait(5.0)
+    assert [each.why for each in manager.statuses()] == [
+        "TypeError: 'int' object is not subscriptable; it was given up after the first attempt"
+    ]
+    manager.close()
