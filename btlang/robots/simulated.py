@@ -172,7 +172,7 @@ class SimulatedRobot:
         return self._base.wheels
 
     def drive(self, linear: float, angular: float) -> None:
-        """Sets the wanted metres and degrees a second; ends a journey under way."""
+        """Sets the wanted metres and degrees a second; ends a journey under way. Raises RobotError for no numbers."""
         if self._latch.refuses or self.power.empty:
             return
         self._navigator.cancel("another command took over the drive")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +11,9 @@ import pytest
 import btlang
 from btlang.components.manager import Manager
 from btlang.robots.body import ComponentPart
+from btlang.robots.platforms import ALL
+from btlang.robots.registry import connector
+from btlang.robots.robot import RobotError
 from tests.components.robots import robot_file
 from tests.components.test_faults import wait_until
 
@@ -68,3 +72,20 @@ def test_a_host_that_says_nonsense_of_itself_is_given_up() -> None:
         "TypeError: 'int' object is not subscriptable; it was given up after the first attempt"
     ]
     manager.close()
+
+
+@pytest.mark.parametrize("over", ["simulated", "devices"])
+def test_what_is_not_a_number_moves_nothing(over: str) -> None:
+    with btlang.Session(connector("standard", over, **({"simulate": [ALL]} if over == "devices" else {}))) as session:
+        robot = session.robot
+        for velocity in ((math.nan, 0.0), (0.0, math.nan)):
+            with pytest.raises(RobotError, match="can't drive at a speed that is not a number"):
+                robot.drive(*velocity)
+        name = robot.body.joints[0].name
+        with pytest.raises(RobotError, match=f'the joint "{name}" can\'t move to what is not a number'):
+            robot.move_joints({name: math.nan})
+        before = robot.joint(name)
+        for _ in range(40):
+            robot.step(0.05)
+        assert robot.velocity == (0.0, 0.0)
+        assert robot.joint(name) == before
