@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import time
 from pathlib import Path
 from typing import Any
 
@@ -89,3 +90,41 @@ def test_what_is_not_a_number_moves_nothing(over: str) -> None:
             robot.step(0.05)
         assert robot.velocity == (0.0, 0.0)
         assert robot.joint(name) == before
+
+
+@pytest.mark.parametrize(("name", "reason"), [("FailingStep", "the pump is broken"), ("ExitingStep", "SystemExit: 3")])
+def test_one_in_this_process_whose_step_fails_ends_its_actions_and_what_they_drive(
+    tmp_path: Path, name: str, reason: str
+) -> None:
+    robot = hostile(tmp_path, name, runs='"here"', restarts=0)
+    with btlang.Session(robot) as session:
+        outcome = session.run(misbehave(tmp_path, f"{name}.roll"), speed="max", time_limit=20).outcome
+        assert outcome is not None
+        assert reason in outcome.why()
+        session.robot.step(2.0)
+        assert session.robot.velocity == (0.0, 0.0)
+
+
+@pytest.mark.parametrize("runs", ["process", "here"])
+def test_a_method_that_raises_drives_no_longer(tmp_path: Path, runs: str) -> None:
+    robot = hostile(tmp_path, "Liar", runs=f'"{runs}"')
+    mission = misbehave(tmp_path, "Liar.roll_and_raise", "try misbehave otherwise wait 2 seconds")
+    with btlang.Session(robot) as session:
+        outcome = session.run(mission, speed="max").outcome
+        assert outcome is not None
+        assert outcome.succeeded
+        assert session.robot.travelled < 0.2
+
+
+def test_a_hook_that_was_given_up_moves_nothing_any_more(tmp_path: Path) -> None:
+    wheels = '[[device]]\nname = "wheels"\nkind = "drive"\ndriver = "simulated"'
+    robot = hostile(tmp_path, "EndlessHook", runs='"here"', limit=0.3, restarts=0, needs='["wheels"]')
+    with open(robot, "a", encoding="utf-8") as file:
+        file.write(f"\n{wheels}\n")
+    with btlang.Session(robot) as session:
+        wait_until(lambda: "given up" in statuses(session)[0].why, 10)
+        session.robot.step(1.0)
+        for _ in range(20):
+            session.robot.step(0.05)
+            time.sleep(0.01)
+        assert session.robot.velocity == (0.0, 0.0)
