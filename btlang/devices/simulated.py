@@ -32,6 +32,7 @@ from btlang.devices.kinds import (
     WheelSpeeds,
 )
 from btlang.devices.loop import SILENCE
+from btlang.devices.value_checks import check_command
 from btlang.robots.body import Body
 from btlang.robots.robot import RobotError
 
@@ -98,9 +99,8 @@ class SimulatedDevice:
             raise DeviceSilent(f"the {self._device.name} is silent: {problem}") from None
 
     def write(self, name: str, command: Command) -> None:
-        """Tells it a command."""
-        if self._kind.command is None or not isinstance(command, self._kind.command):
-            raise DeviceError(f"the {name} doesn't take a {type(command).__name__}")
+        """Tells it a command. Raises DeviceError for one that it doesn't take."""
+        check_command(name, self._device.kind, command)
         self._command, self._told = command, self._robot.time
         act = _WRITE.get(self._device.kind)
         if act is not None:
