@@ -3,18 +3,31 @@
 from __future__ import annotations
 
 import math
+import pickle
+import socket
+import struct
+import threading
 import time
+from collections import deque
+from multiprocessing.connection import Connection
 from pathlib import Path
 from typing import Any
 
 import pytest
 
 import btlang
+from btlang.components.life_cycle import ACTIVE
 from btlang.components.manager import Manager
+from btlang.components.plain import packed
+from btlang.components.process_host import ProcessHost
+from btlang.components.remote_leaf import RemoteLeaf
+from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.body import ComponentPart
 from btlang.robots.platforms import ALL
 from btlang.robots.registry import connector
 from btlang.robots.robot import RobotError
+from btlang.robots.simulated import SimulatedRobot
+from btlang.robots.world_file import load_world
 from tests.components.robots import robot_file
 from tests.components.test_faults import wait_until
 
@@ -128,3 +141,151 @@ def test_a_hook_that_was_given_up_moves_nothing_any_more(tmp_path: Path) -> None
             session.robot.step(0.05)
             time.sleep(0.01)
         assert session.robot.velocity == (0.0, 0.0)
+
+
+class _Flood(deque[tuple[str, Any]]):
+    """Gets another one for each that is taken."""
+
+    def popleft(self) -> tuple[str, Any]:
+        found = super().popleft()
+        if found[0] == "villain":
+            self.append(found)
+        return found
+
+
+def test_a_flood_of_events_neither_holds_a_tick_nor_hides_what_the_robot_says(tmp_path: Path) -> None:
+    with btlang.Session(hostile(tmp_path, "Liar", runs='"here"')) as session:
+        own: Any = session.connection
+        for _ in range(5_000):
+            own._told("villain", {})
+        own._tell("part", {"kind": "component", "name": "villain", "state": "active", "text": "it matters"})
+        for _ in range(5_000):
+            own._told("villain", {})
+        own._said = _Flood(own._said, own._said.maxlen)
+        heard: list[Any] = []
+        session.connection.bus.add(heard.append)
+        session.robot.step(0.05)
+        assert "it matters" in [getattr(event, "text", "") for event in heard]
+        assert len(heard) <= 1_500
+
+
+class _Process(ProcessHost):
+    """A process that says what a test says, over a socket that nobody reads."""
+
+    def __init__(self, devices: Any = ()) -> None:
+        part = ComponentPart("villain", "hostile:Liar")
+        super().__init__(part, "", dict(devices), lambda: None, lambda kind, data: None)
+        ours, self.its = socket.socketpair()
+        self._connection = Connection(ours.detach())
+        self.state = ACTIVE
+
+    def listen(self) -> threading.Thread:
+        self._reader = threading.Thread(target=self._read, daemon=True)
+        self._reader.start()
+        return self._reader
+
+    def close(self) -> None:
+        super().close()
+        self.its.close()
+
+    def says(self, *messages: Any) -> None:
+        """All of these, and ends."""
+        with Connection(self.its.detach()) as end:
+            for message in messages:
+                end.send_bytes(packed(message))
+        self.listen().join(5.0)
+
+
+def test_a_value_that_cannot_be_handed_over_fails_its_action_only() -> None:
+    endless: list[Any] = []
+    endless.append(endless)
+    host = _Process()
+    for value in (object(), endless):
+        with pytest.raises(ActionFailed, match=r"can't be handed to another process"):
+            host.begin("brew", {"drink": value}, lambda: None)
+    assert not host._requests
+    host.close()
+
+
+NONSENSE = {"state": ACTIVE, "known": [], "problem": ""}
+
+
+@pytest.mark.parametrize(
+    "message",
+    [
+        5, None, {"ended": [], **NONSENSE}, {"ended": {"x": {}}, **NONSENSE}, {"ended": {}, **NONSENSE, "known": [[]]},
+        {"ask": [], "call": 1}, {"ask": 1, "call": 0, "device": "none"}, {"tell": "x", "data": 5}, {"write": []},
+    ],
+)  # fmt: skip
+def test_nonsense_ends_the_process_that_says_it(message: Any) -> None:
+    host = _Process()
+    request = host.begin("brew", {}, lambda: None)
+    host.says(message)
+    assert "says what can't be understood" in str(host.look())
+    assert request.done.is_set()
+    host.close()
+
+
+def test_outcomes_that_are_none_are_failures() -> None:
+    host = _Process()
+    request = host.begin("brew", {}, lambda: None)
+    host.says({"ended": {"1": 5, "7": {}}, **NONSENSE})
+    with pytest.raises(ActionFailed):
+        _ = request.value
+    host.close()
+
+
+def test_a_message_without_end_does_not_fill_the_memory() -> None:
+    host = _Process()
+    host.listen()
+    host.its.sendall(struct.pack("!i", 2**31 - 1))
+    wait_until(lambda: host.look() is not None, 5)
+    assert "says what can't be understood: a message of" in str(host.look())
+    host.close()
+
+
+def test_questions_of_hours_leave_nothing_behind() -> None:
+    """Each is answered once, however often it is asked; only the latest is kept."""
+    host = _Process()
+    leaf = RemoteLeaf(host, "roll", (), SimulatedRobot(load_world()), lambda: None, set())
+    leaf.start()
+    request = host._requests[1]
+    for number in range(1, 50):
+        for _ in range(2):
+            host._asked({"ask": number, "call": 1, "robot": "time"})
+        assert len(request.asked) == 1
+        leaf.tick()
+        assert not request.asked
+    host._asked({"ask": 48, "call": 1, "robot": "time"})  # of a time that is over
+    assert not request.asked
+    assert len(pickle.dumps((request.latest, request.answer))) < 1000
+    host.close()
+
+
+def test_the_robot_stands_before_its_process_is_told_of_a_halt() -> None:
+    """A process that doesn't read holds up who writes to it."""
+    order: list[str] = []
+    robot = SimulatedRobot(load_world())
+    host = _Process()
+    host.halt = lambda request: order.append("told, " + str(robot._base._wanted))  # type: ignore[method-assign,attr-defined]
+    leaf = RemoteLeaf(host, "roll", (), robot, lambda: None, set())
+    leaf.start()
+    host._asked({"ask": 1, "call": 1, "robot": "drive", "args": [0.3, 0.0]})
+    leaf.tick()
+    leaf.halt()
+    assert order == ["told, (0.0, 0.0)"]
+    host.close()
+
+
+def test_a_value_nobody_expects_leaves_no_robot_driving() -> None:
+    robot = SimulatedRobot(load_world())
+    host = _Process()
+    leaf = RemoteLeaf(host, "roll", (), robot, lambda: None, set())
+    leaf.start()
+    host._asked({"ask": 1, "call": 1, "robot": "drive", "args": [0.3, 0.0]})
+    leaf.tick()
+    host._requests[1].end({"value": 1, "stored": {"nowhere": 1}})
+    with pytest.raises(KeyError):
+        leaf.tick()
+    assert robot._base._wanted == (0.0, 0.0)  # type: ignore[attr-defined]
+    host.close()
