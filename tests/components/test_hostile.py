@@ -16,6 +16,7 @@ from typing import Any
 import pytest
 
 import btlang
+from btlang.components.component import ComponentError
 from btlang.components.life_cycle import ACTIVE
 from btlang.components.manager import Manager
 from btlang.components.plain import packed
@@ -289,3 +290,25 @@ def test_a_value_nobody_expects_leaves_no_robot_driving() -> None:
         leaf.tick()
     assert robot._base._wanted == (0.0, 0.0)  # type: ignore[attr-defined]
     host.close()
+
+
+def test_a_part_that_is_not_installed_is_refused_before_it_is_loaded(tmp_path: Path) -> None:
+    """Words are looked for among all components: one that can't be found would fail every later mission."""
+    with btlang.Session(hostile(tmp_path, "Liar", runs='"here"')) as session:
+        manager = session.connection.manager  # type: ignore[attr-defined]
+        with pytest.raises(ComponentError, match='no package has a component "nowhere"'):
+            manager.load(ComponentPart("other", "nowhere"))
+        assert [each.name for each in manager.statuses()] == ["villain"]
+        outcome = session.run(misbehave(tmp_path, "Liar.roll_and_raise"), speed="max").outcome
+        assert outcome is not None
+        assert "no water" in outcome.why()
+
+
+def test_a_restart_keeps_the_newer_version_that_waits() -> None:
+    manager = Manager([ComponentPart("villain", "hostile:Liar")], lambda part, changed: _LyingHost())  # type: ignore[arg-type,return-value]
+    newer = ComponentPart("villain", "hostile:Better")
+    keeper = manager.keeper("villain")
+    keeper.start = lambda: None  # type: ignore[method-assign]
+    manager.load(newer)
+    manager.restart("villain")
+    assert keeper.next == newer
