@@ -63,7 +63,6 @@ class SimulatedDevice:
             if not is_right(value):
                 raise DeviceError(f'"{name}" of the {device.name} must be {wanted}, not {value!r}')
         self._is_perfect = not {"noise", "delay", "silent", "frozen"} & set(device.options)
-        self._random = Random(device.name)
         self._past: deque[tuple[float, Reading]] = deque()
         self._command: Command | None = None
         self._told = -inf
@@ -85,7 +84,7 @@ class SimulatedDevice:
             raise DeviceSilent(f"the {name} is silent")
         if self._within("frozen", now) and self._past:
             return self._past[-1][1]
-        reading = self._with_noise(self._read())
+        reading = self._with_noise(self._read(), now)
         delay = float(self._option("delay", 0.0))
         self._past.append((now, reading))
         while len(self._past) > 1 and self._past[1][0] <= now - delay:
@@ -128,14 +127,15 @@ class SimulatedDevice:
         begin, end = self._option(fault, (inf, inf))
         return bool(begin <= now < end)
 
-    def _with_noise(self, reading: Reading) -> Reading:
+    def _with_noise(self, reading: Reading, now: float) -> Reading:
         noise = float(self._option("noise", 0.0))
         if not noise:
             return reading
+        chance = Random(f"{self._device.name} {now}")  # so that it doesn't depend on who else looks
         if isinstance(reading, Scan):
-            return Scan([each + self._random.gauss(0, noise) for each in reading.ranges], reading.start, reading.step)
-        names = {*self._kind.scaled, *self._kind.shifted}
-        changed = {name: getattr(reading, name) + self._random.gauss(0, noise) for name in names}
+            return Scan([each + chance.gauss(0, noise) for each in reading.ranges], reading.start, reading.step)
+        names = (*self._kind.scaled, *self._kind.shifted)
+        changed = {name: getattr(reading, name) + chance.gauss(0, noise) for name in names}
         noisy: Reading = reading.replace(**changed)
         return noisy
 

@@ -11,7 +11,9 @@ import pytest
 import btlang
 from btlang.components.parts import DeviceHands
 from btlang.devices.kinds import Command, Grip, GripTarget
+from btlang.devices.simulated import SimulatedDevice
 from btlang.examples import examples
+from btlang.robots.body import Device
 from btlang.robots.body_file import standard_body
 from btlang.robots.hands import Hands
 from btlang.robots.obstacles import Obstacles
@@ -178,3 +180,18 @@ def test_a_stop_holds_a_hand_that_closes() -> None:
     robot.step(0.05)
     assert told[-1] == GripTarget()
     assert (operation.done, operation.failure) == (True, "the robot was stopped")
+
+
+def test_who_else_looks_changes_no_noise() -> None:
+    """A page that shows the robot reads its devices, too."""
+    seen = []
+    for looks in (1, 3):
+        robot = SimulatedRobot(load_world())
+        front = SimulatedDevice(Device("front", "range", "simulated", options={"noise": 0.1, "range": 100.0}), robot)
+        found = []
+        for _ in range(3):
+            robot.step(0.05)
+            found += [[front.read("front") for _ in range(looks)][-1]]
+        seen.append(found)
+    assert seen[0] == seen[1]
+    assert len(set(seen[0])) == 3
