@@ -37,6 +37,7 @@ if TYPE_CHECKING:
     from btlang.vocabulary.entry import Entry
     from btlang.vocabulary.lexicon import Lexicon
 
+_WAITING = 1000  # events between two ticks: what is more is lost, but nothing of a component hides another change
 _UP = 30.0  # seconds that all components get to come up before the first mission; who is later is waited for no more
 
 
@@ -46,7 +47,8 @@ class ComponentConnection:
     def __init__(self, inner: Connection, body: Body) -> None:
         self._inner, self._body = inner, body
         self._used: set[str] = set()
-        self._changes: deque[tuple[str, Mapping[str, Any]]] = deque(maxlen=1000)
+        self._changes: deque[tuple[str, Mapping[str, Any]]] = deque(maxlen=_WAITING)
+        self._said: deque[tuple[str, Mapping[str, Any]]] = deque(maxlen=_WAITING)
         self.robot = inner.robot
         if isinstance(inner, DeviceSimulation):
             self.devices = inner.devices
@@ -141,7 +143,7 @@ class ComponentConnection:
 
     def _told(self, kind: str, data: Mapping[str, Any]) -> None:
         """What a component says of itself: whatever it is, it is no event of the robot's own."""
-        self._changes.append(("", {"kind": kind, "data": data}))
+        self._said.append((kind, data))
 
     def _step(self, seconds: float) -> None:
         self.devices.step()
@@ -151,12 +153,10 @@ class ComponentConnection:
         self._flush()
 
     def _flush(self) -> None:
-        while self._changes:
-            kind, data = self._changes.popleft()
-            if kind:
-                self.bus.emit_robot(kind, data)
-            else:
-                self.bus.emit(RobotEvent, data["kind"], data["data"])
+        for _ in range(len(self._changes)):
+            self.bus.emit_robot(*self._changes.popleft())
+        for _ in range(len(self._said)):  # no more: a component may say things faster than they are handed on
+            self.bus.emit(RobotEvent, *self._said.popleft())
 
 
 def _is_below(name: str, node: RosNode | None) -> bool:

@@ -10,6 +10,7 @@ from btlang.components.component import Component, ComponentError
 from btlang.components.life_cycle import ACTIVE, TRANSITIONS, UNCONFIGURED
 from btlang.components.location import describe, load_class
 from btlang.engine.leaves.leaf import ActionFailed, described
+from btlang.robots.proxy import RobotProxy
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -19,7 +20,7 @@ if TYPE_CHECKING:
 
 
 class InsideHost:
-    """See btlang.components.host.Host. A hook that doesn't end in time goes on in its thread, and is left alone."""
+    """See btlang.components.host.Host. A hook that doesn't end in time goes on in its thread, without its devices."""
 
     process = None
 
@@ -86,7 +87,9 @@ class InsideHost:
         passed, self._passed = self._passed, 0.0
         try:
             component.step(passed)
-        except Exception as problem:
+        except KeyboardInterrupt:
+            raise
+        except BaseException as problem:
             self.state, self.problem = UNCONFIGURED, f"failed in its step: {_text(problem)}"
             self._fail(problem)
             self._changed()
@@ -95,7 +98,7 @@ class InsideHost:
         self, method: str, outputs: tuple[str, ...], robot: Any, wake: Callable[[], object], beside: set[object]
     ) -> InsideLeaf:
         """See Host."""
-        return InsideLeaf(self._method(method), robot)
+        return InsideLeaf(self, self._method(method), robot)
 
     def ask(self, method: str, ports: Mapping[str, Any], robot: Any) -> Any:
         """See Host."""
@@ -108,8 +111,14 @@ class InsideHost:
         return found  # type: ignore[no-any-return]
 
     def close(self) -> None:
-        """See Host."""
+        """See Host. What goes on in a thread of it moves nothing any more."""
         self.state = UNCONFIGURED
+        self._component._devices = {}
+
+    def check_active(self) -> None:
+        """Raises ActionFailed where it isn't active any more."""
+        if self.state != ACTIVE:
+            raise ActionFailed(f"the {self._part.name} {self.problem or f'is {self.state}'}")
 
     def _fail(self, problem: BaseException) -> None:
         try:
@@ -128,15 +137,20 @@ def _call(method: Callable[..., Any], ports: Mapping[str, Any], robot: Any) -> A
 
 
 class InsideLeaf:
-    """A method of a component as a leaf, in the thread that ticks."""
+    """A method of a component as a leaf, in the thread that ticks. It ends with the component."""
 
-    def __init__(self, method: Callable[..., Any], robot: Any) -> None:
-        self._method, self._robot = method, robot
+    def __init__(self, host: InsideHost, method: Callable[..., Any], robot: Any) -> None:
+        self._host, self._method = host, method
+        self._proxy = RobotProxy(robot, lambda call: call())
         self._generator: Generator[object, Any, object] | None = None
 
     def start(self, **ports: Any) -> object:
         """Calls the method; of a generator function it is the first `next`."""
-        result = _call(self._method, ports, self._robot)
+        try:
+            result = _call(self._method, ports, self._proxy)
+        except BaseException:
+            self._proxy.let_go()
+            raise
         if not isgenerator(result):
             return True if result is None else result
         self._generator = result
@@ -146,12 +160,19 @@ class InsideLeaf:
         """Goes on."""
         assert self._generator is not None
         try:
+            self._host.check_active()
             next(self._generator)
         except StopIteration as end:
             return True if end.value is None else end.value
+        except BaseException:
+            self.halt()
+            raise
         return None
 
     def halt(self) -> None:
-        """Closes it."""
-        if self._generator is not None:
-            self._generator.close()
+        """Closes it, and ends what it has set about."""
+        try:
+            if self._generator is not None:
+                self._generator.close()
+        finally:
+            self._proxy.let_go()

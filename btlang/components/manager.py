@@ -9,7 +9,8 @@ from collections.abc import Callable, Iterable, Mapping, Sequence
 
 from btlang.components.component import ComponentAbsent, ComponentError
 from btlang.components.life_cycle import ACTIVE, FINALIZED, INACTIVE, UNCONFIGURED
-from btlang.engine.leaves.leaf import ActionFailed
+from btlang.components.location import located
+from btlang.engine.leaves.leaf import ActionFailed, described
 from btlang.record import Record
 from btlang.robots.body import ComponentPart
 
@@ -105,7 +106,11 @@ class Manager:
         return [keeper.status() for keeper in tuple(self._keepers.values())]
 
     def load(self, part: ComponentPart) -> None:
-        """One more, or another one in place of that of its name: as soon as no running mission uses that."""
+        """One more, or another one in place of that of its name: as soon as no running mission uses that.
+
+        Raises ComponentError for one that isn't installed.
+        """
+        located(part.place)
         with self.changed:
             found = self._keepers.get(part.name)
             if found is None or found.gone:
@@ -125,7 +130,7 @@ class Manager:
         """Starts one anew, also one that was given up. Raises ComponentError."""
         with self.changed:
             keeper = self.keeper(name)
-            keeper.replace(keeper.part)
+            keeper.replace(keeper.next or keeper.part)
             self.changed.notify_all()
 
     def tell(self, keeper: Keeper) -> None:
@@ -172,7 +177,7 @@ class Keeper:
 
     def __init__(self, manager: Manager, part: ComponentPart) -> None:
         self._manager, self.part = manager, part
-        self._next: ComponentPart | None = part  # what it is to be; None: unloaded
+        self.next: ComponentPart | None = part  # what it is to be; None: unloaded. Changed with the lock
         self._asked = False
         self.host: Host | None = None
         self.state, self.why, self.version = UNCONFIGURED, "", ""
@@ -203,7 +208,7 @@ class Keeper:
 
     def replace(self, part: ComponentPart | None) -> None:
         """It is to be another one, or none; called with the lock of the manager."""
-        self._next, self._asked, self._given_up, self._due, self._in_a_row = part, True, False, 0.0, 0
+        self.next, self._asked, self._given_up, self._due, self._in_a_row = part, True, False, 0.0, 0
         self._failures.clear()
 
     @property
@@ -239,8 +244,8 @@ class Keeper:
                     if not self._may_begin():
                         changed.wait(_LOOK)
                         continue
-                    if self._next is not None:
-                        self.part, self._asked = self._next, False
+                    if self.next is not None:
+                        self.part, self._asked = self.next, False
                 self._live()
         finally:
             with changed:
@@ -250,7 +255,7 @@ class Keeper:
                     self._manager.forget(self)
 
     def _over(self) -> bool:
-        return self._manager.closing or self._next is None
+        return self._manager.closing or self.next is None
 
     def _may_begin(self) -> bool:
         if self._given_up or time.monotonic() < self._due:
@@ -283,6 +288,8 @@ class Keeper:
             self._change(UNCONFIGURED, str(problem))
         except ComponentError as problem:
             self._fail(str(problem))
+        except BaseException as problem:  # of a class by somebody else, sys.exit() too
+            self._fail(described(problem))
         finally:
             host.close()
 
@@ -337,7 +344,9 @@ class Keeper:
             self._failures.append(now)
             if len(self._failures) > self.part.restarts:
                 self._given_up = True
-                reason = f"{reason}; it was given up after {len(self._failures)} attempts in a minute"
+                tries = len(self._failures)
+                attempts = f"{tries} attempts in a minute" if tries > 1 else "the first attempt"
+                reason = f"{reason}; it was given up after {attempts}"
             self._set(UNCONFIGURED, reason)
 
     def _change(self, state: str, why: str) -> None:

@@ -187,9 +187,11 @@ class Gripping:
         self.failure: str | None = None
         self._passed = 0.0
 
-    def cancel(self) -> None:
-        """The hand stays as it is."""
-        self._end(self.failure)
+    def cancel(self, failure: str | None = None) -> None:
+        """The hand stays as it is, at once. For any thread."""
+        if not self.done:
+            self._end(failure)
+            self._device.write(self._name, GripTarget())
 
     def step(self, dt: float) -> None:
         """Looks how far it is."""
@@ -254,6 +256,11 @@ class DeviceHands:
         except DeviceError:
             return False
         return isinstance(reading, Grip) and reading.holds is False
+
+    def stop(self) -> None:
+        """They stay as they are."""
+        for gripping in tuple(self._grippings.values()):
+            gripping.cancel("the robot was stopped")
 
     def step(self, dt: float) -> None:
         """Moves on by `dt` seconds."""

@@ -24,7 +24,10 @@ _RECORD, _BYTES = "record", "bytes"
 
 def packed(message: object) -> bytes:
     """A message as bytes. Raises TypeError for values that are neither plain data nor a pose, reading or command."""
-    return json.dumps(message, default=_other, separators=(",", ":")).encode()
+    try:
+        return json.dumps(message, default=_other, separators=(",", ":")).encode()
+    except (ValueError, RecursionError):
+        raise TypeError("a value that is in itself, or nested too deeply, can't be handed to another process") from None
 
 
 def unpacked(data: bytes) -> Any:

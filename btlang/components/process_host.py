@@ -36,6 +36,7 @@ _ANSWER = 0.2  # seconds that a tick waits for a condition: late is better than 
 _SEND = struct.pack("ll", 0, 300_000)  # seconds and microseconds after which a process that reads nothing is given up
 _ERRORS = 2  # where it writes what it prints: standard output is for what people asked for
 _LOADING = 60.0  # seconds that a process gets to start, and to import what its class needs, on a busy computer
+_LONGEST = 64 << 20  # bytes of a message: a picture of a camera has room
 _END = 0.5  # seconds that a process gets to end by itself
 
 
@@ -171,7 +172,8 @@ class ProcessHost:
             packed(message)
         except TypeError as problem:
             message = {"answer": asked["ask"], "call": request.number, "problem": str(problem)}
-        request.answers[asked["ask"]] = message
+        if asked["ask"] == request.latest:
+            request.answer = message
         self._send(message)
 
     def close(self) -> None:
@@ -205,7 +207,11 @@ class ProcessHost:
             self._numbers += 1
             message = {"id": self._numbers, "do": do, **data}
             request = self._requests[self._numbers] = Request(self._numbers, message, wake)
-            self._send(message)
+            try:
+                self._send(message)
+            except ActionFailed:
+                del self._requests[self._numbers]  # nobody may send it again
+                raise
         if self._lost is not None:
             request.end({"problem": f"the {self._part.name} {self._lost}"})
         return request
@@ -243,10 +249,12 @@ class ProcessHost:
         connection = self._connection
         while connection is not None:
             try:
-                self._take(unpacked(connection.recv_bytes()))
-            except (EOFError, OSError):
+                self._take(unpacked(connection.recv_bytes(_LONGEST)))
+            except (EOFError, OSError) as problem:
+                if "bad message length" in str(problem):
+                    self._lose(f"says what can't be understood: a message of more than {_LONGEST >> 20} MB")
                 break
-            except (ValueError, KeyError, TypeError) as problem:
+            except Exception as problem:  # whatever it says, and whoever hears it
                 self._lose(f"says what can't be understood: {described(problem)}")
                 break
         self._lose(self._ending())
@@ -258,7 +266,7 @@ class ProcessHost:
             for number, outcome in message["ended"].items():
                 request = self._requests.get(int(number))
                 if request is not None:
-                    request.end(outcome)
+                    request.end(outcome if isinstance(outcome, dict) else {"problem": "its outcome makes no sense"})
             self._tidy({*message["known"], *map(int, message["ended"])})
             if self.problem:
                 self._changed()
@@ -280,10 +288,10 @@ class ProcessHost:
         request = self._requests.get(number)
         if request is None or request.done.is_set():
             return
-        if message["ask"] not in request.answers:
+        if message["ask"] > request.latest:
             request.ask(message)
-        elif (answer := request.answers[message["ask"]]) is not None:
-            self._send(answer)
+        elif message["ask"] == request.latest and request.answer is not None:
+            self._send(request.answer)
 
     def _reading(self, name: str) -> dict[str, Any]:
         try:

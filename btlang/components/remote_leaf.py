@@ -29,8 +29,9 @@ class Request:
         self.number, self.message, self.sent, self._wake = number, message, time.monotonic(), wake
         self.done = threading.Event()
         self.outcome: dict[str, Any] = {}
-        self.asked: deque[dict[str, Any]] = deque()
-        self.answers: dict[int, dict[str, Any] | None] = {}
+        self.asked: deque[dict[str, Any]] = deque(maxlen=1)  # a call asks one thing after the other
+        self.latest = 0  # the number of the question that came last, which has this answer
+        self.answer: dict[str, Any] | None = None
 
     def end(self, outcome: dict[str, Any]) -> None:
         """It is done, or nobody will do it."""
@@ -41,7 +42,7 @@ class Request:
 
     def ask(self, message: dict[str, Any]) -> None:
         """A question to the robot, for the thread that ticks."""
-        self.answers[message["ask"]] = None
+        self.latest, self.answer = message["ask"], None
         self.asked.append(message)
         self._wake()
 
@@ -84,7 +85,7 @@ class RemoteLeaf:
         """Does what it asks for, and looks whether it has ended."""
         request = self._request
         assert request is not None
-        while request.asked:
+        if request.asked:
             asked = request.asked.popleft()
             self._host.answer(request, asked, self._do(asked))
         if not request.done.is_set():
@@ -93,11 +94,11 @@ class RemoteLeaf:
         self._beside.discard(self)
         try:
             value = request.value
-        except ActionFailed:
+            for name, stored in request.outcome.get("stored", {}).items():
+                self._stores[name](stored)
+        except BaseException:
             self._proxy.let_go()
             raise
-        for name, stored in request.outcome.get("stored", {}).items():
-            self._stores[name](stored)
         return True if value is None else value
 
     def halt(self) -> None:
@@ -105,8 +106,8 @@ class RemoteLeaf:
         request, self._request = self._request, None
         self._beside.discard(self)
         if request is not None:
+            self._proxy.let_go()  # first: a process that doesn't read holds up who writes to it
             self._host.halt(request)
-            self._proxy.let_go()
 
     def _do(self, asked: dict[str, Any]) -> dict[str, Any]:
         """A use of the robot, or of an operation that it has begun."""

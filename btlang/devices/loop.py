@@ -10,10 +10,10 @@ import threading
 import time
 from collections.abc import Callable, Mapping
 from contextlib import suppress
-from math import isnan
 
 from btlang.devices.driver import Device, DeviceError, DeviceSilent, Driver
 from btlang.devices.kinds import KINDS, Command, JointTarget, Reading
+from btlang.devices.value_checks import check_command, wrong_content, wrong_field
 
 SILENCE = 0.2
 """Seconds after which a command no longer counts, and after which a device that moves is silent."""
@@ -67,13 +67,9 @@ class DeviceLoop:
     def write(self, name: str, command: Command) -> None:
         """Tells a device a command, which counts for `silence` seconds; whoever drives tells it again.
 
-        Raises DeviceError for one that it doesn't take, or that has what isn't a number in it.
+        Raises DeviceError for one that it doesn't take, or that has what isn't a finite number in it.
         """
-        wanted = KINDS[self.devices[name].kind].command
-        if wanted is None or not isinstance(command, wanted):
-            raise DeviceError(f"the {name} doesn't take a {type(command).__name__}")
-        if wrong := _not_numbers(command):
-            raise DeviceError(f"the {name} can't be told a {wrong[0]} that is not a number")
+        check_command(name, self.devices[name].kind, command)
         self._commands[name] = command, time.monotonic()
 
     def rest(self) -> None:
@@ -168,12 +164,8 @@ def _untrue(reading: Reading, device: Device) -> str:
     wanted = KINDS[device.kind].reading or Reading
     if not isinstance(reading, wanted):
         return f"its driver gives {type(reading).__name__}, not {wanted.__name__}"
-    wrong = _not_numbers(reading)
-    return f"its {wrong[0]} is not a number" if wrong else ""
-
-
-def _not_numbers(record: Reading | Command) -> list[str]:
-    return [name for name in record.fields if isinstance(value := getattr(record, name), float) and isnan(value)]
+    wrong = wrong_field(reading)
+    return f"its {wrong[0]} is {wrong[1]}" if wrong else wrong_content(reading)
 
 
 def _calibrated(reading: Reading, device: Device) -> Reading:

@@ -32,6 +32,7 @@ from btlang.devices.kinds import (
     WheelSpeeds,
 )
 from btlang.devices.loop import SILENCE
+from btlang.devices.value_checks import check_command
 from btlang.robots.body import Body
 from btlang.robots.robot import RobotError
 
@@ -62,7 +63,6 @@ class SimulatedDevice:
             if not is_right(value):
                 raise DeviceError(f'"{name}" of the {device.name} must be {wanted}, not {value!r}')
         self._is_perfect = not {"noise", "delay", "silent", "frozen"} & set(device.options)
-        self._random = Random(device.name)
         self._past: deque[tuple[float, Reading]] = deque()
         self._command: Command | None = None
         self._told = -inf
@@ -84,7 +84,7 @@ class SimulatedDevice:
             raise DeviceSilent(f"the {name} is silent")
         if self._within("frozen", now) and self._past:
             return self._past[-1][1]
-        reading = self._with_noise(self._read())
+        reading = self._with_noise(self._read(), now)
         delay = float(self._option("delay", 0.0))
         self._past.append((now, reading))
         while len(self._past) > 1 and self._past[1][0] <= now - delay:
@@ -98,9 +98,8 @@ class SimulatedDevice:
             raise DeviceSilent(f"the {self._device.name} is silent: {problem}") from None
 
     def write(self, name: str, command: Command) -> None:
-        """Tells it a command."""
-        if self._kind.command is None or not isinstance(command, self._kind.command):
-            raise DeviceError(f"the {name} doesn't take a {type(command).__name__}")
+        """Tells it a command. Raises DeviceError for one that it doesn't take."""
+        check_command(name, self._device.kind, command)
         self._command, self._told = command, self._robot.time
         act = _WRITE.get(self._device.kind)
         if act is not None:
@@ -128,14 +127,15 @@ class SimulatedDevice:
         begin, end = self._option(fault, (inf, inf))
         return bool(begin <= now < end)
 
-    def _with_noise(self, reading: Reading) -> Reading:
+    def _with_noise(self, reading: Reading, now: float) -> Reading:
         noise = float(self._option("noise", 0.0))
         if not noise:
             return reading
+        chance = Random(f"{self._device.name} {now}")  # so that it doesn't depend on who else looks
         if isinstance(reading, Scan):
-            return Scan([each + self._random.gauss(0, noise) for each in reading.ranges], reading.start, reading.step)
-        names = {*self._kind.scaled, *self._kind.shifted}
-        changed = {name: getattr(reading, name) + self._random.gauss(0, noise) for name in names}
+            return Scan([each + chance.gauss(0, noise) for each in reading.ranges], reading.start, reading.step)
+        names = (*self._kind.scaled, *self._kind.shifted)
+        changed = {name: getattr(reading, name) + chance.gauss(0, noise) for name in names}
         noisy: Reading = reading.replace(**changed)
         return noisy
 

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from math import ceil, copysign, cos, degrees, inf, radians, sin
+from math import ceil, copysign, cos, degrees, inf, isnan, radians, sin
 
 from btlang.robots.body import Body
 from btlang.robots.geometry import Pose, wrap
 from btlang.robots.obstacles import Obstacles
+from btlang.robots.robot import RobotError
 
 _SUBSTEP = 0.02
 _STUCK_AFTER = 1.0
@@ -172,7 +173,9 @@ class Base:
 
 
 def clipped_speed(value: float, limit: float) -> float:
-    """The same direction, at most so fast."""
+    """The same direction, at most so fast. Raises RobotError for what is not a number: no limit would hold it."""
+    if isnan(value):
+        raise RobotError("the robot can't drive at a speed that is not a number")
     return copysign(min(abs(value), limit), value)
 
 

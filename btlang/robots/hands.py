@@ -64,6 +64,9 @@ class Hands:
         """Seconds since the grasp; 0 for an empty hand."""
         return now - self._since[hand] if hand in self.held else 0.0
 
+    def stop(self) -> None:
+        """Does nothing: they are at rest."""
+
     def step(self, dt: float) -> None:
         """Does nothing: all that it does takes no time."""
 

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from math import copysign
+from math import copysign, isnan
 
 from btlang.robots.body import Body, Joint
 from btlang.robots.robot import RobotError
@@ -18,7 +18,10 @@ def joint_of(body: Body, name: str) -> Joint:
 
 
 def clipped(body: Body, targets: Mapping[str, float]) -> dict[str, float]:
-    """The targets within the limits of their joints. Raises RobotError for an unknown joint."""
+    """The targets within the limits of their joints. Raises RobotError for an unknown joint, and for no number."""
+    for name, target in targets.items():
+        if isnan(target):
+            raise RobotError(f'the joint "{name}" can\'t move to what is not a number')
     joints = {name: joint_of(body, name) for name in targets}
     return {name: min(joint.high, max(joint.low, targets[name])) for name, joint in joints.items()}
 

@@ -98,7 +98,7 @@ class SimulatedRobot:
             self._emit("arrive", name=arrived.name)
 
     def stop(self) -> None:
-        """Brakes hard, cancels the journey, freezes joints and ends speech. Safe from any thread."""
+        """Brakes hard, cancels the journey, freezes joints and hands, and ends speech. Safe from any thread."""
         self._latch.stop()
         self.stops += 1
         self._rest()
@@ -124,6 +124,7 @@ class SimulatedRobot:
         self._navigator.cancel("the robot was stopped")
         self._base.brake()
         self._joints.freeze()
+        self._hands.stop()
         self._voice.silence()
 
     @property
@@ -172,7 +173,7 @@ class SimulatedRobot:
         return self._base.wheels
 
     def drive(self, linear: float, angular: float) -> None:
-        """Sets the wanted metres and degrees a second; ends a journey under way."""
+        """Sets the wanted metres and degrees a second; ends a journey under way. Raises RobotError for no numbers."""
         if self._latch.refuses or self.power.empty:
             return
         self._navigator.cancel("another command took over the drive")
@@ -237,8 +238,7 @@ class SimulatedRobot:
 
     def choose(self, kind: str, how: str) -> str:
         """A name that is the "nearest" or "random". Raises RobotError where there is none."""
-        names = self._surroundings.choices(kind)
-        return self._choices.choose(kind, how, names, self._distance, self.on_event)
+        return self._choices.choose(kind, how, self._surroundings.choices(kind), self._distance, self.on_event)
 
     def seed_choices(self, seed: int, made: int = 0) -> None:
         """A run begins, whose random choices follow from the seed; so many have been made."""

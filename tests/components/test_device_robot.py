@@ -9,9 +9,19 @@ from typing import Any
 import pytest
 
 import btlang
+from btlang.components.parts import DeviceHands
+from btlang.devices.kinds import Command, Grip, GripTarget
+from btlang.devices.simulated import SimulatedDevice
 from btlang.examples import examples
+from btlang.robots.body import Device
+from btlang.robots.body_file import standard_body
+from btlang.robots.hands import Hands
+from btlang.robots.obstacles import Obstacles
 from btlang.robots.platforms import ALL
 from btlang.robots.registry import connector
+from btlang.robots.simulated import SimulatedRobot
+from btlang.robots.simulated_parts import simulated_parts
+from btlang.robots.world_file import load_world
 from btlang.run.events import Event, Said
 from btlang.vocabulary.shipped import shipped
 from tests.components.robots import robot_file
@@ -87,8 +97,6 @@ def test_the_watchdog_stops_a_twin_that_nobody_commands(tmp_path: Path) -> None:
     from btlang.devices.device_set import DeviceSet
     from btlang.devices.kinds import WheelSpeeds
     from btlang.robots.body_file import load_body
-    from btlang.robots.simulated import SimulatedRobot
-    from btlang.robots.world_file import load_world
 
     body = load_body(robot_file(tmp_path, device("wheels", "drive")))
     twin = SimulatedRobot(load_world(), body=body)
@@ -143,3 +151,47 @@ class Driver:
     def close(self):
         self.speeds = WheelSpeeds()
 """
+
+
+def test_a_stop_holds_a_hand_that_closes() -> None:
+    told: list[Command] = []
+
+    class Hand:
+        def read(self, name: str) -> Grip:
+            return Grip(0.5, False)
+
+        def write(self, name: str, command: Command) -> None:
+            told.append(command)
+
+        def silent(self, name: str) -> str | None:
+            return None
+
+    body = standard_body()
+    known = Hands(Obstacles(load_world()), (), body)
+    parts = simulated_parts(load_world(), Obstacles(load_world()), body)
+    name = body.hands[0].name
+    hands = DeviceHands(body, {f"{name} hand": Hand()}, known)
+    robot = SimulatedRobot(load_world(), make_parts=lambda world, obstacles, body: parts.replace(hands=hands))
+    operation = robot.grasp(name)  # type: ignore[arg-type]
+    robot.step(0.05)
+    assert told[-1] == GripTarget(1.0)
+    robot.stop()
+    assert told[-1] == GripTarget()
+    robot.step(0.05)
+    assert told[-1] == GripTarget()
+    assert (operation.done, operation.failure) == (True, "the robot was stopped")
+
+
+def test_who_else_looks_changes_no_noise() -> None:
+    """A page that shows the robot reads its devices, too."""
+    seen = []
+    for looks in (1, 3):
+        robot = SimulatedRobot(load_world())
+        front = SimulatedDevice(Device("front", "range", "simulated", options={"noise": 0.1, "range": 100.0}), robot)
+        found = []
+        for _ in range(3):
+            robot.step(0.05)
+            found += [[front.read("front") for _ in range(looks)][-1]]
+        seen.append(found)
+    assert seen[0] == seen[1]
+    assert len(set(seen[0])) == 3

@@ -8,23 +8,31 @@ import time
 from collections.abc import Callable, Iterator, Mapping
 from contextlib import contextmanager
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from btlang.devices.device_set import DeviceSet
 from btlang.devices.driver import Device, DeviceError, DeviceSilent
 from btlang.devices.kinds import (
+    Charge,
     Colour,
     Command,
     Distance,
+    Image,
     JointState,
     JointTarget,
+    Measured,
     Motion,
     Reading,
+    Scan,
     Wheels,
     WheelSpeeds,
 )
 from btlang.devices.loop import DeviceLoop, _calibrated, _inverse
+from btlang.robots.simulated import SimulatedRobot
+from btlang.robots.world_file import load_world
 from tests.profiles import searches
 
 SILENCE = 0.06
@@ -136,14 +144,27 @@ def test_rest_forgets_all_commands() -> None:
         until(lambda: speeds(driver) == WheelSpeeds())
 
 
-def test_commands_that_a_device_does_not_take() -> None:
-    loop = DeviceLoop(TestDriver(), (BASE, FRONT, LAMP))
+@pytest.mark.parametrize("simulated", [False, True])
+def test_commands_that_a_device_does_not_take(simulated: bool) -> None:
+    real = DeviceLoop(TestDriver(), (BASE, FRONT, LAMP))
+    write: Callable[[str, Command], None] = real.write
+    if simulated:
+        robot = SimulatedRobot(load_world())
+        devices = tuple(Device(each.name, each.kind, "simulated") for each in (BASE, FRONT, LAMP))
+        readers = DeviceSet(robot.body.replace(devices=devices), robot, lambda kind, data: None).readers
+        write = lambda name, command: readers[name].write(name, command)  # noqa: E731
     with pytest.raises(DeviceError, match="the front doesn't take a WheelSpeeds"):
-        loop.write("front", WheelSpeeds())
+        write("front", WheelSpeeds())
     with pytest.raises(DeviceError, match="the base doesn't take a Colour"):
-        loop.write("base", Colour())
+        write("base", Colour())
     with pytest.raises(DeviceError, match="the base can't be told a right that is not a number"):
-        loop.write("base", WheelSpeeds(0.0, math.nan))
+        write("base", WheelSpeeds(0.0, math.nan))
+    with pytest.raises(DeviceError, match="the base can't be told a left that is not a number"):
+        write("base", WheelSpeeds(10**400, 0.0))
+    with pytest.raises(DeviceError, match="the base can't be told a left that is not a number"):
+        write("base", WheelSpeeds("fast", 0.0))  # type: ignore[arg-type]
+    with pytest.raises(DeviceError, match="the base can't be told a left that is not finite"):
+        write("base", WheelSpeeds(math.inf, 0.0))
 
 
 def test_readings_that_cease_and_come_back() -> None:
@@ -171,6 +192,44 @@ def test_readings_that_cannot_be_used(told: Reading | DeviceError) -> None:
         with pytest.raises(DeviceSilent, match=r"its cable is broken|its distance is not a number|gives Wheels"):
             loop.read("front")
         assert loop.silent("base") is None
+
+
+@pytest.mark.parametrize(
+    ("kind", "reading", "reason"),
+    [
+        ("range", Distance("far"), "its distance is not a number"),
+        ("range", Distance(None), "its distance is not a number"),
+        ("drive", Wheels(math.inf, 0.0, 0.0, 0.0), "its left is not finite"),
+        ("lidar", Scan([1.0, math.nan]), "its ranges have what is not a number"),
+        ("lidar", Scan([1.0, "far"]), "its ranges have what is not a number"),
+        ("lidar", Scan(5), "its ranges have what is not a number"),
+        ("battery", Charge(50.0, volts="12"), "its volts is not a number"),
+        ("camera", Image(4, 1, b"123"), "its picture has 3 bytes, not 12"),
+        ("camera", Image(-4, -1, bytes(12)), "its picture has 12 bytes"),
+    ],
+)
+def test_readings_that_cannot_be_true(kind: str, reading: Reading, reason: str) -> None:
+    device = Device("thing", kind, "test", scale=2.0)
+    loop = DeviceLoop(TestDriver(), (device,))
+    loop._tell("thing", reading, time.monotonic())
+    assert reason in str(loop.silent("thing"))
+    with pytest.raises(DeviceSilent):
+        loop.read("thing")
+
+
+def test_readings_that_can_be_true() -> None:
+    for kind, reading in (
+        ("range", Distance(math.inf)),
+        ("lidar", Scan([1.0, math.inf])),
+        ("lidar", Scan(np.array([1.0, math.inf], dtype=np.float32))),
+        ("gauge", Measured(np.float32(1.5))),
+        ("battery", Charge(50)),
+        ("camera", Image(2, 1, bytes(6))),
+        ("imu", Motion(1.0)),
+    ):
+        loop = DeviceLoop(TestDriver(), (Device("thing", kind, "test"),))
+        loop._tell("thing", reading, time.monotonic())
+        assert loop.read("thing") is reading
 
 
 @pytest.mark.parametrize(
