@@ -253,6 +253,8 @@ class Keeper:
                 self._set(FINALIZED, self.why)
                 if not self._manager.closing:
                     self._manager.forget(self)
+                    if self.next is not None:  # it was asked for again meanwhile
+                        self._manager.load(self.next)
 
     def _over(self) -> bool:
         return self._manager.closing or self.next is None

@@ -180,6 +180,8 @@ class Life:
             devices = {} if self._shared else dict.fromkeys(message["devices"], RemoteDevice(worker))
             self.component._devices = devices
             self.component.set_parameters(message["parameters"])
+            if not isinstance(self.component.rate, int | float) or not 0 <= self.component.rate <= 1000:
+                raise ComponentError(f"its rate must be from 0 to 1000 steps a second, not {self.component.rate!r}")
             self._loaded = message
         elif any(self._loaded[key] != message[key] for key in ("place", "parameters")):
             raise ComponentError("another robot shares it with another class or other parameters")

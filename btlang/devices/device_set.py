@@ -81,11 +81,6 @@ class DeviceSet:
         for device in self._simulated:
             device.step()
 
-    def rest(self) -> None:
-        """What moves comes to rest within 0.2 s; from any thread, without a lock."""
-        for loop in self.loops:
-            loop.rest()
-
     @property
     def readers(self) -> Mapping[str, Reads]:
         """What reads and writes each device, by its name."""

@@ -60,6 +60,13 @@ def test_restart_load_and_unload(layer: TaskLayer, tmp_path: Path) -> None:
     until(lambda: lines(layer)[0].startswith("eye"))
 
 
+def test_one_that_is_loaded_while_it_goes_is_there(layer: TaskLayer) -> None:
+    for _ in range(5):
+        assert layer.handle(messages.ChangeComponent("machine", "unload")).ok
+        assert layer.handle(messages.ChangeComponent("machine", "load")).ok
+    until(lambda: lines(layer)[0].startswith("machine") and " active " in lines(layer)[0])
+
+
 @pytest.mark.parametrize(
     ("command", "reason"),
     [
