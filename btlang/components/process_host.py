@@ -123,7 +123,7 @@ class ProcessHost:
         self._wait(self._request(name), name, self._part.limit)
 
     def look(self) -> str | None:
-        """See Host; to be called every 0.1 s. After a silence it asks, and waits as long again, before it gives up."""
+        """See Host; to be called every 0.1 s. It asks for the state each time: a slow answer alone is no failure."""
         if self._lost is None and self._connection is not None:
             now = time.monotonic()
             if now - self._heard > self._part.silence:
