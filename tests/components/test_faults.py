@@ -47,7 +47,7 @@ def storm(folder: Path, count: int) -> str:
 
 
 @pytest.mark.long
-def test_twenty_components_in_a_storm(tmp_path: Path, record_property: Any) -> None:
+def test_twenty_components_in_a_storm(tmp_path: Path) -> None:
     many, chance = amount(len(NAMES), 500), random.Random(1)
     robot = storm(tmp_path, len(NAMES))
     order = [n for _ in range(many // len(NAMES)) for n in chance.sample(range(len(NAMES)), len(NAMES))]
@@ -73,11 +73,12 @@ def test_twenty_components_in_a_storm(tmp_path: Path, record_property: Any) -> N
                 assert (outcome.succeeded, session.robot.velocity) == (False, (0.0, 0.0))
                 assert f"member {n}" in outcome.why()
                 session.robot.put(start)
-            wait_until(lambda keeper=keeper: keeper.state == ACTIVE)
-            back.append(time.monotonic() - began)
+            if many > len(NAMES):  # else they come back while others are hit
+                wait_until(lambda keeper=keeper: keeper.state == ACTIVE)
+                back.append(time.monotonic() - began)
+        wait_until(lambda: all(status.state == ACTIVE for status in manager.statuses()))
         processes |= {status.process for status in manager.statuses()}
     wait_until(lambda: not running_in(processes))
-    record_property("seconds until noticed, until back", (max(noticed), max(back)))
     if many > len(NAMES):
         slowest = sorted(zip(back, (FAULTS[at % len(FAULTS)] for at in range(many)), strict=True))[-5:]
         print(slowest)
