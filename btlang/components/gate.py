@@ -15,7 +15,7 @@ class Gate:
     """See btlang.devices.device_set.Reads. A device that moves and isn't told again comes to rest by itself."""
 
     def __init__(self, devices: Reads, kind: str, robot: Any) -> None:
-        self._devices, self._kind, self._robot = devices, KINDS[kind], robot
+        self._devices, self._rest, self._robot = devices, KINDS[kind].rest, robot
 
     def read(self, name: str) -> Reading:
         """The latest reading. Raises DeviceSilent."""
@@ -23,8 +23,7 @@ class Gate:
 
     def write(self, name: str, command: Command) -> None:
         """Raises DeviceError while the robot is stopped, or for what the device doesn't take."""
-        rest = self._kind.command
-        if self._kind.moves and self._robot.refuses and (rest is None or command != rest()):
+        if self._rest is not None and command != self._rest and self._robot.refuses:
             raise DeviceError(f"the {name} isn't moved: the robot is stopped")
         self._devices.write(name, command)
 

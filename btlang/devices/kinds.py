@@ -178,6 +178,11 @@ class Kind(Record):
     scaled: tuple[str, ...] = ()
     shifted: tuple[str, ...] = ()
 
+    @property
+    def rest(self) -> Command | None:
+        """What brings a device that moves to rest; None of the others."""
+        return self.command() if self.moves and self.command is not None else None
+
 
 KINDS = {
     kind.name: kind

@@ -14,6 +14,7 @@ from contextlib import suppress
 from btlang.devices.driver import Device, DeviceError, DeviceSilent, Driver
 from btlang.devices.kinds import KINDS, Command, JointTarget, Reading
 from btlang.devices.value_checks import check_command, wrong_content, wrong_field
+from btlang.engine.leaves.leaf import described
 
 SILENCE = 0.2
 """Seconds after which a command no longer counts, and after which a device that moves is silent."""
@@ -91,7 +92,7 @@ class DeviceLoop:
             except DeviceError as problem:
                 self._lost(str(problem))
             except BaseException as problem:  # of a driver by somebody else, sys.exit() too: others go on
-                self._lost(f"{type(problem).__name__}: {problem}")
+                self._lost(described(problem))
             with suppress(Exception):
                 self._driver.close()
             self._stopped.wait(_RETRY)
@@ -131,8 +132,8 @@ class DeviceLoop:
             late = kind.moves and until - min(told, heard) > self._silence
             if command is not None and not late:
                 found[name] = _inverse(command, device)
-            elif kind.moves:
-                found[name] = kind.command()
+            elif kind.rest is not None:
+                found[name] = kind.rest
         return found
 
     def _tell(self, name: str, reading: Reading | DeviceError, now: float) -> None:

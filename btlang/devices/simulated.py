@@ -107,10 +107,10 @@ class SimulatedDevice:
 
     def step(self) -> None:
         """What moves and is not told so again comes to rest."""
-        if self._kind.moves and self._command is not None and self._robot.time - self._told > SILENCE:
+        rest = self._kind.rest
+        if rest is not None and self._command is not None and self._robot.time - self._told > SILENCE:
             self._command = None
-            assert self._kind.command is not None
-            _WRITE[self._device.kind](self, self._kind.command())
+            _WRITE[self._device.kind](self, rest)
 
     def silent(self, name: str) -> str | None:
         """Why it is silent."""

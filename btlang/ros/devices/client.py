@@ -83,8 +83,8 @@ class TopicClient:
 
     def rest(self) -> None:
         """Brings to rest what moves."""
-        if self._kind.moves and self._kind.command is not None:
-            self.tell(self._kind.command())
+        if self._kind.rest is not None:
+            self.tell(self._kind.rest)
 
     def reading(self) -> Reading | DeviceError | None:
         """What it has told last; None where that is old, and soon silence. What can't be true is silence too."""
