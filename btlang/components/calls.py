@@ -7,7 +7,8 @@ from functools import partial
 from inspect import isgenerator, signature
 from queue import Empty, SimpleQueue
 
-from btlang.engine.leaves.leaf import ActionFailed, Failed, Unknown, described, reason_text
+from btlang.components.plain import refused, value_of
+from btlang.engine.leaves.leaf import ActionFailed, Failed, reason_text
 from btlang.robots.capabilities import Robot
 
 TYPE_CHECKING = False
@@ -64,9 +65,7 @@ class Questions:
                         answer = self._answers.get(timeout=_AGAIN)  # to a question that was asked twice
                 except Empty:
                     continue
-                if "problem" in answer:
-                    raise (Unknown if answer.get("unknown") else ActionFailed)(answer["problem"])
-                return answer.get("value")
+                return value_of(answer)
         raise ActionFailed("it was halted")
 
 
@@ -85,11 +84,8 @@ class Call(Questions):
     def _work(self) -> None:
         try:
             self._worker.ended(self.number, {"value": self._result(), "stored": self._stored})
-        except ActionFailed as problem:
-            ended = {"problem": str(problem), "unknown": isinstance(problem, Unknown)}
-            self._worker.ended(self.number, ended)
         except BaseException as problem:
-            self._worker.ended(self.number, {"problem": described(problem)})
+            self._worker.ended(self.number, refused(problem))
 
     def _result(self) -> object:
         method: Callable[..., Any] = getattr(self._worker.component, self._method)

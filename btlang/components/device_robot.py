@@ -12,6 +12,7 @@ from btlang.devices.driver import DeviceError
 from btlang.devices.drivers import SIMULATED
 from btlang.devices.simulated import twin, twins
 from btlang.robots.body import Sensor
+from btlang.robots.body_file import unusable_robot
 from btlang.robots.platforms import ALL
 from btlang.robots.robot import RobotError
 from btlang.robots.simulated import SimulatedRobot
@@ -97,14 +98,10 @@ def connect_devices(world: World, *, body: Body, simulate: Sequence[str] = (), *
     """A connection to the devices of a body; those whose name or kind is in `simulate` (ALL: every one, and what the
     body has no device for) are simulated. Raises MissionError (BT071) for devices that can't be used.
     """
-    from btlang.diagnostics.diagnostic import diagnostic
-    from btlang.diagnostics.errors import MissionError
-    from btlang.text.source import NOWHERE
-
     try:
         return DeviceSimulation(world, body.replace(devices=simulated_devices(body, simulate)))
     except DeviceError as problem:
-        raise MissionError([diagnostic("BT071", NOWHERE, reason=str(problem))]) from None
+        raise unusable_robot(problem) from None
 
 
 def simulated_devices(body: Body, names: Sequence[str]) -> tuple[Device, ...]:

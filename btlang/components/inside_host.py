@@ -9,7 +9,7 @@ from inspect import isgenerator, signature
 from btlang.components.component import Component, ComponentError
 from btlang.components.life_cycle import ACTIVE, TRANSITIONS, UNCONFIGURED
 from btlang.components.location import describe, load_class
-from btlang.engine.leaves.leaf import ActionFailed, described
+from btlang.engine.leaves.leaf import ActionFailed, described, reason_of
 from btlang.robots.proxy import RobotProxy
 
 TYPE_CHECKING = False
@@ -69,7 +69,7 @@ class InsideHost:
         if problems:
             self.state = transition.fails
             self._fail(problems[0])
-            raise ComponentError(_text(problems[0])) from problems[0]
+            raise ComponentError(reason_of(problems[0])) from problems[0]
         self.state = transition.ends
 
     def look(self) -> str | None:
@@ -90,7 +90,7 @@ class InsideHost:
         except KeyboardInterrupt:
             raise
         except BaseException as problem:
-            self.state, self.problem = UNCONFIGURED, f"failed in its step: {_text(problem)}"
+            self.state, self.problem = UNCONFIGURED, f"failed in its step: {reason_of(problem)}"
             self._fail(problem)
             self._changed()
 
@@ -125,10 +125,6 @@ class InsideHost:
             self._component.error(problem if isinstance(problem, Exception) else ComponentError(described(problem)))
         except Exception as another:
             self.problem = f"failed in its error hook: {described(another)}"
-
-
-def _text(problem: BaseException) -> str:
-    return str(problem) if isinstance(problem, ActionFailed) else described(problem)
 
 
 def _call(method: Callable[..., Any], ports: Mapping[str, Any], robot: Any) -> Any:

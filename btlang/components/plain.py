@@ -4,9 +4,11 @@ from __future__ import annotations
 
 import base64
 import json
+from collections.abc import Mapping
 
 from btlang.devices import kinds
 from btlang.devices.kinds import Command, Reading
+from btlang.engine.leaves.leaf import ActionFailed, Unknown, reason_of
 from btlang.record import Record
 from btlang.robots.geometry import Pose
 
@@ -36,6 +38,18 @@ def unpacked(data: bytes) -> Any:
         return json.loads(data, object_hook=_record)
     except RecursionError:
         raise ValueError("it is nested too deeply") from None
+
+
+def refused(problem: BaseException) -> dict[str, Any]:
+    """The answer where something was raised; `value_of` raises it on the other side."""
+    return {"problem": reason_of(problem), "unknown": isinstance(problem, Unknown)}
+
+
+def value_of(answer: Mapping[str, Any]) -> Any:
+    """The value of an answer. Raises ActionFailed, or Unknown, for one that is `refused`."""
+    if "problem" in answer:
+        raise (Unknown if answer.get("unknown") else ActionFailed)(answer["problem"])
+    return answer.get("value")
 
 
 def _other(value: object) -> Any:

@@ -19,7 +19,7 @@ from multiprocessing.connection import Connection
 from btlang.components.component import ComponentError
 from btlang.components.host import SHARED
 from btlang.components.life_cycle import ACTIVE, UNCONFIGURED
-from btlang.components.plain import packed, unpacked
+from btlang.components.plain import packed, refused, unpacked
 from btlang.components.remote_leaf import RemoteLeaf, Request
 from btlang.devices.driver import DeviceError
 from btlang.engine.leaves.leaf import ActionFailed, Unknown, described
@@ -297,7 +297,7 @@ class ProcessHost:
         try:
             return {"value": self._devices[name].read(name)}
         except ActionFailed as problem:
-            return {"problem": str(problem), "unknown": True}
+            return {**refused(problem), "unknown": True}
 
     def _tidy(self, known: set[int]) -> None:
         """Forgets what is over on both sides; what the component knows nothing of is sent again."""

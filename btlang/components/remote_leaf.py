@@ -7,7 +7,8 @@ import time
 from collections import deque
 from collections.abc import Callable
 
-from btlang.engine.leaves.leaf import ActionFailed, Unknown, described
+from btlang.components.plain import refused, value_of
+from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.proxy import RobotProxy
 
 TYPE_CHECKING = False
@@ -49,9 +50,7 @@ class Request:
     @property
     def value(self) -> Any:
         """What it has led to. Raises ActionFailed."""
-        if "problem" in self.outcome:
-            raise (Unknown if self.outcome.get("unknown") else ActionFailed)(self.outcome["problem"])
-        return self.outcome.get("value")
+        return value_of(self.outcome)
 
 
 class RemoteLeaf:
@@ -122,8 +121,7 @@ class RemoteLeaf:
         except KeyboardInterrupt:
             raise
         except BaseException as problem:
-            text = str(problem) if isinstance(problem, ActionFailed) else described(problem)
-            return {"problem": text, "unknown": isinstance(problem, Unknown)}
+            return refused(problem)
         if hasattr(value, "cancel"):
             self._operations.append(value)
             return {"value": {"operation": len(self._operations) - 1}}

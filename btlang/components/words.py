@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from btlang.components.component import ComponentError
 from btlang.components.location import words_file
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
+from btlang.robots.body_file import unusable_robot
 from btlang.robots.registry import body_of
-from btlang.text.source import NOWHERE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -23,5 +21,5 @@ def robot_words(robot: str | Source) -> list[str]:
     try:
         files = [words_file(part.place, body.folder) for part in body.components if part.node is None]
     except ComponentError as problem:
-        raise MissionError([diagnostic("BT071", NOWHERE, reason=str(problem))]) from None
+        raise unusable_robot(problem) from None
     return [file for file in dict.fromkeys(files) if file is not None]

@@ -32,8 +32,8 @@ from btlang.components.life_cycle import (
     Transition,
 )
 from btlang.components.location import describe, load_class
-from btlang.components.plain import packed, unpacked
-from btlang.engine.leaves.leaf import ActionFailed, described
+from btlang.components.plain import packed, refused, unpacked
+from btlang.engine.leaves.leaf import described
 from btlang.robots.body_file import load_body
 
 TYPE_CHECKING = False
@@ -169,7 +169,7 @@ class Life:
                 due = last = time.monotonic()
                 worker.ended(message["id"], {"value": value})
             except BaseException as problem:
-                worker.ended(message["id"], {"problem": described(problem) if _strange(problem) else str(problem)})
+                worker.ended(message["id"], refused(problem))
 
     def _load(self, worker: Worker, message: dict[str, Any]) -> object:
         if self._loaded is None:
@@ -234,10 +234,6 @@ class Life:
     def _tell(self, kind: str, data: Mapping[str, Any]) -> None:
         for worker in tuple(self.workers):
             worker.send({"tell": kind, "data": dict(data)})
-
-
-def _strange(problem: BaseException) -> bool:
-    return not isinstance(problem, ActionFailed)
 
 
 def _end() -> None:

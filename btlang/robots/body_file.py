@@ -36,6 +36,8 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import TypeVar
 
+    from btlang.diagnostics.errors import MissionError
+
     T = TypeVar("T")
 
 _HANDS = ("left", "right")
@@ -68,6 +70,15 @@ def read_body(file: str | Source, overs: Collection[str] = tuple(ROBOTS)) -> Bod
         return load_body(file, overs)
     except BodyError as error:
         raise as_mission_error(error) from None
+
+
+def unusable_robot(problem: Exception) -> MissionError:
+    """BT071 for what no line of the file shows: something isn't installed, or isn't there."""
+    from btlang.diagnostics.diagnostic import diagnostic
+    from btlang.diagnostics.errors import MissionError
+    from btlang.text.source import NOWHERE
+
+    return MissionError([diagnostic(BodyError.code, NOWHERE, reason=str(problem))])
 
 
 @cache

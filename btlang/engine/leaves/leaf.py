@@ -90,6 +90,11 @@ def described(problem: BaseException) -> str:
     return f"{name}: {text}" if text else name
 
 
+def reason_of(problem: BaseException) -> str:
+    """Why something failed: what an ActionFailed says, else the exception."""
+    return str(problem) if isinstance(problem, ActionFailed) else described(problem)
+
+
 class LeafBinding(Record):
     """The Python side of a leaf id: what to call, how to convert the text of each port, and values for missing ports.
 

@@ -12,9 +12,8 @@ from btlang.arguments import robot_on
 from btlang.components.device_robot import simulated_devices
 from btlang.devices.device_set import DeviceSet
 from btlang.devices.driver import DeviceError
-from btlang.diagnostics.diagnostic import diagnostic
-from btlang.diagnostics.errors import MissionError
 from btlang.robots.body import Body
+from btlang.robots.body_file import unusable_robot
 from btlang.robots.options import add_simulate, add_world
 from btlang.robots.registry import runs_on
 from btlang.robots.simulated import SimulatedRobot
@@ -26,7 +25,6 @@ from btlang.ros.devices.driver import PACKAGES
 from btlang.ros.ending import EndingSignals, ending_signals
 from btlang.run.controls import Controls
 from btlang.text.output import show
-from btlang.text.source import NOWHERE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -55,7 +53,7 @@ def serve(options: argparse.Namespace) -> int:
     try:
         body = body.replace(devices=simulated_devices(body, options.simulate))
     except DeviceError as problem:
-        raise MissionError([diagnostic("BT071", NOWHERE, reason=str(problem))]) from None
+        raise unusable_robot(problem) from None
     if not body.devices:
         options.refuse("the robot file has no [[device]]; --simulate shows simulated ones")
     with ending_signals() as came:  # before ROS 2 is imported, where an interrupt may get lost
@@ -73,7 +71,7 @@ def _show_devices(options: argparse.Namespace, body: Body, world: World, came: E
     try:
         devices = DeviceSet(body, twin, _tell)
     except DeviceError as problem:
-        raise MissionError([diagnostic("BT071", NOWHERE, reason=str(problem))]) from None
+        raise unusable_robot(problem) from None
     with closing(devices):
         devices.start()
         spun = SpunNode("btlang_device_topics", namespace=options.namespace)
