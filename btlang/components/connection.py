@@ -11,12 +11,13 @@ from btlang.components.component import ComponentError
 from btlang.components.device_robot import DeviceSimulation
 from btlang.components.gate import Gate
 from btlang.components.inside_host import InsideHost
-from btlang.components.location import located
-from btlang.components.manager import Keeper, Manager
+from btlang.components.manager import Keeper, Manager, class_of
 from btlang.components.process_host import ProcessHost
 from btlang.devices.device_set import DeviceSet
 from btlang.devices.driver import DeviceError
 from btlang.devices.simulated import twin
+from btlang.diagnostics.errors import MissionError
+from btlang.robots.body_file import unusable_robot
 from btlang.robots.platforms import node_function
 from btlang.robots.simulation import Simulation
 from btlang.run.events import RobotEvent
@@ -76,10 +77,7 @@ class ComponentConnection:
         if entry.ros is not None and self._nodes is not None:
             return self._bound_to_node(entry, vocabulary)
         place, _, method = entry.call.rpartition(".") if isinstance(entry.call, str) else ("", "", "")
-        keeper = next(
-            (each for each in self.manager.keepers if each.part.node is None and located(each.part.place) == place),
-            None,
-        )
+        keeper = next((each for each in self.manager.keepers if each.class_place == place), None)
         if keeper is None:
             return self._inner.bind(entry, vocabulary)
         self._used.add(keeper.part.name)
@@ -223,15 +221,10 @@ def component_connection(connect: Callable[[], Connection], body: Body) -> Conne
     """What `connect` gives, with the components and devices of the body. Raises MissionError (BT071) for those that
     can't be.
     """
-    from btlang.diagnostics.diagnostic import diagnostic
-    from btlang.diagnostics.errors import MissionError
-    from btlang.text.source import NOWHERE
-
     inner: Connection | None = None
     try:
-        for part in body.components:
-            if part.node is None:
-                located(part.place)
+        for part in body.components:  # before anything is opened
+            class_of(part)
         inner = connect()
         return ComponentConnection(inner, body)
     except (ComponentError, DeviceError, MissionError) as problem:
@@ -239,4 +232,4 @@ def component_connection(connect: Callable[[], Connection], body: Body) -> Conne
             inner.close()
         if isinstance(problem, MissionError):  # without ROS 2
             raise
-        raise MissionError([diagnostic("BT071", NOWHERE, reason=str(problem))]) from None
+        raise unusable_robot(problem) from None

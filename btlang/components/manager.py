@@ -65,7 +65,7 @@ class Manager:
 
     def start(self) -> None:
         """Begins to bring all of them up."""
-        for keeper in tuple(self._keepers.values()):
+        for keeper in self.keepers:
             keeper.start()
 
     def wait(self, seconds: float) -> bool:
@@ -80,7 +80,7 @@ class Manager:
             self._closing = True
             self.changed.notify_all()
         until = time.monotonic() + _CLOSING
-        for keeper in tuple(self._keepers.values()):
+        for keeper in self.keepers:
             if not keeper.join(until - time.monotonic()):
                 keeper.abandon()
 
@@ -103,14 +103,14 @@ class Manager:
 
     def statuses(self) -> list[ComponentStatus]:
         """Of all components, in the order of the robot file."""
-        return [keeper.status() for keeper in tuple(self._keepers.values())]
+        return [keeper.status() for keeper in self.keepers]
 
     def load(self, part: ComponentPart) -> None:
         """One more, or another one in place of that of its name: as soon as no running mission uses that.
 
         Raises ComponentError for one that isn't installed.
         """
-        located(part.place)
+        class_of(part)
         with self.changed:
             found = self._keepers.get(part.name)
             if found is None or found.gone:
@@ -152,12 +152,12 @@ class Manager:
 
     def is_needed(self, name: str) -> bool:
         """Whether one that needs it is still active."""
-        keepers = tuple(self._keepers.values())
+        keepers = self.keepers
         return any(keeper.state == ACTIVE and name in keeper.needs for keeper in keepers)
 
     def is_free(self, name: str) -> bool:
         """Whether no running mission uses it, or one that needs it."""
-        users, keepers = [name], tuple(self._keepers.values())
+        users, keepers = [name], self.keepers
         for user in users:  # which grows
             users += [each.part.name for each in keepers if user in each.needs and each.part.name not in users]
         return self._closing or not any(map(self._in_use, users))
@@ -172,11 +172,18 @@ class Manager:
             self.changed.notify_all()
 
 
+def class_of(part: ComponentPart) -> str | None:
+    """The `module:Class` of a part; None of a ROS 2 node. Raises ComponentError for one that isn't installed."""
+    return located(part.place) if part.node is None else None
+
+
 class Keeper:
     """Leads one component through its life, in a thread that also starts its process."""
 
     def __init__(self, manager: Manager, part: ComponentPart) -> None:
         self._manager, self.part = manager, part
+        self.class_place = class_of(part)
+        """The `module:Class` of the part, found once: looking through what is installed takes long."""
         self.next: ComponentPart | None = part  # what it is to be; None: unloaded. Changed with the lock
         self._asked = False
         self.host: Host | None = None
@@ -260,10 +267,12 @@ class Keeper:
         return self._manager.closing or self.next is None
 
     def _may_begin(self) -> bool:
-        if self._given_up or time.monotonic() < self._due:
-            return False
-        missing = self._manager.needs_met(self.part.needs)
-        if missing is not None and self.why != f"waits for the {missing}":
+        return not self._given_up and time.monotonic() >= self._due and self._has(self.part.needs)
+
+    def _has(self, needs: Iterable[str]) -> bool:
+        """Whether all that it needs is active; where it isn't, that is what it waits for. Called with the lock."""
+        missing = self._manager.needs_met(needs)
+        if missing is not None:
             self._set(self.state, f"waits for the {missing}")
         return missing is None
 
@@ -272,6 +281,7 @@ class Keeper:
         host = self.host = self._manager.make(self.part)
         self.leaving, self._starts = False, self._starts + 1
         try:
+            self.class_place = class_of(self.part)
             known = host.load()
             self._absent = False
             self.version, self.needs = known["version"], tuple({*self.part.needs, *known["needs"]})
@@ -302,11 +312,8 @@ class Keeper:
 
     def _wait_for_needs(self) -> bool:
         with self._manager.changed:
-            missing = self._manager.needs_met(self.needs)
-            if missing is None:
+            if self._has(self.needs):
                 return True
-            if self.why != f"waits for the {missing}":
-                self._set(self.state, f"waits for the {missing}")
             self._manager.changed.wait(_LOOK)
         self._look()
         return False

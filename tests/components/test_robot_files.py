@@ -9,8 +9,11 @@ from pathlib import Path
 import pytest
 
 from btlang.components.checking import check_robot
+from btlang.components.component import ComponentError
+from btlang.components.manager import class_of
 from btlang.components.order import circle, levels
 from btlang.diagnostics.reading import read_source
+from btlang.robots.body import ComponentPart, RosNode
 from btlang.robots.body_file import read_body
 from btlang.text.source import Source
 from tests.components.robots import machine, robot_file
@@ -106,6 +109,14 @@ def test_a_text_from_elsewhere_runs_no_code(tmp_path: Path) -> None:
         source = Source(BODY.replace('over = "devices"', "") + text, str(tmp_path / "robot.toml"))
         with pytest.raises(MissionError, match="may only be in a robot file on this computer"):
             read_body(source)
+
+
+def test_a_node_is_no_class() -> None:
+    """It was looked for among the installed classes, so it could not be loaded anew."""
+    assert class_of(ComponentPart("arm", "/arm", node=RosNode("/arm"))) is None
+    assert class_of(ComponentPart("machine", "coffee:Machine")) == "coffee:Machine"
+    with pytest.raises(ComponentError, match="no package has a component"):
+        class_of(ComponentPart("machine", "coffee"))
 
 
 def test_order() -> None:

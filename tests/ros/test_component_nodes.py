@@ -87,6 +87,14 @@ def test_a_killed_node_fails_its_command_and_is_back_for_the_next(tmp_path: Path
     assert not any(os.path.exists(f"/proc/{each}") for each in (process, last))
 
 
+def test_a_node_is_loaded_anew(tmp_path: Path) -> None:
+    with up(tmp_path, table(STARTED)) as (session, keeper):
+        becomes(keeper, "active")
+        session.connection.manager.load(keeper.part)
+        wait_until(lambda: keeper.status().starts == 2, "its second start")
+        becomes(keeper, "active")
+
+
 def test_an_exception_and_an_endless_configure(tmp_path: Path) -> None:
     (tmp_path / "plan").write_text("raise", encoding="utf-8")
     with up(tmp_path, table([*STARTED, str(tmp_path)], limit=2.0)) as (_, keeper):
