@@ -71,7 +71,7 @@ def describe_apart(part: ComponentPart, folder: str) -> Mapping[str, Any]:
 
 
 def _devices(body: Body) -> Iterator[Problem]:
-    ports: dict[str, tuple[int, Device]] = {}
+    ports: dict[str, Device] = {}
     groups: dict[tuple[str, str], list[tuple[int, Device]]] = {}
     for index, device in enumerate(body.devices):
         if device.kind not in KINDS:
@@ -81,7 +81,7 @@ def _devices(body: Body) -> Iterator[Problem]:
             continue
         if device.kind == "joint" and device.driver != SIMULATED and body.joint(device.name) is None:
             yield Problem(f'the robot has no joint "{device.name}"', "device", index, "name")
-        first = ports.setdefault(device.port, (index, device))[1] if device.port else device
+        first = ports.setdefault(device.port, device) if device.port else device
         if first.driver != device.driver:
             yield Problem(f'the port "{device.port}" is that of the {first.name}, too', "device", index, "port")
         groups.setdefault((device.driver, device.port), []).append((index, device))
@@ -146,10 +146,11 @@ def _lacking(body: Body) -> Iterator[Problem]:
 
 def _components(body: Body, described: dict[str, Mapping[str, Any]]) -> Iterator[Problem]:
     """Fills `described` with what the class at each place says of itself, where that can be loaded."""
-    names = {part.name for part in body.components}
+    names, devices = {part.name for part in body.components}, {device.name for device in body.devices}
+    known = names | devices | set(CAPABILITIES)
     needs: dict[str, set[str]] = {}
     for index, part in enumerate(body.components):
-        if part.name in {device.name for device in body.devices}:
+        if part.name in devices:
             yield Problem(f'"{part.name}" is the name of a device, too', "component", index, "name")
         own = set(part.needs)
         try:
@@ -160,7 +161,6 @@ def _components(body: Body, described: dict[str, Mapping[str, Any]]) -> Iterator
             yield Problem(
                 str(problem), "component", index, "parameters" if isinstance(problem, ParameterError) else "class"
             )
-        known = names | {device.name for device in body.devices} | set(CAPABILITIES)
         for need in sorted(own - known):
             yield Problem(
                 f'"{part.name}" needs "{need}", which is no component, device or part', "component", index, "needs"

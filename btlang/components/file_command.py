@@ -10,6 +10,7 @@ from btlang.components.order import levels
 from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source
 from btlang.robots.body import Body, ComponentPart
+from btlang.robots.body_file import read_body
 from btlang.text.escaping import one_line
 from btlang.text.output import show
 
@@ -18,13 +19,14 @@ _OF_NODES = {"version": "", "needs": []}
 
 def serve_file(act: str, path: str) -> int:
     """Checks a robot file, or draws the robot; returns the exit code. Raises MissionError with all that is wrong."""
-    body, problems = check_robot(read_source(path))
-    if body is None or (problems and act == "check"):
+    source = read_source(path)
+    if act == "show":
+        show("\n".join(drawn(read_body(source))))
+        return 0
+    problems = check_robot(source)[1]
+    if problems:
         raise MissionError(problems)
-    if act == "check":
-        show("No problems found.")
-    else:
-        show("\n".join(drawn(body)))
+    show("No problems found.")
     return 0
 
 
