@@ -114,8 +114,8 @@ class Navigator:
     def _check(self, goal: NavigationGoal) -> None:
         """Ends a goal that cannot go on; plans anew when something has moved."""
         name = goal.name
-        if self._base.silent is not None:
-            goal.end(self._base.silent)
+        if (silent := self._base.silent) is not None:
+            goal.end(silent)
         elif self._base.bumps > goal.bumps:
             goal.end(f"bumped into {self._base.bumped_into} on the way to {said(name)}")
         elif self._base.stuck:

@@ -146,8 +146,8 @@ class SimulatedRobot:
     @property
     def pose(self) -> Pose:
         """Where it is. Raises SensorSilent where that isn't known."""
-        if self._base.silent is not None:
-            raise SensorSilent(self._base.silent)
+        if (silent := self._base.silent) is not None:
+            raise SensorSilent(silent)
         return self._base.pose
 
     @property
@@ -158,8 +158,8 @@ class SimulatedRobot:
     @property
     def velocity(self) -> tuple[float, float]:
         """Metres and degrees a second. Raises SensorSilent."""
-        if self._base.silent is not None:
-            raise SensorSilent(self._base.silent)
+        if (silent := self._base.silent) is not None:
+            raise SensorSilent(silent)
         return self._base.velocity
 
     @property
