@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import base64
-import time
 from collections.abc import Iterator
 from pathlib import Path
-from typing import Any
 
 import pytest
 
@@ -16,6 +14,7 @@ from btlang.task.layer import TaskLayer
 from btlang.task.messages import Answer, Command
 from btlang.task.missions import MissionReader
 from tests.components.robots import machine, robot_file
+from tests.task.layers import wait_until
 
 EYE = '\n[[device]]\nname = "eye"\nkind = "camera"\ndriver = "simulated"\n'
 SONAR = '\n[[device]]\nname = "sonar"\nkind = "range"\ndriver = "simulated"\noptions = { silent = [0, 1e6] }\n'
@@ -32,13 +31,6 @@ def lines(layer: TaskLayer) -> list[str]:
     return layer.handle(messages.Components()).text.splitlines()
 
 
-def until(holds: Any) -> None:
-    end = time.monotonic() + 30
-    while not holds():
-        assert time.monotonic() < end
-        time.sleep(0.02)
-
-
 def test_they_are_listed(layer: TaskLayer) -> None:
     answer = layer.handle(messages.Components())
     assert [line.split()[:2] for line in answer.text.splitlines()] == [
@@ -50,21 +42,21 @@ def test_they_are_listed(layer: TaskLayer) -> None:
 
 def test_restart_load_and_unload(layer: TaskLayer, tmp_path: Path) -> None:
     assert layer.handle(messages.ChangeComponent("machine", "restart")).ok
-    until(lambda: "started 2 times" in lines(layer)[0] and " active " in lines(layer)[0])
+    wait_until(lambda: "started 2 times" in lines(layer)[0] and " active " in lines(layer)[0])
     path = tmp_path / "robot.toml"
     path.write_text(path.read_text(encoding="utf-8").replace("coffee:Machine", "tea:Machine"), encoding="utf-8")
     (tmp_path / "tea.py").write_text("from coffee import Machine\n", encoding="utf-8")
     assert layer.handle(messages.ChangeComponent("machine", "load")).ok
-    until(lambda: " active " in lines(layer)[0] and "tea:Machine" in lines(layer)[0])
+    wait_until(lambda: " active " in lines(layer)[0] and "tea:Machine" in lines(layer)[0])
     assert layer.handle(messages.ChangeComponent("machine", "unload")).ok
-    until(lambda: lines(layer)[0].startswith("eye"))
+    wait_until(lambda: lines(layer)[0].startswith("eye"))
 
 
 def test_one_that_is_loaded_while_it_goes_is_there(layer: TaskLayer) -> None:
     for _ in range(5):
         assert layer.handle(messages.ChangeComponent("machine", "unload")).ok
         assert layer.handle(messages.ChangeComponent("machine", "load")).ok
-    until(lambda: lines(layer)[0].startswith("machine") and " active " in lines(layer)[0])
+    wait_until(lambda: lines(layer)[0].startswith("machine") and " active " in lines(layer)[0])
 
 
 @pytest.mark.parametrize(
@@ -100,5 +92,5 @@ def test_watchers_hear_of_changes(layer: TaskLayer) -> None:
     told = (message for message in watcher if message["type"] == "components")
     assert next(told)["components"][0]["starts"] == 1
     layer.handle(messages.ChangeComponent("machine", "restart"))
-    until(lambda: next(told)["components"][0]["starts"] == 2)
+    wait_until(lambda: next(told)["components"][0]["starts"] == 2)
     watcher.close()

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import isnan
 
-from btlang.devices.driver import DeviceSilent
+from btlang.devices.driver import DeviceError, DeviceSilent
 from btlang.devices.kinds import Command, Reading
 from btlang.ros.devices.setting import Setting
 from btlang.ros.gate import Gate
@@ -13,9 +13,13 @@ TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+_TELLS_NOTHING, _TAKES_NOTHING = "it tells nothing", "it takes no commands"
+
 
 class Translation:
-    """Of one device. `reads` and `takes` are the classes of messages for readings and commands; None: it has none."""
+    """Of one device. `reads` and `takes` are the classes of messages for readings and commands; None: it has none, and
+    what makes them raises DeviceError.
+    """
 
     reads: Any = None
     takes: Any = None
@@ -32,19 +36,19 @@ class Translation:
         return self._read(message)
 
     def _read(self, message: Any) -> Reading:
-        raise NotImplementedError
+        raise DeviceError(_TELLS_NOTHING)
 
     def shown(self, reading: Any) -> Any:
         """The message for a reading."""
-        raise NotImplementedError
+        raise DeviceError(_TELLS_NOTHING)
 
     def told(self, command: Any) -> Any:
         """The message for a command. Raises RobotError where it is beyond all limits."""
-        raise NotImplementedError
+        raise DeviceError(_TAKES_NOTHING)
 
     def command(self, message: Any) -> Command:
         """The command that a message is. Raises DeviceError."""
-        raise NotImplementedError
+        raise DeviceError(_TAKES_NOTHING)
 
 
 def number(value: float, what: str) -> float:
