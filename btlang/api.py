@@ -211,7 +211,7 @@ def _names_by_type(world: str | Source | None) -> dict[str, tuple[str, ...]]:
         from btlang.robots.data_file import as_mission_error
 
         raise as_mission_error(error) from None
-    return {"place": names.places, "person": names.people, "object": names.objects}
+    return names.by_type
 
 
 class Mission(Record, uncompared=("vocabulary", "world", "warnings", "syntax")):

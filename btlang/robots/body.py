@@ -84,11 +84,19 @@ class HandPart(Record):
 
 
 class Sensor(Record):
-    """`kind` is "scanner" or "bumper"; `frame` is its frame in ROS 2. A scanner is at the centre."""
+    """`kind` is "scanner", "bumper" or "camera"; `frame` is its frame in ROS 2. It is at the centre of the robot.
+
+    It sees as far as its `range`, `view` degrees wide, in the direction `angle` degrees left of ahead and of where its
+    `joint` has turned. It recognises people and objects up to `recognizes` metres away.
+    """
 
     kind: str
     frame: str
     range: float = 0.0
+    view: float = 360.0
+    angle: float = 0.0
+    joint: str = ""
+    recognizes: float = 0.0
 
 
 class Battery(Record):
@@ -112,6 +120,12 @@ class Voice(Record):
 
     text: float
     character: float
+
+
+class Ears(Record):
+    """It understands what is said up to `within` metres away."""
+
+    within: float
 
 
 class Device(Record):
@@ -190,6 +204,7 @@ class Body(Record):
     components: tuple[ComponentPart, ...] = ()
     file: str = ""
     world: str = ""
+    ears: Ears | None = None
 
     @property
     def folder(self) -> str:
@@ -249,5 +264,7 @@ class Body(Record):
             *(("battery", "charging") if self.battery else ()),
             *(("docking", "docked") if self.dock else ()),
             *(("voice",) if self.voice else ()),
+            *(("ears",) if self.ears else ()),
+            *(("perception",) if any(sensor.recognizes for sensor in self.sensors) else ()),
             *(("screen",) if self.screen else ()),
         }

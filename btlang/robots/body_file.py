@@ -16,6 +16,7 @@ from btlang.robots.body import (
     ComponentPart,
     Device,
     Dock,
+    Ears,
     HandPart,
     Joint,
     Limits,
@@ -41,7 +42,7 @@ if TYPE_CHECKING:
     T = TypeVar("T")
 
 _HANDS = ("left", "right")
-_SENSORS = ("scanner", "bumper")
+_SENSORS = ("scanner", "bumper", "camera")
 _RUNS = ("process", "here")
 _NODE = re.compile(r"(?:/[A-Za-z_][A-Za-z0-9_]*)+")
 _LEAST = 0.001
@@ -105,6 +106,11 @@ def _body(top: Table, overs: Collection[str], file: str) -> Body:
     postures = problems.part(lambda: _postures(top, joints), dict[str, tuple[Step, ...]]())
     hands = _listed(top, "hands", _hand, problems)
     sensors = _listed(top, "sensors", _sensor, problems, key="kind")
+    problems.found += [
+        Problem(f'there is no joint "{sensor.joint}"', "sensors", index, "joint")
+        for index, sensor in enumerate(sensors)
+        if sensor.joint and all(joint.name != sensor.joint for joint in joints)
+    ]
     battery = problems.part(lambda: _battery(top), None)
     dock = problems.part(lambda: _dock(top), None)
     voice = problems.part(lambda: _voice(top), None)
@@ -114,6 +120,7 @@ def _body(top: Table, overs: Collection[str], file: str) -> Body:
     made = Body(
         name, radius, over, base, navigation, joints, postures, hands, sensors, battery, dock, voice, screen,
         devices, components, file, problems.part(lambda: _world(top, file), ""),
+        problems.part(lambda: _ears(top), None),
     )  # fmt: skip
     problems.part(lambda: top.finish(made), made)
     if not file:
@@ -182,6 +189,13 @@ def _voice(top: Table) -> Voice | None:
     return table.finish(Voice(table.number("text", low=0.0), table.number("character", low=0.0)))
 
 
+def _ears(top: Table) -> Ears | None:
+    if not top.has("ears"):
+        return None
+    table = top.table("ears")
+    return table.finish(Ears(table.number("within", low=_LEAST)))
+
+
 def _base(table: Table) -> Base:
     driving, turning = _limits(table.table("driving")), _limits(table.table("turning"))
     return table.finish(Base(driving, turning, table.number("wheel_gap", low=0.01)))
@@ -239,7 +253,12 @@ def _hand(table: Table) -> HandPart:
 
 def _sensor(table: Table) -> Sensor:
     kind, frame = table.choice("kind", _SENSORS), table.text("frame")
-    return table.finish(Sensor(kind, frame, table.number("range", low=_LEAST) if kind == "scanner" else 0.0))
+    if kind == "bumper":
+        return table.finish(Sensor(kind, frame))
+    reach, view = table.number("range", low=_LEAST), table.number("view", 360.0, low=1.0, high=360.0)
+    angle, joint = table.number("angle", 0.0, low=-360.0, high=360.0), table.text("joint") if table.has("joint") else ""
+    recognizes = table.number("recognizes", reach if kind == "camera" else 0.0, low=0.0, high=reach)
+    return table.finish(Sensor(kind, frame, reach, view, angle, joint, recognizes))
 
 
 def _device(table: Table) -> Device:

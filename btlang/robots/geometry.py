@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from math import atan2, cos, degrees, hypot, radians, sin
 
 from btlang.record import Record
@@ -50,3 +51,13 @@ def segment_distance(point: Point, segment: Segment) -> float:
     length2 = dx * dx + dy * dy
     t = min(1.0, max(0.0, ((x - ax) * dx + (y - ay) * dy) / length2)) if length2 else 0.0
     return hypot(x - ax - t * dx, y - ay - t * dy)
+
+
+def contains(polygon: Sequence[Point], point: Point) -> bool:
+    """Whether a point is in a polygon, by the even-odd rule."""
+    x, y = point
+    inside = False
+    for (ax, ay), (bx, by) in zip(polygon, (*polygon[1:], polygon[0]), strict=True):
+        if (ay > y) != (by > y) and x < ax + (y - ay) * (bx - ax) / (by - ay):
+            inside = not inside
+    return inside

@@ -1,21 +1,23 @@
-"""What a world holds: walls, places, movable things and faults. Frozen data without numpy."""
+"""What a world holds: walls, places, people, zones and faults. Frozen data without numpy."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from itertools import pairwise
 
 from btlang.record import Record
-from btlang.robots.geometry import Point, Pose, Segment
+from btlang.robots.geometry import Point, Pose, Segment, contains
 from btlang.text.time_of_day import USUAL_START
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from typing import Any
 
+KEEP_OUT, SLOW = "keep out", "slow"
 PERSON_RADIUS = 0.25
 OBJECT_RADIUS = 0.05
 NEVER = float("inf")
+_UNDRAWN = ("comes", "leaves", "says", "answers", "answers_after", "follows", "again", "uses", "walks")
 
 
 class Place(Record):
@@ -28,12 +30,105 @@ class Place(Record):
 
 
 class Thing(Record):
-    """An object or a person: a disc that the robot sees, walks around and bumps into."""
+    """An object or a person: a disc that the robot sees, walks around and bumps into.
+
+    A thing that isn't `known` the robot knows only from where its sensors have seen it.
+    """
 
     name: str
     x: float
     y: float
     radius: float
+    known: bool = True
+
+
+class WorldObject(Thing):
+    """An object. `size` is the metres of its longest side, `uses` are what it is good for: "drink".
+
+    `switch` is "on" or "off" where it can be switched; what is `fixed` can't be picked up.
+    """
+
+    kind: str = ""
+    color: str = ""
+    size: float = 0.0
+    uses: tuple[str, ...] = ()
+    switch: str = ""
+    fixed: bool = False
+
+
+class Stop(Record):
+    """A point of a route: nobody sets out for it before second `at` of the run, and stays there for `stays` seconds."""
+
+    x: float
+    y: float
+    at: float = 0.0
+    stays: float = 0.0
+
+
+class Utterance(Record):
+    """What somebody calls out at a second of the run."""
+
+    at: float
+    text: str
+
+
+class Person(Thing):
+    """Somebody who may come, walk along a route, speak, answer, follow the robot, and leave; seconds of the run.
+
+    `walks` is the route, which is walked over and over where `again` is true; who `wanders` walks from place to place.
+    `answers` go by a word of the question, "*" by any, and take `answers_after` seconds. `follows` is from 0 to 1, how
+    well somebody keeps up when guided: 1 always.
+    """
+
+    comes: float = 0.0
+    leaves: float = NEVER
+    speed: float = 1.1
+    walks: tuple[Stop, ...] = ()
+    again: bool = False
+    wanders: bool = False
+    wears: tuple[str, ...] = ()
+    gesture: str = ""
+    says: tuple[Utterance, ...] = ()
+    answers: Mapping[str, str] = {}
+    answers_after: float = 1.5
+    follows: float = 1.0
+
+    @property
+    def moves(self) -> bool:
+        """Whether he or she is ever somewhere else by himself or herself."""
+        return bool(self.walks or self.wanders or self.comes or self.leaves < NEVER)
+
+
+class Zone(Record):
+    """A polygon that the robot keeps out of, or drives through at no more than `speed` metres a second."""
+
+    name: str
+    kind: str
+    points: tuple[Point, ...]
+    speed: float = 0.0
+
+    @property
+    def is_closed(self) -> bool:
+        """Whether the robot has to keep out."""
+        return self.kind == KEEP_OUT
+
+    def contains(self, point: Point) -> bool:
+        """By the even-odd rule."""
+        return contains(self.points, point)
+
+
+class Door(Record):
+    """A door between two points of a wall. Closed, it is a piece of wall."""
+
+    name: str
+    start: Point
+    end: Point
+    open: bool = True
+
+    @property
+    def middle(self) -> Point:
+        """Where it is."""
+        return (self.start[0] + self.end[0]) / 2, (self.start[1] + self.end[1]) / 2
 
 
 class Box(Record):
@@ -84,16 +179,24 @@ class WorldNames(Record):
     places: tuple[str, ...] = ()
     objects: tuple[str, ...] = ()
     people: tuple[str, ...] = ()
+    zones: tuple[str, ...] = ()
+    doors: tuple[str, ...] = ()
 
     def of(self, kind: str) -> tuple[str, ...]:
-        """Those of a type: "place", "object" or "person"."""
-        return {"place": self.places, "object": self.objects, "person": self.people}.get(kind, ())
+        """Those of a type: a key of `by_type`."""
+        return self.by_type.get(kind, ())
+
+    @property
+    def by_type(self) -> dict[str, tuple[str, ...]]:
+        """The names of each type of slots."""
+        of = {"place": self.places, "object": self.objects, "person": self.people}
+        return {**of, "zone": self.zones, "door": self.doors}
 
 
 class World(Record):
     """A world as its file describes it. `walls` are polylines; a dock is also the place "dock".
 
-    `clock` is the time of day at its start, in seconds since midnight.
+    `clock` is the time of day at its start, in seconds since midnight; `seed` that of runs which are given none.
     """
 
     start: Pose
@@ -101,16 +204,20 @@ class World(Record):
     walls: tuple[tuple[Point, ...], ...] = ()
     boxes: tuple[Box, ...] = ()
     places: tuple[Place, ...] = ()
-    objects: tuple[Thing, ...] = ()
-    people: tuple[Thing, ...] = ()
+    objects: tuple[WorldObject, ...] = ()
+    people: tuple[Person, ...] = ()
     faults: tuple[Fault, ...] = ()
     dock: Place | None = None
     clock: float = USUAL_START
+    zones: tuple[Zone, ...] = ()
+    doors: tuple[Door, ...] = ()
+    seed: int | None = None
 
     @property
     def names(self) -> WorldNames:
         """All names of the world."""
-        return WorldNames(*(tuple(thing.name for thing in kind) for kind in (self.places, self.objects, self.people)))
+        named = (self.places, self.objects, self.people, self.zones, self.doors)
+        return WorldNames(*(tuple(each.name for each in kind) for kind in named))
 
     def wall_segments(self) -> tuple[Segment, ...]:
         """The walls in straight pieces, without furniture."""
@@ -129,6 +236,10 @@ class World(Record):
 
     def as_map(self) -> dict[str, Any]:
         """What is drawn of it, as in a world file."""
-        listed = {kind: getattr(self, kind) for kind in ("boxes", "places", "objects", "people")}
-        found: dict[str, Any] = {kind: [each.as_dict() for each in known] for kind, known in listed.items()}
+        found: dict[str, Any] = {
+            kind: [each.as_dict(_UNDRAWN) for each in getattr(self, kind)]
+            for kind in ("boxes", "places", "objects", "people", "zones", "doors")
+        }
+        for person, shown in zip(self.people, found["people"], strict=True):
+            shown["walks"] = [(stop.x, stop.y) for stop in person.walks]
         return {"walls": self.walls, "dock": None if self.dock is None else self.dock.as_dict(), **found}

@@ -10,18 +10,16 @@ from btlang.robots.data_file import DataFileError, load_data
 from btlang.robots.geometry import Point, Pose, segment_distance
 from btlang.robots.world import (
     NEVER,
-    OBJECT_RADIUS,
-    PERSON_RADIUS,
     Box,
     Fault,
     Place,
-    Thing,
     World,
     WorldNames,
 )
+from btlang.robots.world_tables import is_point, read_door, read_object, read_person, read_zone
 from btlang.text.source import Source
 from btlang.text.time_of_day import USUAL_START
-from btlang.text.toml_table import Problem, Table, is_coordinate
+from btlang.text.toml_table import Problem, Table
 from btlang.vocabulary.shipped import DEFAULT_WORLD
 
 TYPE_CHECKING = False
@@ -67,12 +65,17 @@ def _world(top: Table, radius: float) -> World:
         table = top.table("dock")
         dock = table.finish(Place("dock", table.number("x"), table.number("y"), table.number("facing", 0.0)))
         places += (dock,)
-    objects = tuple(_thing(table, OBJECT_RADIUS) for table in top.tables("objects"))
-    people = tuple(_thing(table, PERSON_RADIUS) for table in top.tables("people"))
+    known = top.flag("known", True)
+    objects = tuple(read_object(table, known) for table in top.tables("objects"))
+    people = tuple(read_person(table, known, places) for table in top.tables("people"))
+    zones, doors = tuple(map(read_zone, top.tables("zones"))), tuple(map(read_door, top.tables("doors")))
     names = tuple(place.name for place in places)
     faults = tuple(_fault(table, names) for table in top.tables("faults"))
     clock = _clock(top) if top.has("clock") else USUAL_START
-    world = top.finish(World(start, battery, walls, boxes, places, objects, people, faults, dock, clock))
+    seed = int(top.number("seed", low=0.0)) if top.has("seed") else None
+    world = top.finish(
+        World(start, battery, walls, boxes, places, objects, people, faults, dock, clock, zones, doors, seed)
+    )
     _check_names(world)
     _check_room(world, radius)
     return world
@@ -90,14 +93,10 @@ def _clock(top: Table) -> float:
 
 
 def _wall(points: Any, index: int) -> tuple[Point, ...]:
-    if not isinstance(points, list) or len(points) < 2 or not all(map(_is_point, points)):
+    if not isinstance(points, list) or len(points) < 2 or not all(map(is_point, points)):
         message = "a wall is a list of two or more points: write [[0, 0], [4, 0]]"
         raise Problem(message, "walls", index)
     return tuple((float(x), float(y)) for x, y in points)
-
-
-def _is_point(value: Any) -> bool:
-    return isinstance(value, list) and len(value) == 2 and all(map(is_coordinate, value))
 
 
 def _box(table: Table) -> Box:
@@ -108,11 +107,6 @@ def _box(table: Table) -> Box:
 def _place(table: Table) -> Place:
     facing = table.number("facing") if table.has("facing") else None
     return table.finish(Place(table.text("name"), table.number("x"), table.number("y"), facing))
-
-
-def _thing(table: Table, radius: float) -> Thing:
-    thing = Thing(table.text("name"), table.number("x"), table.number("y"), table.number("radius", radius, low=0.01))
-    return table.finish(thing)
 
 
 def _fault(table: Table, places: tuple[str, ...]) -> Fault:
@@ -133,7 +127,10 @@ def _fault(table: Table, places: tuple[str, ...]) -> Fault:
 def _check_names(world: World) -> None:
     seen: dict[str, str] = {}
     names = world.names
-    for section, group in (("places", names.places), ("objects", names.objects), ("people", names.people)):
+    for section, group in (
+        ("places", names.places), ("objects", names.objects), ("people", names.people), ("zones", names.zones),
+        ("doors", names.doors),
+    ):  # fmt: skip
         for index, name in enumerate(group):
             key = name.lower()
             if key in seen:

@@ -63,6 +63,11 @@ class Table:
         self._values = values
         self._read: list[str] = []
 
+    @property
+    def path(self) -> Path:
+        """Where it is in the file."""
+        return self._path
+
     def keys(self) -> list[str]:
         """All keys, for a table whose keys are names that the file gives."""
         return list(self._values)
@@ -103,9 +108,9 @@ class Table:
             raise self.problem(key, f'"{key}" must be text in quotes; write {key} = "kitchen"')
         return " ".join(value.split())
 
-    def flag(self, key: str) -> bool:
-        """True or false, false where it is missing. Raises Problem."""
-        value = self._values[key] if self.has(key) else False
+    def flag(self, key: str, default: bool = False) -> bool:
+        """True or false. Raises Problem."""
+        value = self._values[key] if self.has(key) else default
         if not isinstance(value, bool):
             raise self.problem(key, f'"{key}" must be true or false')
         return value

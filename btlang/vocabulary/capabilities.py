@@ -35,6 +35,8 @@ CAPABILITIES = {
     "right hand": Capability("right hand", _ARMS[1:]),
     "holding": Capability("hand"),
     "voice": Capability("voice", ("voice",)),
+    "ears": Capability("ears"),
+    "perception": Capability("camera that recognises things"),
     "screen": Capability("screen"),
 }
 """By name. Those without resources are for any number of commands at once."""

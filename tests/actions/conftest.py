@@ -7,7 +7,7 @@ import pytest
 from btlang.engine.clock import Clock
 from btlang.robots.geometry import Pose
 from btlang.robots.simulated import SimulatedRobot
-from btlang.robots.world import Thing, World
+from btlang.robots.world import Person, World, WorldObject
 
 TICK = 0.05
 
@@ -59,6 +59,6 @@ def table():
     """Things and people around the origin."""
     return World(
         start=Pose(0.0, 0.0, 0.0),
-        objects=(Thing("cup", 0.42, 0.0, 0.04), Thing("ball", 3.0, 1.0, 0.1)),
-        people=(Thing("Alice", 0.0, 2.0, 0.25),),
+        objects=(WorldObject("cup", 0.42, 0.0, 0.04), WorldObject("ball", 3.0, 1.0, 0.1)),
+        people=(Person("Alice", 0.0, 2.0, 0.25),),
     )

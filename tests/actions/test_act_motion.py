@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from btlang.actions import motion
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.geometry import Pose, wrap
-from btlang.robots.world import Fault, Place, Thing
+from btlang.robots.world import Fault, Person, Place
 
 WALL = {"walls": (((1.0, -2.0), (1.0, 2.0)),)}
 FIXTURE = settings(max_examples=25, deadline=None, suppress_health_check=[HealthCheck.function_scoped_fixture])
@@ -165,6 +165,6 @@ def test_facing(bench, table):
 
 
 def test_people_in_the_way_count_as_something(bench):
-    b = bench(people=(Thing("Alice", 1.0, 0.0, 0.25),))
+    b = bench(people=(Person("Alice", 1.0, 0.0, 0.25),))
     with pytest.raises(ActionFailed, match=r"bumped into something after 0\.55 m"):
         b.run(motion.move_forward, distance=2.0)

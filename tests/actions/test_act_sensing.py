@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from btlang.actions import motion, sensing
 from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.geometry import Pose
-from btlang.robots.world import Box, Fault, Place, Thing
+from btlang.robots.world import Box, Fault, Person, Place
 from btlang.robots.world_file import load_world
 
 ROOM = Path(__file__).parents[2] / "examples" / "worlds" / "walled_room.toml"
@@ -67,7 +67,7 @@ def test_passes_doors_that_are_wide_enough(bench):
 
 
 def test_distance_ahead(bench):
-    b = bench(walls=(((2.0, -1.0), (2.0, 1.0)),), people=(Thing("A", -2.0, 0.0, 0.25),))
+    b = bench(walls=(((2.0, -1.0), (2.0, 1.0)),), people=(Person("A", -2.0, 0.0, 0.25),))
     assert sensing.distance_ahead(b.robot) == pytest.approx(1.8, abs=0.01)
     b.run(motion.turn_around)
     assert sensing.distance_ahead(b.robot) == pytest.approx(1.55, abs=0.02)

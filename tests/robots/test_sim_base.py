@@ -10,13 +10,13 @@ from btlang.robots.body_file import standard_body
 from btlang.robots.geometry import Pose, segment_distance, wrap
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.simulated import SimulatedRobot
-from btlang.robots.world import Box, Fault, Place, Thing, World
+from btlang.robots.world import Box, Fault, Person, Place, World
 
 ROOM = World(
     start=Pose(2.0, 2.0, 0.0),
     walls=(((0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0), (0.0, 0.0)),),
     boxes=(Box(3.2, 3.2, 0.6, 0.4),),
-    people=(Thing("Alice", 0.8, 3.0, 0.25),),
+    people=(Person("Alice", 0.8, 3.0, 0.25),),
 )
 EMPTY = World(start=Pose(0.0, 0.0, 0.0))
 BODY = standard_body()

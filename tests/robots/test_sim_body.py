@@ -7,10 +7,11 @@ import pytest
 from btlang.robots.geometry import Pose
 from btlang.robots.robot import Robot, RobotError
 from btlang.robots.simulated import SimulatedRobot
-from btlang.robots.world import Fault, Thing, World
+from btlang.robots.world import Fault, Person, World, WorldObject
 
 TABLE = World(
-    start=Pose(0, 0), objects=(Thing("cup", 0.4, 0.0, 0.04), Thing("book", 0.35, 0.3, 0.05), Thing("ball", 3, 0, 0.1))
+    start=Pose(0, 0),
+    objects=(WorldObject("cup", 0.4, 0.0, 0.04), WorldObject("book", 0.35, 0.3, 0.05), WorldObject("ball", 3, 0, 0.1)),
 )
 
 
@@ -125,7 +126,7 @@ def test_speech_takes_time_and_printing_none():
 
 def test_people_nearby():
     robot = SimulatedRobot(
-        World(start=Pose(0, 0), people=(Thing("A", 2, 0, 0.25), Thing("B", 1, 0, 0.25), Thing("C", 9, 0, 0.25)))
+        World(start=Pose(0, 0), people=(Person("A", 2, 0, 0.25), Person("B", 1, 0, 0.25), Person("C", 9, 0, 0.25)))
     )
     assert robot.nearby_people(3) == ["B", "A"]
 

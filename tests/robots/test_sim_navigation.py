@@ -9,7 +9,7 @@ from hypothesis import strategies as st
 from btlang.robots.geometry import Pose, segment_distance
 from btlang.robots.robot import RobotError
 from btlang.robots.simulated import SimulatedRobot
-from btlang.robots.world import Box, Fault, Place, Thing, World
+from btlang.robots.world import Box, Fault, Person, Place, World
 from btlang.robots.world_file import load_world
 
 WORLDS = Path(__file__).parents[2] / "examples" / "worlds"
@@ -75,7 +75,7 @@ def test_a_walled_in_place_has_no_way():
 
 
 def test_a_person_on_the_place_leaves_no_way_until_they_move():
-    robot = SimulatedRobot(World(start=Pose(0, 0), places=(Place("x", 3, 0),), people=(Thing("Bob", 3.0, 0.1, 0.25),)))
+    robot = SimulatedRobot(World(start=Pose(0, 0), places=(Place("x", 3, 0),), people=(Person("Bob", 3.0, 0.1, 0.25),)))
     assert travel(robot, "x").failure == "there is no free way to the x"
     robot.move_thing("Bob", 3.0, 2.0)
     assert travel(robot, "x").failure is None
@@ -83,7 +83,7 @@ def test_a_person_on_the_place_leaves_no_way_until_they_move():
 
 def test_plans_anew_when_somebody_steps_in_the_way():
     world = World(
-        start=Pose(0, 0), places=(Place("end", 6, 0),), people=(Thing("Bob", 3, 3, 0.25),), boxes=(Box(3, -5, 1, 1),)
+        start=Pose(0, 0), places=(Place("end", 6, 0),), people=(Person("Bob", 3, 3, 0.25),), boxes=(Box(3, -5, 1, 1),)
     )
     robot = SimulatedRobot(world)
     journey = robot.navigate_to("end")

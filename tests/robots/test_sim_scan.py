@@ -12,7 +12,7 @@ from btlang.robots.obstacles import Obstacles
 from btlang.robots.robot import RobotError
 from btlang.robots.scan import Scanner
 from btlang.robots.simulated import SimulatedRobot
-from btlang.robots.world import Fault, Thing, World
+from btlang.robots.world import Fault, Person, World
 
 SQUARE = World(start=Pose(2.0, 2.0), walls=(((0.0, 0.0), (4.0, 0.0), (4.0, 4.0), (0.0, 4.0), (0.0, 0.0)),))
 
@@ -41,7 +41,7 @@ def test_beams_count_from_the_heading_counter_clockwise(x, y, quarter):
 
 
 def test_discs_and_what_stands_behind():
-    world = World(start=Pose(0, 0), people=(Thing("Alice", 3.0, 0.0, 0.25), Thing("Bob", 5.0, 0.0, 0.25)))
+    world = World(start=Pose(0, 0), people=(Person("Alice", 3.0, 0.0, 0.25), Person("Bob", 5.0, 0.0, 0.25)))
     ranges = scan(Obstacles(world), Pose(0.0, 0.0, 0.0))
     assert ranges[0] == pytest.approx(2.75)
     assert ranges[180] == inf
@@ -59,7 +59,7 @@ def test_an_empty_world():
 
 
 def test_it_is_computed_once_until_something_moves():
-    robot = SimulatedRobot(SQUARE.replace(people=(Thing("Alice", 3.5, 3.5, 0.25),)))
+    robot = SimulatedRobot(SQUARE.replace(people=(Person("Alice", 3.5, 3.5, 0.25),)))
     first = robot.scan()
     robot.step(0.05)
     assert robot.scan() is first

@@ -1,0 +1,142 @@
+"""Reads objects, people, zones and doors of a world file."""
+
+from __future__ import annotations
+
+from btlang.robots.geometry import Point
+from btlang.robots.world import (
+    KEEP_OUT,
+    NEVER,
+    OBJECT_RADIUS,
+    PERSON_RADIUS,
+    SLOW,
+    Door,
+    Person,
+    Place,
+    Stop,
+    Utterance,
+    WorldObject,
+    Zone,
+)
+from btlang.text.toml_table import Problem, Table, is_coordinate
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from collections.abc import Mapping, Sequence
+    from typing import Any
+
+ANYWHERE = "anywhere"
+"""The `walks` of who wanders."""
+_MOST_STOPS = 1_000
+
+
+def is_point(value: Any) -> bool:
+    """Whether it is [x, y]."""
+    return isinstance(value, list) and len(value) == 2 and all(map(is_coordinate, value))
+
+
+def read_object(table: Table, known: bool) -> WorldObject:
+    """An entry of `objects`. Raises Problem."""
+    name, x, y = table.text("name"), table.number("x"), table.number("y")
+    radius = table.number("radius", OBJECT_RADIUS, low=0.01)
+    known = table.flag("known", known)
+    kind, color = _optional(table, "kind"), _optional(table, "color")
+    size, uses = table.number("size", 2 * radius, low=0.0), table.texts("uses")
+    switch = table.choice("switch", ("on", "off"), "")
+    fixed = table.flag("fixed", bool(switch))
+    return table.finish(WorldObject(name, x, y, radius, known, kind, color, size, uses, switch, fixed))
+
+
+def read_person(table: Table, known: bool, places: Sequence[Place]) -> Person:
+    """An entry of `people`. Raises Problem."""
+    name, x, y = table.text("name"), table.number("x"), table.number("y")
+    radius = table.number("radius", PERSON_RADIUS, low=0.01)
+    known = table.flag("known", known)
+    comes = table.number("comes", 0.0, low=0.0)
+    leaves = table.number("leaves", NEVER, low=comes)
+    speed = table.number("speed", 1.1, low=0.05, high=3.0)
+    wanders = table.is_text("walks") and table.choice("walks", (ANYWHERE,)) == ANYWHERE
+    walks = () if wanders else _route(table, {place.name.lower(): place for place in places})
+    again = table.flag("again")
+    wears, gesture = table.texts("wears"), _optional(table, "gesture")
+    says = tuple(map(_utterance, table.tables("says")))
+    answers = _answers(table)
+    after, follows = table.number("answers_after", 1.5, low=0.0), table.number("follows", 1.0, low=0.0, high=1.0)
+    return table.finish(
+        Person(
+            name, x, y, radius, known, comes, leaves, speed, walks, again, wanders, wears, gesture, says, answers,
+            after, follows,
+        )
+    )  # fmt: skip
+
+
+def read_zone(table: Table) -> Zone:
+    """An entry of `zones`. Raises Problem."""
+    name, kind = table.text("name"), table.choice("kind", (KEEP_OUT, SLOW))
+    points = table.items("points")
+    if len(points) < 3 or not all(map(is_point, points)):
+        message = "a zone has three or more points: write points = [[0, 0], [4, 0], [4, 2]]"
+        raise table.problem("points", message)
+    speed = table.number("speed", low=0.01) if kind == SLOW else 0.0
+    return table.finish(Zone(name, kind, tuple((float(x), float(y)) for x, y in points), speed))
+
+
+def read_door(table: Table) -> Door:
+    """An entry of `doors`. Raises Problem."""
+    name, start, end = table.text("name"), _point(table, "from"), _point(table, "to")
+    if start == end:
+        raise table.problem("to", "a door needs two different points")
+    return table.finish(Door(name, start, end, table.flag("open", True)))
+
+
+def _optional(table: Table, key: str) -> str:
+    return table.text(key) if table.has(key) else ""
+
+
+def _point(table: Table, key: str) -> Point:
+    pair = table.items(key) if table.has(key) else None
+    if not is_point(pair):
+        raise table.problem(key, f'"{key}" must be a point; write {key} = [2, 3]')
+    assert pair is not None
+    return float(pair[0]), float(pair[1])
+
+
+def _route(table: Table, places: Mapping[str, Place]) -> tuple[Stop, ...]:
+    stops = table.items("walks")
+    if len(stops) > _MOST_STOPS:
+        raise table.problem("walks", f"a route has at most {_MOST_STOPS:,} stops")
+    return tuple(_stop(table, index, value, places) for index, value in enumerate(stops))
+
+
+def _stop(table: Table, index: int, value: Any, places: Mapping[str, Place]) -> Stop:
+    path = (*table.path, "walks", index)
+    if not isinstance(value, dict):
+        return Stop(*_where(value, places, path))
+    stop = Table("a stop", value, path)
+    to = value.get("to") if stop.has("to") else None
+    at, stays = stop.number("at", 0.0, low=0.0), stop.number("stays", 0.0, low=0.0)
+    return stop.finish(Stop(*_where(to, places, path), at, stays))
+
+
+def _where(value: Any, places: Mapping[str, Place], path: tuple[str | int, ...]) -> Point:
+    if is_point(value):
+        return float(value[0]), float(value[1])
+    place = places.get(value.lower()) if isinstance(value, str) else None
+    if place is None:
+        message = (
+            'a stop is a place of this world or a point: write walks = ["kitchen", [3, 4], { to = "lab", at = 30 }]'
+        )
+        raise Problem(message, *path)
+    return place.x, place.y
+
+
+def _utterance(table: Table) -> Utterance:
+    return table.finish(Utterance(table.number("at", low=0.0), table.text("text")))
+
+
+def _answers(table: Table) -> dict[str, str]:
+    answers = table.values("answers")
+    for word, answer in answers.items():
+        if not isinstance(answer, str):
+            message = 'an answer is a text; write answers = { "coffee" = "yes" }'
+            raise Problem(message, *table.path, "answers", word)
+    return {word.lower(): answer for word, answer in answers.items()}
