@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from math import ceil, hypot
 
 import numpy as np
@@ -105,12 +105,12 @@ class Grid:
         return inside
 
 
-def smooth(grid: Grid, clearance: Array, points: list[Point], room: float) -> list[Point]:
-    """Pulls a path straight where that leaves so many metres of room."""
+def smooth(points: list[Point], is_clear: Callable[[Point, Point], bool]) -> list[Point]:
+    """Leaves out points of a path where the straight line is clear."""
     kept, at = [points[0]], 0
     while at < len(points) - 1:
         far = min(len(points) - 1, at + 60)
-        while far > at + 1 and not grid.is_clear(clearance, points[at], points[far], room):
+        while far > at + 1 and not is_clear(points[at], points[far]):
             far -= 1 if far - at < 8 else (far - at) // 4
         at = far
         kept.append(points[at])

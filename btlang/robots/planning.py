@@ -123,7 +123,8 @@ class Planner:
 
     def _smooth(self, points: list[Point]) -> list[Point]:
         """Pulls the path straight where that leaves comfortable room, then spaces its points evenly."""
-        return _evenly(smooth(self._grid, self._clearance, points, self._comfort - CELL / 2))
+        room = self._comfort - CELL / 2
+        return _evenly(smooth(points, lambda a, b: self._grid.is_clear(self._clearance, a, b, room)))
 
 
 def _walk_back(came: dict[int, int], cell: int) -> list[int]:

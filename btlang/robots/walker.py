@@ -68,6 +68,7 @@ class Walker:
         self._stays = 0.0
         self._path: list[Point] = []
         self._corner = 0
+        self._astray = False  # evading may have led where the next corner can't be walked to
         self._until = 0.0  # stands until then
         self._aside: Point | None = None
         self._waited, self._patience = 0.0, _PATIENCE[0]
@@ -153,8 +154,7 @@ class Walker:
                     continue
                 self.vx, self.vy = vx, vy
                 self._waited = max(0.0, self._waited - PERIOD / 4) if turned else 0.0
-                if turned:
-                    self._path = []  # looks for the way anew from where that leads
+                self._astray = self._astray or turned > 0
                 return
         self.vx = self.vy = 0.0
         self._waited += PERIOD
@@ -183,8 +183,8 @@ class Walker:
             return all(hypot(b.x - point[0], b.y - point[1]) > b.radius + self.radius + 0.5 for b in bodies)
 
         beside = ways.near(self.point, random, 1.6, good)
-        back = self._trail[: random.randint(1, max(1, len(self._trail) - 2))][-1:]
-        aside = back[0] if back and (beside is None or random.random() < 0.4) else beside
+        back = [point for point in self._trail if ways.is_clear(self.point, point)]
+        aside = random.choice(back) if back and (beside is None or random.random() < 0.4) else beside
         if aside is not None:
             self._aside, self._path = aside, []
 
@@ -194,7 +194,7 @@ class Walker:
             return None
         if self._aside is not None:
             if hypot(self._aside[0] - self.x, self._aside[1] - self.y) > 2 * _CLOSE:
-                return self._along(ways, self._aside)
+                return self._aside
             self._aside, self._path, self._until = None, [], now + random.uniform(*_ASIDE)
             return None
         if self.follows:
@@ -231,10 +231,14 @@ class Walker:
         self._goal, self._stays, self._path, self._until = goal, stays, [], 0.0
 
     def _along(self, ways: Ways, goal: Point) -> Point | None:
+        if self._path and self._astray:
+            corner = self._path[min(self._corner, len(self._path) - 1)]
+            self._path = self._path if ways.is_clear(self.point, corner) else []
         if not self._path:
             self._path, self._corner = ways.path(self.point, goal), 1
         if not self._path:
             return None
+        self._astray = False
         while self._corner < len(self._path) - 1:
             x, y = self._path[self._corner]
             if hypot(x - self.x, y - self.y) > 2 * _CLOSE:

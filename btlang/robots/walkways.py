@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from heapq import heappop, heappush
-from math import sqrt
+from math import hypot, sqrt
 from random import Random
 
 import numpy as np
 
 from btlang.robots.geometry import Point
-from btlang.robots.grid import Array, Grid, smooth
+from btlang.robots.grid import Grid, smooth
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.world import World
 
@@ -26,7 +26,6 @@ class Walkways:
     def __init__(self, world: World, obstacles: Obstacles, radius: float) -> None:
         self._grid, self._obstacles, self._room = Grid(world, _CELL), obstacles, radius + _ROOM
         self._walls = -1
-        self._clearance: Array = np.empty(0)
         self._blocked = np.empty(0, dtype=bool)
         self._free: list[bool] = []
         self._distances: dict[int, list[float]] = {}
@@ -45,13 +44,20 @@ class Walkways:
         while at != last:
             at = min(self._around(at), key=distances.__getitem__)
             cells.append(at)
-        points = [start, *map(self._grid.centre, cells[1:-1]), goal]
-        return smooth(self._grid, self._clearance, points, self._room)
+        return smooth([start, *map(self._grid.centre, cells[1:-1]), goal], self.is_clear)
 
     def is_clear(self, a: Point, b: Point) -> bool:
         """Whether the straight line leaves room beside walls and furniture."""
         self._refresh()
-        return self._grid.is_clear(self._clearance, a, b, self._room)
+        free, grid = self._free, self._grid
+        (x, y), (low_x, low_y), size, columns = a, grid.origin, grid.size, grid.columns
+        pieces = int(2 * hypot(b[0] - x, b[1] - y) / size) + 1
+        step_x, step_y = (b[0] - x) / pieces, (b[1] - y) / pieces
+        for _ in range(pieces):  # plain numbers: these lines are too short for numpy
+            x, y = x + step_x, y + step_y
+            if not free[int((y - low_y) / size) * columns + int((x - low_x) / size)]:
+                return False
+        return True
 
     def is_free(self, point: Point) -> bool:
         """Whether somebody can stand there."""
@@ -70,8 +76,7 @@ class Walkways:
         if self._walls == self._obstacles.walls:
             return
         self._walls = self._obstacles.walls
-        self._clearance = self._grid.clearance(self._obstacles)
-        free = self._clearance >= self._room
+        free = self._grid.clearance(self._obstacles) >= self._room
         free[0, :] = free[-1, :] = free[:, 0] = free[:, -1] = False  # so that neighbours always exist
         self._blocked, self._free = ~free.ravel(), free.ravel().tolist()
         self._distances.clear()
