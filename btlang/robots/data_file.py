@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 
 from btlang.diagnostics.reading import read_bytes
 from btlang.text.source import Source
@@ -52,17 +52,21 @@ def load_data(file: str | Source, what: str, make: Callable[[Table], T], error: 
     except tomllib.TOMLDecodeError as problem:
         raise error(f"this isn't TOML: {problem}", path, line_of(problem), source) from None
     except Problem as problem:
-        first, *more = (placed(each, source, path, error) for each in (problem, *problem.more))
+        first, *more = placed((problem, *problem.more), source, path, error)
         first.more = tuple(more)
         raise first from None
 
 
-def placed(problem: Problem, source: Source, path: str, error: type[DataFileError]) -> DataFileError:
-    """A problem as an error at its line."""
+def placed(
+    problems: Iterable[Problem], source: Source, path: str, error: type[DataFileError]
+) -> Iterator[DataFileError]:
+    """Problems as errors at their lines."""
     from btlang.text.toml_positions import nearest, positions
 
-    at = nearest(positions(source.text), problem.path)
-    return error(problem.message, path, None if at is None else source.position(at)[0], source)
+    found = positions(source.text)
+    for problem in problems:
+        at = nearest(found, problem.path)
+        yield error(problem.message, path, None if at is None else source.position(at)[0], source)
 
 
 def as_mission_error(error: DataFileError) -> MissionError:
