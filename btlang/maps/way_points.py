@@ -104,14 +104,13 @@ def _pose_list(value: list[Any], what: str) -> tuple[float, float, float | None]
 def _facing(value: Mapping[str, Any], what: str, w_first: bool = False) -> float | None:
     turned = value.get("orientation")
     if turned is None:
-        angles = (number(value[key], f"{what}.{key}") for key in _YAWS if key in value)
-        return next((wrap(degrees(angle)) for angle in angles), None)
+        return _angle(value, what)
     where = f"{what}.orientation"
     if isinstance(turned, dict):
         if {"z", "w"} <= turned.keys():
             x, y, z, w = (number(turned.get(key, 0.0), f"{where}.{key}") for key in "xyzw")
             return yaw(where, x, y, z, w)
-        return _facing(turned, where)
+        return _angle(turned, where)
     if isinstance(turned, list):
         four = numbers(turned, where, 4)
         return (
@@ -120,3 +119,8 @@ def _facing(value: Mapping[str, Any], what: str, w_first: bool = False) -> float
             else yaw(where, four[0], four[1], four[2], four[3])
         )
     return wrap(degrees(number(turned, where)))
+
+
+def _angle(value: Mapping[str, Any], what: str) -> float | None:
+    angles = (number(value[key], f"{what}.{key}") for key in _YAWS if key in value)
+    return next((wrap(degrees(angle)) for angle in angles), None)

@@ -13,7 +13,7 @@ from btlang.vocabulary.shipped import PACKAGE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import TypeVar
+    from typing import Any, TypeVar
 
     from btlang.diagnostics.diagnostic import Diagnostic
     from btlang.diagnostics.errors import MissionError
@@ -52,9 +52,23 @@ def load_data(file: str | Source, what: str, make: Callable[[Table], T], error: 
     except tomllib.TOMLDecodeError as problem:
         raise error(f"this isn't TOML: {problem}", path, line_of(problem), source) from None
     except Problem as problem:
-        first, *more = placed((problem, *problem.more), source, path, error)
-        first.more = tuple(more)
-        raise first from None
+        raise _all_of(placed((problem, *problem.more), source, path, error)) from None
+
+
+def make_from(
+    values: dict[str, Any], path: str, what: str, make: Callable[[Table], T], error: type[DataFileError]
+) -> T:
+    """As `load_data`, of tables that are no TOML: errors have no line."""
+    try:
+        return make(Table(what, values))
+    except Problem as problem:
+        raise _all_of(error(each.message, path) for each in (problem, *problem.more)) from None
+
+
+def _all_of(errors: Iterable[DataFileError]) -> DataFileError:
+    first, *more = errors
+    first.more = tuple(more)
+    return first
 
 
 def placed(

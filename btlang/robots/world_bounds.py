@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from itertools import pairwise
 
 from btlang.robots.geometry import Point, contains, segment_distance
 from btlang.robots.world import World, Zone
 from btlang.text.toml_table import Problem
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
 
 _TOUCHING = 0.1  # metres; so near to the outer wall something is on it
 _STEPS = 20  # points looked at on each side of a zone
@@ -57,34 +61,42 @@ def _joined(walls: list[Polyline]) -> list[Polyline]:
     return done
 
 
-def outside(world: World) -> Iterator[Problem]:
-    """A Problem for each place, object, person, stop of a route, zone and door outside the outer wall."""
+def outside(world: World, rows: Mapping[str, Sequence[Any]]) -> Iterator[Problem]:
+    """A Problem for each place, object, person, stop of a route, zone and door outside the outer wall.
+
+    `rows` are those of each section of the file, and of "start", None for those that are wrong.
+    """
     wall = outer_wall(world)
     if wall is None:
         return
-    for what, path, point in _spots(world):
+    for what, path, point in _spots(world, rows):
         if not contains(wall, point) and not _is_on(wall, point):
             yield Problem(f"{what} at ({point[0]:g}, {point[1]:g}) is outside the outer walls", *path)
-    for index, zone in enumerate(world.zones):
+    for index, zone in _listed(rows, "zones"):
         if not _reaches_into(zone, wall):
             yield Problem(f'the zone "{zone.name}" is outside the outer walls', "zones", index, "points")
-    for index, door in enumerate(world.doors):
+    for index, door in _listed(rows, "doors"):
         if not any(contains(wall, end) or _is_on(wall, end) for end in (door.start, door.end)):
             yield Problem(f'the door "{door.name}" is outside the outer walls', "doors", index, "from")
 
 
-def _spots(world: World) -> Iterator[tuple[str, tuple[str | int, ...], Point]]:
-    yield "the start", ("start", "x"), (world.start.x, world.start.y)
-    for index, place in enumerate(world.places):
+def _listed(rows: Mapping[str, Sequence[Any]], section: str) -> Iterator[tuple[int, Any]]:
+    return ((index, row) for index, row in enumerate(rows[section]) if row is not None)
+
+
+def _spots(world: World, rows: Mapping[str, Sequence[Any]]) -> Iterator[tuple[str, tuple[str | int, ...], Point]]:
+    for _, start in _listed(rows, "start"):
+        yield "the start", ("start", "x"), (start.x, start.y)
+    for index, place in _listed(rows, "places"):
         path: tuple[str | int, ...] = ("dock", "x") if place is world.dock else ("places", index, "x")
         yield f'the place "{place.name}"', path, (place.x, place.y)
-    for index, thing in enumerate(world.objects):
+    for index, thing in _listed(rows, "objects"):
         yield f'the object "{thing.name}"', ("objects", index, "x"), (thing.x, thing.y)
     places = {(place.x, place.y) for place in world.places}
-    for index, person in enumerate(world.people):
+    for index, person in _listed(rows, "people"):
         yield f'the person "{person.name}"', ("people", index, "x"), (person.x, person.y)
         for at, stop in enumerate(person.walks):
-            if (stop.x, stop.y) not in places:  # that is told of the place
+            if (stop.x, stop.y) not in places:  # of a place that is told already
                 yield f'a stop of "{person.name}"', ("people", index, "walks", at), (stop.x, stop.y)
 
 

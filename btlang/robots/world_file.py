@@ -7,7 +7,7 @@ from functools import partial
 from os import PathLike, fspath
 
 from btlang.robots.body_file import standard_body
-from btlang.robots.data_file import DataFileError, load_data
+from btlang.robots.data_file import DataFileError, load_data, make_from
 from btlang.robots.geometry import Point, Pose, Segment, segment_distance
 from btlang.robots.world import (
     NEVER,
@@ -17,6 +17,7 @@ from btlang.robots.world import (
     World,
     WorldNames,
 )
+from btlang.robots.world_bounds import outside
 from btlang.robots.world_tables import is_point, read_door, read_object, read_person, read_zone
 from btlang.text.source import Source
 from btlang.text.time_of_day import USUAL_START
@@ -41,14 +42,23 @@ class WorldError(DataFileError):
     code = "BT070"
 
 
-def load_world(file: str | PathLike[str] | Source | None = None, body: Body | None = None) -> World:
-    """The world in a file or a text, or the world that ships. Raises WorldError.
+def load_world(
+    file: str | PathLike[str] | Source | None = None, body: Body | None = None, *, bounded: bool = False
+) -> World:
+    """The world in a file or a text, or the world that ships. Raises WorldError with all that is wrong.
 
-    It has to leave room for the body, by default that of the robot that ships.
+    It has to leave room for the body, by default that of the robot that ships. In a `bounded` world nothing may be
+    outside the outer walls.
     """
     given = DEFAULT_WORLD if file is None else file if isinstance(file, Source) else fspath(file)
     radius = (body or standard_body()).radius
-    return load_data(given, "a world", lambda top: _world(top, radius), WorldError)
+    return load_data(given, "a world", lambda top: _world(top, radius, bounded), WorldError)
+
+
+def world_from(values: dict[str, Any], path: str, body: Body | None = None) -> World:
+    """As `load_world`, from the tables of a world file in another notation, such as JSON. Raises WorldError."""
+    radius = (body or standard_body()).radius
+    return make_from(values, path, "a world", lambda top: _world(top, radius), WorldError)
 
 
 def world_names(file: str | PathLike[str] | Source | None = None) -> WorldNames:
@@ -56,7 +66,7 @@ def world_names(file: str | PathLike[str] | Source | None = None) -> WorldNames:
     return load_world(file).names
 
 
-def _world(top: Table, radius: float) -> World:
+def _world(top: Table, radius: float, bounded: bool = False) -> World:
     problems = Problems()
     begins: tuple[Pose | None, float] = (None, 100.0)
     start, battery = problems.part(lambda: _start(top), begins)
@@ -83,6 +93,8 @@ def _world(top: Table, radius: float) -> World:
     )  # fmt: skip
     problems.found += _names_given_twice(rows)
     problems.found += _without_room(world, rows["places"], start, radius)
+    if bounded:
+        problems.found += outside(world, {"start": [start], **rows})
     problems.end()
     return world
 

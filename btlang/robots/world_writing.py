@@ -56,7 +56,7 @@ def _row(record: Record) -> dict[str, Any]:
 def _always(record: Record) -> tuple[str, ...]:
     """Fields that the file has no default for, or one that depends on others."""
     if isinstance(record, WorldObject):
-        return ("size", "fixed")
+        return ("size", "fixed") if record.switch else ("size",)
     if isinstance(record, Fault):
         return {"slip": ("grip",), "weak hand": ("seconds",)}.get(record.kind, ())
     return ()

@@ -48,9 +48,9 @@ class Problems:
             return usual
 
     def rows(self, top: Table, key: str, make: Callable[[Table], T]) -> list[T | None]:
-        """What `make` makes of each table of a list, None for those that are wrong."""
+        """What `make` makes of each table of a list, None for those that are wrong; until there are too many."""
         tables: list[Table] = self.part(lambda: top.tables(key), [])
-        return [self.part(partial(make, table), None) for table in tables]
+        return [self.part(partial(make, table), None) for table in tables if len(self.found) < _MOST_PROBLEMS]
 
     def end(self) -> None:
         """Raises the first Problem with the others, at most a hundred in all, if there is one."""
