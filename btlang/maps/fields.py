@@ -36,7 +36,7 @@ def number(value: Any, what: str, low: float | None = None, high: float | None =
 def numbers(value: Any, what: str, *counts: int) -> list[float]:
     """A list of so many numbers. Raises Problem."""
     if not isinstance(value, list) or len(value) not in counts:
-        many = " or ".join(map(str, counts))
+        many = " or ".join(", ".join(map(str, counts)).rsplit(", ", 1))
         raise Problem(f"{what} must be a list of {many} numbers")
     return [number(each, what) for each in value]
 

@@ -85,7 +85,7 @@ def test_the_yaw_of_quaternions(angle: float, length: float, roll: bool) -> None
         ({"a": {"x": float("nan"), "y": 1}}, "a.x must be a number from -1,000,000"),
         ({"a": {"x": True, "y": 1}}, "a.x must be a number, not True"),
         ({"a": {"x": 10**400, "y": 1}}, "a.x must be a number from -1,000,000"),
-        ([[1]], "the list[0] must be a list of 2 or 3 or 7 numbers"),
+        ([[1]], "the list[0] must be a list of 2, 3 or 7 numbers"),
         ({"a": {"x": 1, "y": 2, "orientation": {"z": 0, "w": 0}}}, "a.orientation must be a quaternion"),
         ({"a": {"x": 1, "y": 2, "orientation": [1, 2]}}, "a.orientation must be a list of 4 numbers"),
         ({"a": {"pose": {"pose": {"pose": {"pose": {"pose": POSE}}}}}}, "a.position.x must be a number, not None"),
