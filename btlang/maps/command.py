@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import os
 import sys
 
@@ -13,7 +12,7 @@ from btlang.maps.options import ACTS, TARGETS, USUAL_RESOLUTION
 from btlang.maps.summary import summary
 from btlang.robots.registry import body_of
 from btlang.robots.world_problem import read_world
-from btlang.robots.world_writing import as_data, to_toml
+from btlang.robots.world_writing import to_toml
 from btlang.text.escaping import one_line
 from btlang.text.output import show
 from btlang.text.source import Source
@@ -106,21 +105,11 @@ def _export(options: argparse.Namespace, world: World, body: Body) -> int:
             options.refuse(str(problem))
         _write_folder(options.out, files)
     else:
-        write_file(options.out, _notation(options.to, world))
+        from btlang.maps.notation import notation
+
+        write_file(options.out, notation(world, options.to))
         show(f"Wrote {options.out}.")
     return 0
-
-
-def _notation(to: str, world: World) -> str:
-    """The world in JSON or YAML, as `btc world import` reads it."""
-    from btlang.maps.data_text import yaml_module
-    from btlang.maps.importing import WORLD
-
-    data = {WORLD: as_data(world)}
-    if to == "json":
-        return json.dumps(data, indent=1) + "\n"
-    text: str = yaml_module().safe_dump(data, sort_keys=False, default_flow_style=None)
-    return text
 
 
 def _write_folder(folder: str, files: Mapping[str, bytes]) -> None:

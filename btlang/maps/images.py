@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 MOST_CELLS = 25_000_000
 """Of the largest map."""
+_MOST_IN_TEXT = 4_000_000  # pixels; each is an object while it is read
 _MOST_BYTES = 60_000_000
 _GAP = rb"(?:\s|#[^\n]*\n)+"
 _PGM = re.compile(rb"P([25])" + _GAP + rb"(\d{1,6})" + _GAP + rb"(\d{1,6})" + _GAP + rb"(\d{1,5})(?:#[^\n]*\n|\s)")
@@ -54,7 +55,9 @@ def _read_pgm(data: bytes) -> MapImage:
             raise Problem(f"the image ends before its {count:,} pixels")
         pixels = np.frombuffer(body, wide, count).astype(np.float32)
     else:
-        words = re.sub(rb"#[^\n]*", b"", body).split()[:count]
+        if count > _MOST_IN_TEXT:
+            raise Problem(f"an image whose pixels are text may have at most {_MOST_IN_TEXT:,} pixels, not {count:,}")
+        words = re.sub(rb"#[^\n]*", b"", body).split(None, count)[:count]
         if len(words) < count:
             raise Problem(f"the image ends before its {count:,} pixels")
         if not all(word.isdigit() and len(word) < 6 for word in words):

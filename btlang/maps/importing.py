@@ -11,22 +11,17 @@ from btlang.diagnostics.errors import MissionError
 from btlang.diagnostics.reading import read_source
 from btlang.maps.contours import walls_of
 from btlang.maps.data_text import ForeignFileError, read_data
+from btlang.maps.notation import is_world, read_world_data
 from btlang.maps.occupancy import is_map, read_map
 from btlang.maps.way_points import way_points
 from btlang.robots.data_file import as_mission_error
 from btlang.robots.geometry import Point, Pose, Segment, contains
 from btlang.robots.world import Place, World
 from btlang.robots.world_bounds import outer_wall
-from btlang.robots.world_file import WorldError, has_room, world_from
+from btlang.robots.world_file import WorldError, has_room
 from btlang.text.source import NOWHERE
 from btlang.text.toml_table import Problem
 
-TYPE_CHECKING = False
-if TYPE_CHECKING:
-    from typing import Any
-
-WORLD = "world"
-"""The key of a world in JSON or YAML."""
 _FARTHEST, _STEP = 0.5, 0.05  # metres that a place without room is moved at most
 _MOST_CHECKS = 5_000_000  # of a place with a piece of wall: as many as a world file may take
 
@@ -55,19 +50,15 @@ def _read(path: str) -> World | list[Place] | tuple[tuple[Point, ...], ...]:
         data = read_data(source)
         if is_map(data):
             return walls_of(read_map(data, os.path.dirname(path) or os.curdir))
-        if _is_world(data):
-            return world_from(data[WORLD], path)
+        if is_world(data):
+            return read_world_data(data, path)
         return way_points(data)
     except (ForeignFileError, WorldError) as error:
         raise as_mission_error(error) from None
+    except RecursionError:
+        raise as_mission_error(ForeignFileError("it is nested too deep", path, None, source)) from None
     except Problem as problem:
         raise as_mission_error(ForeignFileError(problem.message, path, None, source)) from None
-
-
-def _is_world(data: Any) -> bool:
-    return (
-        isinstance(data, dict) and data.keys() == {WORLD} and isinstance(data[WORLD], dict) and "start" in data[WORLD]
-    )
 
 
 def _together(
