@@ -2,19 +2,39 @@
 
 from __future__ import annotations
 
+from typing import Protocol
+
 from btlang.actions.motion import Steps
-from btlang.actions.navigation import accomplish
-from btlang.robots.capabilities import Cautious, Handling, Messenger, Perception
+from btlang.actions.navigation import accomplish, travel
+from btlang.engine.leaves.leaf import ActionFailed
+from btlang.robots.capabilities import Cautious, Handling, Messenger, Navigation, Perception
 
 
-def open_door(robot: Handling, door: str) -> Steps:
-    """Opens a door within reach."""
-    yield from accomplish(robot.move_door(door, True))
+class Doorkeeping(Navigation, Handling, Protocol):
+    """It finds its way to doors and switches."""
 
 
-def close_door(robot: Handling, door: str) -> Steps:
-    """Closes a door within reach. Fails where something is in it."""
-    yield from accomplish(robot.move_door(door, False))
+def open_door(robot: Doorkeeping, door: str) -> Steps:
+    """Goes to a door and opens it."""
+    yield from _move_door(robot, door, True)
+
+
+def close_door(robot: Doorkeeping, door: str) -> Steps:
+    """Goes to a door and closes it. Fails where something is in it."""
+    yield from _move_door(robot, door, False)
+
+
+def _move_door(robot: Doorkeeping, door: str, is_open: bool) -> Steps:
+    *others, last = robot.beside_door(door)
+    for spot in others:
+        try:
+            yield from accomplish(robot.navigate_to_pose(spot))
+        except ActionFailed:
+            continue  # it may be reached from its other side
+        break
+    else:
+        yield from accomplish(robot.navigate_to_pose(last))
+    yield from accomplish(robot.move_door(door, is_open))
 
 
 def door_is_open(robot: Handling, door: str) -> bool:
@@ -27,19 +47,24 @@ def door_is_closed(robot: Handling, door: str) -> bool:
     return not robot.is_open(door)
 
 
-def switch_on(robot: Handling, object: str) -> Steps:
-    """Switches something within reach on."""
-    yield from accomplish(robot.switch(object, True))
+def switch_on(robot: Doorkeeping, object: str) -> Steps:
+    """Goes to something and switches it on."""
+    yield from _switch(robot, object, True)
 
 
-def switch_off(robot: Handling, object: str) -> Steps:
-    """Switches something within reach off."""
-    yield from accomplish(robot.switch(object, False))
+def switch_off(robot: Doorkeeping, object: str) -> Steps:
+    """Goes to something and switches it off."""
+    yield from _switch(robot, object, False)
 
 
-def push_button(robot: Handling, object: str) -> Steps:
-    """Pushes something within reach: on becomes off, and off on."""
-    yield from accomplish(robot.switch(object, None))
+def push_button(robot: Doorkeeping, object: str) -> Steps:
+    """Goes to something and pushes its button: on becomes off, and off on."""
+    yield from _switch(robot, object, None)
+
+
+def _switch(robot: Doorkeeping, name: str, on: bool | None) -> Steps:
+    yield from travel(robot, name)
+    yield from accomplish(robot.switch(name, on))
 
 
 def is_switched_on(robot: Handling, object: str) -> bool:
@@ -82,24 +107,19 @@ def wait_for_way(robot: Cautious, duration: float) -> None:
     robot.wait_for_way(duration)
 
 
-def go_another_way(robot: Cautious) -> None:
-    """The journey under way goes on around who is in the way."""
-    robot.go_another_way()
-
-
 def clear_map(robot: Cautious) -> None:
     """Forgets what was seen on the way."""
     robot.forget_map()
 
 
-def call_staff(robot: Messenger, text: str = "the robot needs help") -> None:
+def call_staff(robot: Messenger, text: str | None = None) -> None:
     """Calls whoever watches the robot."""
-    robot.call(text)
+    robot.call(text or "the robot needs help")
 
 
-def raise_alarm(robot: Messenger, text: str = "alarm") -> None:
+def raise_alarm(robot: Messenger, text: str | None = None) -> None:
     """Calls whoever watches the robot, urgently."""
-    robot.call(f"ALARM: {text}")
+    robot.call(f"ALARM: {text}" if text else "ALARM")
 
 
 def sees(robot: Perception, object: str) -> bool:

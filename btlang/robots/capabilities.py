@@ -256,6 +256,9 @@ class Leading(Perception, Navigation, Protocol):
 class Handling(Base, Protocol):
     """Doors, and what can be switched, within reach."""
 
+    def beside_door(self, name: str) -> list[Pose]:
+        """Where it can stand to move a door: before it and behind it, the nearer one first."""
+
     def move_door(self, name: str, is_open: bool) -> Operation:
         """Opens or closes a door. Raises RobotError, or fails, where it is out of reach or something is in it."""
 
@@ -282,9 +285,6 @@ class Cautious(Navigation, Protocol):
 
     def wait_for_way(self, seconds: float) -> None:
         """So long it waits for who is in its way, before it looks for another way."""
-
-    def go_another_way(self) -> None:
-        """Waits no longer. Raises RobotError where it isn't under way, or there is no other way."""
 
     def forget_map(self) -> None:
         """Forgets what it has seen on the way: obstacles, and where objects and people were."""

@@ -295,6 +295,10 @@ class SimulatedRobot:
             raise RobotError(f"I don't see {said(known)}")
         self._surroundings.people.follow(known, follow)
 
+    def beside_door(self, name: str) -> list[Pose]:
+        """Where it can stand to move a door, the nearer one first. Raises RobotError for an unknown door."""
+        return self._surroundings.beside_door(name, self.pose)
+
     def move_door(self, name: str, is_open: bool) -> Operation:
         """Opens or closes a door within reach. Raises RobotError."""
         self._surroundings.move_door(name, is_open, self.pose)
@@ -329,10 +333,6 @@ class SimulatedRobot:
     def wait_for_way(self, seconds: float) -> None:
         """So long it waits for who is in its way, before it looks for another way."""
         self._navigator.patience = seconds
-
-    def go_another_way(self) -> None:
-        """Waits no longer for who is in its way. Raises RobotError where it isn't under way, or has no other way."""
-        self._navigator.go_another_way()
 
     def _distance(self, name: str) -> float:
         return self.pose.distance_to(self.locate(name))

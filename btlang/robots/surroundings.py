@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
+from math import hypot
 
 from btlang.robots.body import Body
 from btlang.robots.ears import Ears
@@ -11,10 +12,11 @@ from btlang.robots.obstacles import Obstacles
 from btlang.robots.people import People
 from btlang.robots.robot import RobotError
 from btlang.robots.sight import Sight
-from btlang.robots.world import Place, World, WorldObject, said
+from btlang.robots.world import Door, Place, World, WorldObject, said
 from btlang.robots.zones import Zones
 
 _REACH = 1.2  # metres to a door or a switch
+_BESIDE = 0.7  # metres from the middle of a door
 
 
 class Surroundings:
@@ -81,7 +83,9 @@ class Surroundings:
     def choices(self, kind: str) -> list[str]:
         """The names of a type that the robot knows a place of, but for what it carries."""
         if kind in ("object", "person"):
-            return [name for name in self.sight.names(kind) if self.sight.where(name) is not None]
+            things = self._obstacles.things
+            names = (name for name in self.sight.names(kind) if self.sight.where(name) is not None)
+            return [name for name in names if not getattr(things[name], "fixed", False)]
         return list(self._world.names.of(kind))
 
     def nearby_people(self, within: float, pose: Pose) -> list[str]:
@@ -116,25 +120,36 @@ class Surroundings:
         if isinstance(thing, WorldObject) and thing.fixed:
             raise RobotError(f"{said(known)} is fixed")
 
+    def beside_door(self, name: str, pose: Pose) -> list[Pose]:
+        """Where a robot can stand to move a door: before and behind it, facing it; the nearer one first."""
+        door = self._door(name)
+        (ax, ay), (bx, by), (x, y) = door.start, door.end, door.middle
+        length = max(hypot(bx - ax, by - ay), 1e-9)
+        across = -(by - ay) / length * _BESIDE, (bx - ax) / length * _BESIDE
+        spots = [(x + side * across[0], y + side * across[1]) for side in (1, -1)]
+        spots.sort(key=pose.distance_to)
+        return [Pose(*spot, Pose(*spot).bearing_to((x, y))) for spot in spots]
+
     def move_door(self, name: str, is_open: bool, pose: Pose) -> None:
-        """Opens or closes a door. Raises RobotError where it is out of reach, or somebody stands in it."""
-        door = next((each for each in self._obstacles.doors.values() if each.name.lower() == name.lower()), None)
-        if door is None:
-            raise RobotError(f"there's no door called '{name}'")
+        """Opens or closes a door. Raises RobotError where it is out of reach, or something is in it."""
+        door = self._door(name)
         if (distance := pose.distance_to(door.middle)) > _REACH:
             raise RobotError(f"{said(door.name)} is {distance:.1f} m away")
-        if door.open and not is_open:
-            bodies = [(pose.x, pose.y, self._radius), *self._obstacles.discs, *self._obstacles.walking.values()]
-            if any(segment_distance((x, y), (*door.start, *door.end)) < radius for x, y, radius in bodies):
-                raise RobotError(f"something is in {said(door.name)}")
-        self._obstacles.swing(door.name, is_open)
-        self._emit("door", name=door.name, open=is_open)
+        bodies = [(pose.x, pose.y, self._radius), *self._obstacles.discs, *self._obstacles.walking.values()]
+        if not is_open and any(segment_distance((x, y), (*door.start, *door.end)) < r for x, y, r in bodies):
+            raise RobotError(f"something is in {said(door.name)}")
+        if door.open != is_open:
+            self._obstacles.swing(door.name, is_open)
+            self._emit("door", name=door.name, open=is_open)
 
     def is_open(self, name: str) -> bool:
         """Whether a door is open. Raises RobotError for an unknown one."""
+        return self._door(name).open
+
+    def _door(self, name: str) -> Door:
         for door in self._obstacles.doors.values():
             if door.name.lower() == name.lower():
-                return door.open
+                return door
         raise RobotError(f"there's no door called '{name}'")
 
     def switch(self, name: str, on: bool | None, pose: Pose) -> None:

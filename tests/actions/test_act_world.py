@@ -26,7 +26,7 @@ def test_go_to_the_kitchen_then_pick_up_the_cup_and_bring_it(bench):
     assert b.robot.bumps == 0
 
 
-@pytest.mark.parametrize("name", load_world().names.objects)
+@pytest.mark.parametrize("name", [each.name for each in load_world().objects if not each.fixed])
 def test_every_object_of_the_default_world_can_be_picked_up(bench, name):
     b = bench(load_world())
     b.run(manipulation.pick_up, object=name)
