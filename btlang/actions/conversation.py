@@ -28,12 +28,12 @@ def ask(robot: Conversing, question: str, person: str | None = None) -> Steps:
 
 def listen_for_yes_or_no(robot: Listening) -> Steps:
     """Waits until somebody says yes or no. Fails after a minute."""
-    yield from _listened(robot, "yes or no?", None, lambda text: meaning_of(text) in ("yes", "no"))
+    yield from _listened(robot, "", None, lambda text: meaning_of(text) in ("yes", "no"))
 
 
 def listen_for(robot: Listening, text: str) -> Steps:
     """Waits until somebody says these words, maybe among others. Fails after a minute."""
-    yield from _listened(robot, f'"{text}"?', None, lambda heard: holds(heard, text))
+    yield from _listened(robot, "", None, lambda heard: holds(heard, text))
 
 
 def answer_is(robot: Listening, text: str) -> bool | Failed:
@@ -83,11 +83,11 @@ def _words(text: str) -> list[str]:
     return "".join(letter if letter.isalnum() or letter == "'" else " " for letter in text.lower()).split()
 
 
-def _listened(robot: Listening, prompt: str, person: str | None, wanted: Callable[[str], bool]) -> Steps:
+def _listened(robot: Listening, question: str, person: str | None, wanted: Callable[[str], bool]) -> Steps:
     """Waits for the first text that is wanted, which is then the answer."""
     watch, ears = Watch(robot), robot.ears
     count, until = ears.count, robot.time + WAITS
-    robot.ask(prompt, person or "")
+    robot.ask(question, person or "")
     try:
         while True:
             for heard in ears.since(count):

@@ -243,7 +243,10 @@ class Listening(Machine, Protocol):
         """Somebody says it, or types it; "" where nobody knows who."""
 
     def ask(self, question: str, person: str = "") -> None:
-        """The robot has asked a person, or anybody: the question is open until `ears.asking` is cleared."""
+        """The robot has asked a person, or anybody: the question is open until `ears.asking` is cleared.
+
+        "" asks nothing, but waits for an answer to what was said last.
+        """
 
 
 class Leading(Perception, Navigation, Protocol):

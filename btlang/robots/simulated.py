@@ -69,6 +69,7 @@ class SimulatedRobot:
         self._navigator = Navigator(world, self._base, self._obstacles, self.faults, self._surroundings)
         self._choices = Choices()
         self._latch = Latch()
+        self._last_said = ""
         self._bumps_told, self._stuck_told = 0, False
         self._begin_faults()
 
@@ -283,8 +284,9 @@ class SimulatedRobot:
         self._surroundings.hear(text, who)
 
     def ask(self, question: str, person: str = "") -> None:
-        """Opens a question, which was said, to a person or to anybody, until `ears.asking` is cleared."""
-        self.ears.asking = question
+        """See `Listening.ask`: people of the world may answer."""
+        question = question or self._last_said
+        self.ears.asking = question or "..."
         self._emit("ask", text=question, who=person)
         self._surroundings.ask(question, person)
 
@@ -432,6 +434,7 @@ class SimulatedRobot:
         self._need("voice")
         if not self._latch.refuses:
             self._voice.say(text)
+            self._last_said = text
             self._emit("say", text=text)
 
     @property
