@@ -90,7 +90,7 @@ class _VocabularyRules:
             for number, phrase in enumerate(entry.phrases, 1):
                 said = forms(phrase, articles)
                 if entry.sort == "action":  # `the stairs is closed` is a command only at the start of a line
-                    said = [form for form in said if not defining.intersection(map(str, form))]
+                    said = tuple(form for form in said if not defining.intersection(map(str, form)))
                 if said:
                     yield _Leaf(f"{_kebab(entry.id)}-{number}", entry, said, kinds)
 
