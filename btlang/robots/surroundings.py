@@ -4,10 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 
-from btlang.robots.geometry import Point
+from btlang.robots.geometry import Point, Pose
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.robot import RobotError
 from btlang.robots.world import Place, World, said
+
+_SAME_SPOT = 0.01  # metres
 
 
 class Surroundings:
@@ -33,6 +35,18 @@ class Surroundings:
                 return place.x, place.y
         thing = self._obstacles.things[known]
         return None if self._obstacles.is_carried(known) else (thing.x, thing.y)
+
+    def goal_at(self, pose: Pose) -> tuple[str, Pose | None]:
+        """What a way to a pose is called, and where it ends: None on the spot of an object or a person, to which it
+        then is a journey. On the spot of a place it is called by that name, and so knows that its way is blocked.
+        """
+        for place in self._world.places:
+            if pose.distance_to((place.x, place.y)) <= _SAME_SPOT:
+                return place.name, pose
+        for thing in self._obstacles.things.values():
+            if pose.distance_to((thing.x, thing.y)) <= _SAME_SPOT and not self._obstacles.is_carried(thing.name):
+                return thing.name, None
+        return f"({pose.x:.2f}, {pose.y:.2f})", pose
 
     def choices(self, kind: str) -> list[str]:
         """The names of a type, but for what the robot carries."""
