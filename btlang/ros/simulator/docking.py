@@ -1,4 +1,4 @@
-"""The action servers /dock_robot and /undock_robot: drive into the dock and out of it, as Nav2's docking server does."""
+"""The action servers /dock_robot and /undock_robot: drive into the dock and out of it, as the one of Nav2 does."""
 
 from __future__ import annotations
 
