@@ -148,7 +148,7 @@ class RosConnection:
         choices = ALTERNATIVES.get(wanted.name, ())
         if any(each.kind == "action" for each in choices) and not self.robot.power.prepare_docking():
             choices = ()
-        offered = next((each for each in choices if not self._lacks(each)), wanted)
+        offered = next((each for each in choices if not self._absent(each)), wanted)
         reason = self._lacks(offered)
         others = [self._lacks(each) for each in choices if each != wanted] if reason else []
         return offered, ", and ".join([reason, *others])
@@ -156,10 +156,13 @@ class RosConnection:
     def _lacks(self, wanted: Interface) -> str:
         """What is wrong with an interface that shipped leaves need, "" for nothing."""
         node, name = self._spun.node, self._named(wanted).name
-        reason = absent(node, wanted.kind, name, wanted.type)
+        reason = self._absent(wanted)
         if not reason and wanted.flows:
             reason = self.robot.subscriptions.why_not(wanted.name)
         return reason if reason or is_connected(node, name) else f"{name} is not connected yet"
+
+    def _absent(self, wanted: Interface) -> str:
+        return absent(self.node, wanted.kind, self._named(wanted).name, wanted.type)
 
     def _named(self, interface: Interface) -> Interface:
         named: Interface = interface.replace(name=full_name(self._spun.node, interface.kind, interface.name))

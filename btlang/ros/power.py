@@ -53,7 +53,7 @@ class RosPower:
         self.docking: RosDocking | None = None
         self._docks = False
         self._docked: bool | None = None
-        self._since = 0.0
+        self._since = -_SETTLED
         subscriptions.listen(BATTERY, BatteryState, "battery state", refuses=_no_percentage)
         subscriptions.listen(BATTERY, BatteryState, "battery state", key=STATUS)
         subscriptions.listen(DOCKED, Bool, "message from the dock", qos="state")
@@ -82,6 +82,8 @@ class RosPower:
     @property
     def docked(self) -> bool:
         """True while connected to the dock. Where no topic reports it, the battery does: it charges, or is full."""
+        if self._docked is None:
+            self._hear_battery()
         return self._docked if self._docked is not None else bool(self._subscriptions.get(DOCKED).data)
 
     def prepare_docking(self) -> bool:
@@ -114,13 +116,17 @@ class RosPower:
         """Hears whether it is docked."""
         for message in self._subscriptions.events(DOCKED):
             self._docked = bool(message.data)
+        self._hear_battery()
+        ended = self.docking.step() if self.docking is not None else None
+        if ended is not None and ended.failure is None:
+            self._connected(self._docks)
+
+    def _hear_battery(self) -> None:
+        """What it tells of the dock, where no topic does."""
         if not self._subscriptions.has(DOCKED) and AWAKE.now() - self._since > _SETTLED:
             with suppress(RobotError):
                 status = self._subscriptions.get(STATUS, _SILENT).power_supply_status
                 self._docked = _AT_CHARGER.get(status, self._docked)
-        ended = self.docking.step() if self.docking is not None else None
-        if ended is not None and ended.failure is None:
-            self._connected(self._docks)
 
     def _connected(self, docked: bool) -> None:
         self._docked, self._since = docked, AWAKE.now()  # before the topic tells so
