@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from math import cos, degrees, hypot, radians, sin
+from math import cos, degrees, hypot, inf, radians, sin
 
 from btlang.components.safety import Safety
 from btlang.devices.device_set import Reads, reader
@@ -47,7 +47,8 @@ class DeviceBase:
         self._gap = body.base.wheel_gap if body.base is not None else 1.0
         self.travelled, self.wheels = 0.0, (0.0, 0.0)
         self.bumps, self.bumped_into = 0, ""
-        self._wanted = self._speeds = (0.0, 0.0)
+        self.wanted = self._speeds = (0.0, 0.0)
+        self.most = inf
         self._velocity: tuple[float, float] | None = None
         self._seen: Wheels | None = None
         self._heading: float | None = None
@@ -92,13 +93,13 @@ class DeviceBase:
     def drive(self, linear: float, angular: float) -> None:
         """Sets the wanted velocity, within the limits."""
         driving, turning = self.body.driving, self.body.turning
-        self._wanted = clipped_speed(linear, driving.top_speed), clipped_speed(angular, turning.top_speed)
-        if self._wanted == (0.0, 0.0):
+        self.wanted = clipped_speed(linear, driving.top_speed), clipped_speed(angular, turning.top_speed)
+        if self.wanted == (0.0, 0.0):
             self._idle = 0.0
 
     def brake(self) -> None:
         """The wheels are told to stand at once."""
-        self._wanted = self._speeds = (0.0, 0.0)
+        self.wanted = self._speeds = (0.0, 0.0)
         self._idle = 0.0
         self._write(WheelSpeeds())
 
@@ -121,7 +122,7 @@ class DeviceBase:
         if self._locate is not None:
             self._pose = self._locate()
         self._feel()
-        wanted = abs(self._wanted[0]) + self.body.radius * radians(abs(self._wanted[1]))
+        wanted = min(self.most, abs(self.wanted[0])) + self.body.radius * radians(abs(self.wanted[1]))
         way = before.distance_to((self._pose.x, self._pose.y))
         turn = abs(wrap(self._pose.heading - before.heading))
         moved = way + self.body.radius * radians(turn)
@@ -129,7 +130,8 @@ class DeviceBase:
 
     def _command(self, dt: float) -> None:
         driving, turning = self.body.driving, self.body.turning
-        wanted = self._safety.limited(*self._wanted, bool(self._pressed))
+        most = max(-self.most, min(self.most, self.wanted[0]))
+        wanted = self._safety.limited(most, self.wanted[1], bool(self._pressed))
         linear = towards(self._speeds[0], wanted[0], driving.acceleration * dt, driving.brake * dt)
         angular = towards(self._speeds[1], wanted[1], turning.acceleration * dt, turning.brake * dt)
         if self._velocity is None:

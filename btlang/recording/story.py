@@ -9,7 +9,7 @@ from btlang.api import Mission
 from btlang.engine.engine import Failure
 from btlang.engine.status import FAILURE, IDLE, NAMES, RUNNING, SKIPPED
 from btlang.recording.reader import RecordedNodes
-from btlang.run.events import Chosen, Ended, Event, FaultInjected, Notice, PartChanged, StatusesChanged
+from btlang.run.events import Chosen, Ended, Event, FaultInjected, InTheWorld, Notice, PartChanged, StatusesChanged
 from btlang.run.failure_history import FailureHistory
 from btlang.run.lines import is_asked_wait
 from btlang.run.report import failure_report
@@ -45,6 +45,8 @@ class Story:
                 self._note(event.t, -1, f"It chooses {event.name}, the {event.how} {event.type}.")
             elif isinstance(event, FaultInjected | Notice | PartChanged) and event.text:
                 self._note(event.t, -1, f"{event.tag}: {event.text}")
+            elif isinstance(event, InTheWorld):
+                self._note(event.t, -1, f"{event.verb} {event.words}")
             elif isinstance(event, Ended):
                 self._ended = event
         return self

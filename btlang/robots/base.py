@@ -32,8 +32,10 @@ class Base:
         self.travelled = 0.0
         self._rolled = self._turned = 0.0
         self.grips = (1.0, 1.0)
+        self.most = inf
+        """Metres a second that it doesn't pass, whatever it is told."""
         self._obstacles = obstacles
-        self._wanted = (0.0, 0.0)
+        self.wanted = (0.0, 0.0)
         self._speeds = (0.0, 0.0)
         self._hard = False
         self._contact: Pose | None = None
@@ -41,7 +43,7 @@ class Base:
         self._idle = 0.0
         self._free = 0.0
         self._near = ""
-        self._version = -1
+        self._layout = -1
 
     @property
     def wheels(self) -> tuple[float, float]:
@@ -66,26 +68,26 @@ class Base:
 
     def drive(self, linear: float, angular: float) -> None:
         """Sets the wanted velocity, within the limits."""
-        self._wanted = (clipped_speed(linear, self._driving.top_speed), clipped_speed(angular, self._turning.top_speed))
+        self.wanted = (clipped_speed(linear, self._driving.top_speed), clipped_speed(angular, self._turning.top_speed))
         self._hard = False
-        if self._wanted == (0.0, 0.0):
+        if self.wanted == (0.0, 0.0):
             self._forget_trouble()
 
     def brake(self) -> None:
         """Comes to rest as fast as the wheels can."""
-        self._wanted = (0.0, 0.0)
+        self.wanted = (0.0, 0.0)
         self._hard = True
         self._forget_trouble()
 
     def put(self, pose: Pose) -> None:
         """Stands there at once, at rest."""
-        self.pose, self._wanted, self._speeds = pose, (0.0, 0.0), (0.0, 0.0)
-        self._contact, self._version = None, -1
+        self.pose, self.wanted, self._speeds = pose, (0.0, 0.0), (0.0, 0.0)
+        self._contact, self._layout = None, -1
         self._forget_trouble()
 
     def step(self, dt: float) -> None:
         """Moves on by `dt` in equal pieces of at most 0.02 s."""
-        if self._wanted == (0.0, 0.0) and not self.rolling:
+        if self.wanted == (0.0, 0.0) and not self.rolling:
             self.velocity = (0.0, 0.0)
             return
         pieces = max(1, ceil(dt / _SUBSTEP - 1e-9))
@@ -100,8 +102,11 @@ class Base:
         linear, angular = self._speeds
         driving, turning = self._driving, self._turning
         brake, turn_brake = (driving.hard_brake, turning.hard_brake) if self._hard else (driving.brake, turning.brake)
-        linear = towards(linear, self._wanted[0], driving.acceleration * h, brake * h)
-        angular = towards(angular, self._wanted[1], turning.acceleration * h, turn_brake * h)
+        wanted = max(-self.most, min(self.most, self.wanted[0]))
+        if abs(linear) > self.most:
+            brake = driving.hard_brake
+        linear = towards(linear, wanted, driving.acceleration * h, brake * h)
+        angular = towards(angular, self.wanted[1], turning.acceleration * h, turn_brake * h)
         self._speeds = linear, angular
         v, w = self._on_floor(linear, angular)
         old = self.pose
@@ -123,7 +128,7 @@ class Base:
         self._turned += angular * h
         if self._contact is not None and self._contact.distance_to((new.x, new.y)) > _FREE_AGAIN:
             self._contact = None
-        wanted = abs(self._wanted[0]) + self._radius * radians(abs(self._wanted[1]))
+        wanted = abs(wanted) + self._radius * radians(abs(self.wanted[1]))
         real = abs(v) + self._radius * radians(abs(w))
         self._idle = self._idle + h if real < 0.05 * wanted else 0.0
 
@@ -136,17 +141,20 @@ class Base:
         return (left + right) / 2, degrees((right - left) / self._wheel_gap)
 
     def _hits(self, pose: Pose, moved: float) -> bool:
-        """`_free` is a lower bound of the room left, so that most steps need not look at the obstacles."""
-        if self._version == self._obstacles.version and self._free > moved:
-            self._free -= moved
-            return False
+        """`_free` is a lower bound of the room left to what stands still, so that most steps need not look at it."""
         if moved == 0.0:
             return False
-        now = self._gap(pose)
-        self._free, self._version = now, self._obstacles.version
-        if now >= 0.0:
+        obstacles = self._obstacles
+        walking = obstacles.nearest_walking(pose.x, pose.y)[0] - self._radius if obstacles.walking else inf
+        if self._layout == obstacles.layout and self._free > moved:
+            self._free -= moved
+            now = self._free
+        else:
+            now = self._free = obstacles.nearest_standing(pose.x, pose.y)[0] - self._radius
+            self._layout = obstacles.layout
+        if min(now, walking) >= 0.0:
             return False
-        before = self._gap(self.pose)
+        now, before = self._gap(pose), self._gap(self.pose)
         if now > before:
             return False  # moving away from something that was put onto the robot
         self._free = 0.0

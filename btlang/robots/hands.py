@@ -8,7 +8,7 @@ from btlang.robots.body import Body, HandPart
 from btlang.robots.geometry import Point, Pose
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.robot import Hand, RobotError
-from btlang.robots.world import said
+from btlang.robots.world import WorldObject, said
 
 _DIRECTIONS = (0, 30, -30, 60, -60, 90, -90, 120, -120, 150, -150, 180)
 
@@ -37,7 +37,8 @@ class Hands:
         """The named or the nearest object that a hand could grasp. Raises RobotError where there is none."""
         part = self._part(hand)
         x, y = pose.ahead(part.ahead, part.left)
-        things = [self._obstacles.things[key] for key in self._objects if not self._obstacles.is_carried(key)]
+        known = (self._obstacles.things[key] for key in self._objects if not self._obstacles.is_carried(key))
+        things = [thing for thing in known if not (isinstance(thing, WorldObject) and thing.fixed)]
         reachable = [
             (hypot(thing.x - x, thing.y - y) - thing.radius, thing.name)
             for thing in things

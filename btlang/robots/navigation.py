@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from itertools import pairwise
-from math import cos, dist, radians, sqrt
+from math import cos, dist, inf, radians, sqrt
 
 from btlang.interrupts import interrupts_later
 from btlang.robots.body import Body, Limits
@@ -12,7 +12,9 @@ from btlang.robots.faults import Faults
 from btlang.robots.geometry import Point, Pose, wrap
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.parts import BasePart
+from btlang.robots.protection import Protection
 from btlang.robots.robot import RobotError
+from btlang.robots.surroundings import Surroundings
 from btlang.robots.world import Place, Thing, World, said
 
 TYPE_CHECKING = False
@@ -22,6 +24,11 @@ if TYPE_CHECKING:
 ROOM = 0.15
 """Metres between the robot and an object or a person that it goes to, at least."""
 
+PATIENCE, GIVES_UP = 8.0, 30.0
+"""Seconds that the robot waits for who is in its way, and that it looks for another way."""
+_AGAIN = 4.0  # seconds between two looks for another way
+_NEARBY = 3.0  # metres: who walks farther away may be elsewhere by then
+_MOVED, _REPLAN = 0.3, 0.5  # metres that somebody has moved, and seconds between two plans for that
 _LOOK_AHEAD = 0.25
 _NEAR, _FACING = 0.03, 1.0
 
@@ -39,7 +46,12 @@ class NavigationGoal:
         self.failure: str | None = None
         self.path: list[Point] = []
         self.at = 0
-        self.version = -1
+        self.planned = (-1, -1)
+        self.planned_at = 0.0
+        self.target: Point = (base.pose.x, base.pose.y)
+        self.reach = 0.0
+        self.held_up = ""
+        self.waited, self.tries = 0.0, 0
         self.bumps = base.bumps
         self.driven = False
         self._base = base
@@ -63,17 +75,25 @@ class NavigationGoal:
 
 
 class Navigator:
-    """Drives the base along the goal under way."""
+    """Drives the base along the goal under way. `patience` are the seconds it waits for who is in its way before it
+    looks for another way; without one it gives up after GIVES_UP more.
+    """
 
-    def __init__(self, world: World, base: BasePart, obstacles: Obstacles, faults: Faults) -> None:
+    def __init__(
+        self, world: World, base: BasePart, obstacles: Obstacles, faults: Faults, surroundings: Surroundings
+    ) -> None:
         self._places: dict[str, Place] = {place.name: place for place in world.places}
-        self._people = set(world.names.people)
         self._base = base
         self._body = base.body
         self._obstacles = obstacles
         self._faults = faults
         self._world = world
+        self._surroundings = surroundings
+        self._zones = surroundings.zones
+        self._protection = Protection(obstacles, self._zones, base.body)
         self._planner: Planner | None = None
+        self._now = 0.0
+        self.patience = PATIENCE
         self.goal: NavigationGoal | None = None
 
     @property
@@ -97,8 +117,14 @@ class Navigator:
         if self.goal is not None:
             self.goal.end(reason)
 
-    def control(self) -> NavigationGoal | None:
+    def protect(self) -> None:
+        """The base drives no faster than is safe, whoever drives it."""
+        base = self._base
+        base.most = inf if not base.rolling and base.wanted[0] == 0.0 else self._limit(base)
+
+    def control(self, now: float) -> NavigationGoal | None:
         """Commands the base for the next moment; returns the goal when it ends with this call."""
+        waited, self._now = now - self._now, now
         goal = self.goal
         if goal is None:
             return None
@@ -106,10 +132,41 @@ class Navigator:
             self._check(goal)
         if not goal.done:
             self._follow(goal)
+            self._wait(goal, waited)
         if goal.done:
             self.goal = None
             return goal
         return None
+
+    def go_another_way(self) -> None:
+        """Waits no longer for who is in the way. Raises RobotError where there is no journey, or no other way."""
+        if self.goal is None or self.goal.done:
+            raise RobotError("the robot isn't on its way anywhere")
+        if not self._plan(self.goal, around=True):
+            raise RobotError(f"there is no other way to {said(self.goal.name)}")
+
+    @property
+    def held_up(self) -> str:
+        """Who is in the way, "" where nobody makes the robot wait."""
+        return self.goal.held_up if self.goal is not None and not self.goal.done else ""
+
+    def _limit(self, base: BasePart) -> float:
+        return self._protection.limit(base.pose, base.wanted[0] < 0.0)
+
+    def _wait(self, goal: NavigationGoal, seconds: float) -> None:
+        """Counts how long somebody makes the robot wait, and does something about it."""
+        zone = self._protection.zone
+        goal.held_up = self._protection.person if self._base.wanted[0] and not goal.driven else ""
+        if zone is not None and not goal.driven and abs(self._base.wanted[0]) > 0.05:
+            goal.waited += seconds
+            if goal.waited > GIVES_UP:
+                goal.end(f"the {zone.name} is in the way to {said(goal.name)}")
+            return
+        goal.waited = goal.waited + seconds if goal.held_up else max(0.0, goal.waited - seconds)
+        if goal.waited > self.patience + goal.tries * _AGAIN and goal.held_up:
+            goal.tries += 1
+            if not self._plan(goal, around=True) and goal.waited > self.patience + GIVES_UP:
+                goal.end(f"{said(goal.held_up)} is in the way to {said(goal.name)}")
 
     def _check(self, goal: NavigationGoal) -> None:
         """Ends a goal that cannot go on; plans anew when something has moved."""
@@ -122,31 +179,47 @@ class Navigator:
             goal.end(f"stuck on the way to {said(name)}: the wheels turn but the robot doesn't move")
         elif self._faults.blocked(name):
             goal.end(f"there is no free way to {said(name)}")
-        elif goal.version != self._obstacles.version:
+        elif (target := self._target(goal)) is None:
+            goal.end(f"I haven't seen {said(name)}")
+        elif (closed := self._zones.closed_at(target)) is not None and not goal.reach:
+            goal.end(f"{said(name)} is in the {closed.name}, where the robot may not go")
+        elif goal.planned != (self._obstacles.layout, self._zones.version) or self._has_moved(goal, target):
             self._plan(goal)
 
-    def _plan(self, goal: NavigationGoal) -> None:
-        goal.version = self._obstacles.version
-        target, reach = self._target(goal)
+    def _has_moved(self, goal: NavigationGoal, target: Point) -> bool:
+        """Whether who it goes to is elsewhere by now; looked at twice a second."""
+        return dist(goal.target, target) > _MOVED and self._now - goal.planned_at >= _REPLAN
+
+    def _plan(self, goal: NavigationGoal, around: bool = False) -> bool:
+        """Whether there is a way, `around` also those who walk nearby; without one the goal ends, but not then."""
+        target = self._target(goal)
+        assert target is not None
         if self._planner is None:
             with interrupts_later():  # numpy, which takes longer to import than many missions
                 from btlang.robots.planning import Planner
 
-            self._planner = Planner(self._world, self._obstacles, self._body.radius)
-        path = self._planner.path((self._base.pose.x, self._base.pose.y), target, reach)
-        if path is None:
-            goal.end(f"there is no free way to {said(goal.name)}")
-        else:
+            self._planner = Planner(self._world, self._obstacles, self._body.radius, self._zones)
+        start = self._base.pose.x, self._base.pose.y
+        others = [disc for name, disc in self._obstacles.walking.items() if name != goal.name] if around else []
+        near = [disc for disc in others if dist(start, disc[:2]) < _NEARBY]
+        path = self._planner.path(start, target, goal.reach, near)
+        goal.planned, goal.planned_at, goal.target = (self._obstacles.layout, self._zones.version), self._now, target
+        if path is not None:
             goal.path, goal.at, goal.driven = path, 0, False
+        elif not around:
+            goal.end(f"there is no free way to {said(goal.name)}")
+        return path is not None
 
-    def _target(self, goal: NavigationGoal) -> tuple[Point, float]:
+    def _target(self, goal: NavigationGoal) -> Point | None:
+        """Where it goes, as far as the robot knows; sets how near it has to come."""
         name = goal.name
         if goal.pose is not None:
-            return (goal.pose.x, goal.pose.y), 0.0
+            return goal.pose.x, goal.pose.y
         if name in self._places:
-            return (self._places[name].x, self._places[name].y), 0.0
-        thing = self._obstacles.things[name]
-        return (thing.x, thing.y), stand_off(self._body, thing, name in self._people)
+            return self._places[name].x, self._places[name].y
+        if not goal.reach:
+            goal.reach = stand_off(self._body, self._obstacles.things[name], self._surroundings.is_person(name))
+        return self._surroundings.sight.where(name)
 
     def _follow(self, goal: NavigationGoal) -> None:
         pose, path = self._base.pose, goal.path
@@ -175,10 +248,10 @@ class Navigator:
             facing = self._places[goal.name].facing
             error = 0.0 if facing is None else wrap(facing - pose.heading)
         else:
-            thing = self._obstacles.things[goal.name]
-            error = pose.bearing_to((thing.x, thing.y))
+            error = pose.bearing_to(goal.target)
         if abs(error) <= _FACING:
-            goal.end(None)
+            lost = goal.reach and not self._surroundings.sight.is_fresh(goal.name)
+            goal.end(f"{said(goal.name)} is no longer where I saw it" if lost else None)
         else:
             self._base.drive(0.0, turn_rate(error, self._body.turning))
 

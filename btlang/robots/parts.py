@@ -23,6 +23,8 @@ class BasePart(Protocol):
     bumps: int
     bumped_into: str
     grips: tuple[float, float]
+    wanted: tuple[float, float]
+    most: float
 
     @property
     def wheels(self) -> tuple[float, float]: ...

@@ -19,7 +19,8 @@ class Scanner:
     def __init__(self, obstacles: Obstacles, reach: float) -> None:
         self._reach = reach
         self._obstacles = obstacles
-        self._segments: Array = np.array(obstacles.segments, dtype=np.float64).reshape(-1, 4)
+        self._segments: Array = np.empty(0)
+        self._walls = -1
         self._pose: Pose | None = None
         self._version = -1
         self._ranges: Array = np.empty(0)
@@ -27,7 +28,12 @@ class Scanner:
     def read(self, pose: Pose) -> Array:
         """See `scan`."""
         if pose is not self._pose or self._version != self._obstacles.version:
-            self._ranges = scan(self._segments, np.array(self._obstacles.discs).reshape(-1, 3), pose, self._reach)
+            obstacles = self._obstacles
+            if self._walls != obstacles.walls:
+                self._segments = np.array(obstacles.segments, dtype=np.float64).reshape(-1, 4)
+                self._walls = obstacles.walls
+            discs = np.array((*obstacles.discs, *obstacles.walking.values()), dtype=np.float64).reshape(-1, 3)
+            self._ranges = scan(self._segments, discs, pose, self._reach)
             self._pose, self._version = pose, self._obstacles.version
         return self._ranges
 

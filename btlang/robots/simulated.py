@@ -9,6 +9,7 @@ from typing import Any
 from btlang.robots.body import Body
 from btlang.robots.body_file import standard_body
 from btlang.robots.choices import Choices
+from btlang.robots.ears import Ears
 from btlang.robots.faults import Faults, describe
 from btlang.robots.geometry import Point, Pose
 from btlang.robots.latch import Latch
@@ -19,7 +20,8 @@ from btlang.robots.power import staging_pose
 from btlang.robots.robot import CompletedOperation, Hand, OnEvent, Operation, RobotError, SensorSilent
 from btlang.robots.simulated_parts import simulated_parts
 from btlang.robots.surroundings import Surroundings
-from btlang.robots.world import Place, World
+from btlang.robots.world import Place, World, said
+from btlang.robots.zones import Zones
 from btlang.run.standstill import Standstill
 from btlang.text.time_of_day import DAY
 from btlang.vocabulary.capabilities import part_of
@@ -59,12 +61,12 @@ class SimulatedRobot:
         self.time = 0.0
         self.stops = 0
         self._obstacles = obstacles or Obstacles(world)
-        self._surroundings = Surroundings(world, self._obstacles)
         parts = (make_parts or simulated_parts)(world, self._obstacles, body)
         self._base, self.power, self._scan = parts.base, parts.power, parts.scan
         self._joints, self._hands, self._voice = parts.joints, parts.hands, parts.voice
         self.faults = Faults(world.faults)
-        self._navigator = Navigator(world, self._base, self._obstacles, self.faults)
+        self._surroundings = Surroundings(world, self._obstacles, body, self._joints.angle, self._emit)
+        self._navigator = Navigator(world, self._base, self._obstacles, self.faults, self._surroundings)
         self._choices = Choices()
         self._latch = Latch()
         self._bumps_told, self._stuck_told = 0, False
@@ -85,8 +87,10 @@ class SimulatedRobot:
     def _move_on(self, dt: float) -> None:
         self.time += dt
         self._begin_faults()
-        arrived = self._navigator.control()
+        arrived = self._navigator.control(self.time)
         travelled = self._base.travelled
+        self._surroundings.step(self.time, dt, self._base.pose, self._base.velocity[0])
+        self._navigator.protect()
         self._base.step(dt)
         self._joints.step(dt)
         self._voice.step(dt)
@@ -224,7 +228,7 @@ class SimulatedRobot:
         return self._scan(self.pose)
 
     def locate(self, name: str) -> Point:
-        """Where a place, object or person is. Raises RobotError for an unknown name."""
+        """Where a place, object or person is. Raises RobotError for an unknown name, and for what it hasn't seen."""
         return self._surroundings.locate(name) or (self.pose.x, self.pose.y)
 
     def choose(self, kind: str, how: str) -> str:
@@ -234,11 +238,79 @@ class SimulatedRobot:
     def seed_choices(self, seed: int, made: int = 0) -> None:
         """A run begins, whose random choices follow from the seed; so many have been made."""
         self._choices.begin(seed, made)
+        self._surroundings.begin(seed)
 
     def nearby_people(self, within: float) -> list[str]:
         """Names of the people within so many metres, nearest first."""
-        distances = sorted((self._distance(name), name) for name in self.world.names.people)
-        return [name for distance, name in distances if distance <= within]
+        return self._surroundings.nearby_people(within, self.pose)
+
+    def sees(self, name: str) -> bool:
+        """Whether an object or a person is in view. Raises RobotError for an unknown name."""
+        return self._surroundings.sight.sees(self._surroundings.known(name), self.pose)
+
+    def seen(self, kind: str) -> list[str]:
+        """The objects or people in view, nearest first."""
+        return self._surroundings.sight.seen(kind, self.pose)
+
+    @property
+    def surroundings(self) -> Surroundings:
+        """What is where around it, and who lives there."""
+        return self._surroundings
+
+    @property
+    def zones(self) -> Zones:
+        """Where it may not go, or only slowly."""
+        return self._surroundings.zones
+
+    @property
+    def ears(self) -> Ears:
+        """What it has heard. Raises RobotError where it has none."""
+        self._need("ears")
+        return self._surroundings.ears
+
+    def hear(self, text: str, who: str = "") -> None:
+        """It hears what somebody says, or types."""
+        self._surroundings.hear(text, who)
+
+    def ask(self, question: str, person: str = "") -> None:
+        """Opens a question, which was said, to a person or to anybody, until `ears.asking` is cleared."""
+        self.ears.asking = question
+        self._emit("ask", text=question, who=person)
+        self._surroundings.ask(question, person)
+
+    def guide(self, person: str, follow: bool) -> None:
+        """Somebody follows the robot from now on, or no longer. Raises RobotError for who isn't in view."""
+        known = self._surroundings.known(person)
+        if follow and not self._surroundings.sight.sees(known, self.pose):
+            raise RobotError(f"I don't see {said(known)}")
+        self._surroundings.people.follow(known, follow)
+
+    def move_door(self, name: str, is_open: bool) -> Operation:
+        """Opens or closes a door within reach. Raises RobotError."""
+        self._surroundings.move_door(name, is_open, self.pose)
+        return CompletedOperation()
+
+    def switch(self, name: str, on: bool | None) -> Operation:
+        """Switches an object within reach on or off, with None to the other. Raises RobotError."""
+        self._surroundings.switch(name, on, self.pose)
+        return CompletedOperation()
+
+    def call(self, text: str) -> None:
+        """Calls people for help, by an event."""
+        self._emit("call", text=text)
+
+    @property
+    def held_up(self) -> str:
+        """Who is in its way, "" where nobody makes it wait."""
+        return self._navigator.held_up
+
+    def wait_for_way(self, seconds: float) -> None:
+        """So long it waits for who is in its way, before it looks for another way."""
+        self._navigator.patience = seconds
+
+    def go_another_way(self) -> None:
+        """Waits no longer for who is in its way. Raises RobotError where it isn't under way, or has no other way."""
+        self._navigator.go_another_way()
 
     def _distance(self, name: str) -> float:
         return self.pose.distance_to(self.locate(name))
@@ -321,6 +393,8 @@ class SimulatedRobot:
         """Closes a hand on the named or the nearest object. Raises RobotError."""
         if self._latch.refuses:
             raise RobotError("the robot was stopped")
+        if name is not None:
+            self._surroundings.check_movable(name)
         found = self._hands.grasp(hand, None if name is None else self._surroundings.known(name), self.pose, self.time)
         self._emit("grasp", hand=hand, name=found if isinstance(found, str) else name)
         return CompletedOperation() if isinstance(found, str) else found

@@ -1,40 +1,83 @@
-"""What is where around a robot, by name."""
+"""What is where around a robot, by name, as far as the robot knows; and who lives there."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 
-from btlang.robots.geometry import Point, Pose
+from btlang.robots.body import Body
+from btlang.robots.ears import Ears
+from btlang.robots.geometry import Point, Pose, segment_distance
 from btlang.robots.obstacles import Obstacles
+from btlang.robots.people import People
 from btlang.robots.robot import RobotError
-from btlang.robots.world import Place, World, said
+from btlang.robots.sight import Sight
+from btlang.robots.world import Place, World, WorldObject, said
+from btlang.robots.zones import Zones
 
+_REACH = 1.2  # metres to a door or a switch
 _SAME_SPOT = 0.01  # metres
 
 
 class Surroundings:
-    """The places, objects and people of a world; names are in any case. Raises RobotError for unknown ones."""
+    """The places, objects and people of a world; names are in any case. Raises RobotError for unknown ones.
 
-    def __init__(self, world: World, obstacles: Obstacles) -> None:
+    `joint` says where a joint of the robot stands; `emit` hears the events "come", "leave", "hear" and "see".
+    """
+
+    def __init__(
+        self,
+        world: World,
+        obstacles: Obstacles,
+        body: Body,
+        joint: Callable[[str], float],
+        emit: Callable[..., object],
+    ) -> None:
         self._given, self._world = world, world
-        self._obstacles = obstacles
+        self._obstacles, self._emit = obstacles, emit
+        self._radius = body.radius
+        self._switched: dict[str, bool] = {}
+        self._hears = body.ears.within if body.ears is not None else 0.0
+        self._now, self._pose = 0.0, world.start
+        self.zones = Zones(world.zones)
+        self.ears = Ears()
+        self.sight = Sight(world, obstacles, body, joint, lambda name: emit("see", name=name))
+        self.people = People(world, obstacles, body.radius, self._happen)
+        self.sight.look(0.0, world.start)
+
+    def begin(self, seed: int) -> None:
+        """A run begins: zones are as the world says, and chance follows from the seed."""
+        self.zones.begin()
+        self.people.begin(seed)
+        self.ears.asking = ""
+
+    def step(self, now: float, dt: float, pose: Pose, velocity: float) -> None:
+        """People live on for `dt` seconds until `now`, and the robot looks around."""
+        self._now, self._pose = now, pose
+        self.people.step(now, dt, pose, velocity)
+        self.sight.look(now, pose)
 
     def known(self, name: str) -> str:
         """The name as the world spells it."""
         names = self._world.names
-        for known in (*names.places, *names.objects, *names.people):
+        for known in (*names.places, *names.objects, *names.people, *self.sight.names("person")):
             if known.lower() == name.lower():
                 return known
         raise RobotError(f"I don't know where '{name}' is")
 
+    def is_person(self, name: str) -> bool:
+        """Whether it is the name of a person."""
+        return name in self.sight.names("person")
+
     def locate(self, name: str) -> Point | None:
-        """Where it is; None while the robot carries it."""
+        """Where it is as far as the robot knows; None while the robot carries it."""
         known = self.known(name)
         for place in self._world.places:
             if place.name == known:
                 return place.x, place.y
-        thing = self._obstacles.things[known]
-        return None if self._obstacles.is_carried(known) else (thing.x, thing.y)
+        point = self.sight.where(known)
+        if point is None and not self._obstacles.is_carried(known):
+            raise RobotError(f"I haven't seen {said(known)}")
+        return point
 
     def goal_at(self, pose: Pose) -> tuple[str, Pose | None]:
         """What a way to a pose is called, and where it ends: None on the spot of an object or a person, to which it
@@ -43,14 +86,26 @@ class Surroundings:
         for place in self._world.places:
             if pose.distance_to((place.x, place.y)) <= _SAME_SPOT:
                 return place.name, pose
-        for thing in self._obstacles.things.values():
-            if pose.distance_to((thing.x, thing.y)) <= _SAME_SPOT and not self._obstacles.is_carried(thing.name):
-                return thing.name, None
+        for name in self._obstacles.things:
+            point = self.sight.where(name)
+            if point is not None and pose.distance_to(point) <= _SAME_SPOT:
+                return name, None
         return f"({pose.x:.2f}, {pose.y:.2f})", pose
 
     def choices(self, kind: str) -> list[str]:
-        """The names of a type, but for what the robot carries."""
-        return [name for name in self._world.names.of(kind) if not self._obstacles.is_carried(name)]
+        """The names of a type that the robot knows a place of, but for what it carries."""
+        if kind in ("object", "person"):
+            return [name for name in self.sight.names(kind) if self.sight.where(name) is not None]
+        return list(self._world.names.of(kind))
+
+    def nearby_people(self, within: float, pose: Pose) -> list[str]:
+        """The names of the people within so many metres, nearest first: those who walk as far as they are in view."""
+        found = []
+        for name in self.sight.names("person"):
+            point = self.sight.where(name)
+            if point is not None and self.sight.is_fresh(name) and pose.distance_to(point) <= within:
+                found.append((pose.distance_to(point), name))
+        return [name for _, name in sorted(found)]
 
     def name_places(self, places: Iterable[Place]) -> World:
         """The world with these places, in place of those of the mission before."""
@@ -62,4 +117,73 @@ class Surroundings:
         known = self.known(name)
         if known not in self._obstacles.things or self._obstacles.is_carried(known):
             raise RobotError(f"{said(known)} can't be moved")
-        self._obstacles.move(known, x, y)
+        if self.people.walks(known):
+            self.people.put(known, x, y)
+        else:
+            self._obstacles.move(known, x, y)
+
+    def check_movable(self, name: str) -> None:
+        """Raises RobotError for an object that can't be picked up, or that the robot hasn't seen."""
+        known = self.known(name)
+        self.locate(known)
+        thing = self._obstacles.things.get(known)
+        if isinstance(thing, WorldObject) and thing.fixed:
+            raise RobotError(f"{said(known)} is fixed")
+
+    def move_door(self, name: str, is_open: bool, pose: Pose) -> None:
+        """Opens or closes a door. Raises RobotError where it is out of reach, or somebody stands in it."""
+        door = next((each for each in self._obstacles.doors.values() if each.name.lower() == name.lower()), None)
+        if door is None:
+            raise RobotError(f"there's no door called '{name}'")
+        if (distance := pose.distance_to(door.middle)) > _REACH:
+            raise RobotError(f"{said(door.name)} is {distance:.1f} m away")
+        if door.open and not is_open:
+            bodies = [(pose.x, pose.y, self._radius), *self._obstacles.discs, *self._obstacles.walking.values()]
+            if any(segment_distance((x, y), (*door.start, *door.end)) < radius for x, y, radius in bodies):
+                raise RobotError(f"something is in {said(door.name)}")
+        self._obstacles.swing(door.name, is_open)
+        self._emit("door", name=door.name, open=is_open)
+
+    def is_open(self, name: str) -> bool:
+        """Whether a door is open. Raises RobotError for an unknown one."""
+        for door in self._obstacles.doors.values():
+            if door.name.lower() == name.lower():
+                return door.open
+        raise RobotError(f"there's no door called '{name}'")
+
+    def switch(self, name: str, on: bool | None, pose: Pose) -> None:
+        """Switches an object on or off. Raises RobotError where it can't be, or is out of reach."""
+        known = self.known(name)
+        point = self.locate(known)
+        before = self.is_on(known)
+        if point is not None and pose.distance_to(point) > _REACH:
+            raise RobotError(f"{said(known)} is {pose.distance_to(point):.1f} m away")
+        self._switched[known] = (not before) if on is None else on
+        self._emit("switch", name=known, on=self._switched[known])
+
+    def is_on(self, name: str) -> bool:
+        """Whether an object is switched on. Raises RobotError for one that can't be switched."""
+        known = self.known(name)
+        thing = self._obstacles.things.get(known)
+        if not isinstance(thing, WorldObject) or not thing.switch:
+            raise RobotError(f"{said(known)} can't be switched on or off")
+        return self._switched.get(known, thing.switch == "on")
+
+    def hear(self, text: str, who: str = "") -> None:
+        """The robot hears what somebody says, or types."""
+        self.ears.hear(text, who, self._now)
+        self._emit("hear", text=text, who=who)
+
+    def ask(self, question: str, person: str = "") -> None:
+        """The robot has asked a person, or anybody; people of the world may answer."""
+        self.people.ask(question, person, (self._pose.x, self._pose.y), self._now)
+
+    def _happen(self, kind: str, name: str, text: str) -> None:
+        if kind == "speak":
+            point = self._obstacles.point(name)
+            if point is not None and self._pose.distance_to(point) <= self._hears:
+                self.hear(text, name)
+            return
+        if kind == "come":
+            self.sight.watch(name, "person")
+        self._emit(kind, name=name)

@@ -230,6 +230,104 @@ class FaultInjected(Event):
     text: str
 
 
+class InTheWorld(Event):
+    """What happens between the robot and what is around it; `verb` and `words` say it to people."""
+
+    @property
+    def verb(self) -> str:
+        """What happens: "sees"."""
+        return self.tag if self.tag in ("door", "switch") else f"{self.tag}s"
+
+    @property
+    def words(self) -> str:
+        """In plain English."""
+        return str(self.name) if "name" in self.fields else f'"{self.text}"'
+
+    if TYPE_CHECKING:
+        name: str
+        text: str
+
+
+class Heard(InTheWorld):
+    """The robot hears what somebody says, "" if it doesn't know who."""
+
+    tag = "hear"
+    text: str
+    who: str
+
+    @property
+    def words(self) -> str:
+        """In plain English."""
+        return f'"{self.text}" from {self.who}' if self.who else f'"{self.text}"'
+
+
+class Asked(InTheWorld):
+    """The robot waits for an answer to a question, by a person or, for "", by anybody."""
+
+    tag = "ask"
+    text: str
+    who: str
+
+    @property
+    def words(self) -> str:
+        """In plain English."""
+        return f'{self.who}: "{self.text}"' if self.who else f'"{self.text}"'
+
+
+class Seen(InTheWorld):
+    """The robot sees somebody or something for the first time."""
+
+    tag = "see"
+    name: str
+
+
+class Came(InTheWorld):
+    """Somebody comes into the world."""
+
+    tag = "come"
+    name: str
+
+
+class Gone(InTheWorld):
+    """Somebody leaves the world."""
+
+    tag = "leave"
+    name: str
+
+
+class Called(InTheWorld):
+    """The robot calls people for help."""
+
+    tag = "call"
+    text: str
+
+
+class DoorMoved(InTheWorld):
+    """The robot has opened or closed a door."""
+
+    tag = "door"
+    name: str
+    open: bool
+
+    @property
+    def words(self) -> str:
+        """In plain English."""
+        return f"{self.name} {'open' if self.open else 'closed'}"
+
+
+class Switched(InTheWorld):
+    """The robot has switched something on or off."""
+
+    tag = "switch"
+    name: str
+    on: bool
+
+    @property
+    def words(self) -> str:
+        """In plain English."""
+        return f"{self.name} {'on' if self.on else 'off'}"
+
+
 class PartChanged(Event):
     """A component has another state (see btlang.components.life_cycle), or a device "works" or is "silent".
 
@@ -341,7 +439,8 @@ ROBOT_EVENTS: dict[str, type[Event]] = {
     event.tag: event
     for event in (
         Said, Printed, Chosen, NavigationStarted, Arrived, Bumped, Stuck, Stopped, Grasped, Released, Dropped,
-        JointsMoved, Docked, Undocked, BatteryEmpty, FaultInjected, PartChanged, Warned, Troubled,
+        JointsMoved, Docked, Undocked, BatteryEmpty, FaultInjected, Heard, Asked, Seen, Came, Gone, Called, DoorMoved,
+        Switched, PartChanged, Warned, Troubled,
     )
 }  # fmt: skip
 """What robots report, by the kinds of btlang.robots.robot.Robot.on_event."""

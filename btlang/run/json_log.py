@@ -102,6 +102,7 @@ _TYPES: dict[str, dict[str, Any]] = {
     "int | None": {"type": ["integer", "null"]},
     "float": {"type": "number"},
     "str | None": {"type": ["string", "null"]},
+    "bool": {"type": "boolean"},
     "bool | None": {"type": ["boolean", "null"]},
     "Mapping[str, float]": {"type": "object", "additionalProperties": {"type": "number"}},
     "Mapping[str, Any]": {"type": "object"},

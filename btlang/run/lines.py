@@ -10,6 +10,7 @@ from btlang.run.events import (
     Chosen,
     Dropped,
     FaultInjected,
+    InTheWorld,
     Notice,
     Overrun,
     PartChanged,
@@ -61,6 +62,8 @@ class Lines:
             self._line(event.t, "bumps", event.into)
         elif isinstance(event, Dropped):
             self._line(event.t, "drops", event.name or "")
+        elif isinstance(event, InTheWorld):
+            self._line(event.t, event.verb, event.words)
         elif isinstance(event, Stuck):
             self._line(event.t, event.tag, "")
         elif isinstance(event, FaultInjected | Notice | PartChanged) and event.text:

@@ -1,0 +1,63 @@
+"""Zones: where the robot may not go, or only slowly. A mission may close and open them until it ends."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Sequence
+
+from btlang.robots.geometry import Point
+from btlang.robots.robot import RobotError
+from btlang.robots.world import Zone
+
+
+class Zones:
+    """The zones of a world as they are now. `version` changes whenever one is closed or opened."""
+
+    def __init__(self, zones: Iterable[Zone]) -> None:
+        self._zones = {zone.name.lower(): zone for zone in zones}
+        self._said: dict[str, bool] = {}
+        self.version = 0
+        self.closed: Sequence[Zone] = ()
+        """Those to keep out of."""
+        self.slow: Sequence[Zone] = ()
+        """Those to drive slowly through."""
+        self.begin()
+
+    def begin(self) -> None:
+        """A run begins: zones are as the world says."""
+        self._said.clear()
+        self._sort()
+
+    def close(self, name: str) -> None:
+        """The robot keeps out of it from now on. Raises RobotError for an unknown one."""
+        self._say(name, True)
+
+    def open(self, name: str) -> None:
+        """The robot may go there again. Raises RobotError for an unknown one."""
+        self._say(name, False)
+
+    def is_closed(self, name: str) -> bool:
+        """Whether the robot keeps out of it. Raises RobotError for an unknown one."""
+        return self._zone(name) in self.closed
+
+    def closed_at(self, point: Point) -> Zone | None:
+        """The zone to keep out of in which a point lies."""
+        return next((zone for zone in self.closed if zone.contains(point)), None)
+
+    def contains(self, name: str, point: Point) -> bool:
+        """Whether a point lies in a zone. Raises RobotError for an unknown one."""
+        return self._zone(name).contains(point)
+
+    def _say(self, name: str, closed: bool) -> None:
+        self._said[self._zone(name).name] = closed
+        self._sort()
+
+    def _sort(self) -> None:
+        self.version += 1
+        zones = self._zones.values()
+        self.closed = [zone for zone in zones if self._said.get(zone.name, zone.is_closed)]
+        self.slow = [zone for zone in zones if zone not in self.closed and not zone.is_closed]
+
+    def _zone(self, name: str) -> Zone:
+        if (zone := self._zones.get(name.lower())) is None:
+            raise RobotError(f"there's no zone called '{name}'")
+        return zone
