@@ -66,6 +66,10 @@ class Places:
         dock = self.world.dock
         return Pose(dock.x, dock.y, dock.facing or 0.0) if dock is not None else None
 
+    def staging(self, robot: Pose) -> Pose:
+        """Where the robot has to stand to be connected: the place "dock"; where it is, if there is none."""
+        return self.goal("dock", robot) if "dock" in map(str.lower, self.world.names.places) else robot
+
     def goal(self, name: str, robot: Pose) -> Pose:
         """Where the robot has to stand for it, and which way to face. Raises RobotError for an unknown name.
 

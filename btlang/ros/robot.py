@@ -320,8 +320,8 @@ class RosRobot:
 
     @property
     def staging(self) -> Pose | None:
-        """The dock, where the robot has a service; None where it has a docking server. Raises RobotError."""
-        return None if self.power.docks_by_itself else self._places.goal("dock", self.pose)
+        """The dock, where the robot has a service; None where it has a docking server."""
+        return None if self.power.docks_by_itself else self._places.staging(self.pose)
 
     def dock(self) -> Operation:
         """Connects to the charger, or fails with the robot's reason. Raises RobotError where nothing serves it."""

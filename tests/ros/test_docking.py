@@ -122,6 +122,28 @@ def test_a_mission_docks_by_the_docking_server(
     assert [line for line in told if line.startswith("done")] == ["done   dock", "done   undock"]
 
 
+class OldSimulator(Command):
+    """`btc sim-ros` without a docking server."""
+
+    program = (
+        "-c",
+        "import sys; sys.modules['btlang.ros.simulator.docking'] = None\n"
+        "from btlang.__main__ import main; sys.exit(main())",
+    )
+
+
+@pytest.mark.long
+def test_without_a_docking_server_the_services_do(hall: Path, tmp_path: Path, domain: int) -> None:
+    (tmp_path / "sim").mkdir()
+    sim = OldSimulator(tmp_path / "sim", domain, "sim-ros", "--world", str(hall), "--speed", "4")
+    sim.wait_for("ready")
+    options = ("--world", str(hall), "--robot", "ros", "--sim-time", "--lines")
+    command = Command(tmp_path, domain, "run", "-c", "dock then undock", *options)
+    assert command.process.wait(2 * LONG) == 0, command.err
+    assert "done   undock" in command.out
+    assert sim.end() == 130
+
+
 @pytest.mark.long
 def test_the_preflight_lists_the_docking_server(
     hall: Path, tmp_path: Path, domain: int, start_sim: Callable[..., Command]
