@@ -290,6 +290,18 @@ class SimulatedRobot:
         self._surroundings.move_door(name, is_open, self.pose)
         return CompletedOperation()
 
+    def is_open(self, door: str) -> bool:
+        """Whether a door is open. Raises RobotError for an unknown one."""
+        return self._surroundings.is_open(door)
+
+    def is_on(self, name: str) -> bool:
+        """Whether an object is switched on. Raises RobotError for one that can't be switched."""
+        return self._surroundings.is_on(name)
+
+    def forget_map(self) -> None:
+        """Forgets where it saw objects and people."""
+        self._surroundings.sight.forget()
+
     def switch(self, name: str, on: bool | None) -> Operation:
         """Switches an object within reach on or off, with None to the other. Raises RobotError."""
         self._surroundings.switch(name, on, self.pose)
