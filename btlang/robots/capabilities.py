@@ -168,8 +168,11 @@ class Navigation(Base, Protocol):
         Raises RobotError for an unknown name. Any other problem is the operation's `failure`.
         """
 
-    def navigate_to_pose(self, pose: Pose) -> Operation:
-        """Starts to a point of the map, and faces as the pose does. Problems are the operation's `failure`."""
+    def navigate_to_pose(self, pose: Pose, name: str = "") -> Operation:
+        """Starts to a point of the map, and faces as the pose does. Problems are the operation's `failure`.
+
+        Events and reasons call it by the name of what it is for, if one is given.
+        """
 
 
 class Sensors(Machine, Protocol):
@@ -340,11 +343,17 @@ class Docking(Machine, Protocol):
     def docked(self) -> bool:
         """True while connected to the dock."""
 
+    @property
+    def staging(self) -> Pose | None:
+        """Where it has to stand before it drives straight into its dock; None where `dock` and `undock` drive by
+        themselves. Raises RobotError where there is no dock.
+        """
+
     def dock(self) -> Operation:
         """Connects to the charger. Raises RobotError, or fails, if the robot isn't at the dock."""
 
     def undock(self) -> Operation:
-        """Disconnects without moving."""
+        """Disconnects, without moving unless `staging` is None."""
 
 
 class Conversing(Listening, Voice, Base, Protocol):

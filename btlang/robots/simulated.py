@@ -16,6 +16,7 @@ from btlang.robots.latch import Latch
 from btlang.robots.navigation import NavigationGoal, Navigator
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.parts import Parts
+from btlang.robots.power import staging_pose
 from btlang.robots.robot import CompletedOperation, Hand, OnEvent, Operation, RobotError, SensorSilent
 from btlang.robots.simulated_parts import simulated_parts
 from btlang.robots.surroundings import Surroundings
@@ -30,7 +31,6 @@ if TYPE_CHECKING:
     from btlang.robots.scan import Array
 
 _CONTROL_PERIOD = 0.05
-_SAME_SPOT = 0.01  # metres
 _HANDS: tuple[Hand, Hand] = ("left", "right")
 
 
@@ -203,19 +203,9 @@ class SimulatedRobot:
         """Sets out for a place, an object or a person. Raises RobotError for an unknown name."""
         return self._set_out(self._surroundings.known(name))
 
-    def navigate_to_pose(self, pose: Pose) -> NavigationGoal:
-        """Sets out for a pose. On the spot of an object or a person it is a journey to that, as `navigate_to` makes it.
-
-        On the spot of a place it is called by that name, and so knows that its way is blocked.
-        """
-        for place in self.world.places:
-            if pose.distance_to((place.x, place.y)) <= _SAME_SPOT:
-                return self._set_out(place.name, pose)
-        for name in self._obstacles.things:
-            point = self._surroundings.sight.where(name)
-            if point is not None and pose.distance_to(point) <= _SAME_SPOT:
-                return self._set_out(name)
-        return self._set_out(f"({pose.x:.2f}, {pose.y:.2f})", pose)
+    def navigate_to_pose(self, pose: Pose, name: str = "") -> NavigationGoal:
+        """Sets out for a pose: to what it is for, by its name or its spot; see Surroundings.goal_at."""
+        return self._set_out(name, pose) if name else self._set_out(*self._surroundings.goal_at(pose))
 
     def _set_out(self, name: str, pose: Pose | None = None) -> NavigationGoal:
         self._need("navigation")
@@ -374,10 +364,16 @@ class SimulatedRobot:
         """True while docked and not full."""
         return self.power.charging
 
+    @property
+    def staging(self) -> Pose:
+        """See btlang.robots.power.staging_pose."""
+        self._need("docking")
+        return staging_pose(self.world, self.body)
+
     def dock(self) -> CompletedOperation:
         """Connects to the charger at once. Raises RobotError where the robot does not stand at the dock."""
         self._need("docking")
-        self.power.connect(self.pose)
+        self.power.connect(self.pose, self.faults.fails_to_dock)
         self._emit("dock")
         return CompletedOperation()
 

@@ -17,6 +17,7 @@ from btlang.robots.zones import Zones
 
 _REACH = 1.2  # metres to a door or a switch
 _BESIDE = 0.7  # metres from the middle of a door
+_SAME_SPOT = 0.01  # metres
 
 
 class Surroundings:
@@ -79,6 +80,19 @@ class Surroundings:
         if point is None and not self._obstacles.is_carried(known):
             raise RobotError(f"I haven't seen {said(known)}")
         return point
+
+    def goal_at(self, pose: Pose) -> tuple[str, Pose | None]:
+        """What a way to a pose is called, and where it ends: None on the spot of an object or a person, to which it
+        then is a journey. On the spot of a place it is called by that name, and so knows that its way is blocked.
+        """
+        for place in self._world.places:
+            if pose.distance_to((place.x, place.y)) <= _SAME_SPOT:
+                return place.name, pose
+        for name in self._obstacles.things:
+            point = self.sight.where(name)
+            if point is not None and pose.distance_to(point) <= _SAME_SPOT:
+                return name, None
+        return f"({pose.x:.2f}, {pose.y:.2f})", pose
 
     def choices(self, kind: str) -> list[str]:
         """The names of a type that the robot knows a place of, but for what it carries."""

@@ -33,7 +33,7 @@ if TYPE_CHECKING:
     T = TypeVar("T")
 
 _MOST_CHECKS = 5_000_000  # of a place with a piece of wall, in some seconds
-_FAULTS = ("blocked", "slip", "silent scanner", "weak hand")
+_FAULTS = ("blocked", "slip", "silent scanner", "weak hand", "dock")
 
 
 class WorldError(DataFileError):
@@ -156,6 +156,8 @@ def _fault(table: Table, places: tuple[str, ...]) -> Fault:
     elif kind == "weak hand":
         hand = table.choice("hand", ("left", "right"), "right")
         more = {"hand": hand, "seconds": table.number("seconds", low=0.0)}
+    elif kind == "dock":
+        more = {"times": table.number("times", NEVER, low=1.0)}
     return table.finish(Fault(kind, start, end, **more))
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable
 from contextlib import suppress
+from math import radians
 
 from btlang.robots.body import Body
 from btlang.robots.geometry import Point, Pose
@@ -49,6 +50,25 @@ class Places:
             return robot.x, robot.y
         thing = self._obstacles.things[known]
         return thing.x, thing.y
+
+    def located(self, name: str) -> tuple[float, float, float | None]:
+        """Metres, and the direction to face in radians, None for any. Raises KeyError for an unknown name."""
+        try:
+            point = self.locate(self.known(name), Pose(0.0, 0.0, 0.0))
+        except RobotError:
+            raise KeyError(name) from None
+        facing = next((place.facing for place in self.world.places if place.name == name), None)
+        return *point, None if facing is None else radians(facing)
+
+    @property
+    def dock(self) -> Pose | None:
+        """That of the world, which faces as the robot does in it."""
+        dock = self.world.dock
+        return Pose(dock.x, dock.y, dock.facing or 0.0) if dock is not None else None
+
+    def staging(self, robot: Pose) -> Pose:
+        """Where the robot has to stand to be connected: the place "dock"; where it is, if there is none."""
+        return self.goal("dock", robot) if "dock" in map(str.lower, self.world.names.places) else robot
 
     def goal(self, name: str, robot: Pose) -> Pose:
         """Where the robot has to stand for it, and which way to face. Raises RobotError for an unknown name.
