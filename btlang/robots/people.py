@@ -136,7 +136,7 @@ class People:
             answer = next((answers[word] for word in answers if word in words), answers.get("*", ""))
             if name in self._said:
                 answer = self._said.pop(name)
-            if answer and self._distance(name, point) <= _HEARD:
+            if answer and self._understands(name, point):
                 self._answers.append((now + self._people[name].answers_after, name, answer))
                 return
 
@@ -153,6 +153,11 @@ class People:
     def _distance(self, name: str, point: Point) -> float:
         at = self._obstacles.point(name)
         return inf if at is None else hypot(at[0] - point[0], at[1] - point[1])
+
+    def _understands(self, name: str, point: Point) -> bool:
+        """Whether somebody understands what is said there: near enough, and in the same room."""
+        at = self._obstacles.point(name)
+        return at is not None and self._distance(name, point) <= _HEARD and not self._obstacles.wall_between(point, at)
 
     def _speak(self, now: float) -> None:
         while self._speeches and self._speeches[-1][0] <= now:

@@ -273,6 +273,10 @@ class SimulatedRobot:
         """It hears what somebody says, or types."""
         self._surroundings.hear(text, who)
 
+    def invite(self) -> str:
+        """A visitor comes; returns the name."""
+        return self._surroundings.people.invite()
+
     def ask(self, question: str, person: str = "") -> None:
         """See `Listening.ask`: people of the world may answer."""
         question = question or self._last_said
