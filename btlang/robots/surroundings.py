@@ -153,8 +153,13 @@ class Surroundings:
         if not is_open and any(segment_distance((x, y), (*door.start, *door.end)) < r for x, y, r in bodies):
             raise RobotError(f"something is in {said(door.name)}")
         if door.open != is_open:
-            self._obstacles.swing(door.name, is_open)
-            self._emit("door", name=door.name, open=is_open)
+            self.swing(name, is_open)
+
+    def swing(self, name: str, is_open: bool) -> None:
+        """A door is open or closed from now on. Raises RobotError for an unknown one."""
+        door = self._door(name)
+        self._obstacles.swing(door.name, is_open)
+        self._emit("door", name=door.name, open=is_open)
 
     def is_open(self, name: str) -> bool:
         """Whether a door is open. Raises RobotError for an unknown one."""
