@@ -28,8 +28,8 @@ _DOORS = ("entrance", "door")
 
 
 class People:
-    """The people of a world. `tell(kind, name, text)` hears who comes ("come") and leaves ("leave"), and what somebody
-    says ("speak"). The same seed gives the same people.
+    """The people of a world. `tell(kind, name, text)` hears who comes ("come"), begins to walk ("walk") and leaves
+    ("leave"), and what somebody says ("speak"). The same seed gives the same people.
     """
 
     def __init__(
@@ -115,6 +115,7 @@ class People:
         for name, walker in self._walkers.items():
             if not walker.present and not walker.gone:
                 self._enter(walker)
+                self._show()
                 return name
         self._invited += 1
         name = f"{_GUEST} {self._invited}"
@@ -124,6 +125,7 @@ class People:
         self._obstacles.add(guest)
         self._walkers[name] = walker = Walker(guest, self._places)
         self._enter(walker)
+        self._show()
         return name
 
     def ask(self, question: str, person: str, point: Point, now: float) -> None:
@@ -213,6 +215,7 @@ class People:
         """The walker of a person: who has only stood so far can walk from now on. Raises RobotError."""
         person = self._known_person(name)
         if name not in self._walkers:
+            self._tell("walk", name, "")
             point = self._obstacles.point(name)
             walker = self._walkers[name] = Walker(person, self._places)
             walker.present = True

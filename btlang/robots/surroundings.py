@@ -204,6 +204,7 @@ class Surroundings:
             if point is not None and self._pose.distance_to(point) <= self._hears:
                 self.hear(text, name)
             return
-        if kind == "come":
+        if kind in ("come", "walk"):
             self.sight.watch(name, "person")
-        self._emit(kind, name=name)
+        if kind != "walk":
+            self._emit(kind, name=name)
