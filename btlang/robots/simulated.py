@@ -22,6 +22,7 @@ from btlang.robots.simulated_parts import simulated_parts
 from btlang.robots.surroundings import Surroundings
 from btlang.robots.world import Place, World, said
 from btlang.robots.zones import Zones
+from btlang.run.robot_state import Whereabouts
 from btlang.run.standstill import Standstill
 from btlang.text.time_of_day import DAY
 from btlang.vocabulary.capabilities import part_of
@@ -252,6 +253,11 @@ class SimulatedRobot:
     def seen(self, kind: str) -> list[str]:
         """The objects or people in view, nearest first."""
         return self._surroundings.sight.seen(kind, self.pose)
+
+    @property
+    def things(self) -> tuple[Whereabouts, ...]:
+        """Where those are who walk, and what isn't known; for whoever watches."""
+        return self._surroundings.whereabouts()
 
     @property
     def surroundings(self) -> Surroundings:

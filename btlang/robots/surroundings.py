@@ -14,6 +14,7 @@ from btlang.robots.robot import RobotError
 from btlang.robots.sight import Sight
 from btlang.robots.world import Door, Place, World, WorldObject, said
 from btlang.robots.zones import Zones
+from btlang.run.robot_state import Whereabouts
 
 _REACH = 1.2  # metres to a door or a switch
 _BESIDE = 0.7  # metres from the middle of a door
@@ -188,6 +189,15 @@ class Surroundings:
         if not isinstance(thing, WorldObject) or not thing.switch:
             raise RobotError(f"{said(known)} can't be switched on or off")
         return self._switched.get(known, thing.switch == "on")
+
+    def whereabouts(self) -> tuple[Whereabouts, ...]:
+        """Where those really are who walk and what isn't known, to the centimetre, and whether the robot sees them."""
+        found: list[Whereabouts] = []
+        for name in self.sight.watched:
+            point = self._obstacles.point(name)
+            x, y = (None, None) if point is None else (round(point[0], 2), round(point[1], 2))
+            found.append((name, x, y, self.sight.is_seen(name)))
+        return tuple(found)
 
     def hear(self, text: str, who: str = "") -> None:
         """The robot hears what somebody says, or types."""
