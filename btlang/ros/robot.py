@@ -273,6 +273,11 @@ class RosRobot:
         """The nearest echo in each degree. Raises RobotError when the scanner is silent."""
         return self._senses.scan()
 
+    @property
+    def world(self) -> World:
+        """What it knows of its surroundings."""
+        return self._places.world
+
     def locate(self, name: str) -> Point:
         """Where it is by the world file and the mission. Raises RobotError for an unknown name."""
         return self._places.locate(name, self.pose)
