@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Iterable, Mapping
 from contextlib import suppress
 
 from btlang.robots.body import Body
@@ -38,6 +38,19 @@ class Places:
     def free(self, kind: str) -> list[str]:
         """The names of a type, without objects that the robot carries."""
         return [name for name in self.world.names.of(kind) if not self._obstacles.is_carried(name)]
+
+    def described(self, kind: str, parts: Mapping[str, str]) -> list[str]:
+        """The names of objects or people with these parts."""
+        things = self._obstacles.things
+        return [name for name in self.world.names.of(kind) if name in things and things[name].fits(parts)]
+
+    def distance(self, name: str, robot: Pose) -> float:
+        """Metres from the robot."""
+        return robot.distance_to(self.locate(name, robot))
+
+    def size(self, name: str) -> float:
+        """Metres of the longest side of an object."""
+        return getattr(self._obstacles.things[name], "size", 0.0)
 
     def locate(self, name: str, robot: Pose) -> Point:
         """Where it is; what the robot carries is where the robot is. Raises RobotError for an unknown name."""

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Mapping
+from functools import partial
 from math import radians
 from typing import Any
 
@@ -14,7 +15,7 @@ from std_srvs.srv import Trigger
 
 from btlang.robots.body import Body
 from btlang.robots.body_file import standard_body
-from btlang.robots.choices import Choices
+from btlang.robots.choices import PICKY, Choices
 from btlang.robots.geometry import Point, Pose
 from btlang.robots.latch import Latch
 from btlang.robots.robot import CompletedOperation, Hand, OnEvent, Operation, RobotError
@@ -279,13 +280,16 @@ class RosRobot:
         """Where it is by the world file and the mission. Raises RobotError for an unknown name."""
         return self._places.locate(name, self.pose)
 
-    def choose(self, kind: str, how: str) -> str:
+    def choose(self, kind: str, how: str, parts: Mapping[str, str] = {}) -> str:
         """A name of the world file or the mission. Raises RobotError where there is none."""
-        pose = self.pose if how == "nearest" else Pose(0.0, 0.0, 0.0)
-        names = self._places.free(kind)
-        return self._choices.choose(
-            kind, how, names, lambda name: pose.distance_to(self._places.locate(name, pose)), self.on_event
-        )
+        pose = self.pose if how in ("nearest", "seen") else Pose(0.0, 0.0, 0.0)
+        names = self._places.described(kind, parts) if parts or how in PICKY else self._places.free(kind)
+        distance = partial(self._places.distance, robot=pose)
+        return self._choices.choose(kind, how, names, parts, self.on_event, distance, self._places.size)
+
+    def described(self, kind: str, parts: Mapping[str, str]) -> list[str]:
+        """The objects or people of the world file with these parts, nearest first."""
+        return sorted(self._places.described(kind, parts), key=partial(self._places.distance, robot=self.pose))
 
     def seed_choices(self, seed: int, made: int = 0) -> None:
         """A run begins, whose random choices follow from the seed; so many have been made."""

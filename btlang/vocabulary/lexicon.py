@@ -15,11 +15,13 @@ from btlang.text.words import Orthography, split
 from btlang.vocabulary.cache import recent
 from btlang.vocabulary.entry import COMPARISONS, About, Entry, Meaning, SlotSpec
 from btlang.vocabulary.language_tables import GOES_ON, NO_PHRASES, ROLES, about_roles, merged
+from btlang.vocabulary.nouns import Features, plural
 from btlang.vocabulary.pattern import Form, PatternError, Slot, forms, replaced, variants
 from btlang.vocabulary.reading_context import Known, ReadingContext
-from btlang.vocabulary.trie import SLOTS, TrieNode, add, collisions
+from btlang.vocabulary.trie import TrieNode, add, collisions
 from btlang.vocabulary.value_type import ValueType
-from btlang.vocabulary.values import END, Values
+from btlang.vocabulary.values import Values
+from btlang.vocabulary.word_tree import END, SLOTS
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -61,8 +63,8 @@ class Lexicon:
                 self.entries[node_id] = [entry.replace(phrases=(), quantity=(), example="") for entry in known]
         self.articles = frozenset(language["articles"])
         self.orthography = Orthography(self.articles, language["decimal_comma"], language["contractions"])
-        self._with_names: dict[tuple[tuple[str, tuple[str, ...]], ...], Lexicon] = {}
-        self.values = Values(self._types_of(files, english), language)
+        self._with_names: dict[tuple[object, ...], Lexicon] = {}
+        self.values = Values(self._types_of(files, english), language, [noun for file in files for noun in file.nouns])
         for file in files:
             for kind, words, name in file.names:
                 if self.types[kind].kind == "names":
@@ -94,6 +96,7 @@ class Lexicon:
         self.negations: dict[str, list[str]] = language["negations"]
         self.negative_subjects: dict[str, list[str]] = language["negative_subjects"]
         self._plurals: dict[str, list[str]] = language["plurals"]
+        self._endings: dict[str, str] = language["plural_endings"]
         self._add_roles()
         for entry in (*(e for f in files for e in f.entries), *entries):
             self._add_entry(entry)
@@ -120,20 +123,25 @@ class Lexicon:
         found = self.entries.get(node_id)
         return found[0] if found else None
 
-    def with_names(self, names: Mapping[str, Sequence[str]]) -> Lexicon:
+    def with_names(self, names: Mapping[str, Sequence[str]], features: Features | None = None) -> Lexicon:
         """The same words, whose slots take further names by their types: the places, people and objects of a world.
 
-        The same object for the same names.
+        `features` are what those are like, by type and name. The same object for the same names and features.
         """
 
         def made() -> Lexicon:
             pairs = {kind: [(self._bare(name), name) for name in listed] for kind, listed in names.items()}
-            values = self.values.with_names(pairs)
+            if "kind" in pairs:
+                pairs["kinds"] = [(plural(words, self._endings), name) for words, name in pairs["kind"]]
+            values = self.values.with_names(pairs, features)
             words = (word for pair in chain(*pairs.values()) for word in pair[0].lower().split())
             written = self.orthography.with_words(word for word in words if not word.isascii())
             return self._with(values=values, context=ReadingContext(values), orthography=written)
 
-        return recent(self._with_names, tuple((kind, tuple(listed)) for kind, listed in names.items()), made)
+        known = tuple((kind, tuple(listed)) for kind, listed in names.items())
+        return recent(
+            self._with_names, (known, tuple((kind, tuple(named)) for kind, named in (features or {}).items())), made
+        )
 
     def _bare(self, words: str) -> str:
         """Articles do not matter in names either."""
@@ -175,6 +183,7 @@ class Lexicon:
         """Every word that can be read, also those in names and values."""
         words: set[str] = set(self.articles)
         pending: list[TrieNode] = [self.trie, self.quantities, *self.values.word_trees()]
+        pending.append(self.values.phrases.tree)
         pending += [self.values.names_tree(name) for name, kind in self.types.items() if kind.kind == "names"]
         while pending:
             for key, child in pending.pop().items():

@@ -17,8 +17,9 @@ from btlang.vocabulary.entry import Entry, Meaning, SlotSpec
 from btlang.vocabulary.language_tables import CONNECTIVES
 from btlang.vocabulary.lexicon import DEFINING, NODE_ROLES, Lexicon
 from btlang.vocabulary.pattern import Part, Slot, name_form
-from btlang.vocabulary.trie import SLOTS, Match, TrieNode, add, longest
-from btlang.vocabulary.values import END, key_of
+from btlang.vocabulary.trie import Match, TrieNode, add, longest
+from btlang.vocabulary.values import key_of
+from btlang.vocabulary.word_tree import END, SLOTS
 
 # A line that starts with one of these compares; it defines nothing.
 _STARTS_NO_NAME = frozenset((

@@ -82,11 +82,20 @@ class Names:
         self.known = {key: one for named in (shared or {}, *(p.known for p in parts)) for key, one in named.items()}
         self.chosen: dict[str, str] = {}
         """The keys for what the robot chooses, by type."""
-        chosen = vocabulary.values.chosen_types(text)
+        chosen = self._chosen_types(text)
         if self.known or chosen:
             self._name_choices(chosen)
         if self.known or self.prefixes or any(header.parameters for header in self.definitions.headers.values()):
             self._name_values(text)
+
+    def _chosen_types(self, text: Words) -> list[str]:
+        """The types of which the robot chooses a name; `someone is near` is a phrase that only begins so."""
+        found: dict[str, None] = {}
+        for at, kind in self.vocabulary.values.chosen(text):
+            match = self.phrases.at(at)
+            if match is None or (match.values and match.values[0].first == at):
+                found[kind] = None
+        return list(found)
 
     def _name_choices(self, kinds: Iterable[str]) -> None:
         """A free key for each type: its name, or another one. What an included mission chooses gives way, too."""
