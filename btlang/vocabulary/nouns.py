@@ -9,7 +9,7 @@ from btlang.text.words import Words
 from btlang.vocabulary.pattern import Form, Slot, forms
 from btlang.vocabulary.references import CHOICES, SIZED, Parts
 from btlang.vocabulary.value_type import OBJECT, WORLD
-from btlang.vocabulary.word_tree import END, SLOTS, WordTree, find
+from btlang.vocabulary.word_tree import END, SLOTS, WordTree, find, insert
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -45,6 +45,7 @@ class Nouns:
     def __init__(self) -> None:
         self.tree: WordTree = {}
         """Their words."""
+        self._types: WordTree = {}
         self._said: dict[tuple[str, str, tuple[str, ...]], Form] = {}
 
     def add(self, form: Form, slots: Mapping[str, str], kind: str, how: str) -> None:
@@ -80,6 +81,18 @@ class Nouns:
             if text.words[i] in node:
                 paths.append((node[text.words[i]], i + 1, parts))
         return best
+
+    def add_type(self, words: str, kind: str) -> None:
+        """Adds a word for a type: `places`."""
+        insert(self._types, words.split(), kind)
+
+    def noun(self, text: Words, at: int, names: Callable[[str], WordTree]) -> tuple[Description, int] | None:
+        """All names that a noun such as `places` or `red cup` is for, and where it ends."""
+        kind = find(self._types, text.words, at)
+        if kind is not None:
+            return Description(kind[0], ALL), kind[1]
+        found = self.longest(text, at, names)
+        return (found[0].replace(how=ALL), found[1]) if found is not None and found[0].parts else None
 
     def starts(self, names: Callable[[str], WordTree]) -> frozenset[str]:
         """The words at which a noun phrase may begin."""
@@ -122,6 +135,7 @@ def noun_phrases(kinds: Iterable[str], language: Mapping[str, Any], declared: It
     for kind in kinds:
         ways = every + [way for way in chosen if kind in WORLD and (way[1] not in SIZED or kind == OBJECT)]
         for words in language["nouns"].get(kind, (kind,)):
+            found.add_type(words, kind)
             for before, how in ways:
                 found.add((*before, *words.split()), {}, kind, how)
         for words in language["everyone"].get(kind, ()):

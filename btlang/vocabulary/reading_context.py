@@ -157,7 +157,7 @@ class ReadingContext:
         return (key_of(words[at + 1 : end]), end + 1) if end > at + 1 and words[end] == "}" else None
 
     def _chosen(self, kind: str, text: Words, at: int) -> tuple[str, int] | None:
-        """What is chosen of the type, to be put into a key: the nearest, a red one; without a text where there is none."""
+        """What is chosen of the type, to be put into a key; without a text where there is no name."""
         chosen = self.choice(text, at)
         if chosen is None or chosen[0].type != kind or chosen[0].how not in CHOICES:
             return None

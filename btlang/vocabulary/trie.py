@@ -6,6 +6,7 @@ A node is a dict: word -> node, `END` -> meaning, `SLOTS` -> list of (slot name,
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
+from itertools import chain
 
 from btlang.record import Record
 from btlang.text.words import Words
@@ -155,7 +156,7 @@ def all_names(
             return SlotValue(name, kind, "", first, _end_of_unknown(root, text, last, context))
         one = SlotValue(name, kind, value[0], last, value[1])
         listed = _listed(root, text, one, context, None, is_subject=False) or one
-        left_out, at = (listed.text, *listed.more), listed.last
+        left_out, at = tuple(chain(*map(context.values.meant_by, (listed.text, *listed.more)))), listed.last
     names = [one for one in context.values.described(meant) if one not in left_out]
     return SlotValue(name, kind, names[0] if names else "", first, at, tuple(names[1:]), "and" if names[1:] else "")
 

@@ -6,13 +6,13 @@ A value becomes the text of a port, in the unit whose factor is 1: `half a meter
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Iterator, Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from marshal import dumps, loads  # a copy of a trie, at a tenth of the time that importing `copy` takes
 
 from btlang.text.source import Source
 from btlang.text.words import Orthography, Words, split
-from btlang.vocabulary.nouns import Description, Features, Noun, noun_phrases
-from btlang.vocabulary.references import CHOICES, Choice
+from btlang.vocabulary.nouns import ALL, Description, Features, Noun, noun_phrases
+from btlang.vocabulary.references import Choice, choice_of
 from btlang.vocabulary.value_type import PLACE, ValueType, format_number, with_unit
 from btlang.vocabulary.word_tree import END, WordTree, find, insert
 
@@ -62,10 +62,6 @@ class Values:
             if kind.kind == "names":
                 self._names[kind.name] = {}
         self._facing = [phrase.split() for phrase in language["roles"].get("facing", ())]
-        self._nouns: WordTree = {}
-        for name in self._names:
-            for words in language["nouns"].get(name, (name,)):
-                insert(self._nouns, words.split(), name)
         self.phrases = noun_phrases(self._names, language, nouns)
         self._features: Features = {}
         self._spoken: dict[tuple[str, str], str] = {}
@@ -158,9 +154,9 @@ class Values:
         """The same names in the order of the files and facts that bring them."""
         return tuple(self._listed.get(kind, ()))
 
-    def noun(self, text: Words, at: int) -> tuple[str, int] | None:
-        """The type that a noun such as `places` is for, and where it ends."""
-        return find(self._nouns, text.words, at)
+    def noun(self, text: Words, at: int) -> tuple[Description, int] | None:
+        """All names that a noun such as `places` or `red cup` is for, and where it ends."""
+        return self.phrases.noun(text, at, self.names_tree)
 
     @property
     def choice_starts(self) -> frozenset[str]:
@@ -173,15 +169,6 @@ class Values:
         """Of words such as `every place` and `the red cup` which names they are for, and where they end."""
         return self.phrases.longest(text, at, self.names_tree) if text.words[at] in self.choice_starts else None
 
-    def chosen(self, text: Words) -> Iterator[tuple[int, str]]:
-        """The words of a text at which the robot chooses a name, each with its type."""
-        for at in () if text.distinct.isdisjoint(self.choice_starts) else range(len(text.words)):
-            found = self.choice(text, at)
-            if found is not None and found[0].how in CHOICES:
-                named = find(self._names[found[0].type], text.words, at)
-                if named is None or named[1] < found[1]:
-                    yield at, found[0].type
-
     def choices(self, kind: str) -> list[list[str]]:
         """The words that stand for all names of a type, and for those that are chosen, in the first way to say them."""
         likes = [parts for _, parts in self._features.get(kind, ())]
@@ -192,6 +179,11 @@ class Values:
     def choice_words(self, choice: Choice) -> str:
         """The words that stand for a choice: `nearest person`."""
         return self.phrases.words(Description(choice.type, choice.how, choice.parts), self._spoken) or choice.text
+
+    def meant_by(self, text: str) -> tuple[str, ...]:
+        """The name that a port text is, or all that are described as its choice is."""
+        choice = choice_of(text)
+        return self.described(Description(choice.type, ALL, choice.parts)) if choice and choice.parts else (text,)
 
     def described(self, meant: Description) -> tuple[str, ...]:
         """The names of a type that have the parts of a description, in the order of the world."""

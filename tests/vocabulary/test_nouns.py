@@ -74,5 +74,5 @@ def test_it_also_stands_in_conditions(pack: str) -> None:
 
 
 def test_a_wrong_part_is_asked_for(pack: str) -> None:
-    with pytest.raises(MissionError, match="no color called 'green hat'"):
-        parse_tree("escort the person wearing a green hat", keywords=[pack])
+    with pytest.raises(MissionError, match="no color called 'striped hat'"):
+        parse_tree("escort the person wearing a striped hat", keywords=[pack])

@@ -19,7 +19,8 @@ from btlang.text.words import Words
 from btlang.tree.ast import Include, all_definitions, all_facts
 from btlang.vocabulary.lexicon import Lexicon
 from btlang.vocabulary.reading_context import Known
-from btlang.vocabulary.references import free_key
+from btlang.vocabulary.references import CHOICES, free_key
+from btlang.vocabulary.word_tree import find
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
@@ -90,11 +91,22 @@ class Names:
 
     def _chosen_types(self, text: Words) -> list[str]:
         """The types of which the robot chooses a name; `someone is near` is a phrase that only begins so."""
+        values = self.vocabulary.values
+        if text.distinct.isdisjoint(values.choice_starts):
+            return []
         found: dict[str, None] = {}
-        for at, kind in self.vocabulary.values.chosen(text):
-            match = self.phrases.at(at)
-            if match is None or (match.values and match.values[0].first == at):
-                found[kind] = None
+        ends = {prefix.value: prefix.last for prefix in self.prefixes.values() if prefix.noun is not None}
+        at = 0
+        while at < len(text.words):
+            choice = values.choice(text, at) if at not in ends else None
+            last = choice[1] if choice is not None else ends.get(at, at + 1)
+            if choice is not None and choice[0].how in CHOICES:
+                kind, named = choice[0].type, find(values.names_tree(choice[0].type), text.words, at)
+                match = self.phrases.at(at)
+                is_value = match is None or (match.values and match.values[0].first == at)
+                if is_value and (named is None or named[1] < last):
+                    found[kind] = None
+            at = last
         return list(found)
 
     def _name_choices(self, kinds: Iterable[str]) -> None:
