@@ -41,7 +41,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
             stream.reconfigure(errors="replace")  # a terminal that cannot show a character still gets the rest
     try:
         options = parsed(arguments)
-        options.report = Report(options.format, on_output=options.verb == "check")
+        options.report = Report(options.format, on_output=options.verb in ("check", "world"))
         try:
             add_robot_files(options)
             code = _VERBS[options.verb](options)
@@ -360,6 +360,7 @@ _ELSEWHERE = {
     "test": "btlang.testing.command",
     "mcp": "btlang.mcp_server",
     "new": "btlang.templates.command",
+    "world": "btlang.maps.command",
     "task": "btlang.task.command",
     "components": "btlang.task.component_command",
     "serve": "btlang.server.command",

@@ -80,6 +80,8 @@ def take_away_what_is_missed(code: str, patch: pytest.MonkeyPatch) -> None:
         patch.setitem(sys.modules, "mcap.writer", None)
     if code == "BT085":
         patch.setitem(sys.modules, "msgpack", None)
+    if code == "BT087":
+        patch.setitem(sys.modules, "yaml", None)
     if code == "BT200":
         patch.setitem(sys.modules, "argon2", None)
     if code == "BT211":

@@ -4,15 +4,12 @@ from __future__ import annotations
 
 from typing import Protocol
 
+from btlang.actions.docking import Homing, enter_dock
 from btlang.actions.motion import Steps, drive_straight
-from btlang.actions.navigation import accomplish, travel
+from btlang.actions.navigation import accomplish
 from btlang.actions.watch import Driving, Watch
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.robots.capabilities import Docking, Navigation, Power
-
-
-class Homing(Navigation, Docking, Protocol):
-    """It finds its dock."""
+from btlang.robots.capabilities import Docking, Power
 
 
 class Undocking(Driving, Docking, Protocol):
@@ -26,15 +23,16 @@ class Charging(Homing, Power, Protocol):
 def dock(robot: Homing) -> Steps:
     """Drives to the dock and connects; does nothing when docked."""
     if not robot.docked:
-        yield from travel(robot, "dock")
-        yield from accomplish(robot.dock())
+        staging = robot.staging
+        yield from accomplish(robot.dock()) if staging is None else enter_dock(robot, staging)
 
 
 def undock(robot: Undocking) -> Steps:
     """Disconnects and backs off; does nothing when not docked."""
     if robot.docked:
+        backs_off = robot.staging is not None
         yield from accomplish(robot.undock())
-        if robot.body.dock is not None:
+        if backs_off and robot.body.dock is not None:
             yield from drive_straight(robot, -robot.body.dock.backs_off)
 
 

@@ -38,8 +38,9 @@ def check_robot(source: Source) -> tuple[Body | None, list[Diagnostic]]:
         return None, list(as_mission_error(error).diagnostics)
     found: list[Diagnostic] = []
     described: dict[str, Mapping[str, Any]] = {}
-    for problem in (*_devices(body), *_components(body, described)):
-        found += as_mission_error(placed(problem, source, source.name, BodyError)).diagnostics
+    problems = (*_devices(body), *_components(body, described))
+    for wrong in placed(problems, source, source.name, BodyError):
+        found += as_mission_error(wrong).diagnostics
     all_loaded = all(part.place in described for part in body.components if part.node is None)
     methods = {located(place): known["methods"] for place, known in described.items()} if all_loaded else {}
     for path in _words(body):

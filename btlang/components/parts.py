@@ -16,6 +16,7 @@ from btlang.robots.hands import Hands
 from btlang.robots.joints import clipped, joint_of
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.parts import Parts
+from btlang.robots.power import NO_CONTACT
 from btlang.robots.robot import Hand, RobotError
 from btlang.robots.voice import Voice
 from btlang.robots.world import World, said
@@ -26,6 +27,7 @@ if TYPE_CHECKING:
     from btlang.robots.scan import Array
 
 BUMPER = "bumper"
+_FULL = 100.0  # percent
 _GRIP_AFTER = 0.8  # seconds after which a hand that closes on nothing has failed
 
 
@@ -109,19 +111,22 @@ class DevicePower:
         """Raises RobotError: nobody can."""
         raise RobotError("the battery of this robot can't be set")
 
-    def connect(self, pose: Pose) -> None:
-        """Raises RobotError where it doesn't charge."""
-        if not self.charging:
+    def connect(self, pose: Pose, fails: Callable[[], bool]) -> None:
+        """Raises RobotError where it doesn't charge, or `fails`."""
+        if fails():
+            raise RobotError(NO_CONTACT)
+        if not (self.charging or self.level >= _FULL):
             raise RobotError("the battery doesn't charge")
         self.docked = True
 
     def step(self, dt: float, metres: float, pose: Pose) -> bool:
         """Whether it has just left its dock."""
         try:
-            charges = bool(self._charge().charging)
+            charge = self._charge()
         except DeviceError:
             return False
-        left, self.docked = self.docked and not charges, charges
+        connected = bool(charge.charging) or (self.docked and charge.percent >= _FULL)  # a full one doesn't charge
+        left, self.docked = self.docked and not connected, connected
         return left
 
     def _charge(self) -> Charge:

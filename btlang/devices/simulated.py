@@ -67,6 +67,7 @@ class SimulatedDevice:
         self._command: Command | None = None
         self._told = -inf
         self._begun = 0.0
+        self._at_dock = False
         self.is_pressed = False
         """Of a button: whether somebody presses it."""
 
@@ -166,8 +167,9 @@ class SimulatedDevice:
         return Motion(self._robot.velocity[1], up=9.81, heading=self._robot.pose.heading)
 
     def _charge(self) -> Charge:
-        if not self._robot.docked:
-            with suppress(RobotError):  # its contacts touch those of the dock where it stands there
+        was_at_dock, self._at_dock = self._at_dock, self._robot.power.is_near_dock(self._robot.pose)
+        if self._at_dock and not was_at_dock:
+            with suppress(RobotError):  # its contacts touch those of the dock when it comes there
                 self._robot.dock()
         return Charge(self._robot.battery, charging=self._robot.charging)
 

@@ -8,6 +8,14 @@ from btlang.pictures import letters
 from btlang.pictures.canvas import Canvas
 from btlang.pictures.placing import Area, Placer, along
 from btlang.pictures.style import INK, SMALL, SOFT
+from btlang.pictures.world_details import (
+    DOOR_COLOUR,
+    draw_door,
+    draw_route,
+    draw_zones,
+    middle_of,
+    zone_colour,
+)
 from btlang.robots.geometry import Point
 from btlang.robots.world import Thing, World
 
@@ -31,6 +39,9 @@ class WorldMap:
         points += [edge[:2] for box in world.boxes for edge in box.edges()]
         points += [(place.x, place.y) for place in world.places]
         points += [(thing.x, thing.y) for thing in (*world.objects, *world.people)]
+        points += [(stop.x, stop.y) for person in world.people for stop in person.walks]
+        points += [point for zone in world.zones for point in zone.points]
+        points += [point for door in world.doors for point in (door.start, door.end)]
         xs, ys = [x for x, _ in points], [y for _, y in points]
         width = max(max(xs) - min(xs) + 2 * _ROUND, _LEAST[0])
         height = max(max(ys) - min(ys) + 2 * _ROUND, _LEAST[1])
@@ -44,21 +55,26 @@ class WorldMap:
         return self.area.x + (x - self._left) * self.scale, self.area.y + (self._top - y) * self.scale
 
     def draw(self, canvas: Canvas) -> None:
-        """The floor, the walls and the furniture, and a ring for each person."""
+        """The floor, zones, walls, doors and furniture, and a ring and the route of each person."""
         world, s = self._world, self.scale
         canvas.box(self.area.x, self.area.y, self.area.width, self.area.height, round=4, fill=_FLOOR)
+        draw_zones(canvas, world, self.at)
         for box in world.boxes:
             x, y = self.at(box.x - box.width / 2, box.y + box.height / 2)
             canvas.box(x, y, box.width * s, box.height * s, round=1.5, fill=_FURNITURE, edge="#b3aa98", line=0.8)
         for wall in world.walls:
             canvas.line([self.at(*point) for point in wall], colour=_WALL, line=2.6)
+        for door in world.doors:
+            draw_door(canvas, door, self.at, self.area.middle)
+        for person in world.people:
+            draw_route(canvas, person, self.at)
         for person in world.people:
             canvas.circle(*self.at(person.x, person.y), person.radius * s, fill="#f3dcea", edge=_PERSON)
             x, y = self.at(person.x, person.y)
             canvas.circle(x, y, max(person.radius * s * 0.45, 2.0), fill=_PERSON)
 
     def draw_names(self, canvas: Canvas, placer: Placer, moved: Mapping[str, Point | None] = {}) -> None:
-        """Marks and names of places, people and objects; `moved` says where objects lie in the end."""
+        """Marks and names of what is in the world; `moved` says where objects lie in the end."""
         for place in self._world.places:
             x, y = self.at(place.x, place.y)
             if self._world.dock is not None and place.name == self._world.dock.name:
@@ -77,6 +93,10 @@ class WorldMap:
             self._name(canvas, placer, person.name, (x, y), "#9c3f74", radius + 1.5)
         for thing in self._world.objects:
             self._object(canvas, placer, thing, moved)
+        for zone in self._world.zones:
+            self._name(canvas, placer, zone.name, self.at(*middle_of(zone)), zone_colour(zone), 0.0)
+        for door in self._world.doors:
+            self._name(canvas, placer, door.name, self.at(*door.middle), DOOR_COLOUR, 4.0)
 
     def _object(self, canvas: Canvas, placer: Placer, thing: Thing, moved: Mapping[str, Point | None]) -> None:
         radius = max(thing.radius * self.scale, 2.6)

@@ -108,11 +108,17 @@ class Battery(Record):
 
 
 class Dock(Record):
-    """Metres from the dock: it connects `within`, has left it `beyond`, and `backs_off` so far when it undocks."""
+    """Metres from the dock: it connects `within`, has left it `beyond`, and `backs_off` so far when it undocks.
+
+    It drives straight in from `staging` metres in front of it, at `speed` m/s, and tries again `retries` times.
+    """
 
     within: float
     beyond: float
     backs_off: float
+    staging: float = 0.4
+    speed: float = 0.15
+    retries: int = 2
 
 
 class Voice(Record):

@@ -179,7 +179,11 @@ def _dock(top: Table) -> Dock | None:
     table = top.table("dock")
     within = table.number("within", low=_LEAST)
     beyond = table.number("beyond", low=within)
-    return table.finish(Dock(within, beyond, table.number("backs_off", low=beyond)))
+    backs_off = table.number("backs_off", low=beyond)
+    staging = table.number("staging", 0.4, low=within, high=100.0)
+    speed = table.number("speed", 0.15, low=_LEAST)
+    retries = int(table.number("retries", 2, low=0, high=100))
+    return table.finish(Dock(within, beyond, backs_off, staging, speed, retries))
 
 
 def _voice(top: Table) -> Voice | None:

@@ -10,7 +10,9 @@ from collections.abc import Callable, Mapping
 from typing import Any, Literal, Protocol
 
 from btlang.robots.body import Body
+from btlang.robots.ears import Ears
 from btlang.robots.geometry import Point, Pose
+from btlang.robots.zones import Zones
 from btlang.run.standstill import Standstill
 
 TYPE_CHECKING = False
@@ -51,7 +53,7 @@ class Machine(Protocol):
     """What every robot is. Only `stop` and `disable` may be called from other threads.
 
     `on_event(kind, data)` is called for each event. Kinds: say, print, choose, navigate, arrive, bump, stuck, stop,
-    grasp, release, drop, joint, dock, undock, battery, fault.
+    grasp, release, drop, joint, dock, undock, battery, fault, hear, ask, see, come, leave, call, door, switch.
     """
 
     on_event: OnEvent | None
@@ -170,8 +172,11 @@ class Navigation(Base, Protocol):
         Raises RobotError for an unknown name. Any other problem is the operation's `failure`.
         """
 
-    def navigate_to_pose(self, pose: Pose) -> Operation:
-        """Starts to a point of the map, and faces as the pose does. Problems are the operation's `failure`."""
+    def navigate_to_pose(self, pose: Pose, name: str = "") -> Operation:
+        """Starts to a point of the map, and faces as the pose does. Problems are the operation's `failure`.
+
+        Events and reasons call it by the name of what it is for, if one is given.
+        """
 
 
 class Sensors(Machine, Protocol):
@@ -224,6 +229,84 @@ class Hands(Machine, Protocol):
         """The name of the object in the hand."""
 
 
+class Perception(Base, Protocol):
+    """Sensors that recognise people and objects."""
+
+    def sees(self, name: str) -> bool:
+        """Whether an object or a person is in view now. Raises RobotError for an unknown name."""
+
+    def seen(self, kind: str) -> list[str]:
+        """The names of the "object"s or "person"s in view, nearest first."""
+
+
+class Listening(Machine, Protocol):
+    """Ears."""
+
+    @property
+    def ears(self) -> Ears:
+        """What was heard. Raises RobotError where the robot has no ears."""
+
+    def hear(self, text: str, who: str = "") -> None:
+        """Somebody says it, or types it; "" where nobody knows who."""
+
+    def ask(self, question: str, person: str = "") -> None:
+        """The robot has asked a person, or anybody: the question is open until `ears.asking` is cleared.
+
+        "" asks nothing, but waits for an answer to what was said last.
+        """
+
+
+class Leading(Perception, Navigation, Protocol):
+    """People follow it."""
+
+    def guide(self, person: str, follow: bool) -> None:
+        """Somebody follows the robot from now on, or no longer. Raises RobotError for who isn't in view."""
+
+
+class Handling(Base, Protocol):
+    """Doors, and what can be switched, within reach."""
+
+    def beside_door(self, name: str) -> list[Pose]:
+        """Where it can stand to move a door: before it and behind it, the nearer one first."""
+
+    def move_door(self, name: str, is_open: bool) -> Operation:
+        """Opens or closes a door. Raises RobotError, or fails, where it is out of reach or something is in it."""
+
+    def is_open(self, door: str) -> bool:
+        """Whether a door is open."""
+
+    def switch(self, name: str, on: bool | None) -> Operation:
+        """Switches an object on or off, with None to the other of both. Raises RobotError, or fails."""
+
+    def is_on(self, name: str) -> bool:
+        """Whether an object is switched on."""
+
+
+class Cautious(Navigation, Protocol):
+    """Zones, and others in the way."""
+
+    @property
+    def zones(self) -> Zones:
+        """Where it may not go, or only slowly."""
+
+    @property
+    def held_up(self) -> str:
+        """Who is in its way; "" where nobody makes it wait."""
+
+    def wait_for_way(self, seconds: float) -> None:
+        """So long it waits for who is in its way, before it looks for another way."""
+
+    def forget_map(self) -> None:
+        """Forgets what it has seen on the way: obstacles, and where objects and people were."""
+
+
+class Messenger(Machine, Protocol):
+    """It can call people who aren't there."""
+
+    def call(self, text: str) -> None:
+        """An event, which whoever watches the robot gets."""
+
+
 class Voice(Machine, Protocol):
     """Speech, and the screen."""
 
@@ -264,12 +347,22 @@ class Docking(Machine, Protocol):
     def docked(self) -> bool:
         """True while connected to the dock."""
 
+    @property
+    def staging(self) -> Pose | None:
+        """Where it has to stand before it drives straight into its dock; None where `dock` and `undock` drive by
+        themselves. Raises RobotError where there is no dock.
+        """
+
     def dock(self) -> Operation:
         """Connects to the charger. Raises RobotError, or fails, if the robot isn't at the dock."""
 
     def undock(self) -> Operation:
-        """Disconnects without moving."""
+        """Disconnects, without moving unless `staging` is None."""
 
 
-class Robot(Navigation, Sensors, Joints, Hands, Voice, Power, Docking, Protocol):
+class Conversing(Listening, Voice, Base, Protocol):
+    """It can ask, and hear the answer."""
+
+
+class Robot(Leading, Cautious, Handling, Messenger, Sensors, Joints, Hands, Conversing, Power, Docking, Protocol):
     """A robot that can do all of this. If its body lacks a part, using the part raises RobotError."""

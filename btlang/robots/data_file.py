@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import tomllib
-from collections.abc import Callable
+from collections.abc import Callable, Iterable, Iterator
 
 from btlang.diagnostics.reading import read_bytes
 from btlang.text.source import Source
@@ -13,7 +13,7 @@ from btlang.vocabulary.shipped import PACKAGE
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import TypeVar
+    from typing import Any, TypeVar
 
     from btlang.diagnostics.diagnostic import Diagnostic
     from btlang.diagnostics.errors import MissionError
@@ -52,17 +52,35 @@ def load_data(file: str | Source, what: str, make: Callable[[Table], T], error: 
     except tomllib.TOMLDecodeError as problem:
         raise error(f"this isn't TOML: {problem}", path, line_of(problem), source) from None
     except Problem as problem:
-        first, *more = (placed(each, source, path, error) for each in (problem, *problem.more))
-        first.more = tuple(more)
-        raise first from None
+        raise _all_of(placed((problem, *problem.more), source, path, error)) from None
 
 
-def placed(problem: Problem, source: Source, path: str, error: type[DataFileError]) -> DataFileError:
-    """A problem as an error at its line."""
+def make_from(
+    values: dict[str, Any], path: str, what: str, make: Callable[[Table], T], error: type[DataFileError]
+) -> T:
+    """As `load_data`, of tables that are no TOML: errors have no line."""
+    try:
+        return make(Table(what, values))
+    except Problem as problem:
+        raise _all_of(error(each.message, path) for each in (problem, *problem.more)) from None
+
+
+def _all_of(errors: Iterable[DataFileError]) -> DataFileError:
+    first, *more = errors
+    first.more = tuple(more)
+    return first
+
+
+def placed(
+    problems: Iterable[Problem], source: Source, path: str, error: type[DataFileError]
+) -> Iterator[DataFileError]:
+    """Problems as errors at their lines."""
     from btlang.text.toml_positions import nearest, positions
 
-    at = nearest(positions(source.text), problem.path)
-    return error(problem.message, path, None if at is None else source.position(at)[0], source)
+    found = positions(source.text)
+    for problem in problems:
+        at = nearest(found, problem.path)
+        yield error(problem.message, path, None if at is None else source.position(at)[0], source)
 
 
 def as_mission_error(error: DataFileError) -> MissionError:

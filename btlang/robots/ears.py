@@ -23,6 +23,8 @@ class Ears:
         self._count = 0
         self.asking = ""
         """The open question; "" where there is none."""
+        self.answer = ""
+        """What answered the last question."""
 
     @property
     def count(self) -> int:

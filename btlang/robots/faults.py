@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from math import inf
 
-from btlang.robots.world import Fault, said
+from btlang.robots.world import NEVER, Fault, said
 
 
 def describe(fault: Fault) -> str:
@@ -16,6 +16,8 @@ def describe(fault: Fault) -> str:
         return f"{wheels}: {fault.grip:.0%} grip"
     if fault.kind == "weak hand":
         return f"the {fault.hand} hand drops things after {fault.seconds:g} s"
+    if fault.kind == "dock":
+        return "the dock doesn't connect" if fault.times == NEVER else f"the dock doesn't connect {fault.times:g} times"
     return "the laser scanner is silent"
 
 
@@ -25,6 +27,7 @@ class Faults:
     def __init__(self, faults: tuple[Fault, ...]) -> None:
         self._faults = faults
         self._active: tuple[Fault, ...] = ()
+        self._failed: list[Fault] = []
 
     def advance(self, now: float) -> list[Fault]:
         """Moves on to a second of the run; returns the faults that began with it."""
@@ -51,6 +54,12 @@ class Faults:
     def grips(self) -> tuple[float, float]:
         """How much of its motion the left and the right wheel bring to the floor, 0 to 1."""
         return self._grip("left"), self._grip("right")
+
+    def fails_to_dock(self) -> bool:
+        """Whether connecting to the dock fails this time: each call counts as one of the `times` of a fault."""
+        failing = (each for each in self._active if each.kind == "dock" and self._failed.count(each) < each.times)
+        self._failed += (found := [*failing][:1])
+        return bool(found)
 
     @property
     def scanner_silent(self) -> bool:

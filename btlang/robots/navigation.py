@@ -138,13 +138,6 @@ class Navigator:
             return goal
         return None
 
-    def go_another_way(self) -> None:
-        """Waits no longer for who is in the way. Raises RobotError where there is no journey, or no other way."""
-        if self.goal is None or self.goal.done:
-            raise RobotError("the robot isn't on its way anywhere")
-        if not self._plan(self.goal, around=True):
-            raise RobotError(f"there is no other way to {said(self.goal.name)}")
-
     @property
     def held_up(self) -> str:
         """Who is in the way, "" where nobody makes the robot wait."""

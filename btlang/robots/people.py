@@ -129,6 +129,8 @@ class People:
     def ask(self, question: str, person: str, point: Point, now: float) -> None:
         """The robot at this point asks a person, or anybody for "", who answers later, or not at all."""
         words = question.lower()
+        if not words:
+            return
         for name in [person] if person else sorted(self._people, key=lambda name: self._distance(name, point)):
             answers = self._people[name].answers if name in self._people else {}
             answer = next((answers[word] for word in answers if word in words), answers.get("*", ""))

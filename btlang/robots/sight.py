@@ -48,6 +48,10 @@ class Sight:
                 self._last[name] = point, self._now
         self._kinds[name] = kind
 
+    def forget(self) -> None:
+        """Forgets where it saw what moves or isn't known."""
+        self._last.clear()
+
     def look(self, now: float, pose: Pose) -> None:
         """Notes where everything is that can be seen at second `now`."""
         self._now = now

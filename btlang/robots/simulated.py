@@ -16,6 +16,7 @@ from btlang.robots.latch import Latch
 from btlang.robots.navigation import NavigationGoal, Navigator
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.parts import Parts
+from btlang.robots.power import staging_pose
 from btlang.robots.robot import CompletedOperation, Hand, OnEvent, Operation, RobotError, SensorSilent
 from btlang.robots.simulated_parts import simulated_parts
 from btlang.robots.surroundings import Surroundings
@@ -30,7 +31,6 @@ if TYPE_CHECKING:
     from btlang.robots.scan import Array
 
 _CONTROL_PERIOD = 0.05
-_SAME_SPOT = 0.01  # metres
 _HANDS: tuple[Hand, Hand] = ("left", "right")
 
 
@@ -69,6 +69,7 @@ class SimulatedRobot:
         self._navigator = Navigator(world, self._base, self._obstacles, self.faults, self._surroundings)
         self._choices = Choices()
         self._latch = Latch()
+        self._last_said = ""
         self._bumps_told, self._stuck_told = 0, False
         self._begin_faults()
 
@@ -202,19 +203,9 @@ class SimulatedRobot:
         """Sets out for a place, an object or a person. Raises RobotError for an unknown name."""
         return self._set_out(self._surroundings.known(name))
 
-    def navigate_to_pose(self, pose: Pose) -> NavigationGoal:
-        """Sets out for a pose. On the spot of an object or a person it is a journey to that, as `navigate_to` makes it.
-
-        On the spot of a place it is called by that name, and so knows that its way is blocked.
-        """
-        for place in self.world.places:
-            if pose.distance_to((place.x, place.y)) <= _SAME_SPOT:
-                return self._set_out(place.name, pose)
-        for name in self._obstacles.things:
-            point = self._surroundings.sight.where(name)
-            if point is not None and pose.distance_to(point) <= _SAME_SPOT:
-                return self._set_out(name)
-        return self._set_out(f"({pose.x:.2f}, {pose.y:.2f})", pose)
+    def navigate_to_pose(self, pose: Pose, name: str = "") -> NavigationGoal:
+        """Sets out for a pose: to what it is for, by its name or its spot; see Surroundings.goal_at."""
+        return self._set_out(name, pose) if name else self._set_out(*self._surroundings.goal_at(pose))
 
     def _set_out(self, name: str, pose: Pose | None = None) -> NavigationGoal:
         self._need("navigation")
@@ -290,8 +281,9 @@ class SimulatedRobot:
         self._surroundings.hear(text, who)
 
     def ask(self, question: str, person: str = "") -> None:
-        """Opens a question, which was said, to a person or to anybody, until `ears.asking` is cleared."""
-        self.ears.asking = question
+        """See `Listening.ask`: people of the world may answer."""
+        question = question or self._last_said
+        self.ears.asking = question or "..."
         self._emit("ask", text=question, who=person)
         self._surroundings.ask(question, person)
 
@@ -302,10 +294,26 @@ class SimulatedRobot:
             raise RobotError(f"I don't see {said(known)}")
         self._surroundings.people.follow(known, follow)
 
+    def beside_door(self, name: str) -> list[Pose]:
+        """Where it can stand to move a door, the nearer one first. Raises RobotError for an unknown door."""
+        return self._surroundings.beside_door(name, self.pose)
+
     def move_door(self, name: str, is_open: bool) -> Operation:
         """Opens or closes a door within reach. Raises RobotError."""
         self._surroundings.move_door(name, is_open, self.pose)
         return CompletedOperation()
+
+    def is_open(self, door: str) -> bool:
+        """Whether a door is open. Raises RobotError for an unknown one."""
+        return self._surroundings.is_open(door)
+
+    def is_on(self, name: str) -> bool:
+        """Whether an object is switched on. Raises RobotError for one that can't be switched."""
+        return self._surroundings.is_on(name)
+
+    def forget_map(self) -> None:
+        """Forgets where it saw objects and people."""
+        self._surroundings.sight.forget()
 
     def switch(self, name: str, on: bool | None) -> Operation:
         """Switches an object within reach on or off, with None to the other. Raises RobotError."""
@@ -324,10 +332,6 @@ class SimulatedRobot:
     def wait_for_way(self, seconds: float) -> None:
         """So long it waits for who is in its way, before it looks for another way."""
         self._navigator.patience = seconds
-
-    def go_another_way(self) -> None:
-        """Waits no longer for who is in its way. Raises RobotError where it isn't under way, or has no other way."""
-        self._navigator.go_another_way()
 
     def _size(self, name: str) -> float:
         return getattr(self._obstacles.things[name], "size", 0.0)
@@ -370,10 +374,16 @@ class SimulatedRobot:
         """True while docked and not full."""
         return self.power.charging
 
+    @property
+    def staging(self) -> Pose:
+        """See btlang.robots.power.staging_pose."""
+        self._need("docking")
+        return staging_pose(self.world, self.body)
+
     def dock(self) -> CompletedOperation:
         """Connects to the charger at once. Raises RobotError where the robot does not stand at the dock."""
         self._need("docking")
-        self.power.connect(self.pose)
+        self.power.connect(self.pose, self.faults.fails_to_dock)
         self._emit("dock")
         return CompletedOperation()
 
@@ -430,6 +440,7 @@ class SimulatedRobot:
         self._need("voice")
         if not self._latch.refuses:
             self._voice.say(text)
+            self._last_said = text
             self._emit("say", text=text)
 
     @property

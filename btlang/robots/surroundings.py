@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
+from math import hypot
 
 from btlang.robots.body import Body
 from btlang.robots.ears import Ears
@@ -11,10 +12,12 @@ from btlang.robots.obstacles import Obstacles
 from btlang.robots.people import People
 from btlang.robots.robot import RobotError
 from btlang.robots.sight import Sight
-from btlang.robots.world import Place, World, WorldObject, said
+from btlang.robots.world import Door, Place, World, WorldObject, said
 from btlang.robots.zones import Zones
 
 _REACH = 1.2  # metres to a door or a switch
+_BESIDE = 0.7  # metres from the middle of a door
+_SAME_SPOT = 0.01  # metres
 
 
 class Surroundings:
@@ -47,7 +50,7 @@ class Surroundings:
         """A run begins: zones are as the world says, and chance follows from the seed."""
         self.zones.begin()
         self.people.begin(seed)
-        self.ears.asking = ""
+        self.ears.asking = self.ears.answer = ""
 
     def step(self, now: float, dt: float, pose: Pose, velocity: float) -> None:
         """People live on for `dt` seconds until `now`, and the robot looks around."""
@@ -78,10 +81,25 @@ class Surroundings:
             raise RobotError(f"I haven't seen {said(known)}")
         return point
 
+    def goal_at(self, pose: Pose) -> tuple[str, Pose | None]:
+        """What a way to a pose is called, and where it ends: None on the spot of an object or a person, to which it
+        then is a journey. On the spot of a place it is called by that name, and so knows that its way is blocked.
+        """
+        for place in self._world.places:
+            if pose.distance_to((place.x, place.y)) <= _SAME_SPOT:
+                return place.name, pose
+        for name in self._obstacles.things:
+            point = self.sight.where(name)
+            if point is not None and pose.distance_to(point) <= _SAME_SPOT:
+                return name, None
+        return f"({pose.x:.2f}, {pose.y:.2f})", pose
+
     def choices(self, kind: str) -> list[str]:
         """The names of a type that the robot knows a place of, but for what it carries."""
         if kind in ("object", "person"):
-            return [name for name in self.sight.names(kind) if self.sight.where(name) is not None]
+            things = self._obstacles.things
+            names = (name for name in self.sight.names(kind) if self.sight.where(name) is not None)
+            return [name for name in names if not getattr(things[name], "fixed", False)]
         return list(self._world.names.of(kind))
 
     def described(self, kind: str, parts: Mapping[str, str]) -> list[str]:
@@ -122,25 +140,36 @@ class Surroundings:
         if isinstance(thing, WorldObject) and thing.fixed:
             raise RobotError(f"{said(known)} is fixed")
 
+    def beside_door(self, name: str, pose: Pose) -> list[Pose]:
+        """Where a robot can stand to move a door: before and behind it, facing it; the nearer one first."""
+        door = self._door(name)
+        (ax, ay), (bx, by), (x, y) = door.start, door.end, door.middle
+        length = max(hypot(bx - ax, by - ay), 1e-9)
+        across = -(by - ay) / length * _BESIDE, (bx - ax) / length * _BESIDE
+        spots = [(x + side * across[0], y + side * across[1]) for side in (1, -1)]
+        spots.sort(key=pose.distance_to)
+        return [Pose(*spot, Pose(*spot).bearing_to((x, y))) for spot in spots]
+
     def move_door(self, name: str, is_open: bool, pose: Pose) -> None:
-        """Opens or closes a door. Raises RobotError where it is out of reach, or somebody stands in it."""
-        door = next((each for each in self._obstacles.doors.values() if each.name.lower() == name.lower()), None)
-        if door is None:
-            raise RobotError(f"there's no door called '{name}'")
+        """Opens or closes a door. Raises RobotError where it is out of reach, or something is in it."""
+        door = self._door(name)
         if (distance := pose.distance_to(door.middle)) > _REACH:
             raise RobotError(f"{said(door.name)} is {distance:.1f} m away")
-        if door.open and not is_open:
-            bodies = [(pose.x, pose.y, self._radius), *self._obstacles.discs, *self._obstacles.walking.values()]
-            if any(segment_distance((x, y), (*door.start, *door.end)) < radius for x, y, radius in bodies):
-                raise RobotError(f"something is in {said(door.name)}")
-        self._obstacles.swing(door.name, is_open)
-        self._emit("door", name=door.name, open=is_open)
+        bodies = [(pose.x, pose.y, self._radius), *self._obstacles.discs, *self._obstacles.walking.values()]
+        if not is_open and any(segment_distance((x, y), (*door.start, *door.end)) < r for x, y, r in bodies):
+            raise RobotError(f"something is in {said(door.name)}")
+        if door.open != is_open:
+            self._obstacles.swing(door.name, is_open)
+            self._emit("door", name=door.name, open=is_open)
 
     def is_open(self, name: str) -> bool:
         """Whether a door is open. Raises RobotError for an unknown one."""
+        return self._door(name).open
+
+    def _door(self, name: str) -> Door:
         for door in self._obstacles.doors.values():
             if door.name.lower() == name.lower():
-                return door.open
+                return door
         raise RobotError(f"there's no door called '{name}'")
 
     def switch(self, name: str, on: bool | None, pose: Pose) -> None:

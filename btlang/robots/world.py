@@ -182,6 +182,7 @@ class Fault(Record):
 
     kind "blocked": no way leads to `place`. "slip": of the motion of `wheel` ("left", "right", "both") the share `grip`
     (0 to 1) reaches the floor. "silent scanner": no scans. "weak hand": `hand` drops what it has held for `seconds`.
+    "dock": connecting to the dock fails, so many `times`.
     """
 
     kind: str
@@ -192,6 +193,7 @@ class Fault(Record):
     grip: float = 1.0
     hand: str = "right"
     seconds: float = 0.0
+    times: float = NEVER
 
 
 def said(name: str) -> str:

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Iterator, Mapping
+from functools import partial
 from os import PathLike, fspath
 
 from btlang.robots.body_file import standard_body
-from btlang.robots.data_file import DataFileError, load_data
-from btlang.robots.geometry import Point, Pose, segment_distance
+from btlang.robots.data_file import DataFileError, load_data, make_from
+from btlang.robots.geometry import Point, Pose, Segment, segment_distance
 from btlang.robots.world import (
     NEVER,
     Box,
@@ -16,20 +17,23 @@ from btlang.robots.world import (
     World,
     WorldNames,
 )
+from btlang.robots.world_bounds import outside
 from btlang.robots.world_tables import is_point, read_door, read_object, read_person, read_zone
 from btlang.text.source import Source
 from btlang.text.time_of_day import USUAL_START
-from btlang.text.toml_table import Problem, Table
+from btlang.text.toml_table import Problem, Problems, Table
 from btlang.vocabulary.shipped import DEFAULT_WORLD
 
 TYPE_CHECKING = False
 if TYPE_CHECKING:
-    from typing import Any
+    from typing import Any, TypeVar
 
     from btlang.robots.body import Body
 
+    T = TypeVar("T")
+
 _MOST_CHECKS = 5_000_000  # of a place with a piece of wall, in some seconds
-_FAULTS = ("blocked", "slip", "silent scanner", "weak hand")
+_FAULTS = ("blocked", "slip", "silent scanner", "weak hand", "dock")
 
 
 class WorldError(DataFileError):
@@ -38,14 +42,23 @@ class WorldError(DataFileError):
     code = "BT070"
 
 
-def load_world(file: str | PathLike[str] | Source | None = None, body: Body | None = None) -> World:
-    """The world in a file or a text, or the world that ships. Raises WorldError.
+def load_world(
+    file: str | PathLike[str] | Source | None = None, body: Body | None = None, *, bounded: bool = False
+) -> World:
+    """The world in a file or a text, or the world that ships. Raises WorldError with all that is wrong.
 
-    It has to leave room for the body, by default that of the robot that ships.
+    It has to leave room for the body, by default that of the robot that ships. In a `bounded` world nothing may be
+    outside the outer walls.
     """
     given = DEFAULT_WORLD if file is None else file if isinstance(file, Source) else fspath(file)
     radius = (body or standard_body()).radius
-    return load_data(given, "a world", lambda top: _world(top, radius), WorldError)
+    return load_data(given, "a world", lambda top: _world(top, radius, bounded), WorldError)
+
+
+def world_from(values: dict[str, Any], path: str, body: Body | None = None) -> World:
+    """As `load_world`, from the tables of a world file in another notation, such as JSON. Raises WorldError."""
+    radius = (body or standard_body()).radius
+    return make_from(values, path, "a world", lambda top: _world(top, radius), WorldError)
 
 
 def world_names(file: str | PathLike[str] | Source | None = None) -> WorldNames:
@@ -53,32 +66,54 @@ def world_names(file: str | PathLike[str] | Source | None = None) -> WorldNames:
     return load_world(file).names
 
 
-def _world(top: Table, radius: float) -> World:
+def _world(top: Table, radius: float, bounded: bool = False) -> World:
+    problems = Problems()
+    begins: tuple[Pose | None, float] = (None, 100.0)
+    start, battery = problems.part(lambda: _start(top), begins)
+    walls: list[Any] = problems.part(lambda: top.items("walls"), [])
+    pieces = [problems.part(partial(_wall, points, index), None) for index, points in enumerate(walls)]
+    boxes = _made(problems.rows(top, "boxes", _box))
+    rows: dict[str, list[Any]] = {"places": problems.rows(top, "places", _place)}
+    dock = problems.part(lambda: _dock(top), None)
+    rows["places"] += [] if dock is None else [dock]
+    places = _made(rows["places"])
+    known = problems.part(lambda: top.flag("known", True), True)
+    rows["objects"] = problems.rows(top, "objects", lambda table: read_object(table, known))
+    rows["people"] = problems.rows(top, "people", lambda table: read_person(table, known, places))
+    rows["zones"], rows["doors"] = problems.rows(top, "zones", read_zone), problems.rows(top, "doors", read_door)
+    names = tuple(place.name for place in places)
+    faults = _made(problems.rows(top, "faults", lambda table: _fault(table, names)))
+    clock = problems.part(lambda: _clock(top) if top.has("clock") else USUAL_START, USUAL_START)
+    seed = problems.part(lambda: int(top.number("seed", low=0.0)) if top.has("seed") else None, None)
+    problems.part(lambda: top.finish(None), None)
+    objects, people, zones, doors = (_made(rows[key]) for key in ("objects", "people", "zones", "doors"))
+    world = World(
+        start or Pose(0.0, 0.0), battery, _made(pieces), boxes, places, objects, people, faults, dock, clock, zones,
+        doors, seed,
+    )  # fmt: skip
+    problems.found += _names_given_twice(rows)
+    problems.found += _without_room(world, rows["places"], start, radius)
+    if bounded:
+        problems.found += outside(world, {"start": [start], **rows})
+    problems.end()
+    return world
+
+
+def _made(rows: Iterable[T | None]) -> tuple[T, ...]:
+    return tuple(row for row in rows if row is not None)
+
+
+def _start(top: Table) -> tuple[Pose | None, float]:
     table = top.table("start")
     battery = table.number("battery", 100.0, low=0.0, high=100.0)
-    start = table.finish(Pose(table.number("x"), table.number("y"), table.number("facing", 0.0)))
-    walls = tuple(_wall(points, index) for index, points in enumerate(top.items("walls")))
-    boxes = tuple(map(_box, top.tables("boxes")))
-    places = tuple(map(_place, top.tables("places")))
-    dock = None
-    if top.has("dock"):
-        table = top.table("dock")
-        dock = table.finish(Place("dock", table.number("x"), table.number("y"), table.number("facing", 0.0)))
-        places += (dock,)
-    known = top.flag("known", True)
-    objects = tuple(read_object(table, known) for table in top.tables("objects"))
-    people = tuple(read_person(table, known, places) for table in top.tables("people"))
-    zones, doors = tuple(map(read_zone, top.tables("zones"))), tuple(map(read_door, top.tables("doors")))
-    names = tuple(place.name for place in places)
-    faults = tuple(_fault(table, names) for table in top.tables("faults"))
-    clock = _clock(top) if top.has("clock") else USUAL_START
-    seed = int(top.number("seed", low=0.0)) if top.has("seed") else None
-    world = top.finish(
-        World(start, battery, walls, boxes, places, objects, people, faults, dock, clock, zones, doors, seed)
-    )
-    _check_names(world)
-    _check_room(world, radius)
-    return world
+    return table.finish(Pose(table.number("x"), table.number("y"), table.number("facing", 0.0))), battery
+
+
+def _dock(top: Table) -> Place | None:
+    if not top.has("dock"):
+        return None
+    table = top.table("dock")
+    return table.finish(Place("dock", table.number("x"), table.number("y"), table.number("facing", 0.0)))
 
 
 def _clock(top: Table) -> float:
@@ -121,38 +156,46 @@ def _fault(table: Table, places: tuple[str, ...]) -> Fault:
     elif kind == "weak hand":
         hand = table.choice("hand", ("left", "right"), "right")
         more = {"hand": hand, "seconds": table.number("seconds", low=0.0)}
+    elif kind == "dock":
+        more = {"times": table.number("times", NEVER, low=1.0)}
     return table.finish(Fault(kind, start, end, **more))
 
 
-def _check_names(world: World) -> None:
+def _names_given_twice(rows: Mapping[str, list[Any]]) -> Iterator[Problem]:
+    """`rows` are those of each section, None for the wrong ones."""
     seen: dict[str, str] = {}
-    names = world.names
-    for section, group in (
-        ("places", names.places), ("objects", names.objects), ("people", names.people), ("zones", names.zones),
-        ("doors", names.doors),
-    ):  # fmt: skip
-        for index, name in enumerate(group):
-            key = name.lower()
+    for section, group in rows.items():
+        for index, named in enumerate(group):
+            if named is None:
+                continue
+            key = named.name.lower()
             if key in seen:
-                message = f'the name "{name}" is given twice ({seen[key]} and {section}); give one another name'
-                raise Problem(message, section, index, "name")
+                message = f'the name "{named.name}" is given twice ({seen[key]} and {section}); give one another name'
+                yield Problem(message, section, index, "name")
             seen[key] = section
 
 
-def _check_room(world: World, radius: float) -> None:
-    spots: list[tuple[str, tuple[str | int, ...], float, float]] = [
-        ("the start", ("start",), world.start.x, world.start.y)
-    ]
-    for index, place in enumerate(world.places):
-        path: tuple[str | int, ...] = ("dock",) if place is world.dock else ("places", index)
-        spots.append((f'the place "{place.name}"', path, place.x, place.y))
+def _without_room(world: World, places: list[Place | None], start: Pose | None, radius: float) -> Iterator[Problem]:
+    spots: list[tuple[str, tuple[str | int, ...], Point]] = []
+    if start is not None:
+        spots.append(("the start", ("start",), (start.x, start.y)))
+    for index, place in enumerate(places):
+        if place is not None:
+            path: tuple[str | int, ...] = ("dock",) if place is world.dock else ("places", index)
+            spots.append((f'the place "{place.name}"', path, (place.x, place.y)))
     segments = world.segments()
     if len(spots) * len(segments) > _MOST_CHECKS:
         message = f"{len(spots):,} places are too many for {len(segments):,} pieces of wall; leave some out"
-        raise Problem(message, "places")
-    for what, path, x, y in spots:
-        inside = any(box.contains((x, y)) for box in world.boxes)
-        gap = min((segment_distance((x, y), segment) for segment in segments), default=NEVER)
-        if inside or gap < radius:
+        yield Problem(message, "places")
+        return
+    for what, path, point in spots:
+        if not has_room(world, point, radius, segments):
+            x, y = point
             message = f"{what} at ({x:g}, {y:g}) is inside a wall or a box; leave {radius:g} m to every wall"
-            raise Problem(message, *path, "x")
+            yield Problem(message, *path, "x")
+
+
+def has_room(world: World, point: Point, radius: float, segments: Iterable[Segment]) -> bool:
+    """Whether a point is that far from all segments, which are those of the world, and in no box."""
+    inside = any(box.contains(point) for box in world.boxes)
+    return not inside and min((segment_distance(point, segment) for segment in segments), default=NEVER) >= radius

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 
+from btlang.engine.leaves.leaf import ActionFailed
 from btlang.robots.geometry import Point
-from btlang.robots.robot import RobotError
 from btlang.robots.world import Zone
 
 
@@ -28,15 +28,15 @@ class Zones:
         self._sort()
 
     def close(self, name: str) -> None:
-        """The robot keeps out of it from now on. Raises RobotError for an unknown one."""
+        """The robot keeps out of it from now on. Raises ActionFailed for an unknown one."""
         self._say(name, True)
 
     def open(self, name: str) -> None:
-        """The robot may go there again. Raises RobotError for an unknown one."""
+        """The robot may go there again. Raises ActionFailed for an unknown one."""
         self._say(name, False)
 
     def is_closed(self, name: str) -> bool:
-        """Whether the robot keeps out of it. Raises RobotError for an unknown one."""
+        """Whether the robot keeps out of it. Raises ActionFailed for an unknown one."""
         return self._zone(name) in self.closed
 
     def closed_at(self, point: Point) -> Zone | None:
@@ -44,7 +44,7 @@ class Zones:
         return next((zone for zone in self.closed if zone.contains(point)), None)
 
     def contains(self, name: str, point: Point) -> bool:
-        """Whether a point lies in a zone. Raises RobotError for an unknown one."""
+        """Whether a point lies in a zone. Raises ActionFailed for an unknown one."""
         return self._zone(name).contains(point)
 
     def _say(self, name: str, closed: bool) -> None:
@@ -59,5 +59,5 @@ class Zones:
 
     def _zone(self, name: str) -> Zone:
         if (zone := self._zones.get(name.lower())) is None:
-            raise RobotError(f"there's no zone called '{name}'")
+            raise ActionFailed(f"there's no zone called '{name}'")
         return zone

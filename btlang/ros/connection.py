@@ -22,7 +22,7 @@ from btlang.ros.latest import NodeClock
 from btlang.ros.node import SpunNode
 from btlang.ros.pace import RosPace
 from btlang.ros.robot import RosRobot
-from btlang.ros.robot_interface import CLOCK, VELOCITY, Interface, needs
+from btlang.ros.robot_interface import ALTERNATIVES, CLOCK, VELOCITY, Interface, needs
 from btlang.ros.serving.names import served
 from btlang.ros.waiting import wait_until
 from btlang.run.bus import Bus
@@ -106,7 +106,9 @@ class RosConnection:
 
         def has_all() -> bool:
             found.clear()
-            found.update((spoken, (node, self._lacks(spoken))) for spoken, node in self._spoken(wanted).items())
+            for spoken, node in self._spoken(wanted).items():
+                offered, reason = self._offered(spoken)
+                found[offered] = node, reason
             lacking = {Interface(need.kind, need.name, need.type): need.missing for need in self._clients.needs()}
             found.update((interface, (node, lacking[interface])) for interface, node in own.items())
             return not any(reason for _, reason in found.values())
@@ -141,13 +143,26 @@ class RosConnection:
         types = {VELOCITY: self.robot.velocity_type()}
         return {i.replace(type=types.get(i.name, i.type)): node for i, node in wanted.items()}
 
+    def _offered(self, wanted: Interface) -> tuple[Interface, str]:
+        """What the robot has for it, and what is wrong with that, "" for nothing."""
+        choices = ALTERNATIVES.get(wanted.name, ())
+        if any(each.kind == "action" for each in choices) and not self.robot.power.prepare_docking():
+            choices = ()
+        offered = next((each for each in choices if not self._absent(each)), wanted)
+        reason = self._lacks(offered)
+        others = [self._lacks(each) for each in choices if each != wanted] if reason else []
+        return offered, ", and ".join([reason, *others])
+
     def _lacks(self, wanted: Interface) -> str:
         """What is wrong with an interface that shipped leaves need, "" for nothing."""
         node, name = self._spun.node, self._named(wanted).name
-        reason = absent(node, wanted.kind, name, wanted.type)
+        reason = self._absent(wanted)
         if not reason and wanted.flows:
             reason = self.robot.subscriptions.why_not(wanted.name)
         return reason if reason or is_connected(node, name) else f"{name} is not connected yet"
+
+    def _absent(self, wanted: Interface) -> str:
+        return absent(self.node, wanted.kind, self._named(wanted).name, wanted.type)
 
     def _named(self, interface: Interface) -> Interface:
         named: Interface = interface.replace(name=full_name(self._spun.node, interface.kind, interface.name))

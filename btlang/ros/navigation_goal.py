@@ -1,261 +1,37 @@
-"""Navigation by the action NavigateToPose: one goal at a time, which always ends, with a reason if it failed."""
+"""Navigation by the action NavigateToPose."""
 
 from __future__ import annotations
 
-import math
-import time
 from collections.abc import Callable
-from threading import Event, RLock
-from typing import Any
 
-from action_msgs.msg import GoalStatus
-from action_msgs.srv import CancelGoal
-from geometry_msgs.msg import PoseStamped
 from nav2_msgs.action import NavigateToPose
 from rclpy.action import ActionClient
 from rclpy.node import Node
-from unique_identifier_msgs.msg import UUID
 
-from btlang.robots.geometry import Pose, wrap
+from btlang.robots.geometry import Pose
 from btlang.robots.world import said
-from btlang.ros.awake import AWAKE
 from btlang.ros.executor_thread import ExecutorThread
-from btlang.ros.gate import pose_fault
-from btlang.ros.lease import Lease
-from btlang.ros.poses import MAP, pose_message, pose_of
+from btlang.ros.poses import stamped_pose
+from btlang.ros.server_goal import ServerGoal, ServerGoals, Task
 
 ACTION = "navigate_to_pose"
-_SEEN = 0.3  # seconds after which odometry shows what the robot does
-_SERVER = 2.0  # seconds that a server gets to be there
-_ANSWER = 5.0  # seconds that it gets to accept or reject, and between two of its feedbacks
-_MUTE, _STANDS = 15.0, 60.0  # seconds without any feedback, and with it, in which the robot does not move
-_MOVED, _TURNED = 0.05, 5.0  # metres and degrees that it has to move
-_ENDINGS = {GoalStatus.STATUS_CANCELED: "somebody cancelled the navigation to {name}"}
 
 
-class RosNavigationGoal:
-    """One way to one goal; see `btlang.robots.robot.Navigation`. `end` may be called from any thread.
-
-    Nothing waits: `step` looks at what has come, so that a server that never answers costs the tick nothing. `spin` has
-    a function called in the thread that spins, where alone the client of an action may be used: elsewhere it could
-    meet an answer before it has noted the question. `where` gives the pose of the robot, None where nobody knows it.
-    """
-
-    def __init__(
-        self,
-        name: str,
-        client: Any,
-        server: str,
-        goal: NavigateToPose.Goal,
-        goal_id: UUID,
-        spin: Callable[[Callable[[], None]], object],
-        where: Callable[[], Pose | None],
-        now: Callable[[], float],
-    ) -> None:
-        self.name = name
-        self.done = False
-        self.failure: str | None = None
-        self.withdrawn = Event()
-        """Set when the server has given it up, or says that it will not."""
-        self.pending = ""
-        """Why the server may still drive the robot, though it was told not to; "" where it does not."""
-        self._client, self._goal, self._goal_id, self._spin = client, goal, goal_id, spin
-        self._server = f"navigation server on {server}"
-        self._lock = RLock()
-        self._where, self._now = where, now
-        self._since = AWAKE.now()  # of what it waits for now
-        self._stood = (where(), now())
-        self._sent = self._withdrawing = False
-        self.heard = False
-        """Whether the server has given feedback."""
-        self._handle: Any = None
-        self._result: Any = None
-        self._reported: Pose | None = None
-
-    def cancel(self) -> None:
-        """Gives up: the goal is withdrawn, as soon as it is accepted where it is not yet."""
-        self.end(f"the navigation to {said(self.name)} was cancelled")
-
-    def end(self, failure: str | None, *, withdraw: bool = True) -> None:
-        """Arrived, or the reason why not. Does nothing when done."""
-        with self._lock:
-            if self.done:
-                return
-            self.failure = failure
-            self.done = True
-        if withdraw and self._sent:
-            self.pending = "the navigation server did not answer the cancel"
-            self._spin(self._withdraw)
-        else:
-            self.withdrawn.set()
-
-    def step(self) -> None:
-        """Goes on with what has come since the last call."""
-        if self.done:
-            return
-        if not self._sent:
-            self._set_out()
-        elif self._result is None:
-            if self._waited(_ANSWER):
-                self.end(f"the {self._server} does not answer")
-        elif self._result.done():
-            self._finish(self._result.result())
-        elif not self._client.server_is_ready():
-            self.end(f"the {self._server} is gone", withdraw=False)
-        elif self.heard and self._waited(_ANSWER):
-            self.end(f"no feedback from the {self._server} for {_ANSWER:g} s")
-        elif self._stands(_STANDS if self.heard else _MUTE):
-            told = "" if self.heard else f", and the {self._server} sends no feedback"
-            seconds = _STANDS if self.heard else _MUTE
-            self.end(f"the robot has not moved for {seconds:g} s on the way to {said(self.name)}{told}")
-
-    def _waited(self, limit: float) -> bool:
-        return AWAKE.now() - self._since > limit
-
-    def _stands(self, limit: float) -> bool:
-        """Whether the robot, or what the server says of it, has not moved for so long."""
-        before, since = self._stood
-        now = self._where() or self._reported
-        if now is not None and (
-            before is None
-            or before.distance_to((now.x, now.y)) > _MOVED
-            or abs(wrap(now.heading - before.heading)) > _TURNED
-        ):
-            self._stood = now, self._now()
-            return False
-        return self._now() - since > limit
-
-    def _set_out(self) -> None:
-        if self._client.server_is_ready():
-            self._sent, self._since = True, AWAKE.now()
-            self._spin(self._send)
-        elif self._waited(_SERVER):
-            self.end(f"no {self._server}")
-
-    def _finish(self, answer: Any) -> None:
-        code, reached = answer.result.error_code, answer.status == GoalStatus.STATUS_SUCCEEDED
-        if reached and not code:
-            self.end(None, withdraw=False)
-            return
-        gave_up = f"reported error {code}" if reached else "gave up"
-        told = _ENDINGS.get(answer.status, f"the navigation server {gave_up} on the way to {{name}}")
-        self.end(answer.result.error_msg or told.format(name=said(self.name)), withdraw=False)
-
-    # In the thread that spins
-    def _send(self) -> None:
-        sent = self._client.send_goal_async(self._goal, feedback_callback=self._hear, goal_uuid=self._goal_id)
-        sent.add_done_callback(self._answered)
-
-    def _hear(self, message: Any) -> None:
-        self.heard, self._since = True, AWAKE.now()
-        if not pose_fault(message.feedback.current_pose.pose):
-            self._reported = pose_of(message.feedback.current_pose.pose)
-
-    def _answered(self, answer: Any) -> None:
-        handle = answer.result()
-        if not handle.accepted:
-            self.end(f"the navigation server refused to navigate to {said(self.name)}", withdraw=False)
-            self._over()
-            return
-        self._since, self._stood = AWAKE.now(), (self._stood[0], self._now())
-        self._handle, self._result = handle, handle.get_result_async()
-        self._result.add_done_callback(lambda _: self._over())
-        if self.done:
-            self._withdraw()
-
-    def _withdraw(self) -> None:
-        """A goal that is not accepted yet is withdrawn when it is."""
-        if self._handle is not None and not self._withdrawing:  # the second answer would call it terminated
-            self._withdrawing = True
-            self._handle.cancel_goal_async().add_done_callback(self._cancelled)
-
-    def _cancelled(self, answer: Any) -> None:
-        response = answer.result()
-        code = response.return_code
-        if self._result.done() or code == CancelGoal.Response.ERROR_UNKNOWN_GOAL_ID:
-            self._over()
-        elif response.goals_canceling or code == CancelGoal.Response.ERROR_GOAL_TERMINATED:  # its result comes, or not
-            self.pending = "the navigation server did not end the cancelled goal"
-        else:
-            self.pending = "the navigation server refused to cancel its goal"
-            self.withdrawn.set()
-
-    def _over(self) -> None:
-        """The server does nothing more for it."""
-        self.pending = ""
-        self.withdrawn.set()
-
-
-class RosNavigation:
-    """The client of the navigation server, and the goal under way. `stop` may be called from any thread."""
+class RosNavigation(ServerGoals):
+    """The client of the navigation server, and the goal under way."""
 
     def __init__(
         self, node: Node, executor: ExecutorThread, where: Callable[[], Pose | None], now: Callable[[], float]
     ) -> None:
-        self._node, self._executor = node, executor
-        self._where, self._now = where, now
-        self._lease = Lease(node)
+        super().__init__(node, executor, where, now)
+        self._node = node
         self._client = ActionClient(node, NavigateToPose, ACTION)
         self._server = node.resolve_service_name(ACTION)
-        self._goal: RosNavigationGoal | None = None
-        self._stopped = -math.inf
-        self._given_up: list[RosNavigationGoal] = []
 
-    def start(self, name: str, pose: Pose) -> RosNavigationGoal:
+    def start(self, name: str, pose: Pose) -> ServerGoal:
         """Sets out; a goal under way is given up."""
         self.stop(f"the robot set out for {said(name)} instead")
-        request = NavigateToPose.Goal(pose=_stamped(pose))
-        request.pose.header.stamp = self._node.get_clock().now().to_msg()
-        self._goal = RosNavigationGoal(
-            name,
-            self._client,
-            self._server,
-            request,
-            self._lease.goal_id(),
-            self._executor.post,
-            self._where,
-            self._now,
-        )
-        self._goal.step()
-        return self._goal
-
-    def stop(self, reason: str) -> None:
-        """Gives up the goal under way, if there is one."""
-        goal = self._goal
-        if goal is not None and not goal.done:
-            goal.end(reason)
-            self._given_up.append(goal)
-            self._stopped = AWAKE.now()
-
-    def step(self) -> RosNavigationGoal | None:
-        """Goes on; returns the goal when it has ended since the last call."""
-        goal = self._goal
-        if goal is None:
-            return None
-        goal.step()
-        if not goal.done:
-            return None
-        self._goal = None
-        self._given_up = [earlier for earlier in dict.fromkeys((*self._given_up, goal)) if earlier.pending]
-        return goal
-
-    def pending(self) -> list[str]:
-        """Why the server may still drive the robot, for goals that were given up."""
-        return [goal.pending for goal in self._given_up if goal.pending]
-
-    @property
-    def has_just_stopped(self) -> bool:
-        """Whether a goal was given up so short a time ago that nobody may have seen yet what became of the robot."""
-        return AWAKE.now() - self._stopped < _SEEN
-
-    def confirm_stop(self, seconds: float) -> None:
-        """Waits so long at most until the server has given up all goals that were withdrawn."""
-        until = time.monotonic() + seconds
-        for goal in (*self._given_up, *((self._goal,) if self._goal is not None else ())):
-            goal.withdrawn.wait(max(0.0, until - time.monotonic()))
-
-
-def _stamped(pose: Pose) -> PoseStamped:
-    message = PoseStamped(pose=pose_message(pose))
-    message.header.frame_id = MAP
-    return message
+        goal = said(name)
+        task = Task("navigation", name, f"the navigation to {goal}", f"navigate to {goal}", f" on the way to {goal}")
+        request = NavigateToPose.Goal(pose=stamped_pose(pose, self._node.get_clock().now().to_msg()))
+        return self.begin(task, self._client, self._server, request)

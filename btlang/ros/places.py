@@ -2,15 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
+from math import radians
 
 from btlang.robots.body import Body
+from btlang.robots.choices import PICKY, Choices
 from btlang.robots.geometry import Point, Pose
 from btlang.robots.navigation import stand_off
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.planning import Planner
-from btlang.robots.robot import Hand, RobotError
+from btlang.robots.robot import Hand, OnEvent, RobotError
 from btlang.robots.world import Place, World
 
 
@@ -39,18 +41,29 @@ class Places:
         """The names of a type, without objects that the robot carries."""
         return [name for name in self.world.names.of(kind) if not self._obstacles.is_carried(name)]
 
-    def described(self, kind: str, parts: Mapping[str, str]) -> list[str]:
-        """The names of objects or people with these parts."""
+    def described(self, kind: str, parts: Mapping[str, str], robot: Pose) -> list[str]:
+        """The names of objects or people with these parts, nearest first."""
         things = self._obstacles.things
-        return [name for name in self.world.names.of(kind) if name in things and things[name].fits(parts)]
+        names = (name for name in self.world.names.of(kind) if name in things and things[name].fits(parts))
+        return sorted(names, key=lambda name: robot.distance_to(self.locate(name, robot)))
 
-    def distance(self, name: str, robot: Pose) -> float:
-        """Metres from the robot."""
-        return robot.distance_to(self.locate(name, robot))
-
-    def size(self, name: str) -> float:
-        """Metres of the longest side of an object."""
-        return getattr(self._obstacles.things[name], "size", 0.0)
+    def choose(
+        self,
+        kind: str,
+        how: str,
+        parts: Mapping[str, str],
+        where: Callable[[], Pose],
+        choices: Choices,
+        tell: OnEvent | None,
+    ) -> str:
+        """One of the names of a type. Raises RobotError where there is none with these parts."""
+        robot = where() if how in ("nearest", "seen") else Pose(0.0, 0.0, 0.0)
+        names = self.described(kind, parts, robot) if parts or how in PICKY else self.free(kind)
+        things = self._obstacles.things
+        return choices.choose(
+            kind, how, names, parts, tell,
+            lambda name: robot.distance_to(self.locate(name, robot)), lambda name: getattr(things[name], "size", 0.0),
+        )  # fmt: skip
 
     def locate(self, name: str, robot: Pose) -> Point:
         """Where it is; what the robot carries is where the robot is. Raises RobotError for an unknown name."""
@@ -62,6 +75,25 @@ class Places:
             return robot.x, robot.y
         thing = self._obstacles.things[known]
         return thing.x, thing.y
+
+    def located(self, name: str) -> tuple[float, float, float | None]:
+        """Metres, and the direction to face in radians, None for any. Raises KeyError for an unknown name."""
+        try:
+            point = self.locate(self.known(name), Pose(0.0, 0.0, 0.0))
+        except RobotError:
+            raise KeyError(name) from None
+        facing = next((place.facing for place in self.world.places if place.name == name), None)
+        return *point, None if facing is None else radians(facing)
+
+    @property
+    def dock(self) -> Pose | None:
+        """That of the world, which faces as the robot does in it."""
+        dock = self.world.dock
+        return Pose(dock.x, dock.y, dock.facing or 0.0) if dock is not None else None
+
+    def staging(self, robot: Pose) -> Pose:
+        """Where the robot has to stand to be connected: the place "dock"; where it is, if there is none."""
+        return self.goal("dock", robot) if "dock" in map(str.lower, self.world.names.places) else robot
 
     def goal(self, name: str, robot: Pose) -> Pose:
         """Where the robot has to stand for it, and which way to face. Raises RobotError for an unknown name.

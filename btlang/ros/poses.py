@@ -6,6 +6,7 @@ from math import atan2, cos, degrees, radians, sin
 from typing import Any
 
 from geometry_msgs.msg import Pose as PoseMessage
+from geometry_msgs.msg import PoseStamped
 
 from btlang.robots.geometry import Pose
 
@@ -18,6 +19,13 @@ def pose_message(pose: Pose) -> PoseMessage:
     message = PoseMessage()
     message.position.x, message.position.y = pose.x, pose.y
     set_yaw(message.orientation, radians(pose.heading))
+    return message
+
+
+def stamped_pose(pose: Pose, stamp: Any) -> PoseStamped:
+    """A pose on the map at a time."""
+    message = PoseStamped(pose=pose_message(pose))
+    message.header.frame_id, message.header.stamp = MAP, stamp
     return message
 
 

@@ -3,29 +3,57 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from contextlib import suppress
 
 from rclpy.node import Node
 from sensor_msgs.msg import BatteryState
 from std_msgs.msg import Bool
 from std_srvs.srv import Trigger
 
-from btlang.ros.services import Call, Services
+from btlang.robots.capabilities import Operation
+from btlang.robots.geometry import Pose
+from btlang.robots.robot import RobotError
+from btlang.ros.awake import AWAKE
+from btlang.ros.executor_thread import ExecutorThread
+from btlang.ros.services import Services
 from btlang.ros.subscription_cache import SubscriptionCache
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from btlang.ros.docking import RosDocking
 
 BATTERY, DOCKED, DOCK, UNDOCK = "battery_state", "docked", "dock", "undock"
 STATUS = "battery status"
 """The key of what the battery tells besides its percentage, which a robot may leave out."""
 _SILENT = 30.0  # seconds without word of the battery
+_SETTLED = 5.0  # seconds after which the battery tells of a dock that was entered or left
+_AT_CHARGER = {
+    BatteryState.POWER_SUPPLY_STATUS_CHARGING: True,
+    BatteryState.POWER_SUPPLY_STATUS_FULL: True,
+    BatteryState.POWER_SUPPLY_STATUS_DISCHARGING: False,
+}
 
 
 class RosPower:
-    """`emit` is told what happens. All raise RobotError where nothing tells what is asked for."""
+    """`emit` is told what happens. All raise RobotError where nothing tells what is asked for.
+
+    `make_docking` makes the clients of the docking server; it raises ImportError where nav2_msgs has none.
+    """
 
     def __init__(
-        self, node: Node, subscriptions: SubscriptionCache, services: Services, emit: Callable[..., object]
+        self,
+        node: Node,
+        subscriptions: SubscriptionCache,
+        services: Services,
+        emit: Callable[..., object],
+        make_docking: Callable[[], RosDocking],
     ) -> None:
         self._subscriptions, self._services, self._emit = subscriptions, services, emit
+        self._make_docking = make_docking
+        self.docking: RosDocking | None = None
+        self._docks = False
         self._docked: bool | None = None
+        self._since = -_SETTLED
         subscriptions.listen(BATTERY, BatteryState, "battery state", refuses=_no_percentage)
         subscriptions.listen(BATTERY, BatteryState, "battery state", key=STATUS)
         subscriptions.listen(DOCKED, Bool, "message from the dock", qos="state")
@@ -38,6 +66,14 @@ class RosPower:
         return 100.0 * float(self._subscriptions.get(BATTERY, _SILENT).percentage)
 
     @property
+    def empty(self) -> bool:
+        """Only where the robot says so."""
+        try:
+            return self.battery <= 0.0
+        except RobotError:
+            return False
+
+    @property
     def charging(self) -> bool:
         """True while the battery is being charged."""
         state = self._subscriptions.get(STATUS, _SILENT)
@@ -45,25 +81,65 @@ class RosPower:
 
     @property
     def docked(self) -> bool:
-        """True while connected to the dock."""
+        """True while connected to the dock. Where no topic reports it, the battery does: it charges, or is full."""
+        if self._docked is None:
+            self._hear_battery()
         return self._docked if self._docked is not None else bool(self._subscriptions.get(DOCKED).data)
 
-    def dock(self) -> Call:
-        """Connects to the charger."""
-        return self._services.call(DOCK, lambda _: self._connected(True))
+    def prepare_docking(self) -> bool:
+        """Makes the clients of the docking server, which find it in a moment. False where nav2_msgs has no docking."""
+        if self.docking is None:
+            with suppress(ImportError):
+                self.docking = self._make_docking()
+        return self.docking is not None
 
-    def undock(self) -> Call:
-        """Disconnects."""
-        return self._services.call(UNDOCK, lambda _: self._connected(False))
+    @property
+    def docks_by_itself(self) -> bool:
+        """Whether there is a docking server, which drives the robot into its dock and out of it."""
+        return self.prepare_docking() and self.docking is not None and self.docking.served
+
+    def dock(self, pose: Pose | None) -> Operation:
+        """Connects to the charger; a docking server drives to it, at a pose of the map where that is known."""
+        if self.docking is None or not self.docks_by_itself:
+            return self._services.call(DOCK, lambda _: self._connected(True))
+        self._docks = True
+        return self.docking.dock(pose)
+
+    def undock(self) -> Operation:
+        """Disconnects; a docking server drives out of the dock."""
+        if self.docking is None or not self.docks_by_itself:
+            return self._services.call(UNDOCK, lambda _: self._connected(False))
+        self._docks = False
+        return self.docking.undock()
 
     def step(self) -> None:
         """Hears whether it is docked."""
         for message in self._subscriptions.events(DOCKED):
             self._docked = bool(message.data)
+        self._hear_battery()
+        ended = self.docking.step() if self.docking is not None else None
+        if ended is not None and ended.failure is None:
+            self._connected(self._docks)
+
+    def _hear_battery(self) -> None:
+        """What it tells of the dock, where no topic does."""
+        if not self._subscriptions.has(DOCKED) and AWAKE.now() - self._since > _SETTLED:
+            with suppress(RobotError):
+                status = self._subscriptions.get(STATUS, _SILENT).power_supply_status
+                self._docked = _AT_CHARGER.get(status, self._docked)
 
     def _connected(self, docked: bool) -> None:
-        self._docked = docked  # before the topic tells so
+        self._docked, self._since = docked, AWAKE.now()  # before the topic tells so
         self._emit("dock" if docked else "undock")
+
+
+def make_docking_clients(
+    node: Node, executor: ExecutorThread, where: Callable[[], Pose | None], now: Callable[[], float]
+) -> RosDocking:
+    """Those of the docking server. Raises ImportError where nav2_msgs has no docking, or is not installed."""
+    from btlang.ros.docking import RosDocking
+
+    return RosDocking(node, executor, where, now)
 
 
 def _no_percentage(state: BatteryState) -> str:

@@ -5,7 +5,6 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable, Mapping
 from functools import partial
-from math import radians
 from typing import Any
 
 import numpy as np
@@ -15,7 +14,7 @@ from std_srvs.srv import Trigger
 
 from btlang.robots.body import Body
 from btlang.robots.body_file import standard_body
-from btlang.robots.choices import PICKY, Choices
+from btlang.robots.choices import Choices
 from btlang.robots.geometry import Point, Pose
 from btlang.robots.latch import Latch
 from btlang.robots.robot import CompletedOperation, Hand, OnEvent, Operation, RobotError
@@ -26,7 +25,7 @@ from btlang.ros.executor_thread import ExecutorThread
 from btlang.ros.hands import RosHands
 from btlang.ros.joints import RosJoints
 from btlang.ros.places import Places
-from btlang.ros.power import RosPower
+from btlang.ros.power import RosPower, make_docking_clients
 from btlang.ros.sensors import RosSensors
 from btlang.ros.services import Services
 from btlang.ros.speech import RosSpeech
@@ -37,6 +36,7 @@ from btlang.text.time_of_day import DAY, local
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.ros.navigation_goal import RosNavigation
+    from btlang.ros.server_goal import ServerGoals
 
 _STOP = "stop"
 _TOLD_TO_STOP = "the robot was stopped"
@@ -87,7 +87,8 @@ class RosRobot:
         self._services = Services(node, self._executor)
         self._services.add(_STOP, Trigger)
         self._senses = RosSensors(subscriptions, self._base, self._emit)
-        self._power = RosPower(node, subscriptions, self._services, self._emit)
+        make_docking = partial(make_docking_clients, node, self._executor, self._base.where, now)
+        self.power = RosPower(node, subscriptions, self._services, self._emit, make_docking)
         self._hands = RosHands(node, subscriptions, self._services, self._places, self._base.where, self._emit, body)
         self._navigation: RosNavigation | None = None
         self.pending: Callable[[], Iterable[str]] = tuple
@@ -101,6 +102,10 @@ class RosRobot:
             from btlang.ros.navigation_goal import RosNavigation
 
             self._navigation = RosNavigation(self._node, self._executor, self._base.where, self._now)
+
+    @property
+    def _servers(self) -> list[ServerGoals]:
+        return [each for each in (self._navigation, self.power.docking) if each is not None]
 
     def step(self, dt: float) -> None:
         """`dt` seconds have passed: reads what has come, and tells the wanted velocity again."""
@@ -116,7 +121,7 @@ class RosRobot:
         self._base.step(dt)
         self._voice.step(dt)
         arrived = self._navigation.step() if self._navigation is not None else None
-        self._power.step()
+        self.power.step()
         self._hands.step()
         self._services.step()  # last: what was answered is newer than what topics told before
         self._senses.step()
@@ -138,10 +143,7 @@ class RosRobot:
         return (self._world_began + seconds) % DAY if clock.ros_time_is_active else local(seconds)
 
     def stop(self) -> None:
-        """Zero velocity, no journey, frozen joints, silence, and the robot's own stop where it has one.
-
-        From any thread; waits for nothing.
-        """
+        """Zero velocity, no journey, frozen joints, silence, the robot's own stop. From any thread, without waiting."""
         self._stops_for = _STOPPING
         self._latch.stop()
         self.stops += 1
@@ -169,15 +171,15 @@ class RosRobot:
         self._base.confirm_halt()
         self._voice.confirm(_HEARTBEAT)
         until = time.monotonic() + _LAST_WORDS
-        if self._navigation is not None:
-            self._navigation.confirm_stop(_LAST_WORDS)
+        for servers in self._servers:
+            servers.confirm_stop(until - time.monotonic())
         self._services.confirm(until - time.monotonic())
         self._closed = True
 
     def _rest(self) -> None:
         self._base.halt()
-        if self._navigation is not None:
-            self._navigation.stop(_TOLD_TO_STOP)
+        for servers in self._servers:
+            servers.stop(_TOLD_TO_STOP)
         self._services.stop(_TOLD_TO_STOP)
         self._joints.freeze()
         self._voice.silence()
@@ -193,9 +195,9 @@ class RosRobot:
     @property
     def standstill(self) -> Standstill:
         """By the odometry, and by what servers answered to the cancelling of their goals."""
-        motion, navigation = self._base.motion, self._navigation
-        pending = [*self.pending(), *(navigation.pending() if navigation is not None else ())]
-        early = navigation is not None and navigation.has_just_stopped
+        motion = self._base.motion
+        pending = [*self.pending(), *(reason for servers in self._servers for reason in servers.pending())]
+        early = any(servers.has_just_stopped for servers in self._servers)
         if motion is None:
             return Standstill(None, "", tuple(pending), early)
         linear, angular = motion
@@ -221,8 +223,8 @@ class RosRobot:
         """Sets the wanted metres and degrees a second; ends a journey under way. Raises RobotError for no numbers."""
         if self._latch.refuses:
             return
-        if self._navigation is not None:
-            self._navigation.stop("another command took over the drive")
+        for servers in self._servers:
+            servers.stop("another command took over the drive")
         self._base.drive(linear, angular)
 
     @property
@@ -242,21 +244,16 @@ class RosRobot:
 
     def located(self, name: str) -> tuple[float, float, float | None]:
         """Where a name of the world is: metres, and the direction to face in radians, None for any. Raises KeyError."""
-        try:
-            point = self._places.locate(self._places.known(name), Pose(0.0, 0.0, 0.0))
-        except RobotError:
-            raise KeyError(name) from None
-        facing = next((place.facing for place in self._places.world.places if place.name == name), None)
-        return *point, None if facing is None else radians(facing)
+        return self._places.located(name)
 
     def navigate_to(self, name: str) -> Operation:
         """Sends NavigateToPose. Raises RobotError for an unknown name, and where nobody knows where the robot is."""
         known = self._places.known(name)
         return self._set_out(known, lambda: self._places.goal(known, self.pose))
 
-    def navigate_to_pose(self, pose: Pose) -> Operation:
+    def navigate_to_pose(self, pose: Pose, name: str = "") -> Operation:
         """Sends NavigateToPose. Raises RobotError where nobody knows where the robot is."""
-        return self._set_out(f"({pose.x:.2f}, {pose.y:.2f})", lambda: pose)
+        return self._set_out(name or f"({pose.x:.2f}, {pose.y:.2f})", lambda: pose)
 
     def _set_out(self, known: str, goal_of: Callable[[], Pose]) -> Operation:
         self._check_stop()  # a goal that is sent may be driven to, whatever becomes of its cancel
@@ -282,14 +279,11 @@ class RosRobot:
 
     def choose(self, kind: str, how: str, parts: Mapping[str, str] = {}) -> str:
         """A name of the world file or the mission. Raises RobotError where there is none."""
-        pose = self.pose if how in ("nearest", "seen") else Pose(0.0, 0.0, 0.0)
-        names = self._places.described(kind, parts) if parts or how in PICKY else self._places.free(kind)
-        distance = partial(self._places.distance, robot=pose)
-        return self._choices.choose(kind, how, names, parts, self.on_event, distance, self._places.size)
+        return self._places.choose(kind, how, parts, lambda: self.pose, self._choices, self.on_event)
 
     def described(self, kind: str, parts: Mapping[str, str]) -> list[str]:
         """The objects or people of the world file with these parts, nearest first."""
-        return sorted(self._places.described(kind, parts), key=partial(self._places.distance, robot=self.pose))
+        return self._places.described(kind, parts, self.pose)
 
     def seed_choices(self, seed: int, made: int = 0) -> None:
         """A run begins, whose random choices follow from the seed; so many have been made."""
@@ -307,35 +301,37 @@ class RosRobot:
     @property
     def battery(self) -> float:
         """Percent left. Raises RobotError where nothing tells of it."""
-        return self._power.battery
+        return self.power.battery
 
     @property
     def battery_empty(self) -> bool:
         """Only where the robot says so."""
-        try:
-            return self.battery <= 0.0
-        except RobotError:
-            return False
+        return self.power.empty
 
     @property
     def docked(self) -> bool:
         """True while connected to the dock. Raises RobotError where nothing tells of it."""
-        return self._power.docked
+        return self.power.docked
 
     @property
     def charging(self) -> bool:
         """True while the battery is being charged. Raises RobotError where nothing tells of it."""
-        return self._power.charging
+        return self.power.charging
+
+    @property
+    def staging(self) -> Pose | None:
+        """The dock, where the robot has a service; None where it has a docking server."""
+        return None if self.power.docks_by_itself else self._places.staging(self.pose)
 
     def dock(self) -> Operation:
         """Connects to the charger, or fails with the robot's reason. Raises RobotError where nothing serves it."""
         self._check_stop()
-        return self._power.dock()
+        return self.power.dock(self._places.dock)
 
     def undock(self) -> Operation:
         """Disconnects, or fails with the robot's reason. Raises RobotError where nothing serves it."""
         self._check_stop()
-        return self._power.undock()
+        return self.power.undock()
 
     # Arms, hands, head
     def joint(self, name: str) -> float:

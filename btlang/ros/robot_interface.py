@@ -62,6 +62,12 @@ _CAPABILITIES: dict[str, tuple[Interface, ...]] = {
     "voice": (Interface("listener", "speech", "std_msgs/msg/String"),),
     "screen": (Interface("listener", "print", "std_msgs/msg/String"),),
 }
+ALTERNATIVES: dict[str, tuple[Interface, ...]] = {
+    "dock": (Interface("action", "dock_robot", "nav2_msgs/action/DockRobot"), _CAPABILITIES["docking"][0]),
+    "undock": (Interface("action", "undock_robot", "nav2_msgs/action/UndockRobot"), _CAPABILITIES["docking"][1]),
+    "docked": (*_CAPABILITIES["docked"], *_CAPABILITIES["battery"]),
+}
+"""What will do in the place of an interface, by its name: the first that the robot has."""
 
 
 def interfaces(need: str, body: Body) -> tuple[Interface, ...]:

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from functools import partial
+
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from collections.abc import Callable
@@ -13,6 +15,7 @@ if TYPE_CHECKING:
 
 
 _MOST = 1_000_000
+_MOST_PROBLEMS = 100  # that are told; who reads more of them at once?
 
 
 def is_coordinate(value: object) -> bool:
@@ -44,10 +47,15 @@ class Problems:
             self.found.append(problem)
             return usual
 
+    def rows(self, top: Table, key: str, make: Callable[[Table], T]) -> list[T | None]:
+        """What `make` makes of each table of a list, None for those that are wrong; until there are too many."""
+        tables: list[Table] = self.part(lambda: top.tables(key), [])
+        return [self.part(partial(make, table), None) for table in tables if len(self.found) < _MOST_PROBLEMS]
+
     def end(self) -> None:
-        """Raises the first Problem with all others, if there is one."""
+        """Raises the first Problem with the others, at most a hundred in all, if there is one."""
         if self.found:
-            first, *more = self.found
+            first, *more = self.found[:_MOST_PROBLEMS]
             first.more = tuple(more)
             raise first
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import re
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from itertools import chain
 
@@ -14,8 +13,8 @@ from btlang.text.spelling import nearest
 from btlang.text.words import Orthography, split
 from btlang.vocabulary.cache import recent
 from btlang.vocabulary.entry import COMPARISONS, About, Entry, Meaning, SlotSpec
-from btlang.vocabulary.language_tables import GOES_ON, NO_PHRASES, ROLES, about_roles, merged
-from btlang.vocabulary.nouns import Features, plural
+from btlang.vocabulary.language_tables import GOES_ON, NO_PHRASES, ROLES, about_roles, compared, merged
+from btlang.vocabulary.nouns import Features, with_plurals
 from btlang.vocabulary.pattern import Form, PatternError, Slot, forms, replaced, variants
 from btlang.vocabulary.reading_context import Known, ReadingContext
 from btlang.vocabulary.trie import TrieNode, add, collisions
@@ -131,17 +130,14 @@ class Lexicon:
 
         def made() -> Lexicon:
             pairs = {kind: [(self._bare(name), name) for name in listed] for kind, listed in names.items()}
-            if "kind" in pairs:
-                pairs["kinds"] = [(plural(words, self._endings), name) for words, name in pairs["kind"]]
+            pairs = with_plurals(pairs, self._endings)
             values = self.values.with_names(pairs, features)
             words = (word for pair in chain(*pairs.values()) for word in pair[0].lower().split())
             written = self.orthography.with_words(word for word in words if not word.isascii())
             return self._with(values=values, context=ReadingContext(values), orthography=written)
 
-        known = tuple((kind, tuple(listed)) for kind, listed in names.items())
-        return recent(
-            self._with_names, (known, tuple((kind, tuple(named)) for kind, named in (features or {}).items())), made
-        )
+        known = (*((kind, tuple(listed)) for kind, listed in names.items()), *(features or {}).items())
+        return recent(self._with_names, known, made)
 
     def _bare(self, words: str) -> str:
         """Articles do not matter in names either."""
@@ -311,7 +307,7 @@ class Lexicon:
                     add(self.quantities, form, {s.name: s.type for s in entry.slots}, Meaning("quantity", entry))
             except PatternError:
                 return entry  # the keyword file has told
-        ways = [way for name, patterns in self.comparisons.items() for way in _compared(name, patterns)]
+        ways = [way for name, patterns in self.comparisons.items() for way in compared(name, patterns)]
         phrases = tuple(f"{quantity} {way}" for way in ways for quantity in entry.quantity)
         compared = tuple(SlotSpec(name, entry.measures) for name in COMPARISONS)
         own = (slot for slot in entry.slots if slot.name not in COMPARISONS)
@@ -369,7 +365,7 @@ class Lexicon:
         ordered = self.types[kind].kind in ("quantity", "number")
         for name, patterns in self.comparisons.items():
             if ordered or name == "equal":
-                yield from (form for way in _compared(name, patterns) for form in forms(way, self.articles))
+                yield from (form for way in compared(name, patterns) for form in forms(way, self.articles))
 
     def _find_collisions(self) -> None:
         for one, other in collisions(self.trie, self.values):
@@ -400,9 +396,3 @@ class Lexicon:
     def _wrong(self, entry: Entry, reason: str) -> None:
         span = entry.span or Span(Source(entry.phrases[0], "Python"), 0, len(entry.phrases[0]))
         self._problems.append(diagnostic("BT061", span, reason=reason))
-
-
-def _compared(name: str, patterns: Iterable[str]) -> list[str]:
-    """The words of a comparison with the names of ports in their slots."""
-    ports = {"value": name, "low": "at_least", "high": "at_most"}
-    return [re.sub(r"\{(\w+)\}", lambda slot: f"{{{ports[slot[1]]}}}", pattern) for pattern in patterns]

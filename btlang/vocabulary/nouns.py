@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping
 
 from btlang.record import Record
 from btlang.text.words import Words
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from typing import Any
 
 ALL = "all"  # of the names of a type
-Features = Mapping[str, Sequence[tuple[str, Parts]]]
+Features = Mapping[str, tuple[tuple[str, Parts], ...]]
 """What the names of a world are like, by their types."""
 _PLURALS = {"kind": "kinds"}
 """The slots that are also said in the plural where all are meant: `all red cups`."""
@@ -120,7 +120,15 @@ class Nouns:
         return list(found)
 
 
-def plural(words: str, endings: Mapping[str, str]) -> str:
+def with_plurals(
+    names: Mapping[str, list[tuple[str, str]]], endings: Mapping[str, str]
+) -> dict[str, list[tuple[str, str]]]:
+    """Names of types, each with its words, and those in the plural for types that have one."""
+    kinds = [(kind, many) for kind, many in _PLURALS.items() if kind in names]
+    return {**names, **{many: [(_plural(words, endings), name) for words, name in names[kind]] for kind, many in kinds}}
+
+
+def _plural(words: str, endings: Mapping[str, str]) -> str:
     """By the endings of the language, the longest that fits: `box` as `boxes`."""
     best = max((ending for ending in endings if words.endswith(ending)), key=len, default=None)
     return words if best is None else words.removesuffix(best) + endings[best]

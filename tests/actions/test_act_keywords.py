@@ -13,7 +13,7 @@ from btlang.vocabulary.load import load_vocabulary
 from btlang.vocabulary.trie import longest
 
 NAMES = world_names()
-VOCABULARY = load_vocabulary((), {"place": NAMES.places, "object": NAMES.objects, "person": NAMES.people})
+VOCABULARY = load_vocabulary((), NAMES.by_type)
 ENTRIES = [entry for entries in VOCABULARY.entries.values() for entry in entries]
 
 

@@ -1,12 +1,14 @@
 """Journeys, hands, gestures, speech and power."""
 
+from math import inf
+
 import pytest
 
 from btlang.actions import gestures, manipulation, motion, navigation, power, sensing, speech
 from btlang.engine.leaves.leaf import ActionFailed
-from btlang.robots.geometry import Pose
+from btlang.robots.geometry import Pose, wrap
 from btlang.robots.robot import RobotError
-from btlang.robots.world import Fault
+from btlang.robots.world import Fault, Person, Place, World
 from btlang.robots.world_file import load_world
 
 
@@ -26,7 +28,7 @@ def test_go_to_the_kitchen_then_pick_up_the_cup_and_bring_it(bench):
     assert b.robot.bumps == 0
 
 
-@pytest.mark.parametrize("name", load_world().names.objects)
+@pytest.mark.parametrize("name", [each.name for each in load_world().objects if not each.fixed])
 def test_every_object_of_the_default_world_can_be_picked_up(bench, name):
     b = bench(load_world())
     b.run(manipulation.pick_up, object=name)
@@ -257,6 +259,88 @@ def test_charging_fails_away_from_the_dock(bench):
     b.robot.undock()
     with pytest.raises(ActionFailed, match=r"^the robot left the dock at \d+%$"):
         next(running)
+
+
+HALL = World(
+    start=Pose(1.5, 1.5),
+    walls=(((0.0, 0.0), (6.0, 0.0), (6.0, 4.0), (0.0, 4.0), (0.0, 0.0)),),
+    places=(Place("dock", 0.4, 0.6, 180.0),),
+    dock=Place("dock", 0.4, 0.6, 180.0),
+)
+
+
+def test_it_drives_straight_into_the_dock_and_faces_as_the_dock_says(bench):
+    b = bench(HALL)
+    way = []
+    b.robot.on_step = lambda dt: way.append(b.robot.pose)
+    b.run(power.dock)
+    assert b.robot.pose.distance_to((0.4, 0.6)) < 0.04
+    assert abs(wrap(b.robot.pose.heading - 180.0)) < 1.5
+    assert all(abs(pose.y - 0.6) < 0.05 and abs(wrap(pose.heading - 180.0)) < 2 for pose in way if pose.x < 0.75)
+    names = ["navigate", "arrive", "dock"]
+    assert [kind for kind, _ in b.events] == names
+    b.run(power.undock)
+    assert b.robot.pose.x == pytest.approx(0.8, abs=0.02)
+
+
+def test_where_it_stands_in_its_dock_it_only_connects(bench):
+    b = bench(HALL, start=Pose(0.45, 0.6, 178.0))
+    assert b.run(power.dock)[1] < 1.0
+    assert [kind for kind, _ in b.events] == ["dock"]
+
+
+@pytest.mark.parametrize(("times", "docks"), [(1, True), (2, True), (3, False), (inf, False)])
+def test_a_dock_that_does_not_connect_is_tried_again(bench, times, docks):
+    b = bench(HALL, faults=(Fault("dock", times=times),))
+    if docks:
+        b.run(power.dock)
+    else:
+        with pytest.raises(ActionFailed, match=r"^the dock doesn't connect$"):
+            b.run(power.dock)
+    assert b.robot.docked is docks
+    if times == 3:
+        b.run(power.dock)  # the fault is over, and it stands there
+        assert b.robot.docked
+
+
+def test_a_blocked_dock_is_not_run_into_and_tried_again(bench):
+    b = bench(HALL, people=(Person("Bob", 0.35, 0.6, 0.25),))
+    with pytest.raises(ActionFailed, match=r"^something is in the way into the dock$"):
+        b.run(power.dock)
+    assert b.robot.bumps == 0
+    b = bench(HALL, people=(Person("Bob", 0.35, 0.6, 0.25),))
+    running = b.begin(power.dock, 6.5)
+    b.robot.move_thing("Bob", 5.0, 3.0)
+    b.run(lambda robot: running)
+    assert b.robot.docked
+
+
+def test_no_way_to_the_dock_is_not_tried_again(bench):
+    b = bench(HALL, faults=(Fault("blocked", place="dock"),))
+    with pytest.raises(ActionFailed, match=r"^there is no free way to the dock$"):
+        b.run(power.dock, seconds=1.0)
+
+
+def test_a_stop_ends_docking_and_halting_brakes(bench):
+    b = bench(HALL, start=Pose(1.0, 0.6, 180.0))
+    running = b.begin(power.dock, 2.5)
+    assert b.robot.pose.x < 0.75
+    b.robot.stop()
+    with pytest.raises(ActionFailed, match=r"^the robot was stopped$"):
+        next(running)
+    b = bench(HALL, start=Pose(1.0, 0.6, 180.0))
+    b.begin(power.dock, 2.5).close()
+    b.tick(20)
+    assert b.robot.velocity == (0.0, 0.0)
+
+
+@pytest.mark.parametrize(("facing", "x"), [(180.0, 0.8), (0.0, 0.2)])
+def test_the_staging_pose_is_where_walls_leave_room(bench, facing, x):
+    dock = Place("dock", 0.4, 0.6, facing)
+    b = bench(HALL, places=(dock,), dock=dock)
+    assert b.robot.staging == Pose(pytest.approx(x), pytest.approx(0.6), facing)
+    b.run(power.dock)
+    assert b.robot.docked
 
 
 def test_there_may_be_no_dock(bench):

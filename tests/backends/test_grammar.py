@@ -69,7 +69,9 @@ def test_both_parsers_read_what_the_grammar_makes() -> None:
 
 def test_every_phrase_and_every_form_has_a_rule() -> None:
     entries = [entry for entries in WORDS.entries.values() for entry in entries]
-    assert len(phrases()) == sum(len(entry.phrases) for entry in entries)
+    only_at_line_start = ["{zone} is closed/forbidden"]  # an action whose words hold `is`
+    said = [phrase for entry in entries for phrase in entry.phrases if phrase not in only_at_line_start]
+    assert len(phrases()) == len(said)
     assert read(gbnf()).keys() >= FORMS.keys() - {"mission"}
 
 

@@ -52,6 +52,19 @@ def test_examples_run_unchanged_over_devices(example: Any) -> None:
     assert over.seconds == pytest.approx(usual.seconds, rel=0.25)
 
 
+@pytest.mark.parametrize(("times", "docks"), [(2, True), (3, False)])
+def test_a_dock_that_does_not_connect_is_tried_again(tmp_path: Path, times: int, docks: bool) -> None:
+    world = tmp_path / "hall.toml"
+    fault = f'faults = [{{ kind = "dock", times = {times} }}]'
+    world.write_text(f"start = {{ x = 1.5, y = 1.5 }}\ndock = {{ x = 0.4, y = 0.6, facing = 180 }}\n{fault}\n", "utf-8")
+    mission = btlang.parse_tree("dock then undock then charge", world=str(world))
+    with btlang.Session(connector("standard", "devices", simulate=[ALL]), world=str(world)) as session:
+        outcome = session.run(mission, speed="max").outcome
+    assert outcome is not None
+    assert outcome.succeeded is docks
+    assert docks or "Dock: the dock doesn't connect" in outcome.why()
+
+
 def test_without_a_drive_it_says_so_and_does_not_move() -> None:
     outcome, _ = run("go to the lab", connector("standard", "devices"), speed="real")
     assert not outcome.succeeded

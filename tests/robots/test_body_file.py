@@ -10,6 +10,7 @@ from btlang.robots.body import RosNode
 from btlang.robots.body_file import BodyError, load_body, shipped_bodies, standard_body
 from btlang.vocabulary.shipped import BODIES
 
+DOCK = "[dock]\nwithin = 0.2\nbeyond = 0.3\nbacks_off = 0.4\n"
 HEAD = 'name = "x"\nradius = 0.2\n'
 LIMITS = "{ speed = 1, top_speed = 2, acceleration = 1, slowing = 1, brake = 1, hard_brake = 1 }"
 BASE = f"[base]\ndriving = {LIMITS}\nturning = {LIMITS}\nwheel_gap = 0.3\n"
@@ -90,6 +91,8 @@ def test_a_component_is_a_class_or_a_node(tmp_path: Path) -> None:
         (HEAD + '[[hands]]\nname = "middle"', 4, '"name" must be one of "left", "right"'),
         (HEAD + '[[sensors]]\nkind = "scanner"\nframe = "laser"', 3, 'sensors needs a number "range"'),
         (HEAD + "[dock]\nwithin = 0.2\nbeyond = 0.1", 5, '"beyond" must be at least 0.2, not 0.1'),
+        (HEAD + DOCK + "staging = 0.1", 7, '"staging" must be from 0.2 to 100, not 0.1'),
+        (HEAD + DOCK + "retries = -1", 7, '"retries" must be from 0 to 100, not -1'),
         (HEAD + "screen = 1", 3, '"screen" must be true or false'),
         ("name = = 3", 1, "this isn't TOML: Invalid value (at line 1, column 8)"),
     ],

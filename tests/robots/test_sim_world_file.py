@@ -124,7 +124,7 @@ START = "start = { x = 1, y = 1 }\n"
         (
             START + '[[faults]]\nkind = "fire"',
             3,
-            '"kind" must be one of "blocked", "slip", "silent scanner", "weak hand"',
+            '"kind" must be one of "blocked", "slip", "silent scanner", "weak hand", "dock"',
         ),
         (
             START + '[[faults]]\nkind = "blocked"\nplace = "moon"',
@@ -134,6 +134,7 @@ START = "start = { x = 1, y = 1 }\n"
         (START + '[[faults]]\nkind = "slip"\ngrip = 2', 4, '"grip" must be from 0 to 1, not 2'),
         (START + '[[faults]]\nkind = "silent scanner"\nhand = "left"', 4, 'unknown key "hand" in faults'),
         (START + '[[faults]]\nkind = "weak hand"\nhand = "both"', 4, '"hand" must be one of "left", "right"'),
+        (START + '[[faults]]\nkind = "dock"\ntimes = 0', 4, '"times" must be at least 1, not 0'),
     ],
 )
 def test_what_may_be_wrong(tmp_path, text, line, message):

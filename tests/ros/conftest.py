@@ -73,7 +73,7 @@ def _interfaces() -> None:
         _NAV2: str(HERE / "nav2_msgs"), _OWN: "--own", _COMPOSITION: str(HERE / "composition_interfaces")
     }  # fmt: skip
     with _lock(Path(sys.prefix, ".btlang-interfaces.lock")):
-        there = {_NAV2: _found(_NAV2), _OWN: _is_current(), _COMPOSITION: _found(_COMPOSITION)}
+        there = {_NAV2: _found(f"{_NAV2}._dock_robot"), _OWN: _is_current(), _COMPOSITION: _found(_COMPOSITION)}
         missing = [folder for module, folder in packages.items() if not there[module]]
         if not missing or interfaces.missing_tools() is not None:
             return

@@ -15,7 +15,8 @@ from tests.ros.processes import wait_until
 
 pytest.importorskip("nav2_msgs", reason="nav2_msgs is not installed")
 
-from btlang.ros.navigation_goal import RosNavigation, RosNavigationGoal
+from btlang.ros.navigation_goal import RosNavigation
+from btlang.ros.server_goal import ServerGoal
 
 
 class Trip:
@@ -32,7 +33,7 @@ class Trip:
             self._word.set()  # the journey looks at the clock when it is accepted
         return self.seconds
 
-    def begin(self) -> RosNavigationGoal:
+    def begin(self) -> ServerGoal:
         """It is accepted."""
         journey = self._navigation.start("kitchen", Pose(4.0, -1.0))
         wait_until(lambda: self.pass_by(0.0) is None and self._word.is_set(), "an answer")

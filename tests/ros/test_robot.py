@@ -158,7 +158,7 @@ def test_what_goes_wrong_is_a_failure_with_its_reason(
     nav2: object,
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
-    monkeypatch.setattr("btlang.ros.navigation_goal._ANSWER", 2.0)
+    monkeypatch.setattr("btlang.ros.server_goal._ANSWER", 2.0)
     script = robot(*parts)
     code, _, err = run(mission)
     assert code == 1

@@ -83,11 +83,16 @@ class _VocabularyRules:
         return pruned({"root": rules.pop("mission"), **rules, **self._rules})
 
     def _leaves(self) -> Iterator[_Leaf]:
-        articles = self._vocabulary.articles
+        articles, roles = self._vocabulary.articles, self._vocabulary.roles
+        defining = {*roles["define"], *roles["define_strong"]}
         for entry in chain.from_iterable(self._vocabulary.entries.values()):
             kinds = {slot.name: slot.type for slot in entry.slots}
             for number, phrase in enumerate(entry.phrases, 1):
-                yield _Leaf(f"{_kebab(entry.id)}-{number}", entry, forms(phrase, articles), kinds)
+                said = forms(phrase, articles)
+                if entry.sort == "action":  # `the stairs is closed` is a command only at the start of a line
+                    said = tuple(form for form in said if not defining.intersection(map(str, form)))
+                if said:
+                    yield _Leaf(f"{_kebab(entry.id)}-{number}", entry, said, kinds)
 
     def _said(self, form: Form, leaf: _Leaf, given: Mapping[str, Part] = {}) -> Part:
         """A way to say a phrase, with the values of its slots; `given` ones stand in the place of others."""

@@ -31,7 +31,7 @@ class Ride:
     def __init__(self, goal: ServerGoalHandle) -> None:
         self.goal = goal
         self.pose = pose_of(goal.request.pose.pose)
-        self.refused = _refusal(goal.request.pose.header.frame_id, self.pose)
+        self.refused = refusal(goal.request.pose.header.frame_id, self.pose)
         self.navigation: NavigationGoal | None = None
         self.began = 0.0
         self.cancelled: float | None = None
@@ -127,7 +127,8 @@ class Navigation:
         ride.goal.publish_feedback(feedback)
 
 
-def _refusal(frame: str, pose: Pose) -> str | None:
+def refusal(frame: str, pose: Pose) -> str | None:
+    """Why a pose in a frame can't be that of a goal; None where it can."""
     if frame not in (MAP, ODOM, ""):
         return f"the goal is in the frame {frame}, and the robot knows only {MAP} and {ODOM}"
     if not all(map(isfinite, (pose.x, pose.y, pose.heading))):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from contextlib import suppress
 from importlib.util import find_spec
 from typing import Any, Protocol
 
@@ -61,6 +62,11 @@ class Simulator:
             from btlang.ros.simulator.navigation import Navigation
 
             self._parts.append(Navigation(node, self.robot, self._calls, self._wheels))
+            if self.robot.body.has("docking"):
+                with suppress(ImportError):  # Nav2 has had docking since Jazzy
+                    from btlang.ros.simulator.docking import Docking
+
+                    self._parts.append(Docking(node, self.robot, self._calls, self._wheels))
         self._clock = node.create_publisher(Clock, "/clock", QoSProfile(depth=1)) if gives_clock else None
         node.create_service(Trigger, "stop", self._stop)
         self.robot.on_event = self._tell

@@ -37,6 +37,11 @@ class Wheels:
             self.leave()
             self._robot.drive(0.0, 0.0)
 
+    @property
+    def driven(self) -> bool:
+        """Whether commands drive the robot."""
+        return self._driven
+
     def leave(self) -> None:
         """Somebody else drives from now on."""
         self._driven = False

@@ -303,6 +303,8 @@ class Lexer:
                 self.problems.append(self._why(at, at, Match(Meaning(prefix.role), at)))
             self.tokens.append(Token("unknown", span.start, span.end))
             return bisect_right(self.text.starts, span.end - 1)
+        if prefix.role == "remember" and self.tokens and self.tokens[-1].kind == "and":
+            self.tokens[-1].kind = "then"  # `ask ... and remember the answer`: what came of it
         self.tokens.append(read[0])
         return read[1]
 

@@ -1,0 +1,103 @@
+"""Asking and listening. What was heard last is the answer, which missions compare: "if the answer is yes"."""
+
+from __future__ import annotations
+
+import tomllib
+from collections.abc import Callable
+from functools import cache
+from importlib.resources import files
+
+from btlang.actions.motion import Steps
+from btlang.actions.speech import say
+from btlang.actions.watch import Watch
+from btlang.engine.leaves.leaf import ActionFailed, Failed
+from btlang.robots.capabilities import Conversing, Listening
+from btlang.robots.world import said
+
+WAITS = 60.0
+"""Seconds of the mission in which somebody has to answer."""
+
+
+def ask(robot: Conversing, question: str, person: str | None = None) -> Steps:
+    """Asks a person, or anybody, and waits for the answer. Fails after a minute without one."""
+    if person is not None:
+        robot.locate(person)  # nobody is asked whom the robot hasn't seen
+    yield from say(robot, question)
+    yield from _listened(robot, question, person, lambda text: True)
+
+
+def listen_for_yes_or_no(robot: Listening) -> Steps:
+    """Waits until somebody says yes or no. Fails after a minute."""
+    yield from _listened(robot, "", None, lambda text: meaning_of(text) in ("yes", "no"))
+
+
+def listen_for(robot: Listening, text: str) -> Steps:
+    """Waits until somebody says these words, maybe among others. Fails after a minute."""
+    yield from _listened(robot, "", None, lambda heard: holds(heard, text))
+
+
+def answer_is(robot: Listening, text: str) -> bool | Failed:
+    """Whether the last answer has these words, or means the same: "yes" is also "sure" and "of course"."""
+    answer = robot.ears.answer
+    if not answer:
+        return Failed(lambda: "nobody has answered")
+    return holds(answer, text) or Failed(lambda: f'the answer was "{answer}"')
+
+
+def answer(robot: Listening) -> str:
+    """The words of the last answer. Fails where there is none."""
+    if not robot.ears.answer:
+        raise ActionFailed("nobody has answered")
+    return robot.ears.answer
+
+
+def has_heard(robot: Listening, text: str) -> bool:
+    """Whether somebody has said these words, maybe among others."""
+    return any(holds(heard.text, text) for heard in robot.ears.since(0))
+
+
+def holds(heard: str, text: str) -> bool:
+    """Whether what was heard has the words of a text in their order, or means the same yes or no."""
+    words, wanted = _words(heard), _words(text)
+    found = any(words[at : at + len(wanted)] == wanted for at in range(len(words) - len(wanted) + 1))
+    meaning = meaning_of(text)
+    return meaning_of(heard) == meaning if meaning in ("yes", "no") else found
+
+
+def meaning_of(text: str) -> str:
+    """ "yes" or "no" for what means that, else the text."""
+    words = _words(text)
+    for meaning, phrases in _answers().items():
+        if any(words[: len(phrase)] == phrase for phrase in phrases):
+            return meaning
+    return text
+
+
+@cache
+def _answers() -> dict[str, list[list[str]]]:
+    table = tomllib.loads(files("btlang.actions").joinpath("answers.toml").read_text(encoding="utf-8"))
+    return {meaning: [phrase.split() for phrase in phrases] for meaning, phrases in table.items()}
+
+
+def _words(text: str) -> list[str]:
+    return "".join(letter if letter.isalnum() or letter == "'" else " " for letter in text.lower()).split()
+
+
+def _listened(robot: Listening, question: str, person: str | None, wanted: Callable[[str], bool]) -> Steps:
+    """Waits for the first text that is wanted, which is then the answer."""
+    watch, ears = Watch(robot), robot.ears
+    count, until = ears.count, robot.time + WAITS
+    robot.ask(question, person or "")
+    try:
+        while True:
+            for heard in ears.since(count):
+                if wanted(heard.text) and (person is None or heard.who in (person, "")):
+                    ears.answer = heard.text
+                    return
+            if robot.time > until:
+                raise ActionFailed(f"{said(person)} didn't answer" if person else "nobody answered")
+            count = ears.count
+            yield
+            watch.check_stop()
+    finally:
+        ears.asking = ""

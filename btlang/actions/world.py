@@ -1,0 +1,137 @@
+"""Doors, switches and zones."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+from btlang.actions.motion import Steps
+from btlang.actions.navigation import accomplish, travel
+from btlang.engine.leaves.leaf import ActionFailed
+from btlang.robots.capabilities import Cautious, Handling, Messenger, Navigation, Perception
+
+
+class Doorkeeping(Navigation, Handling, Protocol):
+    """It finds its way to doors and switches."""
+
+
+def open_door(robot: Doorkeeping, door: str) -> Steps:
+    """Goes to a door and opens it."""
+    yield from _move_door(robot, door, True)
+
+
+def close_door(robot: Doorkeeping, door: str) -> Steps:
+    """Goes to a door and closes it. Fails where something is in it."""
+    yield from _move_door(robot, door, False)
+
+
+def _move_door(robot: Doorkeeping, door: str, is_open: bool) -> Steps:
+    *others, last = robot.beside_door(door)
+    for spot in others:
+        try:
+            yield from accomplish(robot.navigate_to_pose(spot))
+        except ActionFailed:
+            continue  # it may be reached from its other side
+        break
+    else:
+        yield from accomplish(robot.navigate_to_pose(last))
+    yield from accomplish(robot.move_door(door, is_open))
+
+
+def door_is_open(robot: Handling, door: str) -> bool:
+    """Whether a door is open."""
+    return robot.is_open(door)
+
+
+def door_is_closed(robot: Handling, door: str) -> bool:
+    """Whether a door is closed."""
+    return not robot.is_open(door)
+
+
+def switch_on(robot: Doorkeeping, object: str) -> Steps:
+    """Goes to something and switches it on."""
+    yield from _switch(robot, object, True)
+
+
+def switch_off(robot: Doorkeeping, object: str) -> Steps:
+    """Goes to something and switches it off."""
+    yield from _switch(robot, object, False)
+
+
+def push_button(robot: Doorkeeping, object: str) -> Steps:
+    """Goes to something and pushes its button: on becomes off, and off on."""
+    yield from _switch(robot, object, None)
+
+
+def _switch(robot: Doorkeeping, name: str, on: bool | None) -> Steps:
+    yield from travel(robot, name)
+    yield from accomplish(robot.switch(name, on))
+
+
+def is_switched_on(robot: Handling, object: str) -> bool:
+    """Whether something is switched on."""
+    return robot.is_on(object)
+
+
+def is_switched_off(robot: Handling, object: str) -> bool:
+    """Whether something is switched off."""
+    return not robot.is_on(object)
+
+
+def avoid_zone(robot: Cautious, zone: str) -> None:
+    """Keeps out of a zone until the mission ends, or it is opened."""
+    robot.zones.close(zone)
+
+
+def open_zone(robot: Cautious, zone: str) -> None:
+    """The robot may go into a zone again."""
+    robot.zones.open(zone)
+
+
+def zone_is_closed(robot: Cautious, zone: str) -> bool:
+    """Whether the robot keeps out of a zone."""
+    return robot.zones.is_closed(zone)
+
+
+def in_zone(robot: Cautious, zone: str) -> bool:
+    """Whether the robot is in a zone."""
+    return robot.zones.contains(zone, (robot.pose.x, robot.pose.y))
+
+
+def someone_in_the_way(robot: Cautious) -> bool:
+    """Whether somebody is in the way of the robot's journey."""
+    return bool(robot.held_up)
+
+
+def wait_for_way(robot: Cautious, duration: float) -> None:
+    """On later journeys the robot waits so long for who is in its way, then it looks for another way."""
+    robot.wait_for_way(duration)
+
+
+def clear_map(robot: Cautious) -> None:
+    """Forgets what was seen on the way."""
+    robot.forget_map()
+
+
+def call_staff(robot: Messenger, text: str | None = None) -> None:
+    """Calls whoever watches the robot."""
+    robot.call(text or "the robot needs help")
+
+
+def raise_alarm(robot: Messenger, text: str | None = None) -> None:
+    """Calls whoever watches the robot, urgently."""
+    robot.call(f"ALARM: {text}" if text else "ALARM")
+
+
+def sees(robot: Perception, object: str) -> bool:
+    """Whether an object is in view."""
+    return robot.sees(object)
+
+
+def sees_person(robot: Perception, person: str) -> bool:
+    """Whether a person is in view."""
+    return robot.sees(person)
+
+
+def sees_someone(robot: Perception) -> bool:
+    """Whether anybody is in view."""
+    return bool(robot.seen("person"))

@@ -1,0 +1,1 @@
+"""World files: checked, drawn, made from maps and way points of other programs, and written for them."""

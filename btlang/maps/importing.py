@@ -1,0 +1,167 @@
+"""A world from files of other programs: the walls of maps, the places of way points, and worlds in JSON or YAML."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Iterable, Iterator, Sequence
+from math import cos, pi, sin
+
+from btlang.diagnostics.diagnostic import diagnostic
+from btlang.diagnostics.errors import MissionError
+from btlang.diagnostics.reading import read_source
+from btlang.maps.contours import walls_of
+from btlang.maps.data_text import ForeignFileError, read_data
+from btlang.maps.notation import is_world, read_world_data
+from btlang.maps.occupancy import is_map, read_map
+from btlang.maps.way_points import way_points
+from btlang.robots.data_file import as_mission_error
+from btlang.robots.geometry import Point, Pose, Segment, contains
+from btlang.robots.world import Place, World
+from btlang.robots.world_bounds import outer_wall
+from btlang.robots.world_file import WorldError, has_room
+from btlang.text.source import NOWHERE
+from btlang.text.toml_table import Problem
+
+_FARTHEST, _STEP = 0.5, 0.05  # metres that a place without room is moved at most
+_MOST_CHECKS = 5_000_000  # of a place with a piece of wall: as many as a world file may take
+
+
+def import_world(paths: Sequence[str], radius: float, start: Pose | None = None) -> tuple[World, list[str]]:
+    """The world of all files together, and a line for each place that was moved, renamed or left out.
+
+    It starts at `start`, by default at the first way point, and leaves room for a robot of that radius. Raises
+    MissionError with what is wrong in all files.
+    """
+    worlds, problems = [], []
+    for path in paths:
+        try:
+            worlds.append(_read(path))
+        except MissionError as error:
+            problems += error.diagnostics
+    if problems:
+        raise MissionError(problems)
+    return _together(worlds, radius, start)
+
+
+def _read(path: str) -> World | list[Place] | tuple[tuple[Point, ...], ...]:
+    """A world, way points, or walls."""
+    source = read_source(path)
+    try:
+        data = read_data(source)
+        if is_map(data):
+            return walls_of(read_map(data, os.path.dirname(path) or os.curdir))
+        if is_world(data):
+            return read_world_data(data, path)
+        return way_points(data)
+    except (ForeignFileError, WorldError) as error:
+        raise as_mission_error(error) from None
+    except RecursionError:
+        raise as_mission_error(ForeignFileError("it is nested too deep", path, None, source)) from None
+    except Problem as problem:
+        raise as_mission_error(ForeignFileError(problem.message, path, None, source)) from None
+
+
+def _together(
+    parts: Iterable[World | list[Place] | tuple[tuple[Point, ...], ...]], radius: float, start: Pose | None
+) -> tuple[World, list[str]]:
+    whole: World | None = None
+    walls: list[tuple[Point, ...]] = []
+    places: list[Place] = []
+    for part in parts:
+        if isinstance(part, World) and whole is not None:
+            raise _unusable("only one of the files may be a whole world")
+        if isinstance(part, World):
+            whole = part
+        elif isinstance(part, list):
+            places += part
+        else:
+            walls += part
+    if start is None and whole is None:
+        if not places:
+            raise _unusable("there is no start: give it with --start X,Y, or add a list of way points")
+        first = places[0]
+        start = Pose(first.x, first.y, first.facing or 0.0)
+    base = whole or World(start or Pose(0.0, 0.0))
+    base = base.replace(start=start or base.start, walls=(*base.walls, *walls))
+    return _with_room(base, places, radius)
+
+
+def _unusable(reason: str) -> MissionError:
+    return MissionError([diagnostic(ForeignFileError.code, NOWHERE, reason=reason)])
+
+
+def _with_room(world: World, more: Sequence[Place], radius: float) -> tuple[World, list[str]]:
+    """The world with further places where the robot has room, and its start too, with a line for each change."""
+    segments, notes = world.segments(), list[str]()
+    if len(segments) * (len(more) + len(world.places) + 1) > _MOST_CHECKS:
+        raise _unusable(f"{len(segments):,} pieces of wall are too many for {len(more):,} way points")
+    start = world.start
+    moved = _room_near(world, (start.x, start.y), radius, segments)
+    if moved is None:
+        raise _unusable(f"the start at ({start.x:g}, {start.y:g}) is too near to a wall; give one with --start X,Y")
+    if moved != (start.x, start.y):
+        notes.append(_changed("the start", (start.x, start.y), moved))
+    known = {name.lower(): 1 for names in world.names.by_type.values() for name in names}
+    added: list[Place] = []
+    for place in more:
+        at = (place.x, place.y)
+        spot = _room_near(world, at, radius, segments)
+        if spot is None or spot != at:
+            notes.append(_changed(f'the place "{place.name}"', at, spot))
+        if spot is not None:
+            name = _free(place.name, known)
+            if name != place.name:
+                notes.append(f'the name "{place.name}" is given twice; the second is called "{name}"')
+            added.append(Place(name, *spot, place.facing))
+    wall = outer_wall(world)
+    notes += [f'the place "{place.name}" is outside the outer walls' for place in _beyond(added, wall)]
+    dock = world.dock or next((place for place in added if place.name.lower() == "dock"), None)
+    if dock is not None and dock in added:
+        added.remove(dock)
+        dock = Place("dock", dock.x, dock.y, dock.facing or 0.0)
+        added.append(dock)
+    return world.replace(start=Pose(*moved, start.heading), places=(*world.places, *added), dock=dock), notes
+
+
+def _beyond(places: Iterable[Place], wall: Sequence[Point] | None) -> Iterator[Place]:
+    return (place for place in places if wall is not None and not contains(wall, (place.x, place.y)))
+
+
+def _free(name: str, known: dict[str, int]) -> str:
+    """The name, or the first of "name 2", "name 3" ... that isn't known, and now is; `known` has the last number."""
+    free = name
+    while free.lower() in known:
+        known[name.lower()] += 1
+        free = f"{name} {known[name.lower()]}"
+    known[free.lower()] = 1
+    return free
+
+
+def _room_near(world: World, point: Point, radius: float, segments: Sequence[Segment]) -> Point | None:
+    """The nearest point with room for the robot, at most half a metre away; None where there isn't any."""
+    if has_room(world, point, radius, segments):
+        return point
+    x, y = point
+    reach = radius + _FARTHEST
+    near = [each for each in segments if _touches(each, (x - reach, y - reach, x + reach, y + reach))]
+    for ring in range(1, round(_FARTHEST / _STEP) + 1):
+        count = 8 * ring
+        angles = (2 * pi * step / count for step in range(count))
+        spots = ((round(x + ring * _STEP * cos(a), 3), round(y + ring * _STEP * sin(a), 3)) for a in angles)
+        found = next((spot for spot in spots if has_room(world, spot, radius, near)), None)
+        if found is not None:
+            return found
+    return None
+
+
+def _touches(segment: Segment, area: tuple[float, float, float, float]) -> bool:
+    """Whether the rectangle around a segment overlaps one."""
+    ax, ay, bx, by = segment
+    left, low, right, high = area
+    return min(ax, bx) <= right and max(ax, bx) >= left and min(ay, by) <= high and max(ay, by) >= low
+
+
+def _changed(what: str, at: Point, to: Point | None) -> str:
+    x, y = at
+    done = "is left out" if to is None else f"is moved to ({to[0]:g}, {to[1]:g})"
+    return f"{what} at ({x:g}, {y:g}) is too near to a wall, so it {done}"

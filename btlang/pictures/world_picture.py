@@ -1,0 +1,48 @@
+"""The picture of a world as its file describes it."""
+
+from __future__ import annotations
+
+from btlang.backends.files import write_file
+from btlang.pictures import letters
+from btlang.pictures.canvas import Canvas, drawing
+from btlang.pictures.files import STILL, ending
+from btlang.pictures.placing import Area, Placer
+from btlang.pictures.style import HEADING, TITLE
+from btlang.pictures.track import START, draw_body
+from btlang.pictures.world_map import WorldMap
+from btlang.robots.body_file import standard_body
+from btlang.robots.world import World
+
+_MARGIN, _STRIP = 16.0, 22.0
+_TOP = _MARGIN + HEADING
+_ROOM = Area(_MARGIN, _TOP, 760.0, 620.0)
+_LEAST_WIDE = 260.0  # for the title
+
+
+def draw_world(world: World, path: str, title: str) -> None:
+    """Draws a world with the robot at its start to a file that ends in .svg or .png.
+
+    Raises ValueError for another ending, MissionError (BT009, BT081).
+    """
+    kind = ending(path, STILL)
+    with drawing(path):
+        data = _drawn(world, title).encoded(kind)
+    write_file(path, data)
+
+
+def _drawn(world: World, title: str) -> Canvas:
+    drawn = WorldMap(world, _ROOM)
+    area = drawn.area
+    wide = max(area.width, _LEAST_WIDE)
+    canvas = Canvas(wide + 2 * _MARGIN, _TOP + area.height + _STRIP + _MARGIN, title)
+    canvas.text(_MARGIN, _MARGIN + 4, letters.clipped(title, wide, TITLE, True), size=TITLE, bold=True)
+    placer = Placer(area)
+    drawn.draw(canvas)
+    placer.avoid(drawn.lines())
+    radius = standard_body().radius
+    draw_body(canvas, drawn, world.start, radius, START, 1)
+    (x, y), size = drawn.at(world.start.x, world.start.y), radius * drawn.scale
+    placer.taken.append(Area(x - size, y - size, 2 * size, 2 * size))
+    drawn.draw_names(canvas, placer)
+    drawn.draw_scale(canvas, _MARGIN + 2, _TOP + area.height + _STRIP - 6)
+    return canvas

@@ -1,0 +1,111 @@
+"""What of a world lies outside its outer walls, where these are closed."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping, Sequence
+from itertools import pairwise
+
+from btlang.robots.geometry import Point, contains, segment_distance
+from btlang.robots.world import World, Zone
+from btlang.text.toml_table import Problem
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+_TOUCHING = 0.1  # metres; so near to the outer wall something is on it
+_STEPS = 20  # points looked at on each side of a zone
+
+Polyline = tuple[Point, ...]
+
+
+def outer_wall(world: World) -> Polyline | None:
+    """The closed wall around the largest area, its first point once; None where no wall is closed.
+
+    Walls and doors that meet end to end are one wall.
+    """
+    loops = [wall for wall in _joined([*world.walls, *((door.start, door.end) for door in world.doors)]) if _area(wall)]
+    return max(loops, key=_area, default=())[:-1] or None
+
+
+def _area(wall: Polyline) -> float:
+    """Square metres inside a closed wall, 0 for any other."""
+    if wall[0] != wall[-1]:
+        return 0.0
+    return abs(sum(ax * by - bx * ay for (ax, ay), (bx, by) in pairwise(wall))) / 2
+
+
+def _joined(walls: list[Polyline]) -> list[Polyline]:
+    """The walls, those joined whose ends meet where no other one ends."""
+    ends: dict[Point, list[Polyline]] = {}
+    done = [wall for wall in walls if wall[0] == wall[-1]]
+    for wall in walls:
+        if wall[0] != wall[-1]:
+            for end in (wall[0], wall[-1]):
+                ends.setdefault(end, []).append(wall)
+    for point, meeting in list(ends.items()):
+        if len(meeting) != 2:
+            continue
+        one, other = meeting
+        if one is other:  # its two ends have met
+            continue
+        before = one if one[-1] == point else one[::-1]
+        after = other if other[0] == point else other[::-1]
+        whole = before + after[1:]
+        for old, end in ((one, before[0]), (other, after[-1])):
+            ends[end][next(at for at, wall in enumerate(ends[end]) if wall is old)] = whole
+        ends[point] = []
+        if whole[0] == whole[-1]:
+            done.append(whole)
+            ends[whole[0]] = []
+    return done
+
+
+def outside(world: World, rows: Mapping[str, Sequence[Any]]) -> Iterator[Problem]:
+    """A Problem for each place, object, person, stop of a route, zone and door outside the outer wall.
+
+    `rows` are those of each section of the file, and of "start", None for those that are wrong.
+    """
+    wall = outer_wall(world)
+    if wall is None:
+        return
+    for what, path, point in _spots(world, rows):
+        if not contains(wall, point) and not _is_on(wall, point):
+            yield Problem(f"{what} at ({point[0]:g}, {point[1]:g}) is outside the outer walls", *path)
+    for index, zone in _listed(rows, "zones"):
+        if not _reaches_into(zone, wall):
+            yield Problem(f'the zone "{zone.name}" is outside the outer walls', "zones", index, "points")
+    for index, door in _listed(rows, "doors"):
+        if not any(contains(wall, end) or _is_on(wall, end) for end in (door.start, door.end)):
+            yield Problem(f'the door "{door.name}" is outside the outer walls', "doors", index, "from")
+
+
+def _listed(rows: Mapping[str, Sequence[Any]], section: str) -> Iterator[tuple[int, Any]]:
+    return ((index, row) for index, row in enumerate(rows[section]) if row is not None)
+
+
+def _spots(world: World, rows: Mapping[str, Sequence[Any]]) -> Iterator[tuple[str, tuple[str | int, ...], Point]]:
+    for _, start in _listed(rows, "start"):
+        yield "the start", ("start", "x"), (start.x, start.y)
+    for index, place in _listed(rows, "places"):
+        path: tuple[str | int, ...] = ("dock", "x") if place is world.dock else ("places", index, "x")
+        yield f'the place "{place.name}"', path, (place.x, place.y)
+    for index, thing in _listed(rows, "objects"):
+        yield f'the object "{thing.name}"', ("objects", index, "x"), (thing.x, thing.y)
+    places = {(place.x, place.y) for place in world.places}
+    for index, person in _listed(rows, "people"):
+        yield f'the person "{person.name}"', ("people", index, "x"), (person.x, person.y)
+        for at, stop in enumerate(person.walks):
+            if (stop.x, stop.y) not in places:  # of a place that is told already
+                yield f'a stop of "{person.name}"', ("people", index, "walks", at), (stop.x, stop.y)
+
+
+def _is_on(wall: Polyline, point: Point) -> bool:
+    return any(segment_distance(point, (*a, *b)) <= _TOUCHING for a, b in pairwise((*wall, wall[0])))
+
+
+def _reaches_into(zone: Zone, wall: Polyline) -> bool:
+    sides = pairwise((*zone.points, zone.points[0]))
+    steps = [step / _STEPS for step in range(_STEPS)]
+    points = ((ax + (bx - ax) * t, ay + (by - ay) * t) for (ax, ay), (bx, by) in sides for t in steps)
+    return any(contains(wall, point) for point in points) or any(zone.contains(corner) for corner in wall)

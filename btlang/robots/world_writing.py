@@ -1,0 +1,108 @@
+"""Worlds back to the data of their files, and to TOML: reading that gives the same world."""
+
+from __future__ import annotations
+
+import json
+from collections.abc import Mapping
+
+from btlang.record import Record
+from btlang.robots.world import Door, Fault, Person, Stop, World, WorldObject
+from btlang.robots.world_tables import ANYWHERE
+from btlang.text.time_of_day import USUAL_START
+
+TYPE_CHECKING = False
+if TYPE_CHECKING:
+    from typing import Any
+
+_KEYS: dict[type, dict[str, str]] = {Fault: {"start": "from", "end": "until"}, Door: {"start": "from", "end": "to"}}
+"""Of fields that have another key in the file."""
+_LISTS = ("boxes", "places", "objects", "people", "zones", "doors", "faults")
+
+
+def as_data(world: World) -> dict[str, Any]:
+    """The tables of its file: texts, numbers, flags, lists and dicts."""
+    start, dock = world.start, world.dock
+    begin = {"x": start.x, "y": start.y, "facing": start.heading}
+    data: dict[str, Any] = {"start": begin | ({} if world.battery == 100.0 else {"battery": world.battery})}
+    if world.clock != USUAL_START:
+        data["clock"] = f"2026-01-01 {int(world.clock // 3600):02}:{int(world.clock % 3600 // 60):02}"
+    if world.seed is not None:
+        data["seed"] = world.seed
+    if dock is not None:
+        data["dock"] = {"x": dock.x, "y": dock.y, "facing": dock.facing}
+    if world.walls:
+        data["walls"] = [[list(point) for point in wall] for wall in world.walls]
+    for key in _LISTS:
+        rows = [_row(record) for record in getattr(world, key) if record is not dock]
+        if rows:
+            data[key] = rows
+    return data
+
+
+def _row(record: Record) -> dict[str, Any]:
+    keys, always = _KEYS.get(type(record), {}), _always(record)
+    usual = record.field_defaults
+    row = {
+        keys.get(field, field): _plain(value)
+        for field, value in record.as_dict().items()
+        if field in always or field not in usual or value != usual[field]
+    }
+    if isinstance(record, Person):
+        if row.pop("wanders", False):
+            row["walks"] = ANYWHERE
+    return row
+
+
+def _always(record: Record) -> tuple[str, ...]:
+    """Fields that the file has no default for, or one that depends on others."""
+    if isinstance(record, WorldObject):
+        return ("size", "fixed") if record.switch else ("size",)
+    if isinstance(record, Fault):
+        return {"slip": ("grip",), "weak hand": ("seconds",)}.get(record.kind, ())
+    return ()
+
+
+def _plain(value: Any) -> Any:
+    if isinstance(value, Stop) and not (value.at or value.stays):
+        return [value.x, value.y]
+    if isinstance(value, Stop):
+        row = _row(value)
+        return {"to": [row.pop("x"), row.pop("y")], **row}
+    if isinstance(value, Record):
+        return _row(value)
+    if isinstance(value, tuple):
+        return [_plain(each) for each in value]
+    return dict(value) if isinstance(value, Mapping) else value
+
+
+def to_toml(world: World) -> str:
+    """A world file: a line for each wall, place and other thing."""
+    return "".join(_entry(key, value) for key, value in as_data(world).items())
+
+
+def _entry(key: str, value: Any) -> str:
+    if not isinstance(value, list):
+        return f"{key} = {_toml(value)}\n"
+    rows = "".join(f"  {_toml(row)},\n" for row in value)
+    return f"\n{key} = [\n{rows}]\n"
+
+
+def _toml(value: Any) -> str:
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, int | float):
+        short = f"{value:.12g}"
+        return short if float(short) == value else repr(value)
+    if isinstance(value, str):
+        return _quoted(value)
+    if isinstance(value, list):
+        return f"[{', '.join(map(_toml, value))}]"
+    return f"{{ {', '.join(f'{_key(key)} = {_toml(each)}' for key, each in value.items())} }}"
+
+
+def _key(key: str) -> str:
+    return key if key.isidentifier() and key.isascii() else _quoted(key)
+
+
+def _quoted(text: str) -> str:
+    return json.dumps(text, ensure_ascii=False).replace("\x7f", "\\u007f")

@@ -1,0 +1,258 @@
+"""Goals of the servers that move the robot: one at a time, which always ends, with a reason if it failed."""
+
+from __future__ import annotations
+
+import math
+import time
+from collections.abc import Callable, Mapping
+from threading import Event, RLock
+from typing import Any
+
+from action_msgs.msg import GoalStatus
+from action_msgs.srv import CancelGoal
+from rclpy.node import Node
+from unique_identifier_msgs.msg import UUID
+
+from btlang.record import Record
+from btlang.robots.geometry import Pose, wrap
+from btlang.ros.awake import AWAKE
+from btlang.ros.executor_thread import ExecutorThread
+from btlang.ros.gate import pose_fault
+from btlang.ros.lease import Lease
+from btlang.ros.poses import pose_of
+
+_SEEN = 0.3  # seconds after which odometry shows what the robot does
+_SERVER = 2.0  # seconds that a server gets to be there
+_ANSWER = 5.0  # seconds that it gets to accept or reject, and between two of its feedbacks
+_MUTE, _STANDS = 15.0, 60.0  # seconds without any feedback, and with it, in which the robot does not move
+_MOVED, _TURNED = 0.05, 5.0  # metres and degrees that it has to move
+
+
+class Task(Record):
+    """What a server is asked for: the `sort` of server, the `name` of what it is for, and both in sentences, as
+    "the navigation to the lab", "navigate to the lab" and " on the way to the lab".
+
+    `reasons` are those of its error codes. `regular` is whether it gives feedback again and again.
+    """
+
+    sort: str
+    name: str
+    noun: str
+    verb: str
+    way: str = ""
+    reasons: Mapping[int, str] = {}
+    regular: bool = True
+
+
+class ServerGoal:
+    """One goal; see `btlang.robots.capabilities.Operation`. `end` may be called from any thread.
+
+    Nothing waits: `step` looks at what has come, so that a server that never answers costs the tick nothing. `spin` has
+    a function called in the thread that spins, where alone the client of an action may be used: elsewhere it could
+    meet an answer before it has noted the question. `where` gives the pose of the robot, None where nobody knows it.
+    """
+
+    def __init__(
+        self,
+        task: Task,
+        client: Any,
+        server: str,
+        goal: Any,
+        goal_id: UUID,
+        spin: Callable[[Callable[[], None]], object],
+        where: Callable[[], Pose | None],
+        now: Callable[[], float],
+    ) -> None:
+        self.name = task.name
+        self.done = False
+        self.failure: str | None = None
+        self.withdrawn = Event()
+        """Set when the server has given it up, or says that it will not."""
+        self.pending = ""
+        """Why the server may still drive the robot, though it was told not to; "" where it does not."""
+        self._client, self._goal, self._goal_id, self._spin = client, goal, goal_id, spin
+        self._task = task
+        self._server = f"{task.sort} server on {server}"
+        self._lock = RLock()
+        self._where, self._now = where, now
+        self._since = AWAKE.now()  # of what it waits for now
+        self._stood = (where(), now())
+        self._sent = self._withdrawing = False
+        self.heard = False
+        """Whether the server has given feedback."""
+        self._handle: Any = None
+        self._result: Any = None
+        self._reported: Pose | None = None
+
+    def cancel(self) -> None:
+        """Gives up: the goal is withdrawn, as soon as it is accepted where it is not yet."""
+        self.end(f"{self._task.noun} was cancelled")
+
+    def end(self, failure: str | None, *, withdraw: bool = True) -> None:
+        """Arrived, or the reason why not. Does nothing when done."""
+        with self._lock:
+            if self.done:
+                return
+            self.failure = failure
+            self.done = True
+        if withdraw and self._sent:
+            self.pending = f"the {self._task.sort} server did not answer the cancel"
+            self._spin(self._withdraw)
+        else:
+            self.withdrawn.set()
+
+    def step(self) -> None:
+        """Goes on with what has come since the last call."""
+        if self.done:
+            return
+        if not self._sent:
+            self._set_out()
+        elif self._result is None:
+            if self._waited(_ANSWER):
+                self.end(f"the {self._server} does not answer")
+        elif self._result.done():
+            self._finish(self._result.result())
+        elif not self._client.server_is_ready():
+            self.end(f"the {self._server} is gone", withdraw=False)
+        elif self.heard and self._task.regular and self._waited(_ANSWER):
+            self.end(f"no feedback from the {self._server} for {_ANSWER:g} s")
+        elif self._stands(seconds := _STANDS if self.heard or not self._task.regular else _MUTE):
+            told = "" if seconds == _STANDS else f", and the {self._server} sends no feedback"
+            self.end(f"the robot has not moved for {seconds:g} s{self._task.way}{told}")
+
+    def _waited(self, limit: float) -> bool:
+        return AWAKE.now() - self._since > limit
+
+    def _stands(self, limit: float) -> bool:
+        """Whether the robot, or what the server says of it, has not moved for so long."""
+        before, since = self._stood
+        now = self._where() or self._reported
+        if now is not None and (
+            before is None
+            or before.distance_to((now.x, now.y)) > _MOVED
+            or abs(wrap(now.heading - before.heading)) > _TURNED
+        ):
+            self._stood = now, self._now()
+            return False
+        return self._now() - since > limit
+
+    def _set_out(self) -> None:
+        if self._client.server_is_ready():
+            self._sent, self._since = True, AWAKE.now()
+            self._spin(self._send)
+        elif self._waited(_SERVER):
+            self.end(f"no {self._server}")
+
+    def _finish(self, answer: Any) -> None:
+        code, reached = answer.result.error_code, answer.status == GoalStatus.STATUS_SUCCEEDED
+        if reached and not code:
+            self.end(None, withdraw=False)
+            return
+        task, gave_up = self._task, f"reported error {code}" if reached else "gave up"
+        told = task.reasons.get(code, f"the {task.sort} server {gave_up}{task.way}")
+        if answer.status == GoalStatus.STATUS_CANCELED:
+            told = f"somebody cancelled {task.noun}"
+        retries = getattr(answer.result, "num_retries", 0)
+        again = f" ({retries} {'retry' if retries == 1 else 'retries'})" if retries else ""
+        self.end((getattr(answer.result, "error_msg", "") or told) + again, withdraw=False)
+
+    # In the thread that spins
+    def _send(self) -> None:
+        sent = self._client.send_goal_async(self._goal, feedback_callback=self._hear, goal_uuid=self._goal_id)
+        sent.add_done_callback(self._answered)
+
+    def _hear(self, message: Any) -> None:
+        self.heard, self._since = True, AWAKE.now()
+        told = getattr(message.feedback, "current_pose", None)
+        if told is not None and not pose_fault(told.pose):
+            self._reported = pose_of(told.pose)
+
+    def _answered(self, answer: Any) -> None:
+        handle = answer.result()
+        if not handle.accepted:
+            self.end(f"the {self._task.sort} server refused to {self._task.verb}", withdraw=False)
+            self._over()
+            return
+        self._since, self._stood = AWAKE.now(), (self._stood[0], self._now())
+        self._handle, self._result = handle, handle.get_result_async()
+        self._result.add_done_callback(lambda _: self._over())
+        if self.done:
+            self._withdraw()
+
+    def _withdraw(self) -> None:
+        """A goal that is not accepted yet is withdrawn when it is."""
+        if self._handle is not None and not self._withdrawing:  # the second answer would call it terminated
+            self._withdrawing = True
+            self._handle.cancel_goal_async().add_done_callback(self._cancelled)
+
+    def _cancelled(self, answer: Any) -> None:
+        response = answer.result()
+        code = response.return_code
+        if self._result.done() or code == CancelGoal.Response.ERROR_UNKNOWN_GOAL_ID:
+            self._over()
+        elif response.goals_canceling or code == CancelGoal.Response.ERROR_GOAL_TERMINATED:  # its result comes, or not
+            self.pending = f"the {self._task.sort} server did not end the cancelled goal"
+        else:
+            self.pending = f"the {self._task.sort} server refused to cancel its goal"
+            self.withdrawn.set()
+
+    def _over(self) -> None:
+        """The server does nothing more for it."""
+        self.pending = ""
+        self.withdrawn.set()
+
+
+class ServerGoals:
+    """The goals of a kind of server, and the one under way. `stop` may be called from any thread."""
+
+    def __init__(
+        self, node: Node, executor: ExecutorThread, where: Callable[[], Pose | None], now: Callable[[], float]
+    ) -> None:
+        self._executor = executor
+        self._where, self._now = where, now
+        self._lease = Lease(node)
+        self._goal: ServerGoal | None = None
+        self._stopped = -math.inf
+        self._given_up: list[ServerGoal] = []
+
+    def begin(self, task: Task, client: Any, server: str, request: Any) -> ServerGoal:
+        """Sends a goal; see ServerGoal."""
+        goal_id, spin = self._lease.goal_id(), self._executor.post
+        self._goal = ServerGoal(task, client, server, request, goal_id, spin, self._where, self._now)
+        self._goal.step()
+        return self._goal
+
+    def stop(self, reason: str) -> None:
+        """Gives up the goal under way, if there is one."""
+        goal = self._goal
+        if goal is not None and not goal.done:
+            goal.end(reason)
+            self._given_up.append(goal)
+            self._stopped = AWAKE.now()
+
+    def step(self) -> ServerGoal | None:
+        """Goes on; returns the goal when it has ended since the last call."""
+        goal = self._goal
+        if goal is None:
+            return None
+        goal.step()
+        if not goal.done:
+            return None
+        self._goal = None
+        self._given_up = [earlier for earlier in dict.fromkeys((*self._given_up, goal)) if earlier.pending]
+        return goal
+
+    def pending(self) -> list[str]:
+        """Why the server may still drive the robot, for goals that were given up."""
+        return [goal.pending for goal in self._given_up if goal.pending]
+
+    @property
+    def has_just_stopped(self) -> bool:
+        """Whether a goal was given up so short a time ago that nobody may have seen yet what became of the robot."""
+        return AWAKE.now() - self._stopped < _SEEN
+
+    def confirm_stop(self, seconds: float) -> None:
+        """Waits so long at most until the server has given up all goals that were withdrawn."""
+        until = time.monotonic() + seconds
+        for goal in (*self._given_up, *((self._goal,) if self._goal is not None else ())):
+            goal.withdrawn.wait(max(0.0, until - time.monotonic()))

@@ -1,0 +1,177 @@
+"""The action servers /dock_robot and /undock_robot: drive into the dock and out of it, as the one of Nav2 does."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+from nav2_msgs.action import DockRobot, UndockRobot
+from rclpy.action import ActionServer, CancelResponse
+from rclpy.action.server import ServerGoalHandle
+from rclpy.node import Node
+from rclpy.task import Future
+
+from btlang.actions.docking import APPROACH, CONNECTION, RETRY, STAGING, enter_dock
+from btlang.actions.motion import Steps
+from btlang.actions.power import undock
+from btlang.engine.leaves.leaf import ActionFailed
+from btlang.robots.simulated import SimulatedRobot
+from btlang.ros.lease import Leases
+from btlang.ros.poses import pose_of
+from btlang.ros.simulator.call_queue import CallQueue
+from btlang.ros.simulator.navigation import refusal
+from btlang.ros.simulator.publishing import Moment
+from btlang.ros.simulator.wheels import Wheels
+from btlang.ros.times import duration
+
+_DOCK = "dock"
+_NEAR = 0.5  # metres from the dock at which a goal means it
+_BRAKING = 1.0  # simulated seconds that a cancelled goal waits at most until the robot stands still
+_STATES = {
+    STAGING: DockRobot.Feedback.NAV_TO_STAGING_POSE,
+    APPROACH: DockRobot.Feedback.CONTROLLING,
+    CONNECTION: DockRobot.Feedback.WAIT_FOR_CHARGE,
+    RETRY: DockRobot.Feedback.RETRY,
+}
+_CODES = {
+    STAGING: DockRobot.Result.FAILED_TO_STAGE,
+    APPROACH: DockRobot.Result.FAILED_TO_CONTROL,
+    CONNECTION: DockRobot.Result.FAILED_TO_CHARGE,
+    RETRY: DockRobot.Result.FAILED_TO_CONTROL,
+}
+
+
+class DockingGoal:
+    """A goal that has been accepted; it sets out with the next step. `failure` is why it did not succeed, with a `code`
+    of Nav2.
+    """
+
+    def __init__(self, goal: ServerGoalHandle, docks: bool) -> None:
+        self.goal, self.docks = goal, docks
+        self.steps: Steps | None = None
+        self.failure: str | None = None
+        self.code = 0
+        self.stage = ""
+        self.retries = 0
+        self.began = 0.0
+        self.cancelled: float | None = None
+        self.abandoned = False
+        """Whether its client has died."""
+        self.ended = Future()
+
+    def abandon(self) -> None:
+        """Its client has died."""
+        self.abandoned = True
+
+    def fail(self, failure: str, code: int) -> None:
+        """It ends, where it hasn't ended before: the robot brakes."""
+        if self.failure is None:
+            self.failure, self.code = failure, code
+        if self.steps is not None:
+            self.steps.close()
+
+    def result(self) -> Any:
+        """For its client."""
+        if not self.docks:
+            return UndockRobot.Result(success=self.failure is None, error_code=self.code, error_msg=self.failure or "")
+        return DockRobot.Result(
+            success=self.failure is None, error_code=self.code, error_msg=self.failure or "", num_retries=self.retries
+        )
+
+
+class Docking:
+    """One goal at a time; a new one takes the place of the one under way, which is aborted."""
+
+    def __init__(self, node: Node, robot: SimulatedRobot, calls: CallQueue, wheels: Wheels) -> None:
+        self._node, self._robot, self._calls, self._wheels = node, robot, calls, wheels
+        self._goal: DockingGoal | None = None
+        self._leases = Leases(node)
+        for kind, name, docks in ((DockRobot, "dock_robot", True), (UndockRobot, "undock_robot", False)):
+            ActionServer(node, kind, name, self._execute(docks), cancel_callback=lambda goal: CancelResponse.ACCEPT)
+
+    def publish(self, now: Moment) -> None:
+        """Goes on with the goal under way, and tells the stages of docking."""
+        goal = self._goal
+        if goal is None or goal.steps is None:
+            return
+        if goal.cancelled is None and (goal.goal.is_cancel_requested or goal.abandoned):
+            goal.cancelled = now.seconds
+            goal.fail("docking was cancelled" if goal.docks else "undocking was cancelled", DockRobot.Result.UNKNOWN)
+        elif goal.cancelled is None and self._wheels.driven:
+            goal.fail("another command took over the drive", DockRobot.Result.FAILED_TO_CONTROL)
+        if goal.failure is None:
+            try:
+                next(goal.steps)
+                return
+            except StopIteration:
+                pass
+            except ActionFailed as problem:
+                goal.fail(str(problem), _CODES.get(goal.stage, DockRobot.Result.FAILED_TO_CONTROL))
+        braking = goal.cancelled is not None and now.seconds - goal.cancelled < _BRAKING
+        if not (braking and self._robot.velocity != (0.0, 0.0)):
+            self._goal = None
+            self._end(goal)
+
+    def _execute(self, docks: bool) -> Callable[[ServerGoalHandle], Any]:
+        async def execute(handle: ServerGoalHandle) -> Any:
+            """Runs in the thread of the executor."""
+            goal = DockingGoal(handle, docks)
+            self._calls.post(lambda: self._begin(goal))
+            goal_id = bytes(handle.goal_id.uuid)
+            self._leases.watch(goal_id, goal.abandon)
+            await goal.ended
+            self._leases.forget(goal_id)
+            if goal.failure is None:
+                handle.succeed()
+            elif handle.is_cancel_requested:
+                handle.canceled()
+            else:
+                handle.abort()
+            return goal.result()
+
+        return execute
+
+    def _begin(self, goal: DockingGoal) -> None:
+        refused = self._refusal(goal.goal.request) if goal.docks and not self._robot.docked else None
+        if refused is not None:
+            goal.fail(*refused)
+            self._end(goal)
+            return
+        if self._goal is not None:
+            self._goal.fail("the robot docks instead" if goal.docks else "the robot undocks instead", 999)
+            self._end(self._goal)
+        self._wheels.leave()
+        self._goal, goal.began = goal, self._robot.time
+        goal.steps = self._dock(goal) if goal.docks else undock(self._robot)
+
+    def _dock(self, goal: DockingGoal) -> Steps:
+        if not self._robot.docked:
+            yield from enter_dock(self._robot, self._robot.staging, lambda stage: self._tell(goal, stage))
+
+    def _refusal(self, request: Any) -> tuple[str, int] | None:
+        """Why it can't dock as it is asked to, with a code."""
+        dock = self._robot.world.dock
+        if dock is None:
+            return "there is no dock in this world", DockRobot.Result.DOCK_NOT_IN_DB
+        if request.use_dock_id and request.dock_id != _DOCK:
+            return f'there is no dock "{request.dock_id}", only "{_DOCK}"', DockRobot.Result.DOCK_NOT_IN_DB
+        pose = pose_of(request.dock_pose.pose)
+        if not request.use_dock_id and (wrong := refusal(request.dock_pose.header.frame_id, pose)):
+            return wrong, DockRobot.Result.DOCK_NOT_VALID
+        if not request.use_dock_id and pose.distance_to((dock.x, dock.y)) > _NEAR:
+            return f"there is no dock at ({pose.x:.2f}, {pose.y:.2f})", DockRobot.Result.FAILED_TO_DETECT_DOCK
+        staging, at = self._robot.staging, self._robot.pose
+        if not request.navigate_to_staging_pose and staging.distance_to((at.x, at.y)) > _NEAR:
+            return "the robot isn't in front of the dock", DockRobot.Result.FAILED_TO_STAGE
+        return None
+
+    def _tell(self, goal: DockingGoal, stage: str) -> None:
+        goal.stage = stage
+        goal.retries += stage == RETRY
+        feedback = DockRobot.Feedback(state=_STATES[stage], num_retries=goal.retries)
+        feedback.docking_time = duration(self._robot.time - goal.began)
+        goal.goal.publish_feedback(feedback)
+
+    def _end(self, goal: DockingGoal) -> None:
+        goal.ended.set_result(None)
+        self._node.executor.wake()

@@ -1,0 +1,98 @@
+"""What is outside the outer walls of a world."""
+
+from __future__ import annotations
+
+import pytest
+from hypothesis import given
+
+from btlang.robots.geometry import Pose
+from btlang.robots.world import Door, World
+from btlang.robots.world_bounds import outer_wall
+from btlang.robots.world_file import WorldError, load_world
+from btlang.robots.world_writing import to_toml
+from btlang.text.source import Source
+from tests.profiles import searches
+from tests.robots.random_worlds import worlds
+
+START = "start = { x = 1, y = 1 }\n"
+ROOM = START + "walls = [[[0, 0], [6, 0], [6, 4], [0, 4], [0, 0]], [[3, 0], [3, 2]]]\n"
+
+
+def told(text: str) -> list[tuple[int | None, str]]:
+    """The lines and messages of all that is wrong with a world."""
+    try:
+        load_world(Source(text, "world.toml"), bounded=True)
+    except WorldError as error:
+        return [(each.line, each.message) for each in (error, *error.more)]
+    return []
+
+
+@pytest.mark.parametrize(
+    ("line", "what"),
+    [
+        ('places = [{ name = "lab", x = 7, y = 1 }]', 'the place "lab" at (7, 1)'),
+        ("dock = { x = -1, y = 1 }", 'the place "dock" at (-1, 1)'),
+        ('objects = [{ name = "cup", x = 7, y = 1 }]', 'the object "cup" at (7, 1)'),
+        ('people = [{ name = "Vera", x = 7, y = 1 }]', 'the person "Vera" at (7, 1)'),
+        ('people = [{ name = "Vera", x = 5, y = 1, walks = [[7, 1]] }]', 'a stop of "Vera" at (7, 1)'),
+        ('zones = [{ name = "z", kind = "keep out", points = [[7, 0], [9, 0], [9, 2]] }]', 'the zone "z"'),
+        ('doors = [{ name = "d", from = [7, 0], to = [8, 0] }]', 'the door "d"'),
+    ],
+)
+def test_outside(line: str, what: str) -> None:
+    assert told(ROOM + line) == [(3, f"{what} is outside the outer walls")]
+    assert load_world(Source(ROOM + line, "world.toml"))  # it can be run all the same
+
+
+@pytest.mark.parametrize(
+    "line",
+    [
+        'objects = [{ name = "cup", x = 6, y = 1 }]',  # on the wall
+        'doors = [{ name = "d", from = [6, 1], to = [7, 1] }]',  # an open leaf
+        'zones = [{ name = "all", kind = "slow", speed = 1, points = [[-1, -1], [9, -1], [9, 9], [-1, 9]] }]',
+        'zones = [{ name = "band", kind = "slow", speed = 1, points = [[-9, 1], [7, 1], [7, 2], [-9, 2]] }]',
+    ],
+)
+def test_inside(line: str) -> None:
+    assert told(ROOM + line) == []
+
+
+def test_a_start_outside() -> None:
+    assert told(ROOM.replace("x = 1,", "x = 9,")) == [(1, "the start at (9, 1) is outside the outer walls")]
+
+
+def test_nothing_is_outside_open_walls() -> None:
+    assert told(ROOM.replace(", [0, 0]]", "]") + 'objects = [{ name = "cup", x = 7, y = 1 }]') == []
+
+
+def test_walls_and_doors_are_joined() -> None:
+    walls = (((0.0, 0.0), (4.0, 0.0)), ((4.0, 3.0), (4.0, 0.0)), ((0.0, 3.0), (0.0, 1.0)), ((4.0, 3.0), (0.0, 3.0)))
+    world = World(Pose(1.0, 1.0), walls=walls)
+    assert outer_wall(world) is None
+    wall = outer_wall(world.replace(doors=(Door("front door", (0.0, 0.0), (0.0, 1.0)),)))
+    assert wall is not None
+    assert set(wall) == {(0.0, 0.0), (4.0, 0.0), (4.0, 3.0), (0.0, 3.0), (0.0, 1.0)}
+
+
+def test_all_is_told_at_once_and_at_its_line() -> None:
+    text = ROOM + (
+        'places = [\n  { name = "lab", x = "east", y = 1 },\n  { name = "bay", x = 9, y = 1 },\n'
+        '  { name = "bay", x = 3.1, y = 1 },\n]\n[[zones]]\nname = "z"\nkind = "hot"\npoints = 3\ncolour = 1\n'
+    )
+    assert told(text) == [
+        (4, '"x" must be a number; write x = 1.5'),
+        (10, '"kind" must be one of "keep out", "slow"'),
+        (6, 'the name "bay" is given twice (places and places); give one another name'),
+        (6, 'the place "bay" at (3.1, 1) is inside a wall or a box; leave 0.2 m to every wall'),
+        (5, 'the place "bay" at (9, 1) is outside the outer walls'),
+    ]
+
+
+def test_no_more_than_a_hundred() -> None:
+    assert len(told(START + "places = [\n" + "{ name = 3 },\n" * 5000 + "]")) == 100
+
+
+@searches(40, 2000)
+@given(world=worlds())
+def test_any_world_has_bounds_or_none(world: World) -> None:
+    assert all(" is outside the outer walls" in message for _, message in told(to_toml(world)))
