@@ -222,7 +222,7 @@ def about_roles(tables: Iterable[Mapping[str, Any]], known: Mapping[str, About])
     return about | {role: About() for role in EXPLAINED if role not in about}
 
 
-def compared(name: str, patterns: Iterable[str]) -> list[str]:
+def comparing_phrases(name: str, patterns: Iterable[str]) -> list[str]:
     """The words of a comparison with the names of ports in their slots."""
     ports = {"value": name, "low": "at_least", "high": "at_most"}
     return [re.sub(r"\{(\w+)\}", lambda slot: f"{{{ports[slot[1]]}}}", pattern) for pattern in patterns]

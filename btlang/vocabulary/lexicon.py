@@ -13,7 +13,7 @@ from btlang.text.spelling import nearest
 from btlang.text.words import Orthography, split
 from btlang.vocabulary.cache import recent
 from btlang.vocabulary.entry import COMPARISONS, About, Entry, Meaning, SlotSpec
-from btlang.vocabulary.language_tables import GOES_ON, NO_PHRASES, ROLES, about_roles, compared, merged
+from btlang.vocabulary.language_tables import GOES_ON, NO_PHRASES, ROLES, about_roles, comparing_phrases, merged
 from btlang.vocabulary.nouns import Features, with_plurals
 from btlang.vocabulary.pattern import Form, PatternError, Slot, forms, replaced, variants
 from btlang.vocabulary.reading_context import Known, ReadingContext
@@ -307,7 +307,7 @@ class Lexicon:
                     add(self.quantities, form, {s.name: s.type for s in entry.slots}, Meaning("quantity", entry))
             except PatternError:
                 return entry  # the keyword file has told
-        ways = [way for name, patterns in self.comparisons.items() for way in compared(name, patterns)]
+        ways = [way for name, patterns in self.comparisons.items() for way in comparing_phrases(name, patterns)]
         phrases = tuple(f"{quantity} {way}" for way in ways for quantity in entry.quantity)
         compared = tuple(SlotSpec(name, entry.measures) for name in COMPARISONS)
         own = (slot for slot in entry.slots if slot.name not in COMPARISONS)
@@ -365,7 +365,7 @@ class Lexicon:
         ordered = self.types[kind].kind in ("quantity", "number")
         for name, patterns in self.comparisons.items():
             if ordered or name == "equal":
-                yield from (form for way in compared(name, patterns) for form in forms(way, self.articles))
+                yield from (form for way in comparing_phrases(name, patterns) for form in forms(way, self.articles))
 
     def _find_collisions(self) -> None:
         for one, other in collisions(self.trie, self.values):
