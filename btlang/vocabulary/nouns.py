@@ -150,14 +150,15 @@ def noun_phrases(kinds: Iterable[str], language: Mapping[str, Any], declared: It
             found.add(tuple(words.split()), {}, kind, ALL)
         for noun in declared:
             if noun.type == kind:
-                _add_declared(found, noun, ways, frozenset(language["articles"]))
+                for form in forms(noun.phrase, frozenset(language["articles"])):
+                    takes_more = isinstance(form[0], Slot) or form[0] in language["nouns"].get(kind, (kind,))
+                    _add_declared(found, noun, form, ways if takes_more else ())
     return found
 
 
-def _add_declared(nouns: Nouns, noun: Noun, ways: Iterable[tuple[Form, str]], articles: frozenset[str]) -> None:
-    for form in forms(noun.phrase, articles):
-        nouns.add(form, noun.slots, noun.type, noun.how)
-        for before, how in ways if any(isinstance(part, Slot) for part in form) else ():
-            nouns.add((*before, *form), noun.slots, noun.type, how)
-            if how == ALL and _PLURALS.keys() & noun.slots.keys():
-                nouns.add((*before, *form), {**noun.slots, **_PLURALS}, noun.type, how)
+def _add_declared(nouns: Nouns, noun: Noun, form: Form, ways: Iterable[tuple[Form, str]]) -> None:
+    nouns.add(form, noun.slots, noun.type, noun.how)
+    for before, how in ways if any(isinstance(part, Slot) for part in form) else ():
+        nouns.add((*before, *form), noun.slots, noun.type, how)
+        if how == ALL and _PLURALS.keys() & noun.slots.keys():
+            nouns.add((*before, *form), {**noun.slots, **_PLURALS}, noun.type, how)
