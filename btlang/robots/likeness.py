@@ -34,14 +34,18 @@ def unseen(kind: str, parts: Mapping[str, str]) -> str:
     use = f" to {parts['use']}" if "use" in parts else ""
     if "kind" not in parts:
         return f"I haven't seen {' '.join(('anything', *words))}{use}"
-    article = "an" if words[0][0] in "aeiou" else "a"
-    return f"I haven't seen {article} {' '.join(words)}{use}"
+    return f"I haven't seen {_article(words[0])}{' '.join(words)}{use}"
 
 
 def _person(parts: Mapping[str, str]) -> str:
     worn = [parts[name] for name in ("color", "clothing") if name in parts]
     waves = f" who is {parts['gesture']}" if "gesture" in parts else ""
-    return (f" in {' '.join(worn)}" if worn else "") + waves
+    article = "" if "clothing" not in parts or worn[-1].endswith("s") else _article(worn[0])
+    return (f" in {article}{' '.join(worn)}" if worn else "") + waves
+
+
+def _article(word: str) -> str:
+    return "an " if word[0] in "aeiou" else "a "
 
 
 def _clothes(text: str) -> Iterator[str]:
