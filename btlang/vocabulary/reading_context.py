@@ -35,12 +35,14 @@ class ReadingContext:
     """
 
     __slots__ = (
-        "_most_words", "joiners", "keys", "known", "lacked", "latest", "met", "openers", "pronouns", "types", "values",
+        "_most_words", "joiners", "keys", "known", "lacked", "latest", "met", "openers", "pronouns", "starts", "types",
+        "values",
     )  # fmt: skip
 
     def __init__(self, values: Values, known: Mapping[str, Known] | None = None) -> None:
         self.values = values
         self.types, self.joiners, self.pronouns = values.types, values.joiners, values.pronouns
+        self.starts = values.choice_starts
         self.latest: dict[str, str] = {}
         self.lacked = False
         self.met: set[str] = set()
@@ -72,7 +74,7 @@ class ReadingContext:
         found = self.values.read(kind, text, at)
         if found is None and text.words[at] in self.pronouns and self.types[kind].kind == "names":
             return self._referred(kind, text.words[at], at)
-        chosen = self._chosen(kind, text, at)
+        chosen = self._chosen(kind, text, at) if text.words[at] in self.starts else None
         return chosen if found is None or (chosen is not None and chosen[1] > found[1]) else found
 
     def any(self, text: Words, at: int) -> tuple[tuple[str, ...], str, int] | None:

@@ -91,22 +91,21 @@ class Names:
 
     def _chosen_types(self, text: Words) -> list[str]:
         """The types of which the robot chooses a name; `someone is near` is a phrase that only begins so."""
-        values = self.vocabulary.values
-        if text.distinct.isdisjoint(values.choice_starts):
+        values, starts = self.vocabulary.values, self.vocabulary.values.choice_starts
+        if text.distinct.isdisjoint(starts):
             return []
         found: dict[str, None] = {}
         ends = {prefix.value: prefix.last for prefix in self.prefixes.values() if prefix.noun is not None}
-        at = 0
-        while at < len(text.words):
-            choice = values.choice(text, at) if at not in ends else None
-            last = choice[1] if choice is not None else ends.get(at, at + 1)
+        last = 0
+        for at in [at for at, word in enumerate(text.words) if word in starts]:
+            choice = values.choice(text, at) if at >= last and at not in ends else None
+            last = choice[1] if choice is not None else max(last, ends.get(at, 0))
             if choice is not None and choice[0].how in CHOICES:
                 kind, named = choice[0].type, find(values.names_tree(choice[0].type), text.words, at)
-                match = self.phrases.at(at)
-                is_value = match is None or (match.values and match.values[0].first == at)
-                if is_value and (named is None or named[1] < last):
-                    found[kind] = None
-            at = last
+                if named is None or named[1] < last:
+                    match = self.phrases.at(at)
+                    if match is None or (match.values and match.values[0].first == at):
+                        found[kind] = None
         return list(found)
 
     def _name_choices(self, kinds: Iterable[str]) -> None:
