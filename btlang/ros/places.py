@@ -2,16 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable, Mapping
 from contextlib import suppress
 from math import radians
 
 from btlang.robots.body import Body
+from btlang.robots.choices import PICKY, Choices
 from btlang.robots.geometry import Point, Pose
 from btlang.robots.navigation import stand_off
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.planning import Planner
-from btlang.robots.robot import Hand, RobotError
+from btlang.robots.robot import Hand, OnEvent, RobotError
 from btlang.robots.world import Place, World
 
 
@@ -39,6 +40,30 @@ class Places:
     def free(self, kind: str) -> list[str]:
         """The names of a type, without objects that the robot carries."""
         return [name for name in self.world.names.of(kind) if not self._obstacles.is_carried(name)]
+
+    def described(self, kind: str, parts: Mapping[str, str], robot: Pose) -> list[str]:
+        """The names of objects or people with these parts, nearest first."""
+        things = self._obstacles.things
+        names = (name for name in self.world.names.of(kind) if name in things and things[name].fits(parts))
+        return sorted(names, key=lambda name: robot.distance_to(self.locate(name, robot)))
+
+    def choose(
+        self,
+        kind: str,
+        how: str,
+        parts: Mapping[str, str],
+        where: Callable[[], Pose],
+        choices: Choices,
+        tell: OnEvent | None,
+    ) -> str:
+        """One of the names of a type. Raises RobotError where there is none with these parts."""
+        robot = where() if how in ("nearest", "seen") else Pose(0.0, 0.0, 0.0)
+        names = self.described(kind, parts, robot) if parts or how in PICKY else self.free(kind)
+        things = self._obstacles.things
+        return choices.choose(
+            kind, how, names, parts, tell,
+            lambda name: robot.distance_to(self.locate(name, robot)), lambda name: getattr(things[name], "size", 0.0),
+        )  # fmt: skip
 
     def locate(self, name: str, robot: Pose) -> Point:
         """Where it is; what the robot carries is where the robot is. Raises RobotError for an unknown name."""
