@@ -156,7 +156,8 @@ def _header(
         return Header("", text.span(at, at + 1), at + 1, at + 1)
     if any(tuple(text.words[i:at]) in variables for i in range(start, at)):
         return None
-    if text.words[at - 1] == "}" and any(tuple(text.words[i : at - 1]) in variables for i in range(start, at - 1)):
+    compares = any(tuple(text.words[i : at - 1]) in variables for i in range(start, at - 1))
+    if text.words[at - 1] == "}" and compares and text.words[at + 1] != ":":
         body = phrases.at(at + 1)
         if body is None or body.meaning.role != "command":
             return None
