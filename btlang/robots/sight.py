@@ -61,11 +61,7 @@ class Sight:
             return
         self._next = now + _PERIOD
         for name in self._watched:
-            if (point := self._find(name, pose)) is not None:
-                self._last[name] = point, now
-                if name not in self._met:
-                    self._met.add(name)
-                    self._tell(name)
+            self._look_for(name, pose)
 
     def where(self, name: str) -> Point | None:
         """Where it is as far as the robot knows; None for what it hasn't seen and what it carries."""
@@ -77,7 +73,7 @@ class Sight:
 
     def sees(self, name: str, pose: Pose) -> bool:
         """Whether it is in view at this moment."""
-        return self._find(name, pose) is not None
+        return self._look_for(name, pose) is not None
 
     def is_fresh(self, name: str) -> bool:
         """Whether its place is known as of now, or nearly so."""
@@ -91,10 +87,20 @@ class Sight:
         """Where those of a type are that are in view, nearest first."""
         found = []
         for name, of in self._kinds.items():
-            if of == kind and (point := self._find(name, pose)) is not None:
+            if of == kind and (point := self._look_for(name, pose)) is not None:
                 found.append((pose.distance_to(point), name, point))
         return {name: point for _, name, point in sorted(found)}
 
     def names(self, kind: str) -> list[str]:
         """All names of a type that somebody has given it, or that came unexpected."""
         return [name for name, of in self._kinds.items() if of == kind]
+
+    def _look_for(self, name: str, pose: Pose) -> Point | None:
+        """Where it is if it is in view, which is noted: what is seen in between two looks is known, too."""
+        point = self._find(name, pose)
+        if point is not None and name in self._watched:
+            self._last[name] = point, self._now
+            if name not in self._met:
+                self._met.add(name)
+                self._tell(name)
+        return point

@@ -16,8 +16,8 @@ _AGAIN = 2.0  # seconds between two goals
 
 
 class Pursuit:
-    """See `btlang.robots.capabilities.Operation`. `set_out` sends a goal for where it was seen last; another one is sent
-    when it is seen elsewhere. Raises what `set_out` does.
+    """See `btlang.robots.capabilities.Operation`. `set_out` sends a goal for where it was seen last; another one is
+    sent when it is seen elsewhere. Raises what `set_out` does.
     """
 
     def __init__(self, name: str, sight: Sight, set_out: Callable[[], ServerGoal], now: float) -> None:

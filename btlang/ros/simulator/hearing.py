@@ -13,7 +13,7 @@ from btlang.ros.simulator.publishing import COMMANDS, Moment
 
 
 class Hearing:
-    """A question that was asked again is the same one, until none was open."""
+    """Hands questions to the people of the world, and publishes what they say."""
 
     def __init__(self, node: Node, robot: SimulatedRobot, calls: CallQueue) -> None:
         self._robot = robot
@@ -28,7 +28,9 @@ class Hearing:
         self._heard.publish(Heard(who=who, text=text))
 
     def _ask(self, question: Question) -> None:
+        if self._robot.body.ears is None:
+            return
         if question.text:
             self._robot.ask(question.text, question.who)
-        elif self._robot.body.ears is not None:
+        else:
             self._robot.ears.asking = ""

@@ -26,7 +26,6 @@ from btlang.ros.simulator.sensors import Sensors
 from btlang.ros.simulator.wheels import Wheels
 from btlang.ros.times import stamp
 
-
 TYPE_CHECKING = False
 if TYPE_CHECKING:
     from btlang.ros.simulator.hearing import Hearing
