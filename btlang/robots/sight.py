@@ -28,27 +28,24 @@ class Sight:
     ) -> None:
         self._obstacles, self._find, self._tell = obstacles, find, tell
         self._kinds = {name: kind for kind in ("object", "person") for name in world.names.of(kind)}
-        self._watched = {thing.name for thing in (*world.objects, *world.people) if not thing.known}
+        self.watched = {thing.name: None for thing in (*world.objects, *world.people) if not thing.known}
+        """The names of what the robot knows only from where it has seen it, in the order in which that began."""
         self._last: dict[str, tuple[Point, float]] = {}
         self._met: set[str] = set()
         self._now = self._next = 0.0
         for person in world.people:
             if person.moves:
-                self._watched.add(person.name)
+                self.watched[person.name] = None
                 if person.known and not person.comes:
                     self._last[person.name] = (person.x, person.y), -_FRESH
 
     def watch(self, name: str, kind: str) -> None:
         """From now on its place is known only as far as it is seen: who begins to walk, or comes unexpected."""
-        if name not in self._watched:
-            self._watched.add(name)
+        if name not in self.watched:
+            self.watched[name] = None
             if name in self._kinds and (point := self._obstacles.point(name)) is not None:
                 self._last[name] = point, self._now
         self._kinds[name] = kind
-
-    def is_watched(self, name: str) -> bool:
-        """Whether its place is known only as far as it is seen."""
-        return name in self._watched
 
     def forget(self) -> None:
         """Forgets where it saw what moves or isn't known."""
@@ -57,15 +54,15 @@ class Sight:
     def look(self, now: float, pose: Pose) -> None:
         """Notes where everything is that can be seen at second `now`."""
         self._now = now
-        if not self._watched or now + 1e-9 < self._next:
+        if not self.watched or now + 1e-9 < self._next:
             return
         self._next = now + _PERIOD
-        for name in self._watched:
+        for name in self.watched:
             self._look_for(name, pose)
 
     def where(self, name: str) -> Point | None:
         """Where it is as far as the robot knows; None for what it hasn't seen and what it carries."""
-        if name not in self._watched:
+        if name not in self.watched:
             return self._obstacles.point(name)
         if self._obstacles.is_carried(name) or name not in self._last:
             return None
@@ -77,7 +74,11 @@ class Sight:
 
     def is_fresh(self, name: str) -> bool:
         """Whether its place is known as of now, or nearly so."""
-        return name not in self._watched or (name in self._last and self._now - self._last[name][1] <= _FRESH)
+        return name not in self.watched or (name in self._last and self._now - self._last[name][1] <= _FRESH)
+
+    def is_seen(self, name: str) -> bool:
+        """Whether a watched thing was in view at the last look."""
+        return name in self._last and self._now - self._last[name][1] < _PERIOD
 
     def seen(self, kind: str, pose: Pose) -> list[str]:
         """The names of a type that are in view, nearest first."""
@@ -98,7 +99,7 @@ class Sight:
     def _look_for(self, name: str, pose: Pose) -> Point | None:
         """Where it is if it is in view, which is noted: what is seen in between two looks is known, too."""
         point = self._find(name, pose)
-        if point is not None and name in self._watched:
+        if point is not None and name in self.watched:
             self._last[name] = point, self._now
             if name not in self._met:
                 self._met.add(name)

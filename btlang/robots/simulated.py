@@ -22,6 +22,7 @@ from btlang.robots.simulated_parts import simulated_parts
 from btlang.robots.surroundings import Surroundings
 from btlang.robots.world import Place, World, said
 from btlang.robots.zones import Zones
+from btlang.run.robot_state import Whereabouts
 from btlang.run.standstill import Standstill
 from btlang.text.time_of_day import DAY
 from btlang.vocabulary.capabilities import part_of
@@ -254,6 +255,11 @@ class SimulatedRobot:
         return self._surroundings.sight.seen(kind, self.pose)
 
     @property
+    def things(self) -> tuple[Whereabouts, ...]:
+        """Where those are who walk, and what isn't known; for whoever watches."""
+        return self._surroundings.whereabouts()
+
+    @property
     def surroundings(self) -> Surroundings:
         """What is where around it, and who lives there."""
         return self._surroundings
@@ -272,6 +278,10 @@ class SimulatedRobot:
     def hear(self, text: str, who: str = "") -> None:
         """It hears what somebody says, or types."""
         self._surroundings.hear(text, who)
+
+    def invite(self) -> str:
+        """A visitor comes; returns the name."""
+        return self._surroundings.people.invite()
 
     def ask(self, question: str, person: str = "") -> None:
         """See `Listening.ask`: people of the world may answer."""

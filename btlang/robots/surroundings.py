@@ -15,6 +15,7 @@ from btlang.robots.sight import Sight
 from btlang.robots.view import View
 from btlang.robots.world import Door, Place, World, WorldObject, said
 from btlang.robots.zones import Zones
+from btlang.run.robot_state import Whereabouts
 
 _REACH = 1.2  # metres to a door or a switch
 _SAME_SPOT = 0.01  # metres
@@ -148,8 +149,13 @@ class Surroundings:
         if not is_open and any(segment_distance((x, y), (*door.start, *door.end)) < r for x, y, r in bodies):
             raise RobotError(f"something is in {said(door.name)}")
         if door.open != is_open:
-            self._obstacles.swing(door.name, is_open)
-            self._emit("door", name=door.name, open=is_open)
+            self.swing(name, is_open)
+
+    def swing(self, name: str, is_open: bool) -> None:
+        """A door is open or closed from now on. Raises RobotError for an unknown one."""
+        door = self._door(name)
+        self._obstacles.swing(door.name, is_open)
+        self._emit("door", name=door.name, open=is_open)
 
     def is_open(self, name: str) -> bool:
         """Whether a door is open. Raises RobotError for an unknown one."""
@@ -179,6 +185,15 @@ class Surroundings:
             raise RobotError(f"{said(known)} can't be switched on or off")
         return self._switched.get(known, thing.switch == "on")
 
+    def whereabouts(self) -> tuple[Whereabouts, ...]:
+        """Where those really are who walk and what isn't known, to the centimetre, and whether the robot sees them."""
+        found: list[Whereabouts] = []
+        for name in self.sight.watched:
+            point = self._obstacles.point(name)
+            x, y = (None, None) if point is None else (round(point[0], 2), round(point[1], 2))
+            found.append((name, x, y, self.sight.is_seen(name)))
+        return tuple(found)
+
     def hear(self, text: str, who: str = "") -> None:
         """The robot hears what somebody says, or types."""
         self.ears.hear(text, who, self._now)
@@ -194,6 +209,7 @@ class Surroundings:
             if point is not None and self._pose.distance_to(point) <= self._hears:
                 self.hear(text, name)
             return
-        if kind == "come":
+        if kind in ("come", "walk"):
             self.sight.watch(name, "person")
-        self._emit(kind, name=name)
+        if kind != "walk":
+            self._emit(kind, name=name)

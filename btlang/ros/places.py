@@ -15,6 +15,7 @@ from btlang.robots.robot import Hand, RobotError
 from btlang.robots.sight import Sight
 from btlang.robots.world import OBJECT_RADIUS, PERSON_RADIUS, Door, Person, Place, Thing, World, WorldObject, said
 from btlang.robots.zones import Zones
+from btlang.run.robot_state import Whereabouts
 
 _MOVED = 0.05  # metres that something has to be elsewhere
 _MOST_THINGS = 10_000
@@ -75,7 +76,16 @@ class Places:
 
     def is_watched(self, name: str) -> bool:
         """Whether it is known only where it was seen."""
-        return self.sight.is_watched(name)
+        return name in self.sight.watched
+
+    def whereabouts(self) -> tuple[Whereabouts, ...]:
+        """Where those were seen who walk, and what isn't known, to the centimetre, and whether they are in view."""
+        found: list[Whereabouts] = []
+        for name in self.sight.watched:
+            point = self.sight.where(name)
+            x, y = (None, None) if point is None else (round(point[0], 2), round(point[1], 2))
+            found.append((name, x, y, name in self._in_view))
+        return tuple(found)
 
     def locate(self, name: str, robot: Pose) -> Point:
         """Where it is; what the robot carries is where the robot is.

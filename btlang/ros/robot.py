@@ -40,6 +40,7 @@ from btlang.ros.services import Services
 from btlang.ros.speech import RosSpeech
 from btlang.ros.subscription_cache import SubscriptionCache
 from btlang.ros.zones import RosZones
+from btlang.run.robot_state import Whereabouts
 from btlang.run.standstill import Standstill
 from btlang.text.time_of_day import DAY, local
 
@@ -356,6 +357,11 @@ class RosRobot:
     def seen(self, kind: str) -> list[str]:
         """The objects or people in view, nearest first. Raises RobotError where nothing tells of them."""
         return self._perception.seen(kind, self.pose)
+
+    @property
+    def things(self) -> tuple[Whereabouts, ...]:
+        """Where those were seen who walk, and what isn't known; for whoever watches."""
+        return self._places.whereabouts()
 
     def guide(self, person: str, follow: bool) -> None:
         """Somebody follows the robot from now on, or no longer.

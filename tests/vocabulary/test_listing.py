@@ -28,6 +28,7 @@ NEEDS = {
     "Grasp": ("the cup is not within reach of the right hand", "approach the cup"),
     "Release": ("the robot isn't holding the cup", "pick up the cup"),
     "PutDown": ("the robot isn't holding the cup", "pick up the cup"),
+    "Ask": ("Alice didn't answer", "go to Alice"),
     "LookAtObject": ("the cup is behind the robot; the head can't turn that far", "face the cup"),
 }
 HOLDS_AT_THE_START = {
