@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Mapping
 
 from btlang.robots.body import Body
 from btlang.robots.doors import spots_beside
@@ -103,6 +103,12 @@ class Surroundings:
             names = (name for name in self.sight.names(kind) if self.sight.where(name) is not None)
             return [name for name in names if not getattr(things[name], "fixed", False)]
         return list(self._world.names.of(kind))
+
+    def described(self, kind: str, parts: Mapping[str, str]) -> list[str]:
+        """The names of objects or people with these parts that the robot knows a place of, or carries."""
+        things, where = self._obstacles.things, self.sight.where
+        known = (name for name in self.sight.names(kind) if where(name) or self._obstacles.is_carried(name))
+        return [name for name in known if name in things and things[name].fits(parts)]
 
     def nearby_people(self, within: float, pose: Pose) -> list[str]:
         """The names of the people within so many metres, nearest first: those who walk as far as they are in view."""

@@ -7,11 +7,12 @@ from contextlib import suppress
 from math import dist, radians
 
 from btlang.robots.body import Body
+from btlang.robots.choices import PICKY, Choices
 from btlang.robots.geometry import Point, Pose
 from btlang.robots.navigation import stand_off
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.planning import Planner
-from btlang.robots.robot import Hand, RobotError
+from btlang.robots.robot import Hand, OnEvent, RobotError
 from btlang.robots.sight import Sight
 from btlang.robots.world import OBJECT_RADIUS, PERSON_RADIUS, Door, Person, Place, Thing, World, WorldObject, said
 from btlang.robots.zones import Zones
@@ -86,6 +87,33 @@ class Places:
             x, y = (None, None) if point is None else (round(point[0], 2), round(point[1], 2))
             found.append((name, x, y, name in self._in_view))
         return tuple(found)
+
+    def described(self, kind: str, parts: Mapping[str, str], robot: Pose) -> list[str]:
+        """The names of objects or people with these parts that the robot knows a place of or carries, nearest first."""
+        things, where = self._obstacles.things, self.sight.where
+        known = (name for name in self.sight.names(kind) if where(name) or self._obstacles.is_carried(name))
+        names = (name for name in known if things[name].fits(parts))
+        return sorted(names, key=lambda name: robot.distance_to(self.locate(name, robot)))
+
+    def choose(
+        self,
+        kind: str,
+        how: str,
+        parts: Mapping[str, str],
+        where: Callable[[], Pose],
+        choices: Choices,
+        tell: OnEvent | None,
+    ) -> str:
+        """One of the names of a type. Raises RobotError where there is none with these parts."""
+        robot = where() if how in ("nearest", "seen") else Pose(0.0, 0.0, 0.0)
+        names = self.described(kind, parts, robot) if parts or how in PICKY else self.free(kind)
+        if how == "seen":
+            names = [name for name in self.sight.seen(kind, robot) if name in names] or names
+        things = self._obstacles.things
+        return choices.choose(
+            kind, how, names, parts, tell,
+            lambda name: robot.distance_to(self.locate(name, robot)), lambda name: getattr(things[name], "size", 0.0),
+        )  # fmt: skip
 
     def locate(self, name: str, robot: Pose) -> Point:
         """Where it is; what the robot carries is where the robot is.

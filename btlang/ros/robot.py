@@ -323,17 +323,22 @@ class RosRobot:
         """The nearest echo in each degree. Raises RobotError when the scanner is silent."""
         return self._senses.scan()
 
+    @property
+    def world(self) -> World:
+        """What it knows of its surroundings."""
+        return self._places.world
+
     def locate(self, name: str) -> Point:
         """Where it is by the world file, the mission and what was seen. Raises RobotError for what isn't known."""
         return self._places.locate(name, self.pose)
 
-    def choose(self, kind: str, how: str) -> str:
+    def choose(self, kind: str, how: str, parts: Mapping[str, str] = {}) -> str:
         """A name of the world file or the mission, or of who was seen. Raises RobotError where there is none."""
-        pose = self.pose if how == "nearest" else Pose(0.0, 0.0, 0.0)
-        names = self._places.free(kind)
-        return self._choices.choose(
-            kind, how, names, lambda name: pose.distance_to(self._places.locate(name, pose)), self.on_event
-        )
+        return self._places.choose(kind, how, parts, lambda: self.pose, self._choices, self.on_event)
+
+    def described(self, kind: str, parts: Mapping[str, str]) -> list[str]:
+        """The objects or people with these parts that the robot knows, nearest first."""
+        return self._places.described(kind, parts, self.pose)
 
     def seed_choices(self, seed: int, made: int = 0) -> None:
         """A run begins, whose random choices follow from the seed; so many have been made."""

@@ -21,7 +21,8 @@ doors = [{ name = "lab door", from = [5, 1.5], to = [5, 2.7], open = false }]
 
 [[zones]]
 name = "stairs"
-kind = "keep out"
+kind = "slow"
+speed = 0.3
 points = [[3, 0.3], [4, 0.3], [4, 1.2], [3, 1.2]]
 
 [[people]]
@@ -35,6 +36,7 @@ VISIT = """
 wait until the robot sees Alice
 ask Alice "Would you like some coffee?"
 if the answer is yes, say "Coffee!"
+avoid the stairs
 go to the landing, otherwise say "Not there."
 open the lab door
 check that the lab door is open

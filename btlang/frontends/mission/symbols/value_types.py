@@ -55,7 +55,7 @@ class ValueTypes:
             for at, prefix in self._prefixes.items():
                 if (at, prefix.key) not in self.types and prefix.role in ("set", "remember", "each"):
                     is_type = prefix.role == "each" and prefix.key in self._vocabulary.types
-                    kind = prefix.kind or (prefix.key if is_type else "")
+                    kind = prefix.noun.type if prefix.noun is not None else (prefix.key if is_type else "")
                     kinds = (kind,) if kind else self._given(at, prefix, scopes)
                     if kinds:
                         self.types[at, prefix.key] = kinds
