@@ -179,6 +179,7 @@ class People:
                 x, y = walker.point
                 if all(hypot(o.x - x, o.y - y) > o.radius + walker.radius for o in others):
                     self._enter(walker)
+                    self._show()
             elif walker.present and walker.person.leaves <= now and not walker.leaving:
                 walker.leave()
             elif walker.present and walker.has_left:

@@ -3,21 +3,21 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from math import hypot
 
 from btlang.robots.body import Body
+from btlang.robots.doors import spots_beside
 from btlang.robots.ears import Ears
 from btlang.robots.geometry import Point, Pose, segment_distance
 from btlang.robots.obstacles import Obstacles
 from btlang.robots.people import People
 from btlang.robots.robot import RobotError
 from btlang.robots.sight import Sight
+from btlang.robots.view import View
 from btlang.robots.world import Door, Place, World, WorldObject, said
 from btlang.robots.zones import Zones
 from btlang.run.robot_state import Whereabouts
 
 _REACH = 1.2  # metres to a door or a switch
-_BESIDE = 0.7  # metres from the middle of a door
 _SAME_SPOT = 0.01  # metres
 
 
@@ -43,7 +43,8 @@ class Surroundings:
         self._now, self._pose = 0.0, world.start
         self.zones = Zones(world.zones)
         self.ears = Ears()
-        self.sight = Sight(world, obstacles, body, joint, lambda name: emit("see", name=name))
+        view = View(obstacles, body, joint)
+        self.sight = Sight(world, obstacles, view.point, lambda name: emit("see", name=name))
         self.people = People(world, obstacles, body.radius, self._happen)
         self.sight.look(0.0, world.start)
 
@@ -143,13 +144,7 @@ class Surroundings:
 
     def beside_door(self, name: str, pose: Pose) -> list[Pose]:
         """Where a robot can stand to move a door: before and behind it, facing it; the nearer one first."""
-        door = self._door(name)
-        (ax, ay), (bx, by), (x, y) = door.start, door.end, door.middle
-        length = max(hypot(bx - ax, by - ay), 1e-9)
-        across = -(by - ay) / length * _BESIDE, (bx - ax) / length * _BESIDE
-        spots = [(x + side * across[0], y + side * across[1]) for side in (1, -1)]
-        spots.sort(key=pose.distance_to)
-        return [Pose(*spot, Pose(*spot).bearing_to((x, y))) for spot in spots]
+        return spots_beside(self._door(name), pose)
 
     def move_door(self, name: str, is_open: bool, pose: Pose) -> None:
         """Opens or closes a door. Raises RobotError where it is out of reach, or something is in it."""

@@ -14,11 +14,12 @@ from btlang.robots.body import Body
 from btlang.robots.needs import check_body, lacking
 from btlang.robots.world import World
 from btlang.robots.zone_check import check_zones
-from btlang.ros.available import require_ros
+from btlang.ros.available import require_interfaces, require_ros
 from btlang.ros.binding import bind_ros
 from btlang.ros.clients import Clients
 from btlang.ros.connected import is_connected
 from btlang.ros.graph import absent, full_name
+from btlang.ros.interfaces import OWN
 from btlang.ros.latest import NodeClock
 from btlang.ros.node import SpunNode
 from btlang.ros.pace import RosPace
@@ -95,7 +96,7 @@ class RosConnection:
         """What a tree needs of the robot, the first leaf that needs it, and what is wrong with it, "" for nothing.
 
         Waits for what is missing: until the node is seven seconds old, at least for two seconds. Raises MissionError
-        (BT100) where nav2_msgs is needed and is not installed.
+        where nav2_msgs is needed and is not installed (BT100), or btlang's interfaces aren't compiled (BT110).
         """
         wanted: dict[Interface, Node | None] = {CLOCK: None} if self._sim_time else {}
         declared, own = self._bound(tree, vocabulary)
@@ -103,6 +104,8 @@ class RosConnection:
         if any(interface.kind == "action" for interface in wanted):
             require_ros("nav2_msgs")
             self.robot.prepare_navigation()
+        if any(interface.type.startswith(f"{OWN.name}/") for interface in wanted):
+            require_interfaces()
         found: dict[Interface, tuple[Node | None, str]] = {}
 
         def has_all() -> bool:
@@ -112,7 +115,7 @@ class RosConnection:
                 found[offered] = node, reason
             lacking = {Interface(need.kind, need.name, need.type): need.missing for need in self._clients.needs()}
             found.update((interface, (node, lacking[interface])) for interface, node in own.items())
-            return not any(reason for _, reason in found.values())
+            return not any(reason for _, reason in found.values()) and not self.robot.awaited()
 
         wait_until(has_all, max(self._discovers_until - time.monotonic(), _AGAIN))
         return {self._named(interface): lack for interface, lack in found.items()}
