@@ -90,7 +90,7 @@ class RosBase:
         after all that was let through before it.
         """
         with self._lock:
-            wanted = _at_most(linear, min(self._fastest[0], self.most)), _at_most(angular, self._fastest[1])
+            wanted = _at_most(linear, self._fastest[0]), _at_most(angular, self._fastest[1])
             if self._latch.refuses and wanted != (0.0, 0.0):
                 return
             if wanted == (0.0, 0.0):
@@ -122,6 +122,11 @@ class RosBase:
                 if not self._told:
                     self._tell()
             self._told = False
+
+    @property
+    def backward(self) -> bool:
+        """Whether it has been told to move backward."""
+        return self._wanted[0] < 0.0
 
     @property
     def driving(self) -> bool:
@@ -168,6 +173,7 @@ class RosBase:
         if self._publisher is None:
             self.adapt()
         stamp, (linear, angular) = self._node.get_clock().now().to_msg(), self._wanted
+        linear = _at_most(linear, self.most)
         message = velocity(_TYPES[self._type], linear, radians(angular), stamp, self._fastest[0])
         if self._publisher is not None:
             self._publisher.publish(message)

@@ -13,6 +13,8 @@ from btlang.ros.subscription_cache import SubscriptionCache
 
 HEARD, ASKING = "heard", "asking"
 HEARD_TYPE, QUESTION_TYPE = "btlang_interfaces/msg/Heard", "btlang_interfaces/msg/Question"
+WORDLESS = "..."
+"""The text of a question that has no words: the robot only listens."""
 
 
 class RosEars:
@@ -44,7 +46,7 @@ class RosEars:
 
     def ask(self, question: str, person: str) -> None:
         """The robot has asked a person, or anybody for "", and waits for an answer."""
-        self.ears.asking = question or "..."
+        self.ears.asking = question or WORDLESS
         self._emit("ask", text=question, who=person)
         self._publish(person, self.ears.asking)
 

@@ -33,9 +33,9 @@ class Places:
         self._body = body
         self.world = self._given_world = world
         self.zones = Zones(world.zones)
-        self._obstacles = Obstacles(world)
+        self.obstacles = Obstacles(world)
         self._in_view: dict[str, Point] = {}
-        self.sight = Sight(world, self._obstacles, lambda name, pose: self._in_view.get(name), tell)
+        self.sight = Sight(world, self.obstacles, lambda name, pose: self._in_view.get(name), tell)
         self._planner: Planner | None = None
 
     def name_places(self, places: Iterable[Place]) -> None:
@@ -45,7 +45,7 @@ class Places:
     def known(self, name: str) -> str:
         """The name as the world spells it. Raises RobotError for an unknown one."""
         names = self.world.names
-        for known in (*names.places, *names.objects, *names.people, *self._obstacles.things):
+        for known in (*names.places, *names.objects, *names.people, *self.obstacles.things):
             if known.lower() == name.lower():
                 return known
         raise RobotError(f"I don't know where '{name}' is")
@@ -54,25 +54,25 @@ class Places:
         """The names of a type that the robot knows a place of, without objects that it carries or that are fixed."""
         if kind not in ("object", "person"):
             return list(self.world.names.of(kind))
-        things = self._obstacles.things
+        things = self.obstacles.things
         names = (name for name in self.sight.names(kind) if self.sight.where(name) is not None)
         return [name for name in names if not getattr(things[name], "fixed", False)]
 
     def notice(self, seen: Mapping[str, tuple[str, Point]], now: float, pose: Pose) -> None:
         """This is in view, and nothing else: the kind of each, "person" or "object", and where it is."""
-        names = {name.lower(): name for name in self._obstacles.things} if seen else {}
+        names = {name.lower(): name for name in self.obstacles.things} if seen else {}
         self._in_view = {}
         for said_name, (kind, point) in seen.items():
             name = names.get(said_name.lower(), said_name)
-            if name not in self._obstacles.things:
-                if len(self._obstacles.things) >= _MOST_THINGS:
+            if name not in self.obstacles.things:
+                if len(self.obstacles.things) >= _MOST_THINGS:
                     continue
-                self._obstacles.add(_stranger(name, kind, point))
+                self.obstacles.add(_stranger(name, kind, point))
                 self.sight.watch(name, kind)
             self._in_view[name] = point
-            stood = self._obstacles.point(name)
+            stood = self.obstacles.point(name)
             if stood is not None and dist(stood, point) > _MOVED:
-                self._obstacles.move(name, *point)
+                self.obstacles.move(name, *point)
         self.sight.look(now, pose)
 
     def is_watched(self, name: str) -> bool:
@@ -90,8 +90,8 @@ class Places:
 
     def described(self, kind: str, parts: Mapping[str, str], robot: Pose) -> list[str]:
         """The names of objects or people with these parts that the robot knows a place of or carries, nearest first."""
-        things, where = self._obstacles.things, self.sight.where
-        known = (name for name in self.sight.names(kind) if where(name) or self._obstacles.is_carried(name))
+        things, where = self.obstacles.things, self.sight.where
+        known = (name for name in self.sight.names(kind) if where(name) or self.obstacles.is_carried(name))
         names = (name for name in known if things[name].fits(parts))
         return sorted(names, key=lambda name: robot.distance_to(self.locate(name, robot)))
 
@@ -109,7 +109,7 @@ class Places:
         names = self.described(kind, parts, robot) if parts or how in PICKY else self.free(kind)
         if how == "seen":
             names = [name for name in self.sight.seen(kind, robot) if name in names] or names
-        things = self._obstacles.things
+        things = self.obstacles.things
         return choices.choose(
             kind, how, names, parts, tell,
             lambda name: robot.distance_to(self.locate(name, robot)), lambda name: getattr(things[name], "size", 0.0),
@@ -124,7 +124,7 @@ class Places:
         for place in self.world.places:
             if place.name == known:
                 return place.x, place.y
-        if self._obstacles.is_carried(known):
+        if self.obstacles.is_carried(known):
             return robot.x, robot.y
         point = self.sight.where(known)
         if point is None:
@@ -161,25 +161,25 @@ class Places:
             if place.name == known:
                 facing = robot.heading + robot.bearing_to(point) if place.facing is None else place.facing
                 return Pose(place.x, place.y, facing)
-        reach = stand_off(self._body, self._obstacles.things[known], known in self.sight.names("person"))
+        reach = stand_off(self._body, self.obstacles.things[known], known in self.sight.names("person"))
         stand = self._stand(robot, point, reach)
         return Pose(*stand, stand_heading(stand, point))
 
     def picked_up(self, name: str) -> None:
         """The robot carries it from now on."""
-        self._obstacles.pick_up(name)
+        self.obstacles.pick_up(name)
 
     def put_down(self, name: str, robot: Pose, hand: Hand) -> None:
         """It lies just in front of the robot."""
         part = self._body.hand(hand)
-        ahead = (part.puts_at if part is not None else self._body.radius) + self._obstacles.things[name].radius
-        self._obstacles.put_down(name, *robot.ahead(ahead))
+        ahead = (part.puts_at if part is not None else self._body.radius) + self.obstacles.things[name].radius
+        self.obstacles.put_down(name, *robot.ahead(ahead))
 
     def check_movable(self, name: str) -> None:
         """Raises RobotError for an object that can't be picked up, or that the robot hasn't seen."""
         known = self.known(name)
         self.locate(known, Pose(0.0, 0.0, 0.0))
-        if getattr(self._obstacles.things.get(known), "fixed", False):
+        if getattr(self.obstacles.things.get(known), "fixed", False):
             raise RobotError(f"{said(known)} is fixed")
 
     def nearby_people(self, within: float, robot: Pose) -> list[str]:
@@ -193,20 +193,20 @@ class Places:
 
     def door(self, name: str) -> Door:
         """A door as it is now. Raises RobotError for an unknown one."""
-        for door in self._obstacles.doors.values():
+        for door in self.obstacles.doors.values():
             if door.name.lower() == name.lower():
                 return door
         raise RobotError(f"there's no door called '{name}'")
 
     def swing(self, name: str, is_open: bool) -> None:
         """A door is open or closed from now on."""
-        if self._obstacles.doors[name].open != is_open:
-            self._obstacles.swing(name, is_open)
+        if self.obstacles.doors[name].open != is_open:
+            self.obstacles.swing(name, is_open)
 
     def _stand(self, robot: Pose, point: Point, reach: float) -> Point:
         with suppress(RobotError):  # a world too large to plan in
             if self._planner is None:
-                self._planner = Planner(self._given_world, self._obstacles, self._body.radius, self.zones)
+                self._planner = Planner(self._given_world, self.obstacles, self._body.radius, self.zones)
             path = self._planner.path((robot.x, robot.y), point, reach)
             if path is not None:
                 return path[-1]

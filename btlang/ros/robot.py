@@ -5,6 +5,7 @@ from __future__ import annotations
 import time
 from collections.abc import Callable, Iterable, Mapping
 from functools import partial
+from math import inf
 from typing import Any
 
 import numpy as np
@@ -20,8 +21,9 @@ from btlang.robots.doors import spots_beside
 from btlang.robots.ears import Ears
 from btlang.robots.geometry import Point, Pose
 from btlang.robots.latch import Latch
+from btlang.robots.protection import Protection
 from btlang.robots.robot import CompletedOperation, Hand, OnEvent, Operation, RobotError
-from btlang.robots.world import Place, World, said
+from btlang.robots.world import Place, World, Zone, said
 from btlang.robots.zones import Zones
 from btlang.ros.available import optional_interface
 from btlang.ros.awake import AWAKE
@@ -111,6 +113,7 @@ class RosRobot:
         self._ears = RosEars(node, subscriptions, self._emit)
         self._perception = RosPerception(node, subscriptions, self._places)
         self._zones = RosZones(node, subscriptions, self._places.zones, world.zones)
+        self._protection = Protection(self._places.obstacles, self._places.zones, body)
         self._doors = RosDoors(node, subscriptions, self._services, self._places, world, self._emit)
         self._calls = node.create_publisher(String, CALL, 10)
         self._optional = [name for name, kind in _OPTIONAL.items() if self._offer(name, kind)]
@@ -148,7 +151,7 @@ class RosRobot:
         self._voice.step(dt)
         here = self._base.where()
         self._perception.step(self.time, here)
-        self._base.most = self._zones.limit(here)
+        self._protect(self._base.backward)
         off_limits = self._zones.step(dt, here)
         if off_limits and self._navigation is not None:
             self._navigation.stop(off_limits)
@@ -258,12 +261,25 @@ class RosRobot:
         return self._base.adapt()
 
     def drive(self, linear: float, angular: float) -> None:
-        """Sets the wanted metres and degrees a second; ends a journey under way. Raises RobotError for no numbers."""
+        """Sets the wanted metres and degrees a second; ends a journey under way.
+
+        Raises RobotError for no numbers, and before a zone to keep out of.
+        """
         if self._latch.refuses:
             return
         for servers in self._servers:
             servers.stop("another command took over the drive")
+        zone = self._protect(linear < 0.0)
+        if zone is not None and linear:
+            self._base.halt()
+            raise RobotError(f"the {zone.name} is in the way, where the robot may not go")
         self._base.drive(linear, angular)
+
+    def _protect(self, backward: bool) -> Zone | None:
+        """The base drives no faster than zones allow; returns the one before which it has to stand."""
+        here = self._base.where()
+        self._base.most = inf if here is None else self._protection.limit(here, backward)
+        return self._protection.zone if here is not None else None
 
     @property
     def bumps(self) -> int:

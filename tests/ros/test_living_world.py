@@ -133,9 +133,12 @@ def test_a_visit(hall: Hall) -> None:
 def test_a_plan_into_a_zone_that_the_robot_does_not_know(hall: Hall) -> None:
     hall.open()
     hall.change('[[zones]]\nname = "strip"\nkind = "keep out"\npoints = [[2, 0], [2.4, 0], [2.4, 4], [2, 4]]\n')
-    code, out, err = hall.run("go to (3, 2.8), otherwise say so")
+    code, out, err = hall.run("go to (3, 2.8), otherwise go to (1.2, 2)")
     assert code == 0, err
     assert "the way to (3.00, 2.80) leads through the strip, where the robot may not go" in out
+    code, out, err = hall.run("move backward 2 m, otherwise move forward 10 cm")
+    assert code == 0, err
+    assert "the strip is in the way, where the robot may not go" in out
 
 
 @pytest.mark.long
@@ -175,6 +178,35 @@ def test_the_preflight_knows_ears_and_eyes(hall: Hall) -> None:
     hall.open()
     code, out, _ = hall.run("listen for yes or no then check that the robot sees someone", "--preflight")
     assert (code, out.splitlines()[-1]) == (0, "The robot has everything that the mission needs.")
+
+
+class WithoutInterfaces(Command):
+    """`btc` where btlang's interfaces are not compiled."""
+
+    program = (
+        "-c",
+        "import sys; sys.modules['btlang_interfaces'] = None; from btlang.__main__ import main; sys.exit(main())",
+    )
+
+
+@pytest.mark.long
+def test_without_interfaces_it_does_all_the_rest(tmp_path: Path, domain: int, nav2: object) -> None:
+    for name in ("sim", "drive", "listen"):
+        (tmp_path / name).mkdir()
+    world = tmp_path / "hall.toml"
+    world.write_text(HALL, encoding="utf-8")
+    given = ("--world", str(world))
+    sim = WithoutInterfaces(tmp_path / "sim", domain, "sim-ros", *given, "--speed", "8")
+    sim.wait_for("ready")
+    options = ("--robot", "ros", "--sim-time", "--lines", *given)
+    mission = "open the lab door then check that the lab door is open"
+    drive = WithoutInterfaces(tmp_path / "drive", domain, "run", "-c", mission, *options)
+    assert drive.process.wait(2 * LONG) == 0, drive.err
+    listen = WithoutInterfaces(tmp_path / "listen", domain, "run", "-c", "listen for hello", *options)
+    assert listen.process.wait(2 * LONG) == 2
+    assert "BT110" in listen.err
+    assert sim.end() == 130
+    assert sim.err.startswith("btlang sim-ros: no /heard, /asking, /sightings and /follow: ")
 
 
 @pytest.mark.long

@@ -6,7 +6,7 @@ from btlang_interfaces.msg import Heard, Question
 from rclpy.node import Node
 
 from btlang.robots.simulated import SimulatedRobot
-from btlang.ros.ears import ASKING, HEARD
+from btlang.ros.ears import ASKING, HEARD, WORDLESS
 from btlang.ros.node import LATCHED
 from btlang.ros.simulator.call_queue import CallQueue
 from btlang.ros.simulator.publishing import COMMANDS, Moment
@@ -28,7 +28,7 @@ class Hearing:
         self._heard.publish(Heard(who=who, text=text))
 
     def _ask(self, question: Question) -> None:
-        if self._robot.body.ears is None:
+        if self._robot.body.ears is None or question.text == WORDLESS:
             return
         if question.text:
             self._robot.ask(question.text, question.who)
