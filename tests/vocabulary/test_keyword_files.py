@@ -8,6 +8,7 @@ import pytest
 
 from btlang.api import parse_tree
 from btlang.diagnostics.errors import MissionError
+from btlang.vocabulary.load import load_vocabulary
 
 ACTION = '[[action]]\nphrase = "hop"\nid = "Hop"\n'
 
