@@ -31,7 +31,7 @@ RETURNS = 4
 _TURNED = 30.0  # degrees to the side at which it turns to who it follows
 _STEP = 0.4  # metres that who is followed may go before it sets out
 _UNSEEN = 2.5  # seconds that who is guided may be out of view: cameras look ahead
-_ARRIVED, _MOVED = 1.0, 0.2  # metres
+_ARRIVED, _MOVED = 2.0, 0.2  # metres
 _TRIES, _PAUSE = 3, 1.0  # journeys that fail one after the other, and the seconds between them
 
 

@@ -2,18 +2,12 @@
 
 from __future__ import annotations
 
-from typing import Protocol
-
 from btlang.actions.joints import take
 from btlang.actions.motion import Steps, turn
 from btlang.actions.watch import Driving, Watch
 from btlang.robots.capabilities import Joints
 
-_BOWED, _SWING = 1.0, 45.0  # seconds, degrees
-
-
-class Dancing(Joints, Driving, Protocol):
-    """Arms on a base that turns."""
+_BOWED = 1.0  # seconds
 
 
 def bow(robot: Joints) -> Steps:
@@ -26,11 +20,7 @@ def bow(robot: Joints) -> Steps:
     yield from take(robot, "look ahead")
 
 
-def dance(robot: Dancing) -> Steps:
-    """Swings from side to side on the spot, and raises one arm after the other."""
-    for side, arm in ((1.0, "left arm"), (-1.0, "right arm")):
-        yield from take(robot, f"{arm} raised")
-        yield from turn(robot, side * _SWING)
-        yield from turn(robot, side * -2.0 * _SWING)
-        yield from turn(robot, side * _SWING)
-        yield from take(robot, f"{arm} hanging")
+def dance(robot: Driving) -> Steps:
+    """Swings from side to side on the spot, and turns once around."""
+    for angle in (45.0, -90.0, 90.0, -45.0, 360.0):
+        yield from turn(robot, angle)

@@ -278,7 +278,7 @@ class SimulatedRobot:
     def take_picture(self) -> Operation:
         """Takes a picture, whose event names what is in view. Raises RobotError where it has no camera."""
         self._need("perception")
-        self._emit("picture", names=(*self.seen("person"), *self.seen("object")))
+        self._emit("picture", name=", ".join((*self.seen("person"), *self.seen("object"))))
         return CompletedOperation()
 
     @property

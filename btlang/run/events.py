@@ -343,15 +343,10 @@ class Given(InTheWorld):
 
 
 class Pictured(InTheWorld):
-    """The robot has taken a picture, with so much of what it knows by name in it."""
+    """The robot has taken a picture; `name` lists who and what is in it, "" for nothing that the robot knows."""
 
     tag = "picture"
-    names: tuple[str, ...]
-
-    @property
-    def words(self) -> str:
-        """In plain English."""
-        return ", ".join(self.names) or "of nothing that it knows"
+    name: str
 
 
 class PartChanged(Event):
